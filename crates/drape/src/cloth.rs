@@ -1,5 +1,6 @@
 //! A sheet of cloth before it is simulated: where it is, and its shape at rest.
 
+use crate::merge::keeps_corners;
 use crate::{DrapeError, Material};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
@@ -124,10 +125,7 @@ impl Cloth {
 
     /// Triangles that are still there when vertices are joined as in [`Self::merged`], ascending.
     pub fn merged_triangles(&self, target: &[u32]) -> Vec<usize> {
-        let keeps_corners = |&t: &usize| {
-            let [a, b, c] = self.triangles[t].map(|v| target[v as usize]);
-            a != b && b != c && c != a
-        };
-        (0..self.triangles.len()).filter(keeps_corners).collect()
+        let stays = |&t: &usize| keeps_corners(self.triangles[t], target);
+        (0..self.triangles.len()).filter(stays).collect()
     }
 }

@@ -37,7 +37,7 @@ pub struct Material {
     /// Rayleigh damping: viscosity in proportion to stiffness [s].
     pub stiffness_damping: f64,
     /// Relaxed fraction p of the stress of stretch and of bending: held for long, stress falls to 1 - p of its
-    /// first value, and let go the cloth keeps p of the strain; 0 to below 1.
+    /// first value, and let go the cloth keeps p of the strain; 0 to 0.95.
     pub relaxed_fraction: [f64; 2],
     /// Time tau over which the internal strain follows the strain [s].
     pub relaxation_time: f64,
@@ -164,11 +164,32 @@ impl Material {
         self.relaxed_fraction.iter().any(|&share| share > 0.0)
     }
 
-    /// Checks every number. The list of them is kept by hand: a new field must be added to it.
+    /// Checks every number.
     ///
     /// # Errors
     /// Names the first number that cannot be simulated and what would be right.
     pub fn check(&self, object: &str) -> Result<(), DrapeError> {
+        // Taken apart whole: a new field does not compile before it is checked.
+        let &Self {
+            density,
+            thickness,
+            stretch,
+            shear,
+            poisson,
+            hardening,
+            strain_limit,
+            compression: Compression::Full | Compression::TensionField,
+            bend,
+            bend_poisson,
+            viscosity,
+            bend_viscosity,
+            stiffness_damping,
+            relaxed_fraction,
+            relaxation_time,
+            friction,
+            restitution,
+        } = self;
+        let bounce = restitution.unwrap_or_default();
         let ratio = |name, value: f64| {
             let good = (0.0..=0.95).contains(&value);
             (name, value, good, "give a number from 0 to 0.95")
@@ -183,31 +204,31 @@ impl Material {
             )
         };
         let fields = [
-            positive("density [kg/m2]", self.density),
-            not_negative("thickness [m]", self.thickness),
-            positive("stretch along warp [N/m]", self.stretch[0]),
-            positive("stretch along weft [N/m]", self.stretch[1]),
-            positive("shear [N/m]", self.shear),
-            ratio("Poisson ratio", self.poisson),
-            not_negative("hardening along warp", self.hardening[0]),
-            not_negative("hardening along weft", self.hardening[1]),
-            limit("strain limit along warp", self.strain_limit[0]),
-            limit("strain limit along weft", self.strain_limit[1]),
-            not_negative("bend along warp [N m]", self.bend[0]),
-            not_negative("bend along weft [N m]", self.bend[1]),
-            not_negative("bend along bias [N m]", self.bend[2]),
-            ratio("Poisson ratio in bending", self.bend_poisson),
-            not_negative("viscosity [N s/m]", self.viscosity),
-            not_negative("bending viscosity [N m s]", self.bend_viscosity),
-            not_negative("stiffness damping [s]", self.stiffness_damping),
-            ratio("kept share of stretch", self.relaxed_fraction[0]),
-            ratio("kept share of folds", self.relaxed_fraction[1]),
-            positive("relaxation time [s]", self.relaxation_time),
-            not_negative("friction", self.friction),
+            positive("density [kg/m2]", density),
+            not_negative("thickness [m]", thickness),
+            positive("stretch along warp [N/m]", stretch[0]),
+            positive("stretch along weft [N/m]", stretch[1]),
+            positive("shear [N/m]", shear),
+            ratio("Poisson ratio", poisson),
+            not_negative("hardening along warp", hardening[0]),
+            not_negative("hardening along weft", hardening[1]),
+            limit("strain limit along warp", strain_limit[0]),
+            limit("strain limit along weft", strain_limit[1]),
+            not_negative("bend along warp [N m]", bend[0]),
+            not_negative("bend along weft [N m]", bend[1]),
+            not_negative("bend along bias [N m]", bend[2]),
+            ratio("Poisson ratio in bending", bend_poisson),
+            not_negative("viscosity [N s/m]", viscosity),
+            not_negative("bending viscosity [N m s]", bend_viscosity),
+            not_negative("stiffness damping [s]", stiffness_damping),
+            ratio("kept share of stretch", relaxed_fraction[0]),
+            ratio("kept share of folds", relaxed_fraction[1]),
+            positive("relaxation time [s]", relaxation_time),
+            not_negative("friction", friction),
             (
                 "restitution",
-                self.restitution.unwrap_or_default(),
-                (0.0..=1.0).contains(&self.restitution.unwrap_or_default()),
+                bounce,
+                (0.0..=1.0).contains(&bounce),
                 "give a share from 0 to 1",
             ),
         ];

@@ -30,6 +30,12 @@ impl Sets {
     }
 }
 
+/// Whether a triangle still has three corners when vertices are joined as `target` says.
+pub(crate) fn keeps_corners(triangle: [u32; 3], target: &[u32]) -> bool {
+    let [a, b, c] = triangle.map(|v| target[v as usize]);
+    a != b && b != c && c != a
+}
+
 /// Union-find over `count` vertices joined by pairs. Gives each vertex its new index and the
 /// number of new vertices; new indices follow the order of the smallest old vertex.
 pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// Positions, velocities, and what contact remembers.
+/// Positions, velocities, and what contact and methods remember. A new field is also to be carried over edits
+/// (`world/transfer.rs`) and raises the version of saved checkpoints (`VERSION` in `toile-interchange`).
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct State {
@@ -94,38 +95,49 @@ impl State {
 
     /// Refuses a state that does not fit a model, by the field.
     pub(crate) fn check(&self, model: &Model) -> Result<(), DrapeError> {
+        // Taken apart whole: a new field does not compile before it is checked or named as free.
+        let Self {
+            positions,
+            velocities,
+            samples,
+            anchors,
+            normal_forces,
+            cloth,
+            internal_strain,
+            time: _,
+            memory: _,
+        } = self;
+        let ClothMemory {
+            places,
+            held,
+            layer_reach: _,
+            drawn,
+            crossed_for,
+        } = cloth;
         let [count, triangles] = [model.vertex_count(), model.topology.triangles.len()];
-        let samples = self.samples.len();
         let of_sample = |sample: &ContactSample| {
             let corners = sample.vertices.iter().all(|&v| (v as usize) < count);
             corners && sample.triangle.is_none_or(|t| (t as usize) < triangles)
         };
         let is_vertex = |v: u32| (v as usize) < count;
-        let cloth = &self.cloth;
-        let mut held = cloth.held.iter().map(|held| held.pair.vertices());
-        let mut drawn = cloth.drawn.iter().map(|drawn| drawn.vertex);
+        let mut pairs = held.iter().map(|held| held.pair.vertices());
+        let mut pulled = drawn.iter().map(|drawn| drawn.vertex);
         let is_full = |length: usize, whole: usize| length == 0 || length == whole;
         let fits = [
-            ("positions", self.positions.len() == count),
-            ("velocities", self.velocities.len() == count),
-            ("samples", self.samples.iter().all(of_sample)),
-            ("anchors", self.anchors.len() == samples),
-            ("normal_forces", self.normal_forces.len() == samples),
-            ("cloth.places", is_full(cloth.places.len(), count)),
+            ("positions", positions.len() == count),
+            ("velocities", velocities.len() == count),
+            ("samples", samples.iter().all(of_sample)),
+            ("anchors", anchors.len() == samples.len()),
+            ("normal_forces", normal_forces.len() == samples.len()),
+            ("cloth.places", is_full(places.len(), count)),
             (
                 "cloth.held",
-                held.all(|pair| pair.into_iter().all(is_vertex)),
+                pairs.all(|pair| pair.into_iter().all(is_vertex)),
             ),
-            (
-                "cloth.held",
-                cloth.held.is_empty() || !cloth.places.is_empty(),
-            ),
-            ("cloth.drawn", drawn.all(is_vertex)),
-            ("cloth.crossed_for", is_full(cloth.crossed_for.len(), count)),
-            (
-                "internal strain",
-                is_full(self.internal_strain.len(), triangles),
-            ),
+            ("cloth.held", held.is_empty() || !places.is_empty()),
+            ("cloth.drawn", pulled.all(is_vertex)),
+            ("cloth.crossed_for", is_full(crossed_for.len(), count)),
+            ("internal strain", is_full(internal_strain.len(), triangles)),
         ];
         if let Some((field, _)) = fits.iter().find(|(_, fits)| !fits) {
             return Err(DrapeError::Scene {

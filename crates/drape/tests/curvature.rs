@@ -1,5 +1,5 @@
-//! Regions left out because they cannot touch themselves: nothing that meets is missed, whatever the
-//! cloth does meanwhile, and smooth cloth costs next to nothing.
+//! Regions left out by the curvature test: no contact or crossing is missed while the cloth moves, and the search of
+//! smooth cloth costs next to nothing.
 
 #![allow(clippy::unwrap_used)]
 
@@ -39,14 +39,14 @@ fn waved(seed: u64) -> (TriangleMesh, Vec<Vec3>) {
         let (u, v) = (p.x / 0.32, p.z / 0.32);
         let base = match turns > 0.0 {
             true => {
-                // Rolled up, the ends over each other.
+                // A roll whose ends overlap.
                 let (angle, radius) = (turns * std::f64::consts::TAU * u, 0.05 + 0.006 * u);
                 Vec3::new(radius * angle.cos(), radius * angle.sin(), p.z)
             }
             false => *p,
         };
-        let way = |(way, [a, b, c]): &(Vec3, [f64; 3])| way * (a * u + b * v + c).sin();
-        base + waves.iter().map(way).sum::<Vec3>()
+        let wave = |(size, [a, b, c]): &(Vec3, [f64; 3])| size * (a * u + b * v + c).sin();
+        base + waves.iter().map(wave).sum::<Vec3>()
     });
     let places = places.collect();
     (flat, places)
@@ -57,62 +57,63 @@ fn features(surface: &ClothSurface, near: &[[u32; 2]]) -> BTreeSet<FeaturePair> 
     all.into_iter().collect()
 }
 
-/// Pairs of features among all that are not among those found.
+/// Pairs of features in the leaves `all` that are not in the leaves `found`.
 fn left_out_of(surface: &ClothSurface, [all, found]: [&[[u32; 2]]; 2]) -> Vec<FeaturePair> {
     let found = features(surface, found);
     features(surface, all).difference(&found).copied().collect()
 }
 
-/// Holds what was left out to its clearance at some places, and what was found to all crossings.
+/// Asserts that pairs left out keep their clearance at positions `x`, and that no crossing was left out.
 fn assert_keeps_apart(
     surface: &ClothSurface,
     [all, found]: [&[[u32; 2]]; 2],
-    rest: &[FeaturePair],
+    left_out: &[FeaturePair],
     (x, clearance): (&[Vec3], Clearance),
-    told: &str,
+    state: &str,
 ) {
-    for &pair in rest {
+    for &pair in left_out {
         let distance = Nearness::distance(pair, x);
-        let kept = pair.vertices().map(|v| surface.most_kept(v));
-        let kept = kept.into_iter().fold(clearance.kept, f64::min);
-        assert!(distance >= kept, "{told}: {pair:?} at {distance}");
+        let offsets = pair.vertices().map(|v| surface.max_offset(v));
+        let offset = offsets.into_iter().fold(clearance.offset, f64::min);
+        assert!(distance >= offset, "{state}: {pair:?} at {distance}");
     }
     let [all, found] = [all, found].map(|near| crossings(surface, near, x));
-    assert_eq!(all, found, "{told}");
+    assert_eq!(all, found, "{state}");
 }
 
 #[test]
-fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
+fn pairs_left_out_keep_their_distance_within_the_drift() {
     let clearance = Clearance {
-        kept: 2e-3,
-        beyond: 1e-3,
+        offset: 2e-3,
+        max_drift: 1e-3,
     };
     let (mut left_out, mut crossed) = (0, 0);
     for seed in 0..200 {
         let (flat, mut x) = waved(seed);
         let mut surface = ClothSurface::of_mesh(&flat);
-        // Far enough that every pair that could come near in the time is among these.
-        let all = surface.near(LinearTrajectories::still(&x), 0.02);
-        let found = surface.near_unless_clear(LinearTrajectories::still(&x), 0.02, clearance);
+        // A reach within which lies every pair that the drift can bring near.
+        let all = surface.near_leaves(LinearTrajectories::still(&x), 0.02);
+        let found =
+            surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 0.02, clearance);
         assert_eq!(
             crossings(&surface, &all, &x),
             crossings(&surface, &found, &x),
             "state {seed}"
         );
         crossed += crossings(&surface, &all, &x).len();
-        let rest = left_out_of(&surface, [&all, &found]);
-        left_out += rest.len();
+        let pairs = left_out_of(&surface, [&all, &found]);
+        left_out += pairs.len();
         let mut numbers = Numbers(seed + 1000);
-        let drift = numbers.vector(0.1);
+        let shift = numbers.vector(0.1);
         for round in 0..4 {
-            let told = format!("state {seed}, round {round}");
-            assert_keeps_apart(&surface, [&all, &found], &rest, (&x, clearance), &told);
-            let strays = waved(seed).1;
-            x = strays
+            let state = format!("state {seed}, round {round}");
+            assert_keeps_apart(&surface, [&all, &found], &pairs, (&x, clearance), &state);
+            let start = waved(seed).1;
+            x = start
                 .iter()
                 .map(|p| {
-                    let way = numbers.vector(1.0);
-                    p + drift + way * (0.999e-3 / way.norm())
+                    let direction = numbers.vector(1.0);
+                    p + shift + direction * (0.999e-3 / direction.norm())
                 })
                 .collect();
         }
@@ -126,8 +127,8 @@ fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
 #[test]
 fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
     let clearance = Clearance {
-        kept: 1e-3,
-        beyond: 1e-4,
+        offset: 1e-3,
+        max_drift: 1e-4,
     };
     // Two plies that face the same way, 1 mm apart: every pair of the two must stay.
     let mut plies = sheet([12; 2], [1.0; 2], |u, v| Vec3::new(0.2 * u, 0.0, 0.2 * v));
@@ -139,8 +140,8 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         .extend(upper.triangles.iter().map(|t| t.map(|v| v + count)));
     let mut surface = ClothSurface::of_mesh(&plies);
     let x = plies.positions.clone();
-    let all = surface.near(LinearTrajectories::still(&x), 2e-3);
-    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 2e-3, clearance);
+    let all = surface.near_leaves(LinearTrajectories::still(&x), 2e-3);
+    let found = surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 2e-3, clearance);
     let split = |near: &[[u32; 2]]| -> [BTreeSet<FeaturePair>; 2] {
         let across = |pair: &FeaturePair| {
             let v = pair.vertices();
@@ -166,36 +167,36 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         all.filter(|pair| Nearness::distance(*pair, &x) < 5e-4 * 6.3)
             .collect::<Vec<_>>()
     };
-    let all = surface.near(LinearTrajectories::still(&x), 5e-3);
-    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 5e-3, clearance);
+    let all = surface.near_leaves(LinearTrajectories::still(&x), 5e-3);
+    let found = surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 5e-3, clearance);
     assert!(close(&all, &surface).len() > 100);
     assert_eq!(close(&all, &surface), close(&found, &surface));
 }
 
 #[test]
-fn numbers_that_are_none_leave_nothing_out() {
+fn a_clearance_or_position_that_is_not_finite_leaves_nothing_out() {
     let mesh = sheet([8; 2], [1.0; 2], |u, v| Vec3::new(u, 0.0, v));
     for clearance in [
         Clearance {
-            kept: 0.0,
-            beyond: f64::NAN,
+            offset: 0.0,
+            max_drift: f64::NAN,
         },
         Clearance {
-            kept: 0.0,
-            beyond: f64::INFINITY,
+            offset: 0.0,
+            max_drift: f64::INFINITY,
         },
         Clearance {
-            kept: f64::INFINITY,
-            beyond: 0.0,
+            offset: f64::INFINITY,
+            max_drift: 0.0,
         },
     ] {
         let mut surface = ClothSurface::of_mesh(&mesh);
         let x = &mesh.positions;
-        let all = surface.near(LinearTrajectories::still(x), 0.01);
-        let found = surface.near_unless_clear(LinearTrajectories::still(x), 0.01, clearance);
-        match clearance.kept.is_finite() {
+        let all = surface.near_leaves(LinearTrajectories::still(x), 0.01);
+        let found = surface.near_leaves_unless_clear(LinearTrajectories::still(x), 0.01, clearance);
+        match clearance.offset.is_finite() {
             true => assert_eq!(all, found),
-            // The room at a vertex is less than without end: here there is room for it.
+            // The offset is limited by the shortest edge, and regions may pass.
             false => assert!(found.len() <= all.len()),
         }
     }
@@ -203,45 +204,45 @@ fn numbers_that_are_none_leave_nothing_out() {
     x[40] = Vec3::repeat(f64::NAN);
     let mut surface = ClothSurface::of_mesh(&mesh);
     let clearance = Clearance {
-        kept: 0.0,
-        beyond: 0.0,
+        offset: 0.0,
+        max_drift: 0.0,
     };
-    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 0.01, clearance);
-    let all = surface.near(LinearTrajectories::still(&x), 0.01);
+    let found = surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 0.01, clearance);
+    let all = surface.near_leaves(LinearTrajectories::still(&x), 0.01);
     assert!(found.len() <= all.len());
 }
 
 #[test]
 fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
-    let looked = [22, 71, 224, 708].map(|n| {
+    let opened = [22, 71, 224, 708].map(|n| {
         let dome = sheet([n; 2], [1.0; 2], |u, v| {
             Vec3::new(u, 0.1 * (3.0 * u).sin() * (3.0 * v).sin(), v)
         });
         let mut surface = ClothSurface::of_mesh(&dome);
         let clearance = Clearance {
-            kept: 1e-4,
-            beyond: 1e-5,
+            offset: 1e-4,
+            max_drift: 1e-5,
         };
         let x = &dome.positions;
-        let found = surface.near_unless_clear(LinearTrajectories::still(x), 2e-4, clearance);
+        let found = surface.near_leaves_unless_clear(LinearTrajectories::still(x), 2e-4, clearance);
         assert!(
             found.is_empty(),
             "{} pairs of a sheet of {n} cells",
             found.len()
         );
-        surface.opened()[0]
+        surface.region_counts()[0]
     });
-    assert!(looked.iter().all(|&count| count == looked[0]), "{looked:?}");
+    assert!(opened.iter().all(|&count| count == opened[0]), "{opened:?}");
 }
 
 #[test]
-fn what_was_found_serves_while_the_cloth_moves() {
+fn queries_that_go_on_from_a_front_miss_nothing_while_the_cloth_moves() {
     let clearance = Clearance {
-        kept: 2e-3,
-        beyond: 1e-3,
+        offset: 2e-3,
+        max_drift: 1e-3,
     };
     let reach = 0.01;
-    let (mut left_out, mut listed, mut crossed, mut told, mut told_anew) = (0, 0, 0, 0, 0);
+    let (mut left_out, mut listed, mut crossed, mut tested, mut tested_afresh) = (0, 0, 0, 0, 0);
     for seed in 0..60 {
         // From one crumpled state towards another, slowly or fast, the whole carried along, turned and shaken.
         let (flat, start) = waved(seed);
@@ -249,7 +250,7 @@ fn what_was_found_serves_while_the_cloth_moves() {
         let mut surface = ClothSurface::of_mesh(&flat);
         let mut fresh = ClothSurface::of_mesh(&flat);
         let mut numbers = Numbers(seed + 500);
-        let drift = numbers.vector(0.02);
+        let shift = numbers.vector(0.02);
         let turn = numbers.vector(0.05);
         let share = 0.02 * numbers.next().powi(4);
         let shake = if seed % 2 == 0 { 0.249e-3 } else { 2e-5 };
@@ -259,80 +260,91 @@ fn what_was_found_serves_while_the_cloth_moves() {
             let turned = nalgebra::Rotation3::from_scaled_axis(turn * k as f64);
             let both = start.iter().zip(&goal);
             both.map(|(a, b)| {
-                let way = shaken.vector(1.0);
-                turned * (a + (b - a) * share) + drift * k as f64 + way * (shake / way.norm())
+                let direction = shaken.vector(1.0);
+                let noise = direction * (shake / direction.norm());
+                turned * (a + (b - a) * share) + shift * k as f64 + noise
             })
             .collect()
         };
         let mut from = place(0);
         for step in 1..16 {
             let to = place(step);
-            // Now and then all is elsewhere at once.
+            // Once the whole cloth jumps.
             let leap = Vec3::repeat(if step == 9 { 0.4 } else { 0.0 });
-            let told_of = format!("state {seed}, step {step}");
-            for ways in [
+            let state = format!("state {seed}, step {step}");
+            for trajectories in [
                 LinearTrajectories::together(&from, &to),
                 LinearTrajectories::still(&to),
             ] {
-                let all = fresh.near(ways, reach);
+                let all = fresh.near_leaves(trajectories, reach);
                 let all = features(&fresh, &all);
-                surface.look(ways, &Reach::all(reach), clearance);
-                told += surface.opened()[1];
+                surface.query(trajectories, &Reach::uniform(reach), clearance);
+                tested += surface.region_counts()[1];
                 let found = surface.features(Near::Listed, |pair, _, all| all.push(pair));
                 let found: BTreeSet<FeaturePair> = found.into_iter().collect();
-                let crossing = crossings(&surface, Near::Listed, ways.from);
+                let crossing = crossings(&surface, Near::Listed, trajectories.from);
                 fresh.forget();
-                fresh.look(ways, &Reach::all(reach), clearance);
-                told_anew += fresh.opened()[1];
-                let exact = fresh.near(LinearTrajectories::still(ways.from), 0.0);
-                assert_eq!(crossing, crossings(&fresh, &exact, ways.from), "{told_of}");
+                fresh.query(trajectories, &Reach::uniform(reach), clearance);
+                tested_afresh += fresh.region_counts()[1];
+                let exact = fresh.near_leaves(LinearTrajectories::still(trajectories.from), 0.0);
+                assert_eq!(
+                    crossing,
+                    crossings(&fresh, &exact, trajectories.from),
+                    "{state}"
+                );
                 crossed += crossing.len();
                 listed += found.len();
                 for &pair in all.difference(&found) {
                     left_out += 1;
-                    for part in [0.0, 0.37, 1.0] {
-                        let kept = pair.vertices().map(|v| surface.most_kept(v));
-                        let kept = kept.into_iter().fold(clearance.kept, f64::min);
-                        let x = |v: usize| ways.from[v] + (ways.to[v] - ways.from[v]) * part;
+                    for time in [0.0, 0.37, 1.0] {
+                        let offsets = pair.vertices().map(|v| surface.max_offset(v));
+                        let offset = offsets.into_iter().fold(clearance.offset, f64::min);
+                        let x = |v: usize| {
+                            trajectories.from[v]
+                                + (trajectories.to[v] - trajectories.from[v]) * time
+                        };
                         let four = pair.vertices().map(|v| x(v as usize));
                         let pair = match pair {
                             FeaturePair::VertexFace(_) => FeaturePair::VertexFace([0, 1, 2, 3]),
                             FeaturePair::EdgeEdge(_) => FeaturePair::EdgeEdge([0, 1, 2, 3]),
                         };
                         let distance = Nearness::distance(pair, &four);
-                        assert!(distance >= kept, "{told_of}: {four:?} at {distance}");
+                        assert!(distance >= offset, "{state}: {four:?} at {distance}");
                     }
                 }
             }
-            // Impulses leave the cloth a little off the way it was looked for on.
+            // As after impulses, the cloth is a little off the trajectories of the query.
             from = (to.iter().map(|x| x + leap + numbers.vector(1e-4))).collect();
         }
     }
     assert!(left_out > 1_000_000, "{left_out}");
     assert!(listed > 1_000_000, "{listed}");
     assert!(crossed > 10_000, "{crossed}");
-    assert!(3 * told < 2 * told_anew, "{told} of {told_anew}");
+    assert!(
+        3 * tested < 2 * tested_afresh,
+        "{tested} of {tested_afresh}"
+    );
 }
 
 #[test]
-fn a_vertex_lost_on_the_way_leaves_no_region_out() {
+fn a_trajectory_that_is_not_finite_leaves_no_region_of_its_vertex_out() {
     let mesh = sheet([16; 2], [1.0; 2], |u, v| Vec3::new(0.3 * u, 0.0, 0.3 * v));
     let clearance = Clearance {
-        kept: 1e-3,
-        beyond: 1e-3,
+        offset: 1e-3,
+        max_drift: 1e-3,
     };
     let mut surface = ClothSurface::of_mesh(&mesh);
     let x = &mesh.positions;
     assert!(
         surface
-            .near_unless_clear(LinearTrajectories::still(x), 0.01, clearance)
+            .near_leaves_unless_clear(LinearTrajectories::still(x), 0.01, clearance)
             .is_empty()
     );
     for lost in [f64::NAN, f64::INFINITY] {
         let mut to = x.clone();
         to[100] = Vec3::repeat(lost);
         let found =
-            surface.near_unless_clear(LinearTrajectories::together(x, &to), 0.01, clearance);
+            surface.near_leaves_unless_clear(LinearTrajectories::together(x, &to), 0.01, clearance);
         let pairs = features(&surface, &found).into_iter();
         let with = pairs.filter(|pair| pair.vertices().contains(&100)).count();
         assert!(with > 10, "{with} pairs at a vertex that is {lost}");

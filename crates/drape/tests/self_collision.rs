@@ -31,7 +31,7 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
         let mesh = crumpled(seed, 8);
         let x = &mesh.positions;
         let reach = 0.01;
-        let near = surface.near(LinearTrajectories::still(x), reach);
+        let near = surface.near_leaves(LinearTrajectories::still(x), reach);
         let mut found = surface.features(&near, |pair, _, found| {
             found.extend(Nearness::measure(pair, x, reach));
         });
@@ -45,7 +45,7 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
         assert_eq!(found, expected, "state {seed}");
         near_pairs += found.len();
         // What is left out for contact is a neighbour that faces the same way.
-        assert!(nearnesses(&surface, &near, x, &Reach::all(reach)).len() <= found.len());
+        assert!(nearnesses(&surface, &near, x, &Reach::uniform(reach)).len() <= found.len());
 
         let edges = mesh.topology().edges;
         let mut brute = Vec::new();
@@ -87,8 +87,8 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
     };
     let found = |mesh: &TriangleMesh| {
         let mut surface = ClothSurface::of_mesh(mesh);
-        let near = surface.near(LinearTrajectories::still(&mesh.positions), 4e-3);
-        nearnesses(&surface, &near, &mesh.positions, &Reach::all(4e-3))
+        let near = surface.near_leaves(LinearTrajectories::still(&mesh.positions), 4e-3);
+        nearnesses(&surface, &near, &mesh.positions, &Reach::uniform(4e-3))
     };
     let rungs = found(&twisted);
     let crossed = FeaturePair::EdgeEdge([0, 1, 3, 4]);
@@ -98,8 +98,9 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
     );
     assert!(rungs[0].distance < 1e-4);
     let surface = ClothSurface::of_mesh(&twisted);
-    let [kept, others] = [true, false].map(|alike| surface.kept(crossed, alike, 1.0));
-    assert!((others - 5.0 * kept).abs() < 1e-12 && kept > 1e-3);
+    let [of_neighbours, of_others] =
+        [true, false].map(|neighbours| surface.contact_offset(crossed, neighbours, 1.0));
+    assert!((of_others - 5.0 * of_neighbours).abs() < 1e-12 && of_neighbours > 1e-3);
     // Sheared until its triangles have angles of 20 degrees.
     for shear in [0.0, 0.7, 1.8] {
         let flat = sheet([6; 2], [1.0; 2], |u, v| {
@@ -111,7 +112,7 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
 }
 
 #[test]
-fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
+fn features_that_came_nearer_since_detection_do_not_pass() {
     let lower = sheet([3; 2], [1.0; 2], |u, v| Vec3::new(0.09 * u, 0.0, 0.09 * v));
     let upper = sheet([3; 2], [1.0; 2], |u, v| {
         Vec3::new(0.09 * u + 0.01, 0.3e-3, 0.09 * v + 0.007)
@@ -155,7 +156,7 @@ fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
     // A tenth of a millimetre apart when the motion began, of which nine tenths are kept.
     let ends: Vec<Vec3> = x.iter().zip(&moves).map(|(x, d)| x + d).collect();
     let mut surface = ClothSurface::of_mesh(&mesh);
-    let near = surface.near(LinearTrajectories::still(&ends), 1e-3);
+    let near = surface.near_leaves(LinearTrajectories::still(&ends), 1e-3);
     let distances = surface.features(&near, |pair, _, found| {
         found.push(Nearness::distance(pair, &ends));
     });
@@ -195,7 +196,7 @@ fn bounded_moves_never_cross() {
             for (x, d) in mesh.positions.iter_mut().zip(&moves) {
                 *x += d;
             }
-            let near = surface.near(LinearTrajectories::still(&mesh.positions), 0.0);
+            let near = surface.near_leaves(LinearTrajectories::still(&mesh.positions), 0.0);
             assert!(
                 crossings(&surface, &near, &mesh.positions).is_empty(),
                 "seed {seed}"
@@ -257,7 +258,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             .map(|(x, d)| x + d)
             .collect();
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let near = surface.near(LinearTrajectories::still(&end), 0.0);
+        let near = surface.near_leaves(LinearTrajectories::still(&end), 0.0);
         assert!(crossings(&surface, &near, &end).is_empty(), "seed {seed}");
         if kept.cut == 0 {
             uncut += 1;
@@ -470,7 +471,7 @@ fn contacts_do_not_depend_on_threads_and_push_both_ways_alike() {
             .build()
             .unwrap();
         let (mut detector, mut contacts) = (ContactDetector::default(), ContactSet::default());
-        let (memory, x, reach) = (&state.cloth, &state.positions, Reach::all(8e-3));
+        let (memory, x, reach) = (&state.cloth, &state.positions, Reach::uniform(8e-3));
         pool.install(|| detector.detect(&system, memory, x, &reach, &mut contacts));
         contacts
     };

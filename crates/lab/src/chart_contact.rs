@@ -92,7 +92,7 @@ fn scene(name: &str) -> Result<(System, State), LabError> {
 /// Edges of a model's cloth through faces of it, exactly.
 pub(crate) fn crossed(system: &System, x: &[Vec3]) -> usize {
     let mut surface = ClothSurface::new(system);
-    let near = surface.near(LinearTrajectories::still(x), 0.0);
+    let near = surface.near_leaves(LinearTrajectories::still(x), 0.0);
     crossings(&surface, &near, x).len()
 }
 

@@ -1,6 +1,5 @@
-//! Cost of detecting contacts of cloth with itself: on smooth sheets of any resolution and on a worn shirt,
-//! with and without leaving out regions by their curvature; and cost of contact in a frame of cloth that lies
-//! in folds.
+//! Cost of contact of cloth with itself: of finding contacts on a smooth sheet of any fineness and on a worn shirt,
+//! with and without the curvature test, and of contact in a frame of cloth that lies in folds.
 
 use crate::chart_contact::fall;
 use crate::clock::Clock;
@@ -14,13 +13,13 @@ use toile_drape::collision::{
 use toile_drape::{Cloth, MethodKind, MethodSettings, State, System};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
-/// Distance that cloth keeps from cloth [m], and how far it is looked.
+/// Contact offset [m], and the reach of queries for contacts [m].
 const OFFSET: f64 = 2e-3;
 const REACH: f64 = 2.0 * OFFSET;
-/// How near ways must come to be looked at for what meets on them [m].
-const WAYS_REACH: f64 = 5e-4;
-/// Looks timed, and frames of 1/60 s.
-const LOOKS: usize = 20;
+/// Reach of queries for impacts on trajectories [m].
+const IMPACT_REACH: f64 = 5e-4;
+/// Number of queries timed, and of frames of 1/60 s.
+const QUERIES: usize = 20;
 const FRAMES: usize = 12;
 const STEP: f64 = 1.0 / 60.0;
 /// Substeps of a frame, as XPBD takes them when it is not told.
@@ -37,41 +36,42 @@ fn waved(cells: usize) -> Result<TriangleMesh, LabError> {
     })
 }
 
-/// Finds the near clusters of a smooth sheet again and again, vertices free to stray by a tenth of an
-/// edge meanwhile.
+/// Finds the near leaves of a smooth sheet, with a clearance that holds while vertices drift by a tenth of an edge.
 pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     let mesh = waved(cells)?;
     result.vertices = mesh.positions.len();
     let mut surface = ClothSurface::of_mesh(&mesh);
     let edge = 1.0 / cells as f64;
     let clearance = Clearance {
-        kept: 0.1 * edge,
-        beyond: 0.1 * edge,
+        offset: 0.1 * edge,
+        max_drift: 0.1 * edge,
     };
     let x = &mesh.positions;
     let mut counted = |name: &str, find: &mut dyn FnMut(&mut ClothSurface) -> usize| {
         let clock = Clock::start();
         let mut pairs = 0;
-        for _ in 0..LOOKS {
+        for _ in 0..QUERIES {
             pairs = find(&mut surface);
         }
         let spent = [clock.wall(), clock.spent()];
         result.wall_s += spent[0];
         for (what, value) in [
-            ("ms", 1e3 * spent[0] / LOOKS as f64),
-            ("cpu_ms", 1e3 * spent[1] / LOOKS as f64),
-            ("regions", surface.opened()[0] as f64),
+            ("ms", 1e3 * spent[0] / QUERIES as f64),
+            ("cpu_ms", 1e3 * spent[1] / QUERIES as f64),
+            ("regions", surface.region_counts()[0] as f64),
             ("pairs", pairs as f64),
         ] {
             result.counted.insert(format!("{name}_{what}"), value);
         }
     };
     counted("all", &mut |surface| {
-        surface.near(LinearTrajectories::still(x), edge).len()
+        surface
+            .near_leaves(LinearTrajectories::still(x), edge)
+            .len()
     });
     counted("curved", &mut |surface| {
         surface
-            .near_unless_clear(LinearTrajectories::still(x), edge, clearance)
+            .near_leaves_unless_clear(LinearTrajectories::still(x), edge, clearance)
             .len()
     });
     Ok(())
@@ -127,17 +127,17 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     let mut surface = ClothSurface::new(&system);
     let (x, clearance) = (&state.positions, ContactDetector::clearance(OFFSET));
     let counted = &mut result.counted;
-    let mut look = |name: &str, near: &mut dyn FnMut(&mut ClothSurface) -> Vec<[u32; 2]>| {
+    let mut search = |name: &str, near: &mut dyn FnMut(&mut ClothSurface) -> Vec<[u32; 2]>| {
         let (clock, mut found) = (Clock::start(), [0; 3]);
-        for _ in 0..LOOKS {
+        for _ in 0..QUERIES {
             let near = near(&mut surface);
-            let touching = nearnesses(&surface, &near, x, &Reach::all(REACH)).len();
+            let touching = nearnesses(&surface, &near, x, &Reach::uniform(REACH)).len();
             found = [near.len(), touching, crossings(&surface, &near, x).len()];
         }
         for (what, value) in [
-            ("ms", 1e3 * clock.wall() / LOOKS as f64),
-            ("cpu_ms", 1e3 * clock.spent() / LOOKS as f64),
-            ("regions", surface.opened()[0] as f64),
+            ("ms", 1e3 * clock.wall() / QUERIES as f64),
+            ("cpu_ms", 1e3 * clock.spent() / QUERIES as f64),
+            ("regions", surface.region_counts()[0] as f64),
             ("pairs", found[0] as f64),
             ("contacts", found[1] as f64),
             ("crossings", found[2] as f64),
@@ -145,11 +145,11 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             counted.insert(format!("{name}_{what}"), value);
         }
     };
-    look("all", &mut |surface| {
-        surface.near(LinearTrajectories::still(x), REACH)
+    search("all", &mut |surface| {
+        surface.near_leaves(LinearTrajectories::still(x), REACH)
     });
-    look("curved", &mut |surface| {
-        surface.near_unless_clear(LinearTrajectories::still(x), REACH, clearance)
+    search("curved", &mut |surface| {
+        surface.near_leaves_unless_clear(LinearTrajectories::still(x), REACH, clearance)
     });
     for (name, turn) in [("worn", 0.0), ("turning", TURN)] {
         let mut start = state.clone();
@@ -169,7 +169,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             ..MethodKind::Xpbd.into()
         }
         .build();
-        for _ in 0..LOOKS {
+        for _ in 0..QUERIES {
             method.advance(&system, &mut start, STEP / looks)?;
             path.push(start.positions.clone());
         }
@@ -192,23 +192,26 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Finds contacts and crossings at places along a path; what a look takes [s], and how many regions it opens
-/// and looks at closely.
+/// Finds contacts and crossings at the positions of a path. Returns means over its steps: time [s], number of regions
+/// opened, and number of regions given the curvature test.
 fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
     let clearance = ContactDetector::clearance(OFFSET);
-    let [of_ways, of_contacts] = [WAYS_REACH, REACH].map(Reach::all);
+    let [of_impacts, of_contacts] = [IMPACT_REACH, REACH].map(Reach::uniform);
     let mut opened = [0; 2];
-    surface.look(LinearTrajectories::still(&path[0]), &of_contacts, clearance);
+    surface.query(LinearTrajectories::still(&path[0]), &of_contacts, clearance);
     let clock = Clock::start();
     for ends in path.windows(2) {
         let still = LinearTrajectories::still(&ends[1]);
-        for (ways, reach) in [
-            (LinearTrajectories::together(&ends[0], &ends[1]), &of_ways),
+        for (trajectories, reach) in [
+            (
+                LinearTrajectories::together(&ends[0], &ends[1]),
+                &of_impacts,
+            ),
             (still, &of_contacts),
         ] {
-            surface.look(ways, reach, clearance);
-            std::hint::black_box(nearnesses(surface, Near::Listed, ways.from, reach));
-            let [regions, contours] = surface.opened();
+            surface.query(trajectories, reach, clearance);
+            std::hint::black_box(nearnesses(surface, Near::Listed, trajectories.from, reach));
+            let [regions, contours] = surface.region_counts();
             opened = [opened[0] + regions, opened[1] + contours];
         }
         std::hint::black_box(crossings(surface, Near::Listed, still.from));

@@ -280,7 +280,7 @@ pub struct Rheology {
     pub viscosity: f64,
     /// Viscosity of bending (Kelvin-Voigt) [N m s].
     pub bend_viscosity: f64,
-    /// Share of a stretch and of a fold that is kept when held for long, 0 to below 1 [1].
+    /// Share of a stretch and of a fold that is kept when held for long, 0 to 0.95 [1].
     pub kept: [f64; 2],
     /// Time in which the kept share settles [s].
     pub relaxation_time: f64,
@@ -311,8 +311,8 @@ impl Rheology {
             Some("its hardening is not two numbers of 0 or more")
         } else if !(good(self.viscosity) && good(self.bend_viscosity)) {
             Some("its viscosity is not 0 or more")
-        } else if !self.kept.iter().all(|k| (0.0..1.0).contains(k)) {
-            Some("its kept shares are not from 0 to below 1")
+        } else if !self.kept.iter().all(|k| (0.0..=0.95).contains(k)) {
+            Some("its kept shares are not from 0 to 0.95")
         } else if !(good(self.relaxation_time) && self.relaxation_time > 0.0) {
             Some("its relaxation time is not above 0")
         } else {

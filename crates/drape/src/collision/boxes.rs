@@ -1,9 +1,10 @@
-//! A tree of boxes over clusters of the triangles of a sheet: built once, refitted as they move.
+//! A bounding volume hierarchy of axis-aligned boxes. Its leaves are clusters of items (triangles of the cloth); it is
+//! built once and refitted as they move.
 
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// A box along the axes.
+/// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Least coordinates [m].
@@ -13,14 +14,14 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Round nothing.
+    /// Bounds of nothing: joined to other bounds it changes nothing.
     pub const EMPTY: Self = Self {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
     };
 
-    /// Round some points, with a margin [m].
-    pub fn round(points: &[Vec3], margin: f64) -> Self {
+    /// Bounds of some points, enlarged by `margin` [m].
+    pub fn of(points: &[Vec3], margin: f64) -> Self {
         let mut bounds = Self::EMPTY;
         for p in points {
             for k in 0..3 {
@@ -31,8 +32,8 @@ impl Bounds {
         bounds
     }
 
-    /// Round some points; everywhere where one is no number.
-    pub fn round_all(points: impl Iterator<Item = Vec3>) -> Self {
+    /// Bounds of some points; all of space where a coordinate is not finite.
+    pub fn of_all(points: impl Iterator<Item = Vec3>) -> Self {
         let (mut bounds, mut sum) = (Self::EMPTY, 0.0);
         for p in points {
             sum += p.x + p.y + p.z;
@@ -41,14 +42,14 @@ impl Bounds {
                 bounds.high[k] = bounds.high[k].max(p[k]);
             }
         }
-        let everywhere = Self {
+        let all_space = Self {
             low: [f64::NEG_INFINITY; 3],
             high: [f64::INFINITY; 3],
         };
-        if sum.is_finite() { bounds } else { everywhere }
+        if sum.is_finite() { bounds } else { all_space }
     }
 
-    /// Round two boxes.
+    /// Bounds of two boxes together.
     pub fn join(&self, other: &Self) -> Self {
         let mut bounds = *self;
         for k in 0..3 {
@@ -58,7 +59,7 @@ impl Bounds {
         bounds
     }
 
-    /// Half its diagonal [m].
+    /// Half the diagonal [m].
     pub fn radius(&self) -> f64 {
         let side = |k: usize| self.high[k] - self.low[k];
         0.5 * (side(0) * side(0) + side(1) * side(1) + side(2) * side(2)).sqrt()
@@ -72,50 +73,52 @@ impl Bounds {
 
     /// Distance of two boxes [m].
     pub fn distance(&self, other: &Self) -> f64 {
-        let between = |k: usize| {
-            let apart = (self.low[k] - other.high[k]).max(other.low[k] - self.high[k]);
-            apart.max(0.0).powi(2)
+        let squared_gap = |k: usize| {
+            let gap = (self.low[k] - other.high[k]).max(other.low[k] - self.high[k]);
+            gap.max(0.0).powi(2)
         };
-        (between(0) + between(1) + between(2)).sqrt()
+        (squared_gap(0) + squared_gap(1) + squared_gap(2)).sqrt()
     }
 }
 
-/// A node: where its box is, and the leaves below it, clusters of items. With c leaves below, half of them (rounded
-/// down) are below the first child, which follows at once; the tree needs no pointers.
+/// A node of the tree. Nodes are numbered in depth-first order and leaves from left to right, so the tree stores no
+/// pointers: with c leaves below a node, c / 2 (rounded down) are below its left child, whose index is the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// Index of its box.
-    pub at: u32,
-    /// First of its leaves.
-    pub first: u32,
-    /// How many they are.
-    pub count: u32,
+    /// Index of the node, and of its box.
+    pub index: u32,
+    /// First leaf below it.
+    pub first_leaf: u32,
+    /// Number of leaves below it.
+    pub leaf_count: u32,
 }
 
 impl Node {
-    /// The two below it; none below a leaf.
+    /// The two children; none of a leaf.
     pub fn children(self) -> Option<[Self; 2]> {
-        let left = self.count / 2;
-        let first = Self {
-            at: self.at + 1,
-            first: self.first,
-            count: left,
+        let half = self.leaf_count / 2;
+        let left = Self {
+            index: self.index + 1,
+            first_leaf: self.first_leaf,
+            leaf_count: half,
         };
-        let second = Self {
-            at: self.at + 2 * left,
-            first: self.first + left,
-            count: self.count - left,
+        // A subtree of n leaves has 2 n - 1 nodes.
+        let right = Self {
+            index: self.index + 2 * half,
+            first_leaf: self.first_leaf + half,
+            leaf_count: self.leaf_count - half,
         };
-        (self.count > 1).then_some([first, second])
+        (self.leaf_count > 1).then_some([left, right])
     }
 }
 
-/// One region against itself, or against another.
+/// A node of the bounding volume test tree: a node of the tree of boxes to be tested against itself, or two nodes to be
+/// tested against each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
-    /// Itself.
+    /// One node against itself.
     Own(Node),
-    /// Two.
+    /// Two nodes against each other.
     Two(Node, Node),
 }
 
@@ -129,110 +132,117 @@ impl Region {
         std::iter::once(first).chain(second)
     }
 
-    /// How many leaves are below it.
-    pub fn count(&self) -> u32 {
-        self.nodes().map(|node| node.count).sum()
+    /// Number of leaves below its nodes.
+    pub fn leaf_count(&self) -> u32 {
+        self.nodes().map(|node| node.leaf_count).sum()
     }
 
-    /// The one or two leaves that it is, where it cannot be looked into.
+    /// Its one or two leaves, where it consists of leaves and cannot be opened.
     fn leaves(&self) -> Option<[u32; 2]> {
         match *self {
-            Self::Own(a) => (a.count == 1).then_some([a.first; 2]),
-            Self::Two(a, b) => (a.count == 1 && b.count == 1).then_some([a.first, b.first]),
+            Self::Own(a) => (a.leaf_count == 1).then_some([a.first_leaf; 2]),
+            Self::Two(a, b) => {
+                let are_leaves = a.leaf_count == 1 && b.leaf_count == 1;
+                are_leaves.then_some([a.first_leaf, b.first_leaf])
+            }
         }
     }
 }
 
-/// What a search of the tree found.
+/// Result of a search of the tree.
 #[derive(Clone, Debug, Default)]
-pub struct Pairs<N> {
-    /// Pairs of leaves that the search came to, each once, and leaves with themselves.
+pub struct LeafPairs<N> {
+    /// Pairs of leaves at which the search ended, each once, and leaves with themselves.
     pub pairs: Vec<[u32; 2]>,
-    /// How many regions were looked into.
+    /// Number of regions opened.
     pub opened: usize,
-    /// What was noted on the way, in parts.
+    /// Notes of the search, one of each task.
     pub notes: Vec<N>,
 }
 
-/// The most items in a leaf.
-pub const CLUSTER: usize = 16;
+/// Largest number of items in a leaf.
+pub const MAX_LEAF_ITEMS: usize = 16;
 
-/// The tree.
+/// Tree of boxes over items.
 #[derive(Clone, Debug, Default)]
 pub struct BoxTree {
     items: Vec<u32>,
     /// First item of every leaf, and the end.
     starts: Vec<u32>,
-    counts: Vec<u32>,
+    /// Number of leaves below every node, in the order of the nodes.
+    leaf_counts: Vec<u32>,
     boxes: Vec<Bounds>,
-    /// Where the box of every leaf is.
-    leaf_boxes: Vec<u32>,
+    /// Index of the node that is each leaf.
+    leaf_nodes: Vec<u32>,
 }
 
-/// Parts that a search is cut into before cores share them.
-const PARTS: usize = 96;
+/// Number of regions that a search is divided into, one task each. It does not depend on the number of threads, and
+/// neither does the order of the result.
+const TASKS: usize = 96;
 
 impl BoxTree {
-    /// Builds the tree over items at some centres [m], halving the longest axis, items of one piece
-    /// together whatever lies between them; boxes are empty until it is fitted.
-    pub fn new(centres: &[Vec3], pieces: &[u32]) -> Self {
+    /// Builds the tree over items with these centres [m], halved along the longest axis of each node. Items of one
+    /// connected component stay together, whatever lies between them: items are sorted by component first. Boxes are
+    /// empty until the tree is fitted.
+    pub fn new(centres: &[Vec3], components: &[u32]) -> Self {
         let mut items: Vec<u32> = (0..centres.len() as u32).collect();
         let mut tree = Self::default();
-        let leaves = items.len().div_ceil(CLUSTER);
+        let leaves = items.len().div_ceil(MAX_LEAF_ITEMS);
         if leaves > 0 {
-            tree.split((centres, pieces), (0, &mut items), leaves);
+            tree.split((centres, components), (0, &mut items), leaves);
         }
         tree.starts.push(items.len() as u32);
         tree.items = items;
-        tree.boxes = vec![Bounds::EMPTY; tree.counts.len()];
-        let leaves = (0u32..).zip(&tree.counts).filter(|(_, count)| **count == 1);
-        tree.leaf_boxes = leaves.map(|(at, _)| at).collect();
+        tree.boxes = vec![Bounds::EMPTY; tree.leaf_counts.len()];
+        let nodes = (0u32..).zip(&tree.leaf_counts);
+        let leaves = nodes.filter(|(_, count)| **count == 1);
+        tree.leaf_nodes = leaves.map(|(node, _)| node).collect();
         tree
     }
 
     fn split(
         &mut self,
-        (centres, pieces): (&[Vec3], &[u32]),
+        (centres, components): (&[Vec3], &[u32]),
         (first, items): (usize, &mut [u32]),
         leaves: usize,
     ) {
-        self.counts.push(leaves as u32);
+        self.leaf_counts.push(leaves as u32);
         if leaves == 1 {
             self.starts.push(first as u32);
             return;
         }
         let mut bounds = Bounds::EMPTY;
         for &item in items.iter() {
-            bounds = bounds.join(&Bounds::round(&[centres[item as usize]], 0.0));
+            bounds = bounds.join(&Bounds::of(&[centres[item as usize]], 0.0));
         }
         let length = |k: usize| bounds.high[k] - bounds.low[k];
         let axis = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
-        // Neither side gets more items than its leaves hold.
+        // Neither half gets more items than its leaves can hold.
         let left = leaves / 2;
         let half = items.len() * left / leaves;
         items.select_nth_unstable_by(half, |&a, &b| {
             let (p, q) = (centres[a as usize][axis], centres[b as usize][axis]);
-            let piece = |item: u32| pieces[item as usize];
-            (piece(a).cmp(&piece(b)))
+            let component = |item: u32| components[item as usize];
+            (component(a).cmp(&component(b)))
                 .then(p.total_cmp(&q))
                 .then(a.cmp(&b))
         });
         let (below, above) = items.split_at_mut(half);
-        self.split((centres, pieces), (first, below), left);
-        self.split((centres, pieces), (first + half, above), leaves - left);
+        self.split((centres, components), (first, below), left);
+        self.split((centres, components), (first + half, above), leaves - left);
     }
 
-    /// The node over everything; none when there is nothing.
+    /// The root; none where the tree has no items.
     pub fn root(&self) -> Option<Node> {
         let count = self.leaves() as u32;
         (count > 0).then_some(Node {
-            at: 0,
-            first: 0,
-            count,
+            index: 0,
+            first_leaf: 0,
+            leaf_count: count,
         })
     }
 
-    /// How many leaves there are.
+    /// Number of leaves.
     pub fn leaves(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
@@ -242,9 +252,9 @@ impl BoxTree {
         &self.items[self.starts[leaf] as usize..self.starts[leaf + 1] as usize]
     }
 
-    /// Nodes in the order of their boxes: children come after their parents.
+    /// All nodes in the order of their indices: parents come before their children.
     pub fn nodes(&self) -> Vec<Node> {
-        let mut nodes = Vec::with_capacity(self.counts.len());
+        let mut nodes = Vec::with_capacity(self.leaf_counts.len());
         let mut stack: Vec<Node> = self.root().into_iter().collect();
         while let Some(node) = stack.pop() {
             nodes.push(node);
@@ -255,13 +265,13 @@ impl BoxTree {
         nodes
     }
 
-    /// Fits every box anew; `bounds` gives that of a leaf.
+    /// Refits every box; `bounds` gives that of a leaf.
     pub fn refit(&mut self, bounds: impl Fn(usize) -> Bounds + Sync) {
-        self.boxes = self.folded(bounds, Bounds::join);
+        self.boxes = self.reduced(bounds, Bounds::join);
     }
 
-    /// What some values of the leaves below every node come to, in the order of the nodes' boxes.
-    pub fn folded<T: Clone + Send + Sync>(
+    /// Reduces a value of each leaf up the tree with `join`. Returns the value of every node, in the order of nodes.
+    pub fn reduced<T: Clone + Send + Sync>(
         &self,
         value: impl Fn(usize) -> T + Sync,
         join: impl Fn(&T, &T) -> T + Sync,
@@ -271,35 +281,35 @@ impl BoxTree {
         let Some(first) = leaves.first() else {
             return Vec::new();
         };
-        let mut all = vec![first.clone(); self.counts.len()];
+        let mut all = vec![first.clone(); self.leaf_counts.len()];
         fold(&leaves, &mut all, &join);
         all
     }
 
-    /// Whether the boxes of a region's nodes meet.
+    /// Whether the boxes of a region's nodes overlap.
     pub fn meets(&self, region: &Region) -> bool {
         match *region {
             Region::Own(_) => true,
-            Region::Two(a, b) => self.boxes[a.at as usize].meets(&self.boxes[b.at as usize]),
+            Region::Two(a, b) => self.boxes[a.index as usize].meets(&self.boxes[b.index as usize]),
         }
     }
 
-    /// Distance of the boxes of a region's nodes [m]; none of a node from itself.
+    /// Distance of the boxes of a region's two nodes [m]; none where it has one node.
     pub fn distance(&self, region: &Region) -> Option<f64> {
         match *region {
             Region::Own(_) => None,
             Region::Two(a, b) => {
-                Some(self.boxes[a.at as usize].distance(&self.boxes[b.at as usize]))
+                Some(self.boxes[a.index as usize].distance(&self.boxes[b.index as usize]))
             }
         }
     }
 
-    /// Two leaves as a region, or one with itself.
+    /// The region of two leaves, or of one leaf given twice.
     pub fn region(&self, [a, b]: [u32; 2]) -> Region {
-        let leaf = |first: u32| Node {
-            at: self.leaf_boxes[first as usize],
-            first,
-            count: 1,
+        let leaf = |leaf: u32| Node {
+            index: self.leaf_nodes[leaf as usize],
+            first_leaf: leaf,
+            leaf_count: 1,
         };
         match a == b {
             true => Region::Own(leaf(a)),
@@ -307,13 +317,13 @@ impl BoxTree {
         }
     }
 
-    /// Pairs of leaves in some regions, in an order that does not depend on the
-    /// number of threads. Regions that `skip` names are not looked into; it may note what it likes.
-    pub fn pairs<N: Default + Send>(
+    /// Searches some regions down to pairs of leaves, in an order that does not depend on the number of threads.
+    /// Regions for which `skip` is true are left out; it may take notes.
+    pub fn leaf_pairs<N: Default + Send>(
         &self,
         regions: &[Region],
         skip: impl Fn(&mut N, &Region) -> bool + Sync,
-    ) -> Pairs<N> {
+    ) -> LeafPairs<N> {
         let given: Vec<(bool, N)> = regions
             .par_iter()
             .map(|region| {
@@ -321,11 +331,12 @@ impl BoxTree {
                 (!skip(&mut note, region), note)
             })
             .collect();
-        let kept = regions.iter().zip(&given).filter(|(_, (kept, _))| *kept);
-        let mut work: Vec<Region> = kept.map(|(region, _)| *region).collect();
+        let entered = regions.iter().zip(&given);
+        let entered = entered.filter(|(_, (is_entered, _))| *is_entered);
+        let mut work: Vec<Region> = entered.map(|(region, _)| *region).collect();
         let mut notes: Vec<N> = given.into_iter().map(|(_, note)| note).collect();
         let (mut note, mut opened, mut grown) = (N::default(), 0, true);
-        while grown && work.len() < PARTS {
+        while grown && work.len() < TASKS {
             let mut next = Vec::with_capacity(3 * work.len());
             grown = false;
             for region in &work {
@@ -356,7 +367,7 @@ impl BoxTree {
             })
             .collect();
         notes.push(note);
-        let mut all = Pairs {
+        let mut all = LeafPairs {
             pairs: Vec::with_capacity(found.iter().map(|found| found.0.len()).sum()),
             opened,
             notes,
@@ -370,10 +381,10 @@ impl BoxTree {
     }
 }
 
-/// Nodes of more leaves than this have both sides folded at a time.
-const SHARED: usize = 64;
+/// The two halves of a node with more leaves than this are reduced in parallel.
+const PARALLEL_ABOVE: usize = 64;
 
-/// Fills the values of a node and all below it from those of its leaves.
+/// Fills the values of a node and of all nodes below it from those of its leaves.
 fn fold<T: Clone + Send + Sync>(leaves: &[T], all: &mut [T], join: &(impl Fn(&T, &T) -> T + Sync)) {
     let Some((own, below)) = all.split_first_mut() else {
         return;
@@ -387,7 +398,7 @@ fn fold<T: Clone + Send + Sync>(leaves: &[T], all: &mut [T], join: &(impl Fn(&T,
     let (of_first, of_second) = leaves.split_at(half);
     let mut fold_first = || fold(of_first, first, join);
     let mut fold_second = || fold(of_second, second, join);
-    if leaves.len() > SHARED {
+    if leaves.len() > PARALLEL_ABOVE {
         rayon::join(fold_first, fold_second);
     } else {
         fold_first();
@@ -396,10 +407,10 @@ fn fold<T: Clone + Send + Sync>(leaves: &[T], all: &mut [T], join: &(impl Fn(&T,
     *own = join(&first[0], &second[0]);
 }
 
-/// The regions that make up one, of those to keep.
-fn open(region: Region, mut keep: impl FnMut(&Region) -> bool, out: &mut Vec<Region>) {
+/// Opens a region: pushes the regions that it consists of, where `enter` is true for them.
+fn open(region: Region, mut enter: impl FnMut(&Region) -> bool, out: &mut Vec<Region>) {
     let mut add = |region: Region| {
-        if keep(&region) {
+        if enter(&region) {
             out.push(region);
         }
     };
@@ -413,7 +424,11 @@ fn open(region: Region, mut keep: impl FnMut(&Region) -> bool, out: &mut Vec<Reg
             add(Region::Two(left, right));
         }
         Region::Two(a, b) => {
-            let (large, small) = if a.count >= b.count { (a, b) } else { (b, a) };
+            let (large, small) = if a.leaf_count >= b.leaf_count {
+                (a, b)
+            } else {
+                (b, a)
+            };
             for child in large.children().into_iter().flatten() {
                 add(Region::Two(child, small));
             }

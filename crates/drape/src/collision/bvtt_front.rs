@@ -1,8 +1,7 @@
-//! The front of the bounding volume test tree (Ehmann and Lin 2001): where a search for near features
-//! ended, kept from query to query. It ends between regions far apart, at regions that cannot touch
-//! themselves, and at pairs of leaves with lists of the features near each other. An entry holds until its
-//! vertices have moved too far against each other, however far they go together; only then is its region
-//! searched again.
+//! The front of the bounding volume test tree (Ehmann and Lin 2001): the regions at which the search for near features
+//! ended, stored from query to query. A search ends at regions whose two nodes are far apart, at regions that pass the
+//! curvature test, and at pairs of leaves, most of them with a neighbour list. An entry stays valid until its vertices
+//! have deviated too far from a common rigid motion; only then is its region searched again.
 
 use super::boxes::Region;
 use super::curvature::Clearance;
@@ -28,57 +27,60 @@ const REBUILD_AFTER_GROWTH: (f64, usize) = (0.25, 64);
 /// The front is rebuilt after this many queries: it is refined as boxes approach, never coarsened as they part.
 const REBUILD_AFTER_QUERIES: usize = 256;
 
-/// The front of a search.
+/// The front, and what it was made for.
 #[derive(Clone, Debug, Default)]
 pub struct BvttFront {
     entries: Vec<FrontEntry>,
-    /// Entries after the last rebuild, and queries since.
+    /// Number of entries after the last rebuild, and of queries since.
     rebuilt_with: usize,
     queries: usize,
-    /// The clearance of the last query; none where the next one is to rebuild the front.
+    /// Clearance of the last query; none where the next one must rebuild the front.
     clearance: Option<Clearance>,
-    /// Where the trajectories of the last query began and ended [m].
+    /// Positions at the start and end of the last query's trajectories [m].
     from: Vec<Vec3>,
     to: Vec<Vec3>,
+    /// Distance of the last query without motion, which was one for contacts.
     contacts: QueryDistance,
+    /// The last displacements known.
     last_moves: Option<Arc<Moves>>,
-    /// Entries with a list.
+    /// Indices of the entries with a list.
     listed: Vec<u32>,
-    /// Pairs of leaves without, and how near features of them must come to be found [m].
+    /// Pairs of leaves without a list, and the distance at which their features must be found [m].
     open: Vec<([u32; 2], f64)>,
+    /// Shortest edge at a vertex, averaged over the vertices of each leaf [m].
     shortest_edges: Option<Arc<[f64]>>,
 }
 
 impl BvttFront {
-    /// Has the next query rebuild the front.
+    /// Makes the next query rebuild the front.
     pub fn forget(&mut self) {
         self.clearance = None;
     }
 
-    /// Lists of features that may come near each other.
+    /// Neighbour lists of the entries that have one.
     pub fn lists(&self) -> impl IndexedParallelIterator<Item = Option<&Hits>> {
         let listed = self.listed.par_iter();
         listed.map(|&k| self.entries[k as usize].hits())
     }
 
-    /// Pairs of leaves whose features are not listed, and how near features of them must come to be found [m].
+    /// Pairs of leaves without a list, and the distance at which their features must be found [m].
     pub fn open(&self) -> &[([u32; 2], f64)] {
         &self.open
     }
 
-    /// Removes the entries that do not answer a query for features that come within reach on their trajectories;
-    /// returns the regions to be searched for it, and the query.
+    /// Begins a query for features that come within reach on their trajectories: removes the entries that do not
+    /// answer it. Returns their regions, which must be searched again, and the query.
     pub fn expired(
         &mut self,
         cloth: &SurfaceView,
         (trajectories, reach): (&LinearTrajectories, &Reach),
         clearance: Clearance,
     ) -> (Vec<Region>, FrontQuery) {
-        let (grown, fewest) = REBUILD_AFTER_GROWTH;
-        let most = self.rebuilt_with + fewest + (grown * self.rebuilt_with as f64) as usize;
+        let (share, least) = REBUILD_AFTER_GROWTH;
+        let limit = self.rebuilt_with + least + (share * self.rebuilt_with as f64) as usize;
         let rebuild = self.clearance != Some(clearance)
             || self.from.len() != trajectories.from.len()
-            || self.entries.len() > most
+            || self.entries.len() > limit
             || self.queries > REBUILD_AFTER_QUERIES;
         self.queries = if rebuild { 0 } else { self.queries + 1 };
         let near = QueryDistance::new(cloth, reach);
@@ -138,25 +140,25 @@ impl BvttFront {
         expired
     }
 
-    /// How vertices, now at `x`, moved since the last query.
+    /// Motion of the vertices, now at `x`, since the last query.
     fn since(&self, cloth: &SurfaceView, x: &[Vec3]) -> MovesSince {
-        let same = |places: &[Vec3]| {
-            let mut both = x.iter().zip(places);
-            both.all(|(x, place)| (x - place).norm_squared() <= SAME * SAME)
+        let are_same = |positions: &[Vec3]| {
+            let mut both = x.iter().zip(positions);
+            both.all(|(x, y)| (x - y).norm_squared() <= SAME * SAME)
         };
         if self.from == x {
             return MovesSince::Still;
         }
-        if same(&self.to) {
+        if are_same(&self.to) {
             return MovesSince::AsQueried;
         }
-        let moved = |v: u32| x[v as usize] - self.from[v as usize];
-        MovesSince::Moved(Arc::new(Moves::new(cloth, &self.from, moved)))
+        let displacement = |v: u32| x[v as usize] - self.from[v as usize];
+        MovesSince::Moved(Arc::new(Moves::new(cloth, &self.from, displacement)))
     }
 
-    /// Searches the regions of expired entries and adds the entries that this ends at. The tree is fitted at `x`
-    /// [m], where the trajectories begin. Returns how many regions were opened, and how many of them were tested
-    /// for contact with themselves.
+    /// Searches the regions of expired entries, and adds an entry for each region where the search ends. The tree
+    /// must be fitted at the start `x` of the trajectories [m]. Returns the number of regions opened, and of regions
+    /// given the curvature test.
     pub fn search(
         &mut self,
         cloth: &SurfaceView,
@@ -170,18 +172,18 @@ impl BvttFront {
         for mut entries in found.notes {
             self.entries.append(&mut entries);
         }
-        let sort = |&pair: &[u32; 2]| {
+        let list_or_open = |&pair: &[u32; 2]| {
             let region = tree.region(pair);
-            match query.lists(&region) {
+            match query.gets_list(&region) {
                 true => Either::Left(pair),
                 false => {
-                    let drift = query.drift(&region);
-                    Either::Right(FrontEntry::new(region, Verdict::Open, drift))
+                    let deviation = query.deviation(&region);
+                    Either::Right(FrontEntry::new(region, Verdict::Open, deviation))
                 }
             }
         };
         let pairs = found.pairs.par_iter().with_min_len(64);
-        let (listed, open): (Vec<[u32; 2]>, Vec<FrontEntry>) = pairs.partition_map(sort);
+        let (listed, open): (Vec<[u32; 2]>, Vec<FrontEntry>) = pairs.partition_map(list_or_open);
         self.entries.extend(open);
         leaves.fit_some(
             &LinearTrajectories::still(x),
@@ -196,7 +198,7 @@ impl BvttFront {
             leaves.near_within(arch, pair, distances[0], hits);
             leaves.crossing_within(arch, pair, distances[1], hits);
             let list = NeighbourList::of(cloth, x, hits, distances);
-            FrontEntry::new(region, Verdict::Listed(list), query.drift(&region))
+            FrontEntry::new(region, Verdict::Listed(list), query.deviation(&region))
         };
         let pairs = listed.par_iter().with_min_len(8);
         let lists = pairs.map_init(Hits::default, list);
@@ -208,11 +210,11 @@ impl BvttFront {
         let with_list = with_list.filter(|(_, entry)| entry.hits().is_some());
         self.listed.clear();
         self.listed.extend(with_list.map(|(k, _)| k));
-        [found.opened, found.told]
+        [found.opened, found.tested]
     }
 
-    /// Fits the boxes of leaves without a list round the trajectories. Where only marked vertices go another way
-    /// than in the last query, only pairs of leaves with one of them stay open.
+    /// Collects the pairs of leaves without a list and fits the boxes of their features to the trajectories. Where
+    /// vertices are marked, pairs of leaves without a marked vertex are left out.
     pub fn fit(
         &mut self,
         cloth: &SurfaceView,
@@ -230,7 +232,7 @@ impl BvttFront {
             Some(_) => all.map(is_marked).collect(),
         };
         let open = |entry: &FrontEntry| {
-            let mut nodes = entry.region.nodes().map(|node| node.first);
+            let mut nodes = entry.region.nodes().map(|node| node.first_leaf);
             let first = nodes.next()?;
             let pair = [first, nodes.next().unwrap_or(first)];
             let is_open = matches!(entry.verdict, Verdict::Open)
@@ -245,19 +247,22 @@ impl BvttFront {
     }
 }
 
-/// The leaves of some pairs, sorted.
+/// The leaves of some pairs, each once, sorted.
 fn leaves_of(cloth: &SurfaceView, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
-    let mut named = vec![false; cloth.tree.leaves()];
-    pairs.flatten().for_each(|leaf| named[leaf as usize] = true);
-    let leaves = 0..named.len() as u32;
-    leaves.filter(|&leaf| named[leaf as usize]).collect()
+    let mut is_in_pair = vec![false; cloth.tree.leaves()];
+    (pairs.flatten()).for_each(|leaf| is_in_pair[leaf as usize] = true);
+    let leaves = 0..is_in_pair.len() as u32;
+    leaves.filter(|&leaf| is_in_pair[leaf as usize]).collect()
 }
 
-/// Mean over the vertices of every leaf of the shortest edge there [m].
+/// Shortest edge at a vertex, averaged over the vertices of each leaf [m].
 fn shortest_edges(cloth: &SurfaceView) -> Arc<[f64]> {
     let of_leaf = |leaf: usize| {
         let vertices = cloth.leaf(leaf);
-        let sum: f64 = vertices.iter().map(|&v| cloth.room[v as usize]).sum();
+        let sum: f64 = vertices
+            .iter()
+            .map(|&v| cloth.shortest_edge[v as usize])
+            .sum();
         sum / vertices.len() as f64
     };
     (0..cloth.tree.leaves()).map(of_leaf).collect()

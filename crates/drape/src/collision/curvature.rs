@@ -1,10 +1,9 @@
-//! Regions of cloth that cannot touch themselves: they face one way, and their contour seen that way
-//! keeps clear of itself (Volino and Magnenat-Thalmann 1994). Such a region lies over the plane it
-//! faces like a map, every point over another one.
+//! Curvature test: whether a region of cloth can touch itself (Volino and Magnenat-Thalmann 1994). It cannot where
+//! all its triangles face one direction and its contour, projected along that direction, does not intersect itself.
 //!
-//! Seen along v, all triangles turn the same way, so a point of the plane lies under as many of them as
-//! the contour winds round it. Where the contour is one connected line that does not cross itself, it
-//! winds round no point twice.
+//! Projected along v all triangles are oriented alike, so a point of the plane is covered by as many of them as the
+//! winding number of the contour round it. A connected contour that does not intersect itself has winding numbers 0
+//! and 1 alone: the projection covers no point twice, and the region is a graph over the plane.
 
 use super::boxes::{BoxTree, Node, Region};
 use crate::merge_map;
@@ -12,143 +11,137 @@ use pulp::{Arch, NullaryFnOnce};
 use std::sync::LazyLock;
 use toile_geometry::Vec3;
 
-/// What a region must keep to be left out.
+/// What regions that are left out of a search must guarantee.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// Distance that two features without a common vertex keep all that time, as far as there is
-    /// room at them [m].
-    pub kept: f64,
-    /// How far the vertices of a region may stray from one another, on their way and on later ones, before
-    /// it is looked at again [m]; twice and four times as far where their way asks for it.
-    pub beyond: f64,
+    /// Least distance of two features without a common vertex [m]. At vertices with short edges it is limited to
+    /// the contact offset that there is room for.
+    pub offset: f64,
+    /// Drift [m], which is deviation from a common rigid motion summed over queries, within which the guarantee
+    /// holds; beyond, a region is tested again. Regions that deviate more in a single query are tested for twice or
+    /// four times this drift.
+    pub max_drift: f64,
 }
 
-/// How many margins regions are looked at with.
+/// Number of drift limits that regions are tested for.
 pub const LEVELS: usize = 3;
 
 impl Clearance {
-    /// How far the vertices of a region may stray from one another before it is looked at again [m].
-    pub fn budget(&self, level: usize) -> f64 {
-        self.beyond * f64::from(1u32 << level)
+    /// Drift within which a test at this level holds [m].
+    pub fn max_drift_at(&self, level: usize) -> f64 {
+        self.max_drift * f64::from(1u32 << level)
     }
 
-    /// The least level at which a region can be left out whose vertices stray so far from one another on
-    /// their way [m].
-    pub fn level(&self, stray: f64) -> Option<usize> {
-        (0..LEVELS).find(|&level| stray <= self.budget(level))
+    /// Lowest level whose test holds for this deviation [m] from the common rigid motion; none where it is larger
+    /// than that of all levels.
+    pub fn level(&self, deviation: f64) -> Option<usize> {
+        (0..LEVELS).find(|&level| deviation <= self.max_drift_at(level))
     }
 }
 
-/// The longest of some ways [m]; without end where one is not known.
-pub fn longest(ways: impl Iterator<Item = f64>) -> f64 {
-    ways.fold(0.0, |longest, way| {
-        if way.is_nan() {
-            f64::INFINITY
-        } else {
-            way.max(longest)
-        }
-    })
-}
-
-/// Directions a region may face: the bits of a mask.
+/// Number of directions that regions are tested to face: the bits of a mask.
 const DIRECTIONS: usize = 64;
 
-/// Cosine of the largest angle between a triangle's normal and the direction of its region, 75 degrees:
-/// what is seen at a sharper one is narrower than what is to be kept.
-const WIDEST: f64 = 0.258_819_045_102_520_76;
+/// Least cosine between a triangle's normal and the direction that it faces: 75 degrees. A triangle seen at a larger
+/// angle is narrower than the offset.
+const MIN_COSINE: f64 = 0.258_819_045_102_520_76;
 
-/// Regions of fewer clusters are looked into: that costs less than this.
-pub const LEAST: u32 = 4;
+/// Least number of leaves of a region that is tested. To search a smaller one costs less than the test.
+pub const MIN_LEAVES: u32 = 4;
 
-/// Single precision knows cosines to less than this.
-const SINGLE: f64 = 1e-6;
+/// Bound of the error of a cosine in single precision.
+const COSINE_ERROR: f64 = 1e-6;
 
-/// Distances are known no better than this [m].
-const ROUNDING: f64 = 1e-9;
+/// Bound of the error of a distance [m].
+const DISTANCE_ERROR: f64 = 1e-9;
 
-/// One triangle's side of an edge: twice the edge, and one more where the triangle goes from its
-/// larger end to its smaller.
-type Half = u32;
+/// Half-edge of a triangle: twice the index of the edge, plus one where the triangle runs along it from the larger
+/// vertex to the smaller.
+type HalfEdge = u32;
 
-/// What the mesh says of regions, and what they face now.
+/// Contours of the tree's nodes, and the directions that the nodes face at the positions of the last search.
 #[derive(Clone, Debug, Default)]
 pub struct Curvature {
-    /// Triangles at an edge that is no plain border between two that turn alike.
-    barred: Vec<bool>,
-    /// Contours of the nodes, sorted, one after the other; where each begins.
-    contours: Vec<Half>,
+    /// Triangles at an edge that has more than two triangles, or two of opposite orientation. Regions with one
+    /// never pass the test.
+    irregular: Vec<bool>,
+    /// Contours of the nodes, each sorted, node after node; start of each node in that list, and its end.
+    contours: Vec<HalfEdge>,
     starts: Vec<u32>,
-    /// Directions that all triangles of a node face, for every level.
+    /// For every level, bits of the directions that all triangles of a node face.
     facing: [Vec<u64>; LEVELS],
     clearance: Option<Clearance>,
-    /// Distance that is to be kept at each vertex, motion and all [m].
-    keeps: Vec<f64>,
+    /// Distance to be guaranteed at each vertex [m].
+    offsets: Vec<f64>,
 }
 
-/// Even places on the sphere along a spiral (Saff and Kuijlaars 1997), coordinate by coordinate.
-static PLACES: LazyLock<[[f32; DIRECTIONS]; 3]> = LazyLock::new(|| {
+/// Evenly distributed directions, along a spiral on the sphere (Saff and Kuijlaars 1997), coordinate by coordinate.
+static SPIRAL: LazyLock<[[f32; DIRECTIONS]; 3]> = LazyLock::new(|| {
     let golden = std::f64::consts::PI * (3.0 - 5.0f64.sqrt());
-    let place = |k: usize| {
+    let direction = |k: usize| {
         let y = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
         let (radius, angle) = ((1.0 - y * y).sqrt(), golden * k as f64);
         [radius * angle.cos(), y, radius * angle.sin()]
     };
-    [0, 1, 2].map(|axis| std::array::from_fn(|k| place(k)[axis] as f32))
+    [0, 1, 2].map(|axis| std::array::from_fn(|k| direction(k)[axis] as f32))
 });
 
-/// Which directions are at less than an angle from a unit normal, as bits.
+/// Bits of the directions whose cosine with a unit normal is larger than `cosine`.
 #[inline(always)]
-fn towards(directions: &[[f32; DIRECTIONS]; 3], normal: [f32; 3], cosine: f32) -> u64 {
+fn directions_within(directions: &[[f32; DIRECTIONS]; 3], normal: [f32; 3], cosine: f32) -> u64 {
     let mut bits = 0u64;
-    for part in 0..DIRECTIONS / 16 {
-        let mut some = 0u32;
+    for block in 0..DIRECTIONS / 16 {
+        let mut block_bits = 0u32;
         for lane in 0..16 {
-            let [x, y, z] = [0, 1, 2].map(|k| directions[k][16 * part + lane]);
+            let [x, y, z] = [0, 1, 2].map(|k| directions[k][16 * block + lane]);
             let along = x * normal[0] + y * normal[1] + z * normal[2];
-            some |= u32::from(along > cosine) << lane;
+            block_bits |= u32::from(along > cosine) << lane;
         }
-        bits |= u64::from(some) << (16 * part);
+        bits |= u64::from(block_bits) << (16 * block);
     }
     bits
 }
 
 impl Curvature {
-    /// Contours of the nodes of a tree over triangles; `edges` have their smaller end first.
+    /// Computes the contours of the nodes of a tree over triangles; `edges` have their smaller vertex first.
     pub fn new(
         tree: &BoxTree,
         triangles: &[[u32; 3]],
         edges: &[[u32; 2]],
         edge_triangles: &[Vec<u32>],
     ) -> Self {
-        let mut barred = vec![false; triangles.len()];
-        let mut halves = vec![Vec::with_capacity(3); triangles.len()];
+        let mut irregular = vec![false; triangles.len()];
+        let mut half_edges = vec![Vec::with_capacity(3); triangles.len()];
         for (e, (&[a, b], at)) in edges.iter().zip(edge_triangles).enumerate() {
             let backward = |t: u32| {
                 let [p, q, r] = triangles[t as usize];
                 ![(p, q), (q, r), (r, p)].contains(&(a, b))
             };
-            let odd = at.len() > 2 || at.len() == 2 && backward(at[0]) == backward(at[1]);
+            let is_irregular = at.len() > 2 || at.len() == 2 && backward(at[0]) == backward(at[1]);
             for &t in at {
-                barred[t as usize] |= odd;
-                halves[t as usize].push(2 * e as Half + Half::from(backward(t)));
+                irregular[t as usize] |= is_irregular;
+                half_edges[t as usize].push(2 * e as HalfEdge + HalfEdge::from(backward(t)));
             }
         }
         let nodes = tree.nodes();
-        let mut of_node: Vec<Vec<Half>> = vec![Vec::new(); nodes.len()];
+        let mut of_node: Vec<Vec<HalfEdge>> = vec![Vec::new(); nodes.len()];
         for node in nodes.iter().rev() {
-            let at = node.at as usize;
-            of_node[at] = match node.children() {
+            let index = node.index as usize;
+            of_node[index] = match node.children() {
                 None => {
-                    let items = tree.items(node.first as usize).iter();
+                    let items = tree.items(node.first_leaf as usize).iter();
                     let of_item = |&t: &u32| {
-                        let mut own = halves[t as usize].clone();
+                        let mut own = half_edges[t as usize].clone();
                         own.sort_unstable();
                         own
                     };
-                    items.map(of_item).fold(Vec::new(), |a, b| joined(&a, &b))
+                    items
+                        .map(of_item)
+                        .fold(Vec::new(), |a, b| joined_contour(&a, &b))
                 }
                 Some([left, right]) => {
-                    joined(&of_node[left.at as usize], &of_node[right.at as usize])
+                    let [left, right] = [left, right].map(|child| &of_node[child.index as usize]);
+                    joined_contour(left, right)
                 }
             };
         }
@@ -157,28 +150,29 @@ impl Curvature {
             starts.push(starts[starts.len() - 1] + contour.len() as u32);
         }
         Self {
-            barred,
+            irregular,
             contours: of_node.concat(),
             starts,
             facing: [const { Vec::new() }; LEVELS],
             clearance: None,
-            keeps: Vec::new(),
+            offsets: Vec::new(),
         }
     }
 
-    /// Sets what is to be kept of the `room` [m] at each vertex.
-    pub fn keep(&mut self, room: impl Iterator<Item = f64>, clearance: Clearance) {
+    /// Sets the clearance of the tests that follow, whose offset is limited at each vertex to `max_offsets` [m].
+    pub fn set_clearance(&mut self, max_offsets: impl Iterator<Item = f64>, clearance: Clearance) {
         if self.clearance == Some(clearance) {
             return;
         }
-        self.keeps.clear();
-        self.keeps.extend(room.map(|room| room.min(clearance.kept)));
+        self.offsets.clear();
+        self.offsets
+            .extend(max_offsets.map(|limit| limit.min(clearance.offset)));
         self.clearance = Some(clearance);
     }
 
-    /// Finds what the nodes of some regions, and all nodes below them, face at some positions [m], for
-    /// each region at its level and those below it.
-    pub fn face(
+    /// Computes the directions that the nodes of some regions, and all nodes below them, face at positions `x` [m],
+    /// at the level of each region and all lower levels.
+    pub fn find_facing(
         &mut self,
         tree: &BoxTree,
         triangles: &[[u32; 3]],
@@ -189,12 +183,13 @@ impl Curvature {
             return;
         };
         for level in 0..LEVELS {
-            let mut wanted = vec![0i32; tree.leaves() + 1];
-            let asked = regions.iter().filter(|(_, least)| *least >= level);
+            // Differences of the number of regions that a leaf is in, then that number.
+            let mut region_count = vec![0i32; tree.leaves() + 1];
+            let at_level = regions.iter().filter(|(_, lowest)| *lowest >= level);
             let mut none = true;
-            for node in asked.flat_map(|(region, _)| region.nodes()) {
-                wanted[node.first as usize] += 1;
-                wanted[(node.first + node.count) as usize] -= 1;
+            for node in at_level.flat_map(|(region, _)| region.nodes()) {
+                region_count[node.first_leaf as usize] += 1;
+                region_count[(node.first_leaf + node.leaf_count) as usize] -= 1;
                 none = false;
             }
             if none {
@@ -202,72 +197,73 @@ impl Curvature {
                 continue;
             }
             for leaf in 0..tree.leaves() {
-                wanted[leaf + 1] += wanted[leaf];
+                region_count[leaf + 1] += region_count[leaf];
             }
-            let (barred, keeps, places) = (&*self.barred, &*self.keeps, &*PLACES);
-            let (arch, stray) = (Arch::new(), clearance.budget(level));
-            let facing = |leaf: usize| match wanted[leaf] {
+            let (irregular, offsets, directions) = (&*self.irregular, &*self.offsets, &*SPIRAL);
+            let (arch, drift) = (Arch::new(), clearance.max_drift_at(level));
+            let facing = |leaf: usize| match region_count[leaf] {
                 0 => 0,
-                _ => arch.dispatch(Facing {
+                _ => arch.dispatch(CommonDirections {
                     items: tree.items(leaf),
                     triangles,
                     x,
-                    barred,
-                    keeps,
-                    places,
-                    stray,
+                    irregular,
+                    offsets,
+                    directions,
+                    drift,
                 }),
             };
-            self.facing[level] = tree.folded(facing, |a, b| a & b);
+            self.facing[level] = tree.reduced(facing, |a, b| a & b);
         }
     }
 
-    fn contour(&self, node: Node) -> &[Half] {
-        let at = node.at as usize;
-        &self.contours[self.starts[at] as usize..self.starts[at + 1] as usize]
+    fn contour(&self, node: Node) -> &[HalfEdge] {
+        let index = node.index as usize;
+        &self.contours[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 
-    /// Whether no two features of a region without a common vertex can come nearer than is to be kept, at
-    /// a level that [`Curvature::face`] was asked for; where it cannot be told, it says no.
+    /// Whether a region passes the curvature test at a level that [`Curvature::find_facing`] was called for: then no
+    /// two of its features without a common vertex come nearer than the clearance within the drift of the level. A
+    /// region that is not shown to pass fails.
     pub fn is_clear(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region, level: usize) -> bool {
-        let of_node = |node: Node| self.facing[level].get(node.at as usize).copied();
+        let of_node = |node: Node| self.facing[level].get(node.index as usize).copied();
         let facing = region
             .nodes()
             .fold(u64::MAX, |facing, node| facing & of_node(node).unwrap_or(0));
         let Some(clearance) = self.clearance else {
             return false;
         };
-        if facing == 0 || region.count() < LEAST {
+        if facing == 0 || region.leaf_count() < MIN_LEAVES {
             return false;
         }
         let bits = (0..DIRECTIONS).filter(|k| facing >> k & 1 == 1);
-        // What all of these have in sight, their mean has too.
-        let place = |k: usize| Vec3::from([0, 1, 2].map(|axis| f64::from(PLACES[axis][k])));
-        let mean: Vec3 = bits.map(place).sum();
+        // A triangle that faces each of some directions also faces their mean: they form a convex cone.
+        let direction = |k: usize| Vec3::from([0, 1, 2].map(|axis| f64::from(SPIRAL[axis][k])));
+        let mean: Vec3 = bits.map(direction).sum();
         let Some(view) = mean.try_normalize(0.0) else {
             return false;
         };
-        let halves = match *region {
+        let half_edges = match *region {
             Region::Own(a) => self.contour(a).to_vec(),
             Region::Two(a, b) => {
                 let (a, b) = (self.contour(a), self.contour(b));
-                let joined = joined(a, b);
+                let joined = joined_contour(a, b);
                 if joined.len() == a.len() + b.len() {
-                    // No border in common: two plies, most often.
+                    // The two nodes share no edge; most often they are two plies.
                     return false;
                 }
                 joined
             }
         };
-        let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
+        let contour = ProjectedContour::new(&half_edges, edges, &self.offsets, (x, view));
         contour.is_connected()
-            && contour.alternates()
-            && contour.is_clear(clearance.kept, clearance.budget(level))
+            && contour.edges_alternate()
+            && contour.is_clear(clearance.offset, clearance.max_drift_at(level))
     }
 }
 
-/// The contour of two regions together: what is on both is inside.
-fn joined(a: &[Half], b: &[Half]) -> Vec<Half> {
+/// Contour of two regions together: edges on both contours are inside and drop out.
+fn joined_contour(a: &[HalfEdge], b: &[HalfEdge]) -> Vec<HalfEdge> {
     let mut joined = Vec::with_capacity(a.len() + b.len());
     let (mut i, mut j) = (0, 0);
     while i < a.len() && j < b.len() {
@@ -291,132 +287,145 @@ fn joined(a: &[Half], b: &[Half]) -> Vec<Half> {
     joined
 }
 
-/// Triangles whose common directions are asked for. A type of its own, since a closure would not be
-/// compiled for the processor's vectors.
-struct Facing<'a> {
+/// Computes the directions that all triangles of a leaf face. It is a type since a closure would not be compiled for
+/// the processor's vector instructions.
+struct CommonDirections<'a> {
     items: &'a [u32],
     triangles: &'a [[u32; 3]],
     x: &'a [Vec3],
-    barred: &'a [bool],
-    keeps: &'a [f64],
-    places: &'a [[f32; DIRECTIONS]; 3],
-    /// How far corners stray [m].
-    stray: f64,
+    irregular: &'a [bool],
+    offsets: &'a [f64],
+    directions: &'a [[f32; DIRECTIONS]; 3],
+    /// Drift of the vertices [m].
+    drift: f64,
 }
 
-impl NullaryFnOnce for Facing<'_> {
+impl NullaryFnOnce for CommonDirections<'_> {
     type Output = u64;
 
     #[inline(always)]
     fn call(self) -> u64 {
-        let mut all = u64::MAX;
+        let mut common = u64::MAX;
         for &t in self.items {
-            if self.barred[t as usize] {
+            if self.irregular[t as usize] {
                 return 0;
             }
             let [a, b, c] = self.triangles[t as usize];
             let corners = [self.x[a as usize], self.x[b as usize], self.x[c as usize]];
-            let keeps = [
-                self.keeps[a as usize],
-                self.keeps[b as usize],
-                self.keeps[c as usize],
+            let offsets = [
+                self.offsets[a as usize],
+                self.offsets[b as usize],
+                self.offsets[c as usize],
             ];
-            all &= faced(self.places, &corners, &keeps, self.stray);
+            common &= facing_directions(self.directions, &corners, &offsets, self.drift);
         }
-        all
+        common
     }
 }
 
-/// The directions that a triangle faces and will face while its corners stray.
+/// Bits of the directions that a triangle faces, now and after any drift of its corners up to `drift` [m].
 ///
-/// With every corner h or more from the opposite side, the plane turns by sin(turn) <= 2 stray / h: each
-/// direction in it runs along a chord at least as long as the smallest height.
+/// Its plane turns by at most sin(turn) = 2 drift / h, with h the smallest height: every direction in the plane
+/// runs along a chord at least as long as h.
 #[inline(always)]
-fn faced(
-    places: &[[f32; DIRECTIONS]; 3],
+fn facing_directions(
+    directions: &[[f32; DIRECTIONS]; 3],
     [a, b, c]: &[Vec3; 3],
-    keeps: &[f64; 3],
-    stray: f64,
+    offsets: &[f64; 3],
+    drift: f64,
 ) -> u64 {
     let normal = (b - a).cross(&(c - a));
     let double_area = normal.norm();
-    let heights = [b - c, c - a, a - b].map(|side| double_area / side.norm());
+    let heights = [b - c, c - a, a - b].map(|edge| double_area / edge.norm());
     let least = heights[0].min(heights[1]).min(heights[2]);
-    let sine = 2.0 * stray / least;
-    // Seen at an angle a height is shorter by its cosine; so much must be left of it.
-    let left = heights.iter().zip(keeps);
-    let left = left.map(|(height, kept)| (kept + ROUNDING) / (height - 2.0 * stray));
-    let cosine = left.fold(
-        WIDEST,
-        |most, share| if share >= 0.0 { most.max(share) } else { 1.0 },
-    );
-    let (across, turned) = ((1.0 - cosine * cosine).sqrt(), (1.0 - sine * sine).sqrt());
-    // That the angle is larger than the turn: NaN is neither.
-    if !(cosine < 1.0 && sine < across) {
+    let sine = 2.0 * drift / least;
+    // The projection shortens a height by the cosine at most; the offset of its corner must remain.
+    let remaining = heights.iter().zip(offsets);
+    let remaining =
+        remaining.map(|(height, offset)| (offset + DISTANCE_ERROR) / (height - 2.0 * drift));
+    let cosine = remaining.fold(MIN_COSINE, |largest, cosine| {
+        if cosine >= 0.0 {
+            largest.max(cosine)
+        } else {
+            1.0
+        }
+    });
+    let (sine_of_angle, cosine_of_turn) =
+        ((1.0 - cosine * cosine).sqrt(), (1.0 - sine * sine).sqrt());
+    // The angle must be larger than the turn; false for NaN.
+    if !(cosine < 1.0 && sine < sine_of_angle) {
         return 0;
     }
     // cos(angle - turn)
-    let cosine = cosine * turned + across * sine;
+    let cosine = cosine * cosine_of_turn + sine_of_angle * sine;
     let normal = normal / double_area;
     let normal = [0, 1, 2].map(|k| normal[k] as f32);
-    towards(places, normal, (cosine + SINGLE) as f32)
+    directions_within(directions, normal, (cosine + COSINE_ERROR) as f32)
 }
 
-/// A contour as it is seen.
-struct Contour {
-    /// Places of the vertices [m].
-    places: Vec<[f64; 2]>,
-    /// What is kept at each [m].
-    keeps: Vec<f64>,
-    /// From which vertex to which, the region on the left.
-    sides: Vec<[u32; 2]>,
+/// Contour of a region, projected along a direction.
+struct ProjectedContour {
+    /// Projected positions of its vertices [m].
+    points: Vec<[f64; 2]>,
+    /// Distance to be guaranteed at each vertex [m].
+    offsets: Vec<f64>,
+    /// Directed edges, the region on their left.
+    edges: Vec<[u32; 2]>,
 }
 
-impl Contour {
-    fn new(halves: &[Half], edges: &[[u32; 2]], keeps: &[f64], (x, view): (&[Vec3], Vec3)) -> Self {
-        let given: Vec<[u32; 2]> = halves
+impl ProjectedContour {
+    /// Projects a contour at positions `x` along the direction `view`.
+    fn new(
+        half_edges: &[HalfEdge],
+        edges: &[[u32; 2]],
+        offsets: &[f64],
+        (x, view): (&[Vec3], Vec3),
+    ) -> Self {
+        let directed: Vec<[u32; 2]> = half_edges
             .iter()
-            .map(|&half| {
-                let [a, b] = edges[half as usize / 2];
-                if half % 2 == 0 { [a, b] } else { [b, a] }
+            .map(|&half_edge| {
+                let [a, b] = edges[half_edge as usize / 2];
+                if half_edge % 2 == 0 { [a, b] } else { [b, a] }
             })
             .collect();
-        let mut vertices: Vec<u32> = given.iter().map(|side| side[0]).collect();
+        // Every vertex of a contour is the start of one of its edges, and the end of one.
+        let mut vertices: Vec<u32> = directed.iter().map(|edge| edge[0]).collect();
         vertices.sort_unstable();
         vertices.dedup();
-        let [right, up] = across(view);
-        // Every vertex of a contour begins one of its sides, and ends one.
+        let [right, up] = image_axes(view);
         let local = |v: u32| vertices.partition_point(|&other| other < v) as u32;
         Self {
-            sides: given.iter().map(|side| side.map(local)).collect(),
-            places: vertices
+            edges: directed.iter().map(|edge| edge.map(local)).collect(),
+            points: vertices
                 .iter()
                 .map(|&v| [right.dot(&x[v as usize]), up.dot(&x[v as usize])])
                 .collect(),
-            keeps: vertices.iter().map(|&v| keeps[v as usize]).collect(),
+            offsets: vertices.iter().map(|&v| offsets[v as usize]).collect(),
         }
     }
 
-    /// Whether one can walk along it from everywhere to everywhere.
+    /// Whether its edges form one connected graph.
     fn is_connected(&self) -> bool {
-        merge_map(self.places.len(), self.sides.iter().copied()).1 == 1
+        merge_map(self.points.len(), self.edges.iter().copied()).1 == 1
     }
 
-    /// Whether, round every vertex where parts of the region touch, they lie side by side.
-    fn alternates(&self) -> bool {
-        if self.sides.len() == self.places.len() {
+    /// Whether at every vertex that the contour passes more than once its edges, sorted by angle, leave and arrive
+    /// in turn. Then the sectors of the region round that vertex lie side by side and do not overlap.
+    fn edges_alternate(&self) -> bool {
+        if self.edges.len() == self.points.len() {
             return true;
         }
-        let mut leaving = vec![0; self.places.len()];
-        for side in &self.sides {
-            leaving[side[0] as usize] += 1;
+        let mut leaving = vec![0; self.points.len()];
+        for edge in &self.edges {
+            leaving[edge[0] as usize] += 1;
         }
-        let several = (0..self.places.len() as u32).filter(|&v| leaving[v as usize] > 1);
+        let multiple = (0..self.points.len() as u32).filter(|&v| leaving[v as usize] > 1);
+        // Vertex, angle, and whether the edge leaves it.
         let mut rays: Vec<(u32, f64, bool)> = Vec::new();
-        for v in several {
-            for &[a, b] in self.sides.iter().filter(|side| side.contains(&v)) {
-                let other = self.places[if a == v { b } else { a } as usize];
-                let own = self.places[v as usize];
+        for v in multiple {
+            for &[a, b] in self.edges.iter().filter(|edge| edge.contains(&v)) {
+                let other = self.points[if a == v { b } else { a } as usize];
+                let own = self.points[v as usize];
                 rays.push((v, (other[1] - own[1]).atan2(other[0] - own[0]), a == v));
             }
         }
@@ -425,28 +434,29 @@ impl Contour {
             .all(|round| (0..round.len()).all(|k| round[k].2 != round[(k + 1) % round.len()].2))
     }
 
-    /// Whether no vertex can come nearer than is kept to a side that it does not end, and no two
-    /// sides cross.
-    fn is_clear(&self, kept: f64, stray: f64) -> bool {
-        let widest = kept + 2.0 * stray + ROUNDING;
+    /// Whether, within a drift of the vertices [m], no vertex comes nearer than its offset to an edge that does not
+    /// end at it, and no two edges cross. `max_offset` is the largest offset of a vertex [m]. Pairs of edges are
+    /// found by sweeping along the longer axis.
+    fn is_clear(&self, max_offset: f64, drift: f64) -> bool {
+        let margin = max_offset + 2.0 * drift + DISTANCE_ERROR;
         let range = |k: usize, axis: usize| {
-            let [a, b] = self.sides[k].map(|v| self.places[v as usize][axis]);
+            let [a, b] = self.edges[k].map(|v| self.points[v as usize][axis]);
             [a.min(b), a.max(b)]
         };
         let axis = usize::from(self.extent(1) > self.extent(0));
-        let mut order: Vec<(f64, usize)> = (0..self.sides.len())
+        let mut order: Vec<(f64, usize)> = (0..self.edges.len())
             .map(|k| (range(k, axis)[0], k))
             .collect();
         order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0));
         for (n, &(_, k)) in order.iter().enumerate() {
             let (high, [low_across, high_across]) = (range(k, axis)[1], range(k, 1 - axis));
             for &(low, other) in &order[n + 1..] {
-                if low > high + widest {
+                if low > high + margin {
                     break;
                 }
                 let [low, high] = range(other, 1 - axis);
-                let apart = low > high_across + widest || low_across > high + widest;
-                if !apart && !self.keep_clear([k, other], stray) {
+                let separated = low > high_across + margin || low_across > high + margin;
+                if !separated && !self.edges_are_clear([k, other], drift) {
                     return false;
                 }
             }
@@ -454,32 +464,34 @@ impl Contour {
         true
     }
 
+    /// Extent along an axis [m].
     fn extent(&self, axis: usize) -> f64 {
-        let along = || self.places.iter().map(|place| place[axis]);
+        let along = || self.points.iter().map(|point| point[axis]);
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     }
 
-    fn keep_clear(&self, pair: [usize; 2], stray: f64) -> bool {
-        let [first, second] = pair.map(|k| self.sides[k]);
-        for (side, others) in [(first, second), (second, first)] {
-            let [a, b] = side.map(|v| self.places[v as usize]);
-            for v in others.into_iter().filter(|v| !side.contains(v)) {
-                let least = self.keeps[v as usize] + 2.0 * stray + ROUNDING;
-                let far = squared_distance(self.places[v as usize], [a, b]) > least * least;
-                if !far {
+    /// [`Self::is_clear`] for two edges.
+    fn edges_are_clear(&self, pair: [usize; 2], drift: f64) -> bool {
+        let [first, second] = pair.map(|k| self.edges[k]);
+        for (edge, others) in [(first, second), (second, first)] {
+            let [a, b] = edge.map(|v| self.points[v as usize]);
+            for v in others.into_iter().filter(|v| !edge.contains(v)) {
+                let least = self.offsets[v as usize] + 2.0 * drift + DISTANCE_ERROR;
+                let is_far = squared_distance(self.points[v as usize], [a, b]) > least * least;
+                if !is_far {
                     return false;
                 }
             }
         }
         let [a, b, c, d] =
-            [first[0], first[1], second[0], second[1]].map(|v| self.places[v as usize]);
-        let together = first.iter().any(|v| second.contains(v));
-        together || !(splits(a, b, c, d) && splits(c, d, a, b))
+            [first[0], first[1], second[0], second[1]].map(|v| self.points[v as usize]);
+        let adjacent = first.iter().any(|v| second.contains(v));
+        adjacent || !(line_separates(a, b, c, d) && line_separates(c, d, a, b))
     }
 }
 
-/// Two unit vectors across a third; the three are right-handed in this order.
-fn across(view: Vec3) -> [Vec3; 2] {
+/// Axes of the plane across a unit vector: with it as the third they are orthonormal and right-handed.
+fn image_axes(view: Vec3) -> [Vec3; 2] {
     let smallest = view.iamin();
     let mut axis = Vec3::zeros();
     axis[smallest] = 1.0;
@@ -487,18 +499,18 @@ fn across(view: Vec3) -> [Vec3; 2] {
     [right, view.cross(&right)]
 }
 
-/// Whether the line through a and b has c on one side and d on the other.
-fn splits(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
+/// Whether c and d are on different sides of the line through a and b.
+fn line_separates(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
     let side = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
     (side(c) > 0.0) != (side(d) > 0.0)
 }
 
-/// Square of the distance of a point from a segment [m2].
+/// Squared distance of a point from a segment [m2].
 fn squared_distance(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let to = [p[0] - a[0], p[1] - a[1]];
     let length = along[0] * along[0] + along[1] * along[1];
     let share = ((to[0] * along[0] + to[1] * along[1]) / length).clamp(0.0, 1.0);
-    let rest = [to[0] - along[0] * share, to[1] - along[1] * share];
-    rest[0] * rest[0] + rest[1] * rest[1]
+    let across = [to[0] - along[0] * share, to[1] - along[1] * share];
+    across[0] * across[0] + across[1] * across[1]
 }

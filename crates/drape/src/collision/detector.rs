@@ -1,20 +1,22 @@
-//! Detection of contacts of cloth with cloth: the laws of contact with a surface, on the vector
-//! between two features in place of the point.
+//! Detection of contacts of cloth with cloth. A contact has the laws of contact with a surface, applied to the vector
+//! between two features instead of the position of a point.
 
-use super::bound::{ImpactStats, resolve_impacts, truncate_moves};
+use super::candidate_search::Near;
 use super::cloth_contact::ClothContact;
 use super::contact_set::ContactSet;
 use super::curvature::Clearance;
 use super::entanglement::Entanglement;
 use super::exemptions::ContactExemptions;
 use super::friction_memory;
+use super::impact_resolution::{ImpactStats, resolve_impacts};
 use super::memory::ClothMemory;
 use super::mollifier::edge_mollifier;
 use super::motions::Motions;
 use super::nearness::Nearness;
 use super::proximity::nearnesses;
 use super::reach::Reach;
-use super::surface::{ClothSurface, Near};
+use super::step_truncation::truncate_moves;
+use super::surface::ClothSurface;
 use super::trajectories::LinearTrajectories;
 use crate::Model;
 use crate::laws::contact::{ContactLaw, ContactPlane};
@@ -23,35 +25,35 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// The search structures of contact of cloth with cloth. What is found is in a [`ContactSet`]; nothing
-/// found before but lists of near pairs, which are more than those in reach, stays here.
+/// The search structures of contact of cloth with cloth. Results are in a [`ContactSet`]; of earlier detections only
+/// neighbour lists stay here, which hold more pairs than those within reach.
 #[derive(Clone, Debug, Default)]
 pub struct ContactDetector {
     surface: ClothSurface,
-    /// The model the surface was made for.
+    /// Model that the surface was made for.
     made_for: Option<Model>,
 }
 
-/// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
+/// Reach of [`ContactDetector::refresh`], in contact offsets: a step meets the contact before it presses.
 const REACH_IN_OFFSETS: f64 = 2.0;
 
 /// Share of the offset that two cloths give way by before their contact is hard.
 const HARD_FROM: f64 = 0.75;
 
-/// How far the vertices of a region that a search left out may move against each other before it is
-/// searched again [m].
-const BEYOND: f64 = 1e-3;
+/// Drift of a region's vertices from their common rigid motion after which it is given the curvature test again [m]. A
+/// smaller one has regions tested more often; with a larger one fewer regions pass.
+const MAX_DRIFT: f64 = 1e-3;
 
 impl ContactDetector {
-    /// The clearance of regions that a search leaves out, for cloth that is kept `offset` [m] apart.
+    /// Clearance of regions that a search leaves out, for cloth with this contact offset [m].
     pub fn clearance(offset: f64) -> Clearance {
         Clearance {
-            kept: offset,
-            beyond: BEYOND,
+            offset,
+            max_drift: MAX_DRIFT,
         }
     }
 
-    /// The surface of a model's cloth, made anew where it was of another's.
+    /// Surface of a model's cloth, rebuilt where the last one was of another model.
     fn surface(&mut self, model: &Model) -> &mut ClothSurface {
         let fits = |of: &Model| of.has_cloth_of(model) && Arc::ptr_eq(&of.layer, &model.layer);
         if !self.made_for.as_ref().is_some_and(fits) {
@@ -61,14 +63,14 @@ impl ContactDetector {
         &mut self.surface
     }
 
-    /// Has the next detection search the whole surface, so that it does not depend on those before.
+    /// Makes the next detection search the whole surface, so that it does not depend on earlier ones.
     pub fn forget(&mut self) {
         self.surface.forget();
     }
 
-    /// Finds contacts within `reach` at positions `x`, crossings, and layers in disorder, and what follows from
-    /// them. `memory` is what the last step left. Replaces everything in `set` but the tally, to which it
-    /// adds.
+    /// Finds contacts within `reach` at positions `x`, crossings and layer violations, and from these the exempt pairs
+    /// and the recovery pulls. `memory` is that of the last step. Replaces everything in `set` but the tally, to
+    /// which it adds.
     pub fn detect(
         &mut self,
         model: &Model,
@@ -86,12 +88,12 @@ impl ContactDetector {
         }
         let clearance = Self::clearance(model.contact.cloth_offset);
         self.surface(model)
-            .look(LinearTrajectories::still(x), reach, clearance);
+            .query(LinearTrajectories::still(x), reach, clearance);
         let entangled = Entanglement::find(&self.surface, &model.policies, x, memory.layer_reach);
         set.crossings = entangled.crossing_count();
         set.violations = entangled.violations.len();
         set.layer_reach = Some(entangled.layer_reach);
-        set.tally.count_look(set.crossings, set.violations);
+        set.tally.count_detection(set.crossings, set.violations);
         (set.exemptions).mark(&self.surface, &entangled, &memory.crossed_for);
         let exemptions = &set.exemptions;
         let mut found = nearnesses(&self.surface, Near::Listed, x, reach);
@@ -107,8 +109,8 @@ impl ContactDetector {
         (set.recovery).plan(&self.surface, model, &entangled, (x, &memory.drawn));
     }
 
-    /// [`Self::detect`] within the usual reach. The stiffness of two edges fades in where their contact would
-    /// come and go at once.
+    /// [`Self::detect`] within two offsets, with the stiffness of edge-edge contacts multiplied by their mollifier, so
+    /// that the force does not jump where such a contact appears or vanishes.
     pub fn refresh(
         &mut self,
         model: &Model,
@@ -116,7 +118,7 @@ impl ContactDetector {
         x: &[Vec3],
         set: &mut ContactSet,
     ) {
-        let reach = Reach::all(REACH_IN_OFFSETS * model.contact.cloth_offset);
+        let reach = Reach::uniform(REACH_IN_OFFSETS * model.contact.cloth_offset);
         self.detect(model, memory, x, &reach, set);
         for contact in &mut set.contacts {
             let factor = edge_mollifier(contact, x);
@@ -140,8 +142,10 @@ impl ContactDetector {
                 .sum::<f64>()
         };
         let offset = model.contact.cloth_offset;
-        let kept = self.surface.kept(near.pair, near.neighbours, offset);
-        // Each side's vertices see the other's faces: half the area each.
+        let offset = self
+            .surface
+            .contact_offset(near.pair, near.neighbours, offset);
+        // Vertices of either side make contacts with faces of the other, each with half of the area.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
         let (anchor, force) = friction_memory::anchor(memory, near, x).unwrap_or((between, 0.0));
@@ -155,7 +159,7 @@ impl ContactDetector {
             weights: near.weights,
             plane: ContactPlane {
                 point: between,
-                depth: kept - near.distance,
+                depth: offset - near.distance,
                 gradient: near.normal,
                 normal: near.normal,
                 hollow: Matrix3::zeros(),
@@ -169,9 +173,9 @@ impl ContactDetector {
                 normal,
                 // It grows with the force: cloth pressed into the hard part of a contact slips no farther before it
                 // slides than cloth at the end of the soft part.
-                tangential: 0.5 * normal.max(force / kept),
+                tangential: 0.5 * normal.max(force / offset),
                 friction,
-                hard_from: HARD_FROM * kept,
+                hard_from: HARD_FROM * offset,
             },
             restitution: self.restitution(vertices, near.weights),
             pair: Some(near.pair),

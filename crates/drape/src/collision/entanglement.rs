@@ -1,9 +1,10 @@
 //! Where cloth has crossed cloth, or lies on the wrong side of a layer that it is worn over.
 
+use super::candidate_search::Near;
 use super::intersections::crossings;
 use super::layer_order::layer_order;
 use super::layers::{LayerViolation, layer_violations};
-use super::surface::{ClothSurface, Near};
+use super::surface::ClothSurface;
 use crate::PairPolicies;
 use std::cmp::Ordering;
 use toile_geometry::Vec3;

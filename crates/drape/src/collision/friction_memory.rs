@@ -1,4 +1,5 @@
-//! Friction of cloth on cloth from step to step: how far each contact has slid since it stuck.
+//! Friction of cloth on cloth from step to step: how far each contact has slid since it stuck. It is stored in the
+//! state by [`super::ContactSet::settle`] and carried over edits by `world/transfer.rs`.
 
 use super::cloth_contact::ClothContact;
 use super::memory::{ClothMemory, ContactFrictionState};

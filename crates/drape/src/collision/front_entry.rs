@@ -1,49 +1,50 @@
-//! An entry of the front: where a search for near features ended, and how far its vertices have moved
-//! since.
+//! An entry of the front: a region where the search of the tree ended, why it ended there, and how far the region's
+//! vertices have deviated from a common rigid motion since.
 
 use super::boxes::Region;
 use super::leaf_aabbs::Hits;
 use super::neighbour_lists::NeighbourList;
 
-/// Why a search went no deeper into a region.
+/// Why the search of the tree went no deeper into a region.
 #[derive(Clone, Debug)]
 pub enum Verdict {
-    /// The region's two nodes were this far apart [m].
+    /// The boxes of the region's two nodes were this far apart [m].
     Separated(f64),
-    /// The region keeps clear of itself, at this level of the curvature's bounds.
+    /// The region passed the curvature test at this level: it cannot touch itself.
     Clear(usize),
-    /// Leaves, whose features near each other are listed.
+    /// The region is two leaves, or one, and has a neighbour list.
     Listed(NeighbourList),
-    /// Leaves that move too fast for a list, or whose features lie too close: their boxes are tested in
-    /// every query.
+    /// The region is two leaves, or one, without a list: its vertices move too fast or its features lie too close.
+    /// Boxes of its features are tested in every query.
     Open,
 }
 
-/// A region with the verdict on it.
+/// A region with the verdict of the search.
 #[derive(Clone, Debug)]
 pub struct FrontEntry {
     /// The region.
     pub region: Region,
     /// The verdict.
     pub verdict: Verdict,
-    /// Most that a vertex of it moved against their common rigid motion since the verdict [m].
+    /// Drift: deviation of the region's vertices from their common rigid motion, summed over all motions since the
+    /// verdict [m].
     pub drift: f64,
-    /// Most that one moves against it on the trajectories of the last query [m].
-    pub query_drift: f64,
+    /// Deviation on the trajectories of the last query, which is not in the drift yet [m].
+    pub query_deviation: f64,
 }
 
 impl FrontEntry {
-    /// An entry just made, of vertices that drift so far on the trajectories of the query [m].
-    pub fn new(region: Region, verdict: Verdict, query_drift: f64) -> Self {
+    /// A new entry of a region with this deviation on the trajectories of the query [m].
+    pub fn new(region: Region, verdict: Verdict, query_deviation: f64) -> Self {
         Self {
             region,
             verdict,
             drift: 0.0,
-            query_drift,
+            query_deviation,
         }
     }
 
-    /// The features that are listed, where there are any.
+    /// The listed pairs, where there are any.
     pub fn hits(&self) -> Option<&Hits> {
         match &self.verdict {
             Verdict::Listed(list) => list.hits.as_deref(),

@@ -1,5 +1,5 @@
-//! A query to the front: how near features must come to be found, and whether an entry of the front
-//! still answers it.
+//! A query of the front: the distance at which features must be found, and whether an entry of the front still answers
+//! it.
 
 use super::boxes::{BoxTree, Region};
 use super::curvature::Clearance;
@@ -12,181 +12,194 @@ use super::surface_view::SurfaceView;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// A list is made long enough to hold for this many queries at the present pace.
+/// A list is made long enough to hold for this many queries at the present deviation per query.
 const QUERIES_PER_LIST: f64 = 8.0;
 
-/// Least and most that features may come nearer before an entry is searched again [m].
+/// Least and largest slack of a list [m]: the length by which its distance exceeds that of the query.
 const SLACK: [f64; 2] = [1e-3, 2e-3];
 
-/// Leaves whose vertices move against each other by less than the first in a query get a list; an open entry is
-/// searched again for one below the second [m]. Apart, so that entries do not change to and fro.
+/// Leaves whose deviation per query is at most `CALM[0]` [m] get a list; an open entry is searched again, and may get
+/// one, once it is at most `CALM[1]`. The difference keeps entries from changing at every query.
 const CALM: [f64; 2] = [2.5e-4, 1e-4];
 
-/// Longest distance of a list, as a share of the shortest edge there: beyond, a list holds most pairs of its
-/// leaves and testing their boxes is as fast. Where vertices move by less than `AT_REST` [m] in a query a list
-/// may reach as far as `DENSE_AT_REST`: it is long, but holds for very long.
+/// Largest distance of a list, as a share of the shortest edge there. A longer one would list most pairs of its leaves,
+/// and testing their boxes is as fast. At deviations per query of at most `AT_REST` [m] a list may be as long as
+/// `DENSE_AT_REST` allows, since it then holds for many queries.
 const DENSE: f64 = 0.5;
 const DENSE_AT_REST: f64 = 2.0;
 const AT_REST: f64 = 2e-5;
 
-/// Lists hold for contacts until vertices move this many times as fast.
-const FASTER: f64 = 2.0;
+/// Lists are made for the reach of contacts at this many times the present velocities, so that they hold while vertices
+/// speed up.
+const SPEED_MARGIN: f64 = 2.0;
 
-/// Places that differ by rounding alone are no farther from each other [m].
+/// Positions that differ by no more than this [m] are the same but for rounding.
 pub const SAME: f64 = 1e-12;
 
-/// How near features must come to be found: everywhere alike, or by the velocities of their region.
+/// Distance at which features must be found: the same everywhere, or shorter in regions whose velocities differ little.
 #[derive(Clone, Debug, Default)]
 pub struct QueryDistance {
-    /// At the most [m].
-    most: f64,
-    pace: Option<Arc<Pace>>,
+    /// Largest distance [m].
+    max: f64,
+    prediction: Option<Arc<Prediction>>,
 }
 
-/// The time until the next query, as in [`super::Ahead`].
+/// Motion expected until the next query, as in [`super::Ahead`].
 #[derive(Debug)]
-struct Pace {
-    /// Bounds of the velocities of every node [m/s].
+struct Prediction {
+    /// Bounds of the velocities below every node [m/s].
     velocities: Moves,
-    kept: f64,
-    least: f64,
+    /// Contact offset [m].
+    offset: f64,
+    /// Shortest path expected of a feature [m].
+    min_path: f64,
+    /// Time until the next query [s].
     time: f64,
 }
 
 impl QueryDistance {
-    /// For a reach.
+    /// Distance for a reach.
     pub fn new(cloth: &SurfaceView, reach: &Reach) -> Self {
-        let pace = reach.ahead.as_ref().map(|ahead| {
-            // A prescribed vertex may be led anywhere.
+        let prediction = reach.ahead.as_ref().map(|ahead| {
+            // The motion of a prescribed vertex is not known from its velocity.
             let velocity = |v: u32| match ahead.pinned[v as usize] {
                 true => Vec3::repeat(f64::INFINITY),
                 false => ahead.velocities[v as usize],
             };
-            Arc::new(Pace {
+            Arc::new(Prediction {
                 velocities: Moves::shifts(cloth, velocity),
-                kept: ahead.kept,
-                least: ahead.least,
+                offset: ahead.offset,
+                min_path: ahead.min_path,
                 time: ahead.time,
             })
         });
         Self {
-            most: reach.most,
-            pace,
+            max: reach.max,
+            prediction,
         }
     }
 
-    /// No less than [`Reach::of`] of any two features of a region [m], were they `times` as fast.
-    pub fn of(&self, region: &Region, times: f64) -> f64 {
-        let Some(pace) = &self.pace else {
-            return self.most;
+    /// Upper bound of [`Reach::of`] over the pairs of features of a region [m], were all velocities `factor` times as
+    /// large.
+    pub fn of(&self, region: &Region, factor: f64) -> f64 {
+        let Some(prediction) = &self.prediction else {
+            return self.max;
         };
         // Of four velocities in a ball none is farther than 3/2 of its radius from their mean.
-        let speed = times * 1.5 * pace.velocities.stray(region);
+        let speed = factor * 1.5 * prediction.velocities.deviation(region);
         if !speed.is_finite() {
-            return self.most;
+            return self.max;
         }
-        let length = (2.0 * speed * pace.time).max(pace.least);
-        (pace.kept + 2.0 * length).min(self.most)
+        let path = (2.0 * speed * prediction.time).max(prediction.min_path);
+        (prediction.offset + 2.0 * path).min(self.max)
     }
 }
 
-/// How vertices moved since the last query.
+/// Motion of the vertices since the last query.
 pub enum MovesSince {
-    /// Not at all.
+    /// No motion.
     Still,
-    /// Along the trajectories of that query, to their ends.
+    /// Motion to the ends of the last query's trajectories.
     AsQueried,
-    /// Otherwise.
+    /// Any other motion.
     Moved(Arc<Moves>),
 }
 
-/// A query.
+/// A query of the front.
 pub struct FrontQuery {
-    /// How near features must come on their trajectories to be listed.
+    /// Distance on the trajectories at which features must be listed.
     pub near: QueryDistance,
-    /// The same in the last query without motion, which contacts make.
+    /// The same distance in the last query without motion, which is one for contacts.
     pub contacts: QueryDistance,
-    /// What regions that are clear of themselves keep.
+    /// Guarantee of regions that pass the curvature test.
     pub clearance: Clearance,
-    /// Moves since the last query.
+    /// Motion since the last query.
     pub since: MovesSince,
-    /// Moves along the trajectories; none where nothing moves.
+    /// Displacements on the trajectories; none where nothing moves.
     pub moves: Option<Arc<Moves>>,
-    /// The last moves that are known, to estimate those to come.
+    /// The latest displacements known, as an estimate of later ones.
     pub last_moves: Option<Arc<Moves>>,
-    /// Mean over the vertices of every leaf of the shortest edge there [m].
+    /// Shortest edge at a vertex, averaged over the vertices of each leaf [m].
     pub shortest_edges: Arc<[f64]>,
 }
 
 impl FrontQuery {
-    /// Most that a vertex of a region moves on its trajectory against their common rigid motion [m].
-    pub fn drift(&self, region: &Region) -> f64 {
-        self.moves.as_ref().map_or(0.0, |moves| moves.stray(region))
+    /// Deviation of a region's vertices from their common rigid motion on the trajectories [m].
+    pub fn deviation(&self, region: &Region) -> f64 {
+        (self.moves.as_ref()).map_or(0.0, |moves| moves.deviation(region))
     }
 
-    /// Adds to an entry the drift since the last query, and sets that of this one.
+    /// Adds the deviation since the last query to the drift of an entry, and sets that of this query.
     pub fn age(&self, entry: &mut FrontEntry) {
         entry.drift += match &self.since {
             MovesSince::Still => 0.0,
-            MovesSince::AsQueried => entry.query_drift + SAME,
-            MovesSince::Moved(moves) => moves.stray(&entry.region),
+            MovesSince::AsQueried => entry.query_deviation + SAME,
+            MovesSince::Moved(moves) => moves.deviation(&entry.region),
         };
-        entry.query_drift = self.drift(&entry.region);
+        entry.query_deviation = self.deviation(&entry.region);
     }
 
-    /// Whether an entry answers this query: two vertices that drifted by d came nearer by at most 2 d.
+    /// Whether an entry answers this query: two vertices with drift d have come nearer to each other by at most 2 d.
     pub fn is_answered_by(&self, entry: &FrontEntry) -> bool {
-        let drift = entry.drift + entry.query_drift;
+        let drift = entry.drift + entry.query_deviation;
         let holds = |gap: f64| gap - 2.0 * drift >= self.near.of(&entry.region, 1.0);
         match &entry.verdict {
-            Verdict::Clear(level) => drift <= self.clearance.budget(*level),
+            Verdict::Clear(level) => drift <= self.clearance.max_drift_at(*level),
             Verdict::Separated(gap) => holds(*gap),
+            // Crossings are asked for where the trajectories begin.
             Verdict::Listed(list) => holds(list.gap) && 2.0 * entry.drift < list.crossing_gap,
             Verdict::Open => {
-                self.moves.is_none() || entry.query_drift > CALM[1] || self.is_dense(&entry.region)
+                self.moves.is_none()
+                    || entry.query_deviation > CALM[1]
+                    || self.is_dense(&entry.region)
             }
         }
     }
 
     /// Whether the features of a region lie too close for a list.
     fn is_dense(&self, region: &Region) -> bool {
-        let edge = |first: u32| self.shortest_edges[first as usize];
-        let edge = region.nodes().map(|n| edge(n.first)).fold(0.0, f64::max);
-        let most = match self.pace(region) <= AT_REST {
+        let of_leaf = |leaf: u32| self.shortest_edges[leaf as usize];
+        let edges = region.nodes().map(|node| of_leaf(node.first_leaf));
+        let edge = edges.fold(0.0, f64::max);
+        let limit = match self.deviation_per_query(region) <= AT_REST {
             true => DENSE_AT_REST,
             false => DENSE,
         };
-        self.list_distances(region)[0] > most * edge
+        self.list_distances(region)[0] > limit * edge
     }
 
-    /// Whether the features of a region get a list.
-    pub fn lists(&self, region: &Region) -> bool {
-        self.pace(region) <= CALM[0] && !self.is_dense(region)
+    /// Whether a region of two leaves, or of one, gets a list.
+    pub fn gets_list(&self, region: &Region) -> bool {
+        self.deviation_per_query(region) <= CALM[0] && !self.is_dense(region)
     }
 
-    /// Drift of a region in a query [m]: in this one or, where nothing moves in it, in the last that moved.
-    fn pace(&self, region: &Region) -> f64 {
+    /// Deviation of a region in this query or, where nothing moves, in the last motion known [m].
+    fn deviation_per_query(&self, region: &Region) -> f64 {
         match (&self.moves, &self.last_moves) {
-            (Some(moves), _) | (None, Some(moves)) => moves.stray(region),
+            (Some(moves), _) | (None, Some(moves)) => moves.deviation(region),
             (None, None) => 0.0,
         }
     }
 
-    /// How near features of a region are to be listed [m], and how near to crossing edges and faces are.
+    /// Distances within which a list of a region must be complete [m]: for pairs of a vertex and a face or of two
+    /// edges, and for an edge and a face that may cross.
     pub fn list_distances(&self, region: &Region) -> [f64; 2] {
-        let drift = self.drift(region);
-        let pace = match self.moves.is_some() {
-            true => drift,
-            false => self.pace(region),
+        let deviation = self.deviation(region);
+        let per_query = match self.moves.is_some() {
+            true => deviation,
+            false => self.deviation_per_query(region),
         };
-        let slack = (2.0 * QUERIES_PER_LIST * pace).clamp(SLACK[0], SLACK[1]);
-        let near = self.near.of(region, 1.0) + 2.0 * drift;
-        [near.max(self.contacts.of(region, FASTER)) + slack, slack]
+        let slack = (2.0 * QUERIES_PER_LIST * per_query).clamp(SLACK[0], SLACK[1]);
+        let near = self.near.of(region, 1.0) + 2.0 * deviation;
+        [
+            near.max(self.contacts.of(region, SPEED_MARGIN)) + slack,
+            slack,
+        ]
     }
 }
 
-/// Prunes regions whose nodes are far apart where the trajectories begin, and those that keep clear of
-/// themselves on them; notes an entry for each.
+/// Rule of a search for the front: prunes regions whose nodes are far apart where the trajectories begin and regions
+/// that pass the curvature test, and notes an entry for each.
 pub struct QueryRule<'a> {
     /// The tree, fitted where the trajectories begin.
     pub tree: &'a BoxTree,
@@ -197,24 +210,32 @@ pub struct QueryRule<'a> {
 impl PruningRule for QueryRule<'_> {
     type Notes = Vec<FrontEntry>;
 
-    fn apart(&self, entries: &mut Vec<FrontEntry>, region: &Region) -> bool {
+    fn is_separated(&self, entries: &mut Vec<FrontEntry>, region: &Region) -> bool {
         let Some(distance) = self.tree.distance(region) else {
             return false;
         };
-        let apart = distance > self.query.list_distances(region)[0];
-        if apart {
+        let separated = distance > self.query.list_distances(region)[0];
+        if separated {
             let verdict = Verdict::Separated(distance - ROUNDING);
-            entries.push(FrontEntry::new(*region, verdict, self.query.drift(region)));
+            entries.push(FrontEntry::new(
+                *region,
+                verdict,
+                self.query.deviation(region),
+            ));
         }
-        apart
+        separated
     }
 
     fn level(&self, region: &Region) -> Option<usize> {
-        self.query.clearance.level(self.query.drift(region))
+        self.query.clearance.level(self.query.deviation(region))
     }
 
-    fn clear(&self, entries: &mut Vec<FrontEntry>, region: &Region, level: usize) {
+    fn note_clear(&self, entries: &mut Vec<FrontEntry>, region: &Region, level: usize) {
         let verdict = Verdict::Clear(level);
-        entries.push(FrontEntry::new(*region, verdict, self.query.drift(region)));
+        entries.push(FrontEntry::new(
+            *region,
+            verdict,
+            self.query.deviation(region),
+        ));
     }
 }

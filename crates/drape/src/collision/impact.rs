@@ -1,28 +1,27 @@
-//! Continuous collision of a vertex with a face and of two edges, all corners moving straight.
+//! Continuous collision detection of a vertex and a face and of two edges, with vertices on straight trajectories.
 //!
-//! Directional advancement. At a time t the closest points of the two features give a unit
-//! direction n. While every corner of one lies beyond every corner of the other along n they cannot
-//! meet, and as the corners move straight, each of these gaps is linear in time:
+//! The method is directional advancement. At time t the closest points of the two features give a unit direction n.
+//! The features cannot collide while every vertex of one lies beyond every vertex of the other along n, and each of
+//! these gaps is linear in time:
 //! ```text
 //! g_ij(t) = n . (b_j(t) - a_i(t)) > gap + error,  all i, j
 //! ```
-//! So the motion is safe up to the first root t', where the closest points are looked up again. Where
-//! nothing separates any more, or features are closer than rounding can tell, they have met.
-//! Conservative advancement (Mirtich 1996; additive: Li et al. 2021) with the bound of the
-//! direction instead of that of the largest speed: a head-on collision takes two looks, not dozens,
-//! and the answer is safe whatever the rounding of the closest points, since only the gaps decide.
+//! So the motion is safe up to the first root t', where the closest points are computed again. Where n separates no
+//! longer, or the distance is within rounding, the features collide. This is conservative advancement (Mirtich 1996;
+//! additive: Li et al. 2021) with a bound by direction instead of by the largest speed: a head-on collision takes two
+//! iterations, not dozens. Only the gaps decide, so the result is safe whatever the rounding of the closest points.
 
 use toile_geometry::{Vec3, closest_on_face, closest_on_segments};
 
-/// Looks before a motion that goes on grazing is called a collision.
-const MOST_LOOKS: usize = 256;
+/// Number of iterations after which a motion, as of features that graze each other, is taken as a collision.
+const MAX_ITERATIONS: usize = 256;
 
-/// Rounding of a gap, as a multiple of the largest coordinate times the 1-norm of the direction:
+/// Bound of the rounding error of a gap, as a multiple of the largest coordinate times the 1-norm of the direction:
 /// twenty roundings.
 const ROUNDING: f64 = 20.0 * f64::EPSILON / 2.0;
 
-/// First time in 0..=1 at which a vertex (the first of the four) may come within `gap` [m] of a face
-/// (the others); none when it certainly does not. Never too late, and early by rounding only.
+/// First time in 0..=1 at which a vertex (the first of the four) comes within `gap` [m] of a face (the other three);
+/// none where it certainly does not. The time is never late, and early only by rounding.
 pub fn vertex_face_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Option<f64> {
     advance(
         start,
@@ -36,7 +35,7 @@ pub fn vertex_face_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Optio
     )
 }
 
-/// The same for an edge (the first two) and another (the last two).
+/// [`vertex_face_impact`] for an edge (the first two vertices) and another (the last two).
 pub fn edge_edge_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Option<f64> {
     advance(
         start,
@@ -50,7 +49,8 @@ pub fn edge_edge_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Option<
     )
 }
 
-/// Advances in time; `between` is the vector from one feature to the closest point of the other.
+/// Advances to the time of impact. `between` gives the vector between the closest points of the two features, `pairs`
+/// the vertices of one with those of the other.
 #[inline(always)]
 fn advance<const N: usize>(
     start: &[Vec3; 4],
@@ -66,24 +66,24 @@ fn advance<const N: usize>(
     }
     let mut time = 0.0;
     let mut now = *start;
-    for _ in 0..MOST_LOOKS {
+    for _ in 0..MAX_ITERATIONS {
         let vector = between(&now);
         let distance = vector.norm();
         let n = vector / distance;
-        let kept = gap + ROUNDING * scale * (n.x.abs() + n.y.abs() + n.z.abs());
-        // Also where the distance is zero and n no number.
-        if distance <= kept || distance.is_nan() || kept.is_nan() {
+        let least_gap = gap + ROUNDING * scale * (n.x.abs() + n.y.abs() + n.z.abs());
+        // NaN: the distance is zero, and n undefined.
+        if distance <= least_gap || distance.is_nan() || least_gap.is_nan() {
             return Some(time);
         }
         let mut safe = f64::INFINITY;
         for &[i, j] in pairs {
-            let first = n.dot(&(start[j] - start[i]));
-            let last = n.dot(&(end[j] - end[i]));
-            if first + (last - first) * time <= kept {
+            let at_start = n.dot(&(start[j] - start[i]));
+            let at_end = n.dot(&(end[j] - end[i]));
+            if at_start + (at_end - at_start) * time <= least_gap {
                 return Some(time);
             }
-            if last <= kept {
-                safe = f64::min(safe, (first - kept) / (first - last));
+            if at_end <= least_gap {
+                safe = f64::min(safe, (at_start - least_gap) / (at_start - at_end));
             }
         }
         if safe > 1.0 {
@@ -93,8 +93,8 @@ fn advance<const N: usize>(
             return Some(time);
         }
         time = safe;
-        for (now, (a, b)) in now.iter_mut().zip(start.iter().zip(end)) {
-            *now = a + (b - a) * time;
+        for (p, (a, b)) in now.iter_mut().zip(start.iter().zip(end)) {
+            *p = a + (b - a) * time;
         }
     }
     Some(time)
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn time_of_a_fall_onto_a_face_and_past_it() {
+    fn a_vertex_that_falls_onto_a_face_and_one_that_falls_past_it() {
         let fall = |x: f64, gap: f64| {
             let (from, to) = (Vec3::new(x, 1.0, 0.2), Vec3::new(x, -1.0, 0.2));
             vertex_face_impact(&over(from), &over(to), gap)
@@ -128,14 +128,14 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_features_are_decided() {
+    fn degenerate_features_and_nan_collide_at_once() {
         let p = Vec3::new(0.3, 0.4, 0.5);
         let same = [p; 4];
         assert_eq!(vertex_face_impact(&same, &same, 0.0), Some(0.0));
         assert_eq!(edge_edge_impact(&same, &same, 0.0), Some(0.0));
         let nan = [Vec3::repeat(f64::NAN); 4];
         assert_eq!(vertex_face_impact(&nan, &same, 0.0), Some(0.0));
-        // Parallel edges that pass each other and that meet.
+        // Parallel edges that pass by each other, then two that collide.
         let rod = |y: f64, x: f64| [Vec3::new(x, y, 0.0), Vec3::new(x, y, 1.0)];
         let both = |a: [Vec3; 2], b: [Vec3; 2]| [a[0], a[1], b[0], b[1]];
         let start = both(rod(0.0, 0.0), rod(0.1, -1.0));
@@ -148,9 +148,9 @@ mod tests {
     }
 
     proptest! {
-        /// A motion made to meet at a known time is never missed, and what is found is not later.
+        /// A collision constructed at a known time is found, and not later than that.
         #[test]
-        fn what_is_made_to_meet_is_found(
+        fn a_collision_at_a_known_time_is_found(
             numbers in prop::array::uniform24(-1.0..1.0f64),
             w in [0.0..1.0f64, 0.0..1.0],
             when in 0.0..1.0f64,
@@ -171,7 +171,7 @@ mod tests {
                 start[k] += miss;
                 end[k] += miss;
             }
-            // Rounding of the construction itself.
+            // Rounding of the construction.
             let gap = 1e-14;
             let found = if edges {
                 edge_edge_impact(&start, &end, gap)

@@ -2,7 +2,8 @@
 //! so that the line of intersection grows shorter (Volino and Magnenat-Thalmann 2006, Resolving
 //! surface collisions through intersection contour minimization).
 
-use super::surface::{ClothSurface, Near};
+use super::candidate_search::Near;
+use super::surface::ClothSurface;
 use toile_geometry::{Vec3, segment_intersects_triangle};
 
 /// An edge that crosses a face.

@@ -293,7 +293,7 @@ mod tests {
     fn crossings_of_layers_lead_the_outer_one_out() {
         let (mut surface, mut x) = squares(0.1);
         x[4].y = -0.1;
-        let near = surface.near(LinearTrajectories::still(&x), 0.0);
+        let near = surface.near_leaves(LinearTrajectories::still(&x), 0.0);
         let crossed = super::super::intersections::crossings(&surface, &near, &x);
         let found = layer_crossings(&surface, &crossed, &x);
         assert!(!found.is_empty() && found.len() == crossed.len());

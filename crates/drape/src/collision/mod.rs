@@ -1,10 +1,10 @@
-//! Collision of cloth with cloth: which pairs might touch, which do, what they cost, how far a
-//! motion may go, and how what has crossed is led apart.
+//! Collision of cloth with cloth: which pairs of features might touch, which do, what a contact costs, how far a motion
+//! may go, and how cloth that has crossed is led apart.
 
-mod apart;
-mod bound;
 mod boxes;
 mod bvtt_front;
+mod candidate_search;
+mod closest_vectors;
 mod cloth_contact;
 mod contact_set;
 mod coupling;
@@ -17,6 +17,8 @@ mod friction_memory;
 mod front_entry;
 mod front_query;
 mod impact;
+mod impact_pair;
+mod impact_resolution;
 mod intersections;
 pub(crate) mod layer_order;
 mod layers;
@@ -35,14 +37,15 @@ mod reach;
 mod recovery;
 mod regions;
 mod separation_filter;
+mod step_truncation;
 mod surface;
 mod surface_view;
 mod tally;
 mod trajectories;
 mod zones;
 
-pub use bound::{ImpactStats, truncate_moves};
 pub use boxes::{Bounds, BoxTree, Node, Region};
+pub use candidate_search::Near;
 pub use cloth_contact::ClothContact;
 pub use contact_set::ContactSet;
 pub use coupling::Couplings;
@@ -51,6 +54,7 @@ pub use detector::ContactDetector;
 pub use exemptions::ContactExemptions;
 pub use feature_pair::FeaturePair;
 pub use impact::{edge_edge_impact, vertex_face_impact};
+pub use impact_resolution::ImpactStats;
 pub use intersections::{EdgeFaceIntersection, crossings, edge_face_intersections};
 pub use layer_order::{BETWEEN_LAYERS, layer_order};
 pub use layers::{LayerViolation, layer_violations, layer_violations_of, layers_of};
@@ -60,6 +64,7 @@ pub use nearness::Nearness;
 pub use proximity::nearnesses;
 pub use reach::{Ahead, Reach};
 pub use recovery::Recovery;
-pub use surface::{ClothSurface, Near};
+pub use step_truncation::truncate_moves;
+pub use surface::ClothSurface;
 pub use tally::Tally;
 pub use trajectories::LinearTrajectories;

@@ -1,17 +1,17 @@
-//! A motion of the cloth between two looks, to be corrected.
+//! A motion of the cloth between two queries, in which impacts are to be resolved.
 
 use toile_geometry::Vec3;
 
-/// A motion in hand.
+/// A motion of all vertices, to be corrected in place.
 pub struct Motions<'a> {
-    /// Where vertices are [m].
+    /// Positions at the start [m].
     pub x: &'a [Vec3],
-    /// Where each goes from there [m].
+    /// Displacements from the start to the end [m].
     pub moves: &'a mut [Vec3],
-    /// Their velocities at the end [m/s].
+    /// Velocities at the end [m/s].
     pub velocities: &'a mut [Vec3],
-    /// One over the mass of each [1/kg]; zero where nothing moves it.
+    /// Inverse masses [1/kg]; zero for vertices whose motion is prescribed.
     pub lightness: &'a [f64],
-    /// The time that the motion takes [s].
+    /// Duration of the motion [s].
     pub span: f64,
 }

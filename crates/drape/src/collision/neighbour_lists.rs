@@ -1,4 +1,4 @@
-//! Lists of the features of two leaves that are near each other, valid while vertices move little
+//! Neighbour lists: pairs of near features of two leaves, which stay complete while vertices move little
 //! (Verlet 1967).
 
 use super::feature_pair::FeaturePair;
@@ -7,33 +7,33 @@ use super::nearness::{Nearness, PARALLEL, is_far};
 use super::surface_view::SurfaceView;
 use toile_geometry::Vec3;
 
-/// Distances of boxes and of features are known no better than this [m].
+/// Bound of the rounding error in the distance of two boxes or two features [m].
 pub const ROUNDING: f64 = 1e-9;
 
-/// The features of two leaves, or of one with itself, that were near each other when the list was made.
+/// Pairs of features of two leaves, or of one leaf, that were near each other when the list was made.
 #[derive(Clone, Debug)]
 pub struct NeighbourList {
-    /// Vertices and faces, and edges, that are not listed were farther apart than this [m].
+    /// Pairs of a vertex and a face, and of two edges, that are not listed were farther apart than this [m].
     pub gap: f64,
-    /// Edges and faces that are not listed were farther from crossing than this [m].
+    /// An edge and a face that are not listed did not cross when both were moved by less than half of this [m].
     pub crossing_gap: f64,
-    /// The listed features; none where there are none.
+    /// Listed pairs; none where the list is empty.
     pub hits: Option<Box<Hits>>,
 }
 
 impl NeighbourList {
-    /// Those of some features that are no farther apart than `near` [m], or `crossing` [m] for an edge
-    /// and a face, at positions `x`.
+    /// Lists those of some pairs that are no farther apart than `near` [m] at positions `x`, or `crossing` [m] for
+    /// an edge and a face.
     pub fn of(cloth: &SurfaceView, x: &[Vec3], hits: &Hits, [near, crossing]: [f64; 2]) -> Self {
         let is_near = |pair: Option<FeaturePair>| pair.is_some_and(|pair| within(pair, x, near));
-        let some = |hits: &[[u32; 2]], keep: &dyn Fn([u32; 2]) -> bool| -> Vec<[u32; 2]> {
-            hits.iter().copied().filter(|&hit| keep(hit)).collect()
+        let chosen = |hits: &[[u32; 2]], is_chosen: &dyn Fn([u32; 2]) -> bool| -> Vec<[u32; 2]> {
+            hits.iter().copied().filter(|&hit| is_chosen(hit)).collect()
         };
-        let may_cross = |hit| cloth.are_apart(hit) && edge_within(cloth, x, hit, crossing);
+        let may_cross = |hit| cloth.are_disjoint(hit) && edge_within(cloth, x, hit, crossing);
         let listed = Hits {
-            vertex_face: some(&hits.vertex_face, &|hit| is_near(cloth.vertex_face(hit))),
-            edge_edge: some(&hits.edge_edge, &|hit| is_near(cloth.edge_edge(hit))),
-            edge_face: some(&hits.edge_face, &may_cross),
+            vertex_face: chosen(&hits.vertex_face, &|hit| is_near(cloth.vertex_face(hit))),
+            edge_edge: chosen(&hits.edge_edge, &|hit| is_near(cloth.edge_edge(hit))),
+            edge_face: chosen(&hits.edge_face, &may_cross),
         };
         Self {
             gap: near - ROUNDING,
@@ -43,28 +43,28 @@ impl NeighbourList {
     }
 }
 
-/// Whether two features are no farther apart than `far` [m]; also where their distance is no number.
-fn within(pair: FeaturePair, x: &[Vec3], far: f64) -> bool {
-    if is_far(pair, &pair.vertices().map(|v| x[v as usize]), far) {
+/// Whether two features are no farther apart than `reach` [m]; also true where their distance is NaN.
+fn within(pair: FeaturePair, x: &[Vec3], reach: f64) -> bool {
+    if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach) {
         return false;
     }
     let distance = Nearness::distance(pair, x);
-    distance <= far || distance.is_nan()
+    distance <= reach || distance.is_nan()
 }
 
-/// Whether an edge may cross a face, or come no farther from it than `far` [m]: its ends are not both farther
-/// from the plane of the face on one side. A face that is hardly more than a line has no plane.
-fn edge_within(cloth: &SurfaceView, x: &[Vec3], [e, t]: [u32; 2], far: f64) -> bool {
+/// Whether an edge may come within `reach` [m] of crossing a face: its ends are not both farther than that from the
+/// plane of the face on one side. A nearly degenerate face has no plane, and any edge may cross it.
+fn edge_within(cloth: &SurfaceView, x: &[Vec3], [e, t]: [u32; 2], reach: f64) -> bool {
     let at = |v: u32| x[v as usize];
     let (ends, [p, q, r]) = (
         cloth.edges[e as usize].map(at),
         cloth.triangles[t as usize].map(at),
     );
     let sides = [q - p, r - p];
-    let across = sides[0].cross(&sides[1]);
-    let square = across.norm_squared();
-    let known = square > PARALLEL * sides[0].norm_squared() * sides[1].norm_squared();
-    let [a, b] = ends.map(|end| across.dot(&(end - p)));
-    let most = (far + ROUNDING) * square.sqrt();
-    !(known && (a.min(b) > most || a.max(b) < -most))
+    let normal = sides[0].cross(&sides[1]);
+    let square = normal.norm_squared();
+    let has_plane = square > PARALLEL * sides[0].norm_squared() * sides[1].norm_squared();
+    let [a, b] = ends.map(|end| normal.dot(&(end - p)));
+    let limit = (reach + ROUNDING) * square.sqrt();
+    !(has_plane && (a.min(b) > limit || a.max(b) < -limit))
 }

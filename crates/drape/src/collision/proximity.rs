@@ -1,18 +1,18 @@
-//! Places where cloth is near cloth.
+//! Proximities: pairs of features within their reach, measured.
 
+use super::candidate_search::Near;
 use super::nearness::{Nearness, is_far, passes_by};
 use super::reach::Reach;
 use super::separation_filter::SeparationFilter;
-use super::surface::{ClothSurface, Near};
+use super::surface::ClothSurface;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Neighbours are looked for at this many times the distance that they keep.
+/// Neighbours are measured within this many times their contact offset.
 const NEIGHBOURS_REACH: f64 = 2.0;
 
-/// Every pair of features within its reach, of those that are near, sorted. Features of triangles that
-/// share a vertex and are not folded against each other by more than a right angle count only where they
-/// come nearer than neighbours do.
+/// All candidate pairs whose features are within their reach at positions `x`, sorted. Pairs of neighbours, whose
+/// triangles share a vertex and are not folded against each other by more than a right angle, have a shorter reach.
 pub fn nearnesses<'a>(
     surface: &ClothSurface,
     near: impl Into<Near<'a>>,
@@ -23,10 +23,10 @@ pub fn nearnesses<'a>(
         let [a, b, c] = surface.triangles[t as usize].map(|v| x[v as usize]);
         (b - a).cross(&(c - a))
     };
-    let filter = SeparationFilter::still(x, reach.most);
+    let filter = SeparationFilter::still(x, reach.max);
     let mut found = surface.filtered(near, Some(&filter), |pair, owners, found| {
         let p = pair.vertices().map(|v| x[v as usize]);
-        if is_far(pair, &p, reach.most) || passes_by(pair, &p) {
+        if is_far(pair, &p, reach.max) || passes_by(pair, &p) {
             return;
         }
         let reach = reach.of(pair);
@@ -35,7 +35,7 @@ pub fn nearnesses<'a>(
             n.dot(&m) > 0.0
         };
         let reach = match neighbours {
-            true => NEIGHBOURS_REACH * surface.kept(pair, true, reach / NEIGHBOURS_REACH),
+            true => NEIGHBOURS_REACH * surface.contact_offset(pair, true, reach / NEIGHBOURS_REACH),
             false => reach,
         };
         let near = Nearness::measured(pair, &p, reach);

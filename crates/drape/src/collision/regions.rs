@@ -1,72 +1,72 @@
-//! Which regions of the cloth a search leaves out: those far from each other, and those that cannot touch
-//! themselves while their vertices stray little from one another, however far they go together.
+//! Search of the tree with pruning: regions of the cloth that are far apart are left out, and regions that pass the
+//! curvature test, which cannot touch themselves while their vertices deviate little from a common rigid motion.
 
 use super::boxes::{BoxTree, Region};
-use super::curvature::{Clearance, Curvature, LEAST};
+use super::curvature::{Clearance, Curvature, MIN_LEAVES};
 use super::moves::Moves;
-use super::surface_view::{ROOM, SurfaceView};
+use super::surface_view::{OFFSET_PER_EDGE, SurfaceView};
 use super::trajectories::LinearTrajectories;
 use toile_geometry::Vec3;
 
-/// What one part of a search notes.
+/// Notes of one task of a search.
 #[derive(Debug, Default)]
 struct Notes<N> {
-    /// Regions to be looked at more closely, and at which level.
-    asked: Vec<(Region, usize)>,
-    /// How many were.
-    told: usize,
-    /// Those left out.
-    own: N,
+    /// Regions to be given the curvature test, and the drift level of the test.
+    pending: Vec<(Region, usize)>,
+    /// Number of regions tested.
+    tested: usize,
+    /// Notes of the rule.
+    of_rule: N,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug)]
-pub struct Searched<N> {
-    /// Pairs of leaves that are not left out, and leaves with themselves.
+pub struct RegionSearch<N> {
+    /// Pairs of leaves that were not pruned, and leaves with themselves.
     pub pairs: Vec<[u32; 2]>,
-    /// How many regions were looked into.
+    /// Number of regions opened.
     pub opened: usize,
-    /// How many were looked at closely.
-    pub told: usize,
-    /// What was noted of those left out, in parts.
+    /// Number of regions given the curvature test.
+    pub tested: usize,
+    /// Notes of the rule, one of each task.
     pub notes: Vec<N>,
 }
 
 /// Decides which regions a search prunes.
 pub trait PruningRule: Sync {
-    /// Notes of the regions pruned.
+    /// Notes on pruned regions.
     type Notes: Default + Send;
-    /// Whether a region's two nodes are far apart.
-    fn apart(&self, notes: &mut Self::Notes, region: &Region) -> bool;
-    /// With which margin a region is to be looked at closely; nothing where it is not.
+    /// Whether the two nodes of a region are far apart.
+    fn is_separated(&self, notes: &mut Self::Notes, region: &Region) -> bool;
+    /// Drift level at which a region is given the curvature test; none where it is not tested.
     fn level(&self, region: &Region) -> Option<usize>;
-    /// Notes a region that keeps clear of itself.
-    fn clear(&self, notes: &mut Self::Notes, region: &Region, level: usize);
+    /// Takes note of a region that passed the curvature test.
+    fn note_clear(&self, notes: &mut Self::Notes, region: &Region, level: usize);
 }
 
-/// Prunes regions that are clear on some trajectories, for one search.
-struct Once<'a> {
+/// Rule of a single search, which leaves nothing for later ones.
+struct SingleSearch<'a> {
     tree: &'a BoxTree,
     moves: Option<Moves>,
     clearance: Clearance,
 }
 
-impl PruningRule for Once<'_> {
+impl PruningRule for SingleSearch<'_> {
     type Notes = ();
 
-    fn apart(&self, (): &mut (), region: &Region) -> bool {
+    fn is_separated(&self, (): &mut (), region: &Region) -> bool {
         !self.tree.meets(region)
     }
 
     fn level(&self, region: &Region) -> Option<usize> {
-        let stray = self.moves.as_ref().map_or(0.0, |moves| moves.stray(region));
-        self.clearance.level(stray)
+        let deviation = (self.moves.as_ref()).map_or(0.0, |moves| moves.deviation(region));
+        self.clearance.level(deviation)
     }
 
-    fn clear(&self, (): &mut (), _: &Region, _: usize) {}
+    fn note_clear(&self, (): &mut (), _: &Region, _: usize) {}
 }
 
-/// What the mesh says of regions.
+/// Searches of the regions of a cloth.
 #[derive(Clone, Debug, Default)]
 pub struct Regions {
     curvature: Curvature,
@@ -80,76 +80,80 @@ impl Regions {
         }
     }
 
-    /// Pairs of leaves whose boxes overlap, without those of regions that keep clear of themselves on
-    /// their trajectories.
-    pub fn near(
+    /// Pairs of leaves whose boxes overlap, without regions that pass the curvature test on their trajectories.
+    pub fn near_leaves(
         &mut self,
         cloth: &SurfaceView,
-        ways: &LinearTrajectories,
+        trajectories: &LinearTrajectories,
         clearance: Clearance,
-    ) -> Searched<()> {
+    ) -> RegionSearch<()> {
         let root: Vec<Region> = cloth.tree.root().map(Region::Own).into_iter().collect();
-        let rule = Once {
+        let rule = SingleSearch {
             tree: cloth.tree,
-            moves: Moves::of(ways, cloth),
+            moves: Moves::of(trajectories, cloth),
             clearance,
         };
-        self.search(cloth, (ways.from, &root), clearance, &rule)
+        self.search(cloth, (trajectories.from, &root), clearance, &rule)
     }
 
-    /// Searches some regions at some positions [m], but for those that `rule` prunes.
-    pub fn search<L: PruningRule>(
+    /// Searches some regions at positions `x` [m], without regions that `rule` prunes. There are two passes: the
+    /// first collects the topmost regions to be tested, so that the directions that they face are computed for all
+    /// of them at once; the second tests them and, where a region fails, its children.
+    pub fn search<R: PruningRule>(
         &mut self,
         cloth: &SurfaceView,
         (x, regions): (&[Vec3], &[Region]),
         clearance: Clearance,
-        rule: &L,
-    ) -> Searched<L::Notes> {
-        self.curvature
-            .keep(cloth.room.iter().map(|room| ROOM * room), clearance);
-        let level = |region: &Region| match region.count() < LEAST {
+        rule: &R,
+    ) -> RegionSearch<R::Notes> {
+        let max_offsets = cloth.shortest_edge.iter();
+        self.curvature.set_clearance(
+            max_offsets.map(|length| OFFSET_PER_EDGE * length),
+            clearance,
+        );
+        let level = |region: &Region| match region.leaf_count() < MIN_LEAVES {
             true => None,
             false => rule.level(region),
         };
-        let ask = |notes: &mut Notes<L::Notes>, region: &Region| {
-            if rule.apart(&mut notes.own, region) {
+        let collect = |notes: &mut Notes<R::Notes>, region: &Region| {
+            if rule.is_separated(&mut notes.of_rule, region) {
                 return true;
             }
             let level = level(region);
-            notes.asked.extend(level.map(|level| (*region, level)));
+            notes.pending.extend(level.map(|level| (*region, level)));
             level.is_some()
         };
-        let mut all = cloth.tree.pairs(regions, ask);
-        let asked = all.notes.iter().flat_map(|n| n.asked.iter().copied());
-        let asked: Vec<(Region, usize)> = asked.collect();
-        if !asked.is_empty() {
-            self.curvature.face(cloth.tree, cloth.triangles, x, &asked);
+        let mut found = cloth.tree.leaf_pairs(regions, collect);
+        let pending = found.notes.iter().flat_map(|n| n.pending.iter().copied());
+        let pending: Vec<(Region, usize)> = pending.collect();
+        if !pending.is_empty() {
+            (self.curvature).find_facing(cloth.tree, cloth.triangles, x, &pending);
             let curvature = &self.curvature;
-            let regions: Vec<Region> = asked.iter().map(|(region, _)| *region).collect();
-            let tell = |notes: &mut Notes<L::Notes>, region: &Region| {
-                if rule.apart(&mut notes.own, region) {
+            let regions: Vec<Region> = pending.iter().map(|(region, _)| *region).collect();
+            let test = |notes: &mut Notes<R::Notes>, region: &Region| {
+                if rule.is_separated(&mut notes.of_rule, region) {
                     return true;
                 }
                 let Some(level) = level(region) else {
                     return false;
                 };
-                notes.told += 1;
+                notes.tested += 1;
                 let clear = curvature.is_clear(cloth.edges, x, region, level);
                 if clear {
-                    rule.clear(&mut notes.own, region, level);
+                    rule.note_clear(&mut notes.of_rule, region, level);
                 }
                 clear
             };
-            let more = cloth.tree.pairs(&regions, tell);
-            all.pairs.extend(more.pairs);
-            all.opened += more.opened;
-            all.notes.extend(more.notes);
+            let more = cloth.tree.leaf_pairs(&regions, test);
+            found.pairs.extend(more.pairs);
+            found.opened += more.opened;
+            found.notes.extend(more.notes);
         }
-        Searched {
-            pairs: all.pairs,
-            opened: all.opened,
-            told: all.notes.iter().map(|notes| notes.told).sum(),
-            notes: all.notes.into_iter().map(|notes| notes.own).collect(),
+        RegionSearch {
+            pairs: found.pairs,
+            opened: found.opened,
+            tested: found.notes.iter().map(|notes| notes.tested).sum(),
+            notes: found.notes.into_iter().map(|notes| notes.of_rule).collect(),
         }
     }
 }

@@ -1,15 +1,17 @@
-//! Discards pairs of features that a direction separates along their whole trajectories, sixteen at a time, in
-//! single precision with its rounding allowed for.
+//! Discards candidate pairs that a plane separates on their whole trajectories. Sixteen pairs are tested at a time, in
+//! single precision with a margin for its rounding.
 //!
-//! A direction n separates two features where every corner b_j of one lies beyond every corner a_i of the
-//! other along it. Corners that move straight do so all the way if they do at its beginning and its end:
+//! A direction n separates two features where every corner b_j of one lies beyond every corner a_i of the other along
+//! it. For corners on straight trajectories this holds throughout if it holds at the start and at the end:
 //! ```text
 //! min_j n . b_j - max_i n . a_i > (reach + error) |n|
 //! ```
-//! Any n serves, so it need not be known well: it is taken between the closest points where the trajectories
-//! begin. Pairs that are not separated, those with a NaN among them, are left to be measured.
+//! The test is valid for any n, so an approximate one is enough: the vector between the closest points at the start.
+//! Pairs that are not separated remain candidates, and so do pairs with a coordinate that is not finite.
 
-use super::apart::{ROUNDING, edge_is_beyond, face_is_beyond, to_edge, to_face};
+use super::closest_vectors::{
+    ROUNDING, edge_is_beyond, edge_to_edge, face_is_beyond, vertex_to_face,
+};
 use super::leaf_aabbs::{Hits, origin};
 use super::surface_view::SurfaceView;
 use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, parts};
@@ -17,35 +19,37 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Which features a pair is of.
+/// Kind of the pairs to be tested, with the vertices of their features.
 #[derive(Clone, Copy, Debug)]
-enum Filtered<'a> {
-    /// Vertices against faces, whose corners these are.
+enum PairKind<'a> {
+    /// A vertex and a face; corners of all faces.
     VertexFace(&'a [[u32; 3]]),
-    /// Edges against edges, whose ends these are.
+    /// Two edges; ends of all edges.
     EdgeEdge(&'a [[u32; 2]]),
 }
 
-/// Places of the cloth in single precision.
+/// The filter: positions of the vertices in single precision, relative to a vertex of the cloth.
 #[derive(Clone, Debug)]
 pub struct SeparationFilter {
+    /// Positions at the start of the trajectories [m].
     from: Vec<Point>,
-    /// Where the trajectories end; none where nothing moves.
+    /// Positions at the end [m]; none where nothing moves.
     to: Option<Vec<Point>>,
-    /// Pairs that come within this are left [m], where their list says nothing else.
+    /// Pairs that come within this distance remain [m]. Candidates may have a reach of their own instead.
     reach: f64,
-    /// Largest coordinate [m].
+    /// Largest coordinate [m], from which the rounding follows.
     farthest: f32,
 }
 
 impl SeparationFilter {
-    /// For features within `reach` [m] of each other. Also discards edges that pass by each other: the lines
-    /// through them are nearest beyond the end of one.
+    /// Filter that keeps features within `reach` [m] of each other at positions `x`. It also discards edges that
+    /// pass by each other, where the lines through them are nearest beyond the end of one.
     pub fn still(x: &[Vec3], reach: f64) -> Self {
         Self::new(x, None, reach)
     }
 
-    /// For features that come within `reach` [m] on their trajectories, all at one pace.
+    /// Filter that keeps features that come within `reach` [m] of each other on trajectories on which all vertices
+    /// move in step.
     pub fn together(from: &[Vec3], to: &[Vec3], reach: f64) -> Self {
         Self::new(from, Some(to), reach)
     }
@@ -54,8 +58,8 @@ impl SeparationFilter {
         let origin = origin(from);
         let points = |x: &[Vec3]| -> Vec<Point> {
             let points = x.par_iter().with_min_len(4096).map(|x| {
-                let place = x - origin;
-                [place.x as f32, place.y as f32, place.z as f32, 0.0]
+                let p = x - origin;
+                [p.x as f32, p.y as f32, p.z as f32, 0.0]
             });
             points.collect()
         };
@@ -70,42 +74,44 @@ impl SeparationFilter {
         }
     }
 
-    /// Pairs that come within this are left [m].
+    /// Pairs that come within this distance remain [m].
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Which pairs may come within their reach [m], as bits for every sixteen of them.
-    fn filter(&self, features: Filtered, hits: &[[u32; 2]], reach: &[f32], left: &mut Vec<u16>) {
-        Arch::new().dispatch(Filter {
+    /// Sets in `remaining` the bits of the pairs that are not separated, sixteen bits each. `reach` is that of each
+    /// pair [m].
+    fn filter(&self, kind: PairKind, hits: &[[u32; 2]], reach: &[f32], remaining: &mut Vec<u16>) {
+        Arch::new().dispatch(FilterRun {
             filter: self,
-            features,
+            kind,
             hits,
             reach,
-            left,
+            remaining,
         });
     }
 }
 
-/// Candidate pairs of features found in some pairs of leaves.
+/// Candidate pairs of features, and working memory for the filter.
 #[derive(Debug, Default)]
 pub struct Candidates {
-    /// The features.
+    /// The pairs.
     pub hits: Hits,
-    /// Reach of each pair of a vertex and a face, and of each of two edges [m].
+    /// Reach of every pair of a vertex and a face, and of every pair of two edges [m].
     reach: [Vec<f32>; 2],
-    left: Vec<u16>,
+    /// Bits of the pairs that the filter does not separate.
+    remaining: Vec<u16>,
 }
 
 impl Candidates {
-    /// Empties it.
+    /// Removes all pairs.
     pub fn clear(&mut self) {
         self.hits.clear();
         self.reach.iter_mut().for_each(Vec::clear);
     }
 
-    /// Sets the reach of the pairs added since it was set last [m].
-    pub fn come_within(&mut self, reach: f64) {
+    /// Sets the reach of the pairs that were added since the last call [m].
+    pub fn set_reach(&mut self, reach: f64) {
         let reach = (reach as f32).next_up();
         let hits = [&self.hits.vertex_face, &self.hits.edge_edge];
         for (list, hits) in self.reach.iter_mut().zip(hits) {
@@ -116,19 +122,20 @@ impl Candidates {
     /// Discards the pairs that a filter separates.
     pub fn discard(&mut self, filter: &SeparationFilter, cloth: &SurfaceView) {
         let [faces, edges] = &self.reach;
-        let features = Filtered::VertexFace(cloth.triangles);
-        filter.filter(features, &self.hits.vertex_face, faces, &mut self.left);
-        keep(&mut self.hits.vertex_face, &self.left);
-        let features = Filtered::EdgeEdge(cloth.edges);
-        filter.filter(features, &self.hits.edge_edge, edges, &mut self.left);
-        keep(&mut self.hits.edge_edge, &self.left);
+        let (hits, remaining) = (&mut self.hits, &mut self.remaining);
+        let kind = PairKind::VertexFace(cloth.triangles);
+        filter.filter(kind, &hits.vertex_face, faces, remaining);
+        retain(&mut hits.vertex_face, remaining);
+        let kind = PairKind::EdgeEdge(cloth.edges);
+        filter.filter(kind, &hits.edge_edge, edges, remaining);
+        retain(&mut hits.edge_edge, remaining);
     }
 }
 
-/// Keeps the hits whose bits are set.
-fn keep(hits: &mut Vec<[u32; 2]>, left: &[u16]) {
+/// Removes the hits whose bits are not set.
+fn retain(hits: &mut Vec<[u32; 2]>, remaining: &[u16]) {
     let mut count = 0;
-    for (block, &bits) in left.iter().enumerate() {
+    for (block, &bits) in remaining.iter().enumerate() {
         let mut bits = bits;
         while bits != 0 {
             hits[count] = hits[LANES * block + bits.trailing_zeros() as usize];
@@ -139,56 +146,58 @@ fn keep(hits: &mut Vec<[u32; 2]>, left: &[u16]) {
     hits.truncate(count);
 }
 
-/// A filtering. A type of its own, to be compiled for the processor's vectors.
-struct Filter<'a> {
+/// One run of the filter. It is a type so that it is compiled for the processor's vector instructions.
+struct FilterRun<'a> {
     filter: &'a SeparationFilter,
-    features: Filtered<'a>,
+    kind: PairKind<'a>,
     hits: &'a [[u32; 2]],
     reach: &'a [f32],
-    left: &'a mut Vec<u16>,
+    remaining: &'a mut Vec<u16>,
 }
 
-impl WithSimd for Filter<'_> {
+impl WithSimd for FilterRun<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let rounding = ROUNDING * self.filter.farthest;
-        self.left.clear();
+        self.remaining.clear();
         for (hits, reach) in self.hits.chunks(LANES).zip(self.reach.chunks(LANES)) {
-            let mut room = Row::splat(rounding);
-            for (room, reach) in room.0.iter_mut().zip(reach) {
-                *room += reach;
+            let mut distance = Row::splat(rounding);
+            for (distance, reach) in distance.0.iter_mut().zip(reach) {
+                *distance += reach;
             }
-            let mut apart = Row::splat(0.0);
-            match self.features {
-                Filtered::VertexFace(triangles) => {
-                    let corners = of_faces(triangles, hits);
+            let mut separated = Row::splat(0.0);
+            match self.kind {
+                PairKind::VertexFace(triangles) => {
+                    let corners = vertex_face_corners(triangles, hits);
                     for part in 0..parts::<S>() {
-                        let told = self.filter.vertices_and_faces(simd, &corners, &room, part);
-                        apart.set_part::<S>(part, told);
+                        let flags =
+                            (self.filter).separated_vertex_faces(simd, &corners, &distance, part);
+                        separated.set_part::<S>(part, flags);
                     }
                 }
-                Filtered::EdgeEdge(edges) => {
-                    let corners = of_edges(edges, hits);
+                PairKind::EdgeEdge(edges) => {
+                    let corners = edge_edge_corners(edges, hits);
                     for part in 0..parts::<S>() {
-                        let told = self.filter.edges(simd, &corners, &room, part);
-                        apart.set_part::<S>(part, told);
+                        let flags = self.filter.separated_edges(simd, &corners, &distance, part);
+                        separated.set_part::<S>(part, flags);
                     }
                 }
             }
             let mut bits = 0u16;
             for lane in 0..LANES {
-                bits |= u16::from(apart.0[lane] == 0.0) << lane;
+                bits |= u16::from(separated.0[lane] == 0.0) << lane;
             }
-            self.left.push(bits & (u16::MAX >> (LANES - hits.len())));
+            self.remaining
+                .push(bits & (u16::MAX >> (LANES - hits.len())));
         }
     }
 }
 
-/// The vertices of sixteen hits or fewer.
+/// Vertices of up to sixteen pairs of a vertex and a face.
 #[inline(always)]
-fn of_faces(triangles: &[[u32; 3]], hits: &[[u32; 2]]) -> [Corner; 4] {
+fn vertex_face_corners(triangles: &[[u32; 3]], hits: &[[u32; 2]]) -> [Corner; 4] {
     let mut corners = [Corner([0; LANES]); 4];
     for (lane, &[v, t]) in hits.iter().enumerate() {
         let [a, b, c] = triangles[t as usize];
@@ -199,9 +208,9 @@ fn of_faces(triangles: &[[u32; 3]], hits: &[[u32; 2]]) -> [Corner; 4] {
     corners
 }
 
-/// The same of edges.
+/// Vertices of up to sixteen pairs of edges.
 #[inline(always)]
-fn of_edges(edges: &[[u32; 2]], hits: &[[u32; 2]]) -> [Corner; 4] {
+fn edge_edge_corners(edges: &[[u32; 2]], hits: &[[u32; 2]]) -> [Corner; 4] {
     let mut corners = [Corner([0; LANES]); 4];
     for (lane, &[e, f]) in hits.iter().enumerate() {
         let ([a, b], [c, d]) = (edges[e as usize], edges[f as usize]);
@@ -212,9 +221,9 @@ fn of_edges(edges: &[[u32; 2]], hits: &[[u32; 2]]) -> [Corner; 4] {
     corners
 }
 
-/// The places of the four vertices.
+/// Positions of the four vertices, in one vector of lanes of the sixteen.
 #[inline(always)]
-fn places<S: Simd>(
+fn positions<S: Simd>(
     simd: S,
     points: &[Point],
     corners: &[Corner; 4],
@@ -222,60 +231,67 @@ fn places<S: Simd>(
 ) -> [Triple<S::f32s>; 4] {
     let [a, b, c, d] = corners;
     [
-        place(gather(simd, points, a, part)),
-        place(gather(simd, points, b, part)),
-        place(gather(simd, points, c, part)),
-        place(gather(simd, points, d, part)),
+        xyz(gather(simd, points, a, part)),
+        xyz(gather(simd, points, b, part)),
+        xyz(gather(simd, points, c, part)),
+        xyz(gather(simd, points, d, part)),
     ]
 }
 
 #[inline(always)]
-fn place<F>([x, y, z, _]: [F; 4]) -> Triple<F> {
+fn xyz<F>([x, y, z, _]: [F; 4]) -> Triple<F> {
     [x, y, z]
 }
 
-/// One where a mask is set, else zero.
+/// 1 in the lanes that are set, else 0.
 #[inline(always)]
 fn flag<S: Simd>(simd: S, mask: S::m32s) -> S::f32s {
     simd.select_f32s(mask, simd.splat_f32s(1.0), simd.splat_f32s(0.0))
 }
 
 impl SeparationFilter {
-    /// One where a vertex and a face are separated.
+    /// 1 for a vertex and a face that are separated by more than `distance` [m], else 0.
     #[inline(always)]
-    fn vertices_and_faces<S: Simd>(
+    fn separated_vertex_faces<S: Simd>(
         &self,
         simd: S,
         corners: &[Corner; 4],
-        room: &Row,
+        distance: &Row,
         part: usize,
     ) -> S::f32s {
-        let p = places(simd, &self.from, corners, part);
-        let n = to_face(simd, &p);
-        let far = simd.mul_f32s(room.part::<S>(part), simd.sqrt_f32s(dot(simd, n, n)));
-        let mut apart = face_is_beyond(simd, &p, n, far);
+        let p = positions(simd, &self.from, corners, part);
+        let n = vertex_to_face(simd, &p);
+        let gap = simd.mul_f32s(distance.part::<S>(part), simd.sqrt_f32s(dot(simd, n, n)));
+        let mut separated = face_is_beyond(simd, &p, n, gap);
         if let Some(to) = &self.to {
-            let p = places(simd, to, corners, part);
-            apart = simd.and_m32s(apart, face_is_beyond(simd, &p, n, far));
+            let p = positions(simd, to, corners, part);
+            separated = simd.and_m32s(separated, face_is_beyond(simd, &p, n, gap));
         }
-        flag(simd, apart)
+        flag(simd, separated)
     }
 
-    /// One where two edges are separated, or pass by each other where nothing moves.
+    /// 1 for two edges that are separated by more than `distance` [m] or, where nothing moves, pass by each other;
+    /// else 0.
     #[inline(always)]
-    fn edges<S: Simd>(&self, simd: S, corners: &[Corner; 4], room: &Row, part: usize) -> S::f32s {
-        let p = places(simd, &self.from, corners, part);
-        let (n, passing) = to_edge(simd, &p, self.farthest);
-        let far = simd.mul_f32s(room.part::<S>(part), simd.sqrt_f32s(dot(simd, n, n)));
-        let apart = edge_is_beyond(simd, &p, n, far);
-        let told = match &self.to {
+    fn separated_edges<S: Simd>(
+        &self,
+        simd: S,
+        corners: &[Corner; 4],
+        distance: &Row,
+        part: usize,
+    ) -> S::f32s {
+        let p = positions(simd, &self.from, corners, part);
+        let (n, passing) = edge_to_edge(simd, &p, self.farthest);
+        let gap = simd.mul_f32s(distance.part::<S>(part), simd.sqrt_f32s(dot(simd, n, n)));
+        let separated = edge_is_beyond(simd, &p, n, gap);
+        let discarded = match &self.to {
             Some(to) => {
-                let p = places(simd, to, corners, part);
-                simd.and_m32s(apart, edge_is_beyond(simd, &p, n, far))
+                let p = positions(simd, to, corners, part);
+                simd.and_m32s(separated, edge_is_beyond(simd, &p, n, gap))
             }
-            None => simd.or_m32s(apart, passing),
+            None => simd.or_m32s(separated, passing),
         };
-        flag(simd, told)
+        flag(simd, discarded)
     }
 }
 
@@ -289,28 +305,28 @@ mod tests {
     const FACE: [[u32; 3]; 1] = [[1, 2, 3]];
     const EDGES: [[u32; 2]; 2] = [[0, 1], [2, 3]];
 
-    /// Whether a filter leaves the features of four vertices, at any width of vectors.
-    fn leaves(filter: &SeparationFilter, edges: bool, reach: f64) -> bool {
-        let (features, hit) = match edges {
-            true => (Filtered::EdgeEdge(&EDGES), [0, 1]),
-            false => (Filtered::VertexFace(&FACE), [0, 0]),
+    /// Whether the pair of four vertices remains, with vectors of any width.
+    fn remains(filter: &SeparationFilter, edges: bool, reach: f64) -> bool {
+        let (kind, hit) = match edges {
+            true => (PairKind::EdgeEdge(&EDGES), [0, 1]),
+            false => (PairKind::VertexFace(&FACE), [0, 0]),
         };
         let (hits, reach) = ([hit; 20], [reach as f32; 20]);
-        let mut left = Vec::new();
-        filter.filter(features, &hits, &reach, &mut left);
-        let mut narrow = Vec::new();
-        let narrowed = Filter {
+        let mut wide = Vec::new();
+        filter.filter(kind, &hits, &reach, &mut wide);
+        let mut scalar = Vec::new();
+        let run = FilterRun {
             filter,
-            features,
+            kind,
             hits: &hits,
             reach: &reach,
-            left: &mut narrow,
+            remaining: &mut scalar,
         };
-        narrowed.with_simd(pulp::Scalar);
-        for left in [&left, &narrow] {
-            assert!(matches!(left[..], [0, 0] | [0xffff, 0xf]), "{left:x?}");
+        run.with_simd(pulp::Scalar);
+        for bits in [&wide, &scalar] {
+            assert!(matches!(bits[..], [0, 0] | [0xffff, 0xf]), "{bits:x?}");
         }
-        left[0] != 0 || narrow[0] != 0
+        wide[0] != 0 || scalar[0] != 0
     }
 
     fn pair(edges: bool) -> FeaturePair {
@@ -320,7 +336,7 @@ mod tests {
         }
     }
 
-    /// Four vertices, shapes of all kinds among them, somewhere in a cloth a hundred times as large.
+    /// Two features, slender and degenerate ones among them, somewhere in a cloth a hundred times as large.
     fn features(numbers: &mut Numbers, edges: bool) -> Vec<Vec3> {
         let thin = [1.0, 1e-3, 1e-6, 0.0][(4.0 * numbers.next()) as usize];
         let far = [1.0, 0.1, 1e-2, 1e-4][(4.0 * numbers.next()) as usize];
@@ -338,9 +354,9 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_within_reach_is_left() {
+    fn pairs_within_reach_remain() {
         let mut numbers = Numbers(1);
-        let mut told = [0; 4];
+        let mut discarded = [0; 4];
         for k in 0..20_000 {
             let (edges, moving) = (k % 2 == 0, k % 4 < 2);
             let from = features(&mut numbers, edges);
@@ -363,37 +379,41 @@ mod tests {
                     true => SeparationFilter::together(&from, &to, reach),
                     false => SeparationFilter::still(&from, reach),
                 };
-                let left = leaves(&filter, edges, reach);
-                let counts =
+                let remains = remains(&filter, edges, reach);
+                let is_candidate =
                     moving || !edges || Nearness::measure(pair(edges), &from, reach).is_some();
                 assert!(
-                    left || share < 1.0 || !counts,
+                    remains || share < 1.0 || !is_candidate,
                     "{k} {least} {from:?} {to:?}"
                 );
                 if share == 0.5 {
-                    told[k % 4] += usize::from(!left);
+                    discarded[k % 4] += usize::from(!remains);
                 }
             }
         }
-        assert!(told.iter().all(|&told| told > 2500), "{told:?}");
+        assert!(discarded.iter().all(|&count| count > 2500), "{discarded:?}");
     }
 
     #[test]
-    fn what_is_no_number_is_left() {
+    fn pairs_with_a_coordinate_that_is_not_finite_remain() {
         let mut numbers = Numbers(2);
         for k in 0..400 {
             let (edges, at) = (k % 2 == 0, k / 2 % 8);
             let from = features(&mut numbers, edges);
             let to: Vec<Vec3> = from.iter().map(|x| x + Vec3::x()).collect();
-            let none = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][k % 3];
-            let spoiled = |places: &[Vec3], at: usize| {
-                let mut places = places.to_vec();
-                places.iter_mut().skip(at).take(1).for_each(|p| p.y = none);
-                places
+            let invalid = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][k % 3];
+            let spoiled = |positions: &[Vec3], at: usize| {
+                let mut positions = positions.to_vec();
+                positions
+                    .iter_mut()
+                    .skip(at)
+                    .take(1)
+                    .for_each(|p| p.y = invalid);
+                positions
             };
             let [first, last] = [spoiled(&from, at), spoiled(&to, at.wrapping_sub(4))];
             let filter = SeparationFilter::together(&first, &last, 1e-6);
-            assert!(leaves(&filter, edges, 1e-6), "{k} {first:?} {last:?}");
+            assert!(remains(&filter, edges, 1e-6), "{k} {first:?} {last:?}");
         }
     }
 }

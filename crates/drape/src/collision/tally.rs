@@ -1,29 +1,29 @@
-//! Counts over the looks of a run.
+//! Counts over the contact detections of a run.
 
-use super::bound::ImpactStats;
+use super::impact_resolution::ImpactStats;
 use serde::{Deserialize, Serialize};
 
-/// What was found and done so far.
+/// Counts so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
-    /// Looks.
+    /// Detections.
     pub looks: usize,
-    /// Edges that crossed a face: at the first look, most at one look, at the last look.
+    /// Pairs of an edge and a face that cross: in the first detection, the most in one detection, in the last.
     pub crossings: [usize; 3],
     /// Vertices of outer layers on the wrong side of inner ones, in the same three counts.
     pub astray: [usize; 3],
-    /// Impulses that kept features from passing through each other between looks.
+    /// Impulses that resolved collisions between detections.
     pub impulses: usize,
-    /// Moves of vertices in rigid zones, where impulses did not settle.
+    /// Moves of vertices in rigid impact zones, where impulses did not resolve the collisions.
     pub zoned: usize,
-    /// Moves of vertices that were cut because zones were not enough.
+    /// Moves of vertices that were truncated, where zones did not resolve the collisions.
     pub cut: usize,
 }
 
 impl Tally {
-    /// Counts a look that found so many crossings and layer violations.
-    pub(super) fn count_look(&mut self, crossings: usize, violations: usize) {
+    /// Counts a detection with its crossings and layer violations.
+    pub(super) fn count_detection(&mut self, crossings: usize, violations: usize) {
         let counts = [
             (&mut self.crossings, crossings),
             (&mut self.astray, violations),
@@ -38,14 +38,14 @@ impl Tally {
         self.looks += 1;
     }
 
-    /// Counts what a motion was corrected by.
+    /// Counts the corrections of a motion.
     pub fn count_impacts(&mut self, impacts: ImpactStats) {
         self.impulses += impacts.impulses;
         self.zoned += impacts.zoned;
         self.cut += impacts.cut;
     }
 
-    /// With another's counts after these.
+    /// These counts, followed by those of a later run.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         if self.looks == 0 || next.looks == 0 {

@@ -1,20 +1,21 @@
-//! Straight trajectories of the vertices between two looks.
+//! Straight trajectories of the vertices between two queries.
 
 use toile_geometry::Vec3;
 
 /// Straight trajectories of all vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearTrajectories<'a> {
-    /// Where they begin [m].
+    /// Positions at the start [m].
     pub from: &'a [Vec3],
-    /// Where they end [m].
+    /// Positions at the end [m].
     pub to: &'a [Vec3],
-    /// Whether all go at one pace; else each may end anywhere on its way.
+    /// Whether all vertices move in step, each at `from + t (to - from)` at time t. Else each may stop anywhere on
+    /// its segment.
     pub together: bool,
 }
 
 impl<'a> LinearTrajectories<'a> {
-    /// LinearTrajectories that all go at one pace.
+    /// Trajectories on which all vertices move in step.
     pub fn together(from: &'a [Vec3], to: &'a [Vec3]) -> Self {
         Self {
             from,
@@ -23,7 +24,7 @@ impl<'a> LinearTrajectories<'a> {
         }
     }
 
-    /// LinearTrajectories on which each vertex may stop where it likes.
+    /// Trajectories on which each vertex may stop anywhere.
     pub fn each(from: &'a [Vec3], to: &'a [Vec3]) -> Self {
         Self {
             from,
@@ -32,7 +33,7 @@ impl<'a> LinearTrajectories<'a> {
         }
     }
 
-    /// Nothing moves.
+    /// Vertices at rest at positions `x` [m].
     pub fn still(x: &'a [Vec3]) -> Self {
         Self::together(x, x)
     }

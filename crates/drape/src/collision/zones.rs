@@ -1,37 +1,38 @@
-//! Rigid impact zones, where impulses pair by pair do not settle: the points of features that go on
-//! meeting move as one (Provot 1997; Harmon et al. 2008).
+//! Rigid impact zones, for collisions that pairwise impulses do not resolve: all vertices of features that keep
+//! meeting move as one rigid body (Provot 1997; Harmon et al. 2008).
 //!
-//! With masses m, centre c and moves d, of which M, P = sum m d, J = sum m |r|^2 - r r' and
-//! L = sum m r x d (r = x - c) are mass, momentum, inertia and moment of momentum, a point moves by
+//! Let m be the masses, c the centre of mass, d the displacements and r = x - c. With mass M, momentum P = sum m d,
+//! inertia J = sum m (|r|^2 - r r') and moment of momentum L = sum m r x d, a vertex moves in a straight line by
 //! ```text
 //! d' = P / M + w x r,   J w = L
 //! ```
-//! in a straight line: both momenta are kept exactly. That is the affine map 1 + t [w] at a time t, with
-//! determinant 1 + t^2 |w|^2 and least singular value 1. So no two points of a zone come nearer to each
-//! other, nothing in it meets, and its size grows by |w|^2 / 2 at the most, which is the square of a
-//! small angle.
+//! Both momenta are conserved exactly. At time t this is the linear map 1 + t [w], whose determinant is
+//! 1 + t^2 |w|^2 and whose least singular value is 1. So no two points of a zone come nearer to each other and
+//! nothing in it collides. It grows by at most |w|^2 / 2, to second order in a small angle.
 
 use super::motions::Motions;
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
-/// A zone that turns farther than this in one move [rad] is left to be cut: it would grow.
-const MOST_TURN: f64 = 0.1;
+/// Largest rotation of a zone in one motion [rad]. A zone that would rotate farther would grow too much; it is left
+/// to the truncation of moves.
+const MAX_ROTATION: f64 = 0.1;
 
-/// Below this share of its largest principal moment a zone is a line, and turns about itself freely.
-const LINE: f64 = 1e-9;
+/// Principal moments below this share of the largest count as zero: the zone is a line, and does not rotate about
+/// itself.
+const ZERO_MOMENT: f64 = 1e-9;
 
-/// Vertices in zones.
+/// A partition of vertices into zones, as a union-find forest.
 #[derive(Clone, Debug)]
-pub struct Zones {
+pub struct ImpactZones {
     parent: Vec<u32>,
-    /// Vertices in any zone, in the order they came.
+    /// Vertices in any zone, in the order in which they joined.
     members: Vec<u32>,
     is_member: Vec<bool>,
 }
 
-impl Zones {
-    /// No zones over some vertices.
+impl ImpactZones {
+    /// No zones among `count` vertices.
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),
@@ -40,12 +41,12 @@ impl Zones {
         }
     }
 
-    /// Vertices in zones.
+    /// Number of vertices in zones.
     pub fn count(&self) -> usize {
         self.members.len()
     }
 
-    /// Those vertices.
+    /// Vertices in zones.
     pub fn members(&self) -> &[u32] {
         &self.members
     }
@@ -58,8 +59,8 @@ impl Zones {
         v
     }
 
-    /// Makes one zone of some vertices and of the zones they are in. What nothing moves joins none: it
-    /// would hold all together.
+    /// Joins the vertices of a collision, and the zones that they are in, into one zone. `lightness` is the inverse
+    /// mass of each vertex [1/kg]. Vertices of infinite mass join no zone: all zones at them would become one.
     pub fn join(&mut self, vertices: [u32; 4], lightness: &[f64]) {
         let mut first = None;
         for v in vertices {
@@ -73,7 +74,7 @@ impl Zones {
             match first {
                 None => first = Some(root),
                 Some(other) => {
-                    // The smaller index stays root, whatever the order of pairs.
+                    // The smaller index becomes the root, so that the order of pairs does not matter.
                     self.parent[root.max(other) as usize] = root.min(other);
                     first = Some(root.min(other));
                 }
@@ -81,7 +82,7 @@ impl Zones {
         }
     }
 
-    /// The zones, each in order of its vertices.
+    /// Vertices of each zone, sorted.
     fn groups(&mut self) -> Vec<Vec<u32>> {
         let mut members = self.members.clone();
         members.sort_unstable();
@@ -92,36 +93,40 @@ impl Zones {
             .collect()
     }
 
-    /// Moves every zone as one, its velocities too. Zones that turn too far stay as they are.
-    pub fn stiffen(&mut self, motion: &mut Motions) {
+    /// Replaces the moves and velocities in every zone by the rigid motion of the same momenta. Zones that would
+    /// rotate too far are not changed.
+    pub fn make_rigid(&mut self, motion: &mut Motions) {
         for zone in self.groups() {
-            let zone = Zone::new(&zone, motion.x, motion.lightness);
-            let way = zone.rigid(motion.moves);
-            if way[1].norm() > MOST_TURN {
+            let zone = ImpactZone::new(&zone, motion.x, motion.lightness);
+            let [shift, rotation] = zone.rigid_motion(motion.moves);
+            if rotation.norm() > MAX_ROTATION {
                 continue;
             }
-            let speed = zone.rigid(motion.velocities);
+            let [velocity, spin] = zone.rigid_motion(motion.velocities);
             for &v in zone.vertices {
                 let arm = motion.x[v as usize] - zone.centre;
-                motion.moves[v as usize] = way[0] + way[1].cross(&arm);
-                motion.velocities[v as usize] = speed[0] + speed[1].cross(&arm);
+                motion.moves[v as usize] = shift + rotation.cross(&arm);
+                motion.velocities[v as usize] = velocity + spin.cross(&arm);
             }
         }
     }
 }
 
-/// One zone where it is.
-struct Zone<'a> {
+/// Mass properties of one zone at the start of the motion.
+struct ImpactZone<'a> {
     vertices: &'a [u32],
     x: &'a [Vec3],
+    /// Inverse masses of all vertices [1/kg].
     lightness: &'a [f64],
+    /// Mass of the zone [kg].
     mass: f64,
+    /// Centre of mass [m].
     centre: Vec3,
-    /// Inverse of the inertia about the centre [1/(kg m2)].
-    inverse: Matrix3<f64>,
+    /// Pseudo-inverse of the inertia about the centre [1/(kg m2)].
+    inverse_inertia: Matrix3<f64>,
 }
 
-impl<'a> Zone<'a> {
+impl<'a> ImpactZone<'a> {
     fn new(vertices: &'a [u32], x: &'a [Vec3], lightness: &'a [f64]) -> Self {
         let mut mass = 0.0;
         let mut centre = Vec3::zeros();
@@ -139,7 +144,7 @@ impl<'a> Zone<'a> {
         let mut principal = inertia.symmetric_eigen();
         let largest = principal.eigenvalues.max();
         for moment in principal.eigenvalues.iter_mut() {
-            *moment = if *moment > LINE * largest {
+            *moment = if *moment > ZERO_MOMENT * largest {
                 1.0 / *moment
             } else {
                 0.0
@@ -151,19 +156,19 @@ impl<'a> Zone<'a> {
             lightness,
             mass,
             centre,
-            inverse: principal.recompose(),
+            inverse_inertia: principal.recompose(),
         }
     }
 
-    /// Shift and turn with the momenta of some moves.
-    fn rigid(&self, moves: &[Vec3]) -> [Vec3; 2] {
+    /// Shift and rotation (or velocity and spin) with the momenta of these displacements (or velocities).
+    fn rigid_motion(&self, moves: &[Vec3]) -> [Vec3; 2] {
         let (mut momentum, mut moment) = (Vec3::zeros(), Vec3::zeros());
         for &v in self.vertices {
-            let part = moves[v as usize] / self.lightness[v as usize];
-            momentum += part;
-            moment += (self.x[v as usize] - self.centre).cross(&part);
+            let of_vertex = moves[v as usize] / self.lightness[v as usize];
+            momentum += of_vertex;
+            moment += (self.x[v as usize] - self.centre).cross(&of_vertex);
         }
-        [momentum / self.mass, self.inverse * moment]
+        [momentum / self.mass, self.inverse_inertia * moment]
     }
 }
 
@@ -173,15 +178,15 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Both momenta are kept, and no two points of a zone come nearer.
+        /// Both momenta are conserved, and no two points of a zone come nearer to each other.
         #[test]
-        fn zones_keep_momentum_and_distance(
+        fn zones_conserve_momenta_and_never_shrink(
             numbers in prop::array::uniform32(-1.0..1.0f64),
             masses in prop::array::uniform5(0.1..3.0f64),
             flat in any::<bool>(),
         ) {
             let v = |k: usize| Vec3::new(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]);
-            // On a line the inertia has no inverse.
+            // The inertia of points on a line is singular.
             let x: Vec<Vec3> = (0..5).map(|k| if flat { Vec3::x() * v(k).x } else { v(k) }).collect();
             let mut moves: Vec<Vec3> = (5..10).map(|k| v(k) * 0.005).collect();
             let mut velocities: Vec<Vec3> = moves.iter().map(|d| d * 7.0).collect();
@@ -194,11 +199,11 @@ mod tests {
             };
             let before = momenta(&moves);
             let start = moves.clone();
-            let mut zones = Zones::new(5);
+            let mut zones = ImpactZones::new(5);
             zones.join([0, 1, 2, 3], &lightness);
             zones.join([3, 4, 3, 4], &lightness);
             prop_assert_eq!(zones.count(), 5);
-            zones.stiffen(&mut Motions {
+            zones.make_rigid(&mut Motions {
                 x: &x,
                 moves: &mut moves,
                 velocities: &mut velocities,
@@ -215,18 +220,18 @@ mod tests {
             }
             for i in 0..5 {
                 for j in 0..i {
-                    let apart = (x[i] - x[j]).norm();
-                    let then = (x[i] + moves[i] - x[j] - moves[j]).norm();
-                    prop_assert!(then >= apart * (1.0 - 1e-12) && then <= apart * 1.006);
+                    let before = (x[i] - x[j]).norm();
+                    let after = (x[i] + moves[i] - x[j] - moves[j]).norm();
+                    prop_assert!(after >= before * (1.0 - 1e-12) && after <= before * 1.006);
                 }
             }
         }
     }
 
     #[test]
-    fn zones_are_joined_and_pins_join_none() {
+    fn collisions_join_zones_but_not_through_pinned_vertices() {
         let lightness = [1.0, 1.0, 1.0, 0.0, 1.0, 1.0];
-        let mut zones = Zones::new(6);
+        let mut zones = ImpactZones::new(6);
         zones.join([5, 3, 4, 5], &lightness);
         zones.join([0, 1, 3, 3], &lightness);
         assert_eq!(zones.groups(), vec![vec![0, 1], vec![4, 5]]);

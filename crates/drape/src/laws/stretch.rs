@@ -72,11 +72,16 @@ impl MembraneLaw {
         }
     }
 
-    /// Whether the law is the straight line alone: then `stiffness` says all.
+    /// Whether the law is the straight line alone: then XPBD and explicit steps in patches take `stiffness` and
+    /// nothing else of it.
     pub fn is_linear(&self) -> bool {
-        self.hardening == [0.0; 2]
-            && self.limit == [f64::INFINITY; 2]
-            && self.compression == Compression::Full
+        let &Self {
+            stiffness: _,
+            hardening,
+            limit,
+            compression,
+        } = self;
+        hardening == [0.0; 2] && limit == [f64::INFINITY; 2] && compression == Compression::Full
     }
 
     /// What hardening and limit add along one direction: stress [N/m], energy [J/m2] and slope

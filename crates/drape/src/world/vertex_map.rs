@@ -1,7 +1,7 @@
 //! Where the vertices and triangles of the objects' own meshes are in the one cloth that is simulated.
 
 use super::{MeshVertex, ObjectId, World};
-use crate::merge::merge_map;
+use crate::merge::{keeps_corners, merge_map};
 use std::ops::Range;
 
 /// The vertices and triangles of one object among those of all cloths, not yet merged.
@@ -52,11 +52,8 @@ impl VertexMap {
             Some([a?, b?])
         });
         let (target, count) = merge_map(vertices as usize, pairs);
-        let keeps_corners = |t: &u32| {
-            let [a, b, c] = corners[*t as usize].map(|v| target[v as usize]);
-            a != b && b != c && c != a
-        };
-        map.triangles = (0..corners.len() as u32).filter(keeps_corners).collect();
+        let stays = |t: &u32| keeps_corners(corners[*t as usize], &target);
+        map.triangles = (0..corners.len() as u32).filter(stays).collect();
         (map.target, map.count) = (target, count);
         map
     }

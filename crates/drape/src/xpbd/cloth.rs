@@ -76,20 +76,20 @@ impl ClothWatch {
 
     /// Looks for contacts, which are to serve for a few substeps of so many seconds at the least.
     fn look(&mut self, system: &System, state: &mut State, substep: f64) {
-        let kept = system.contact.cloth_offset;
+        let offset = system.contact.cloth_offset;
         let least = f64::from(FEWEST) * substep;
         let speed = fastest(system, state, least);
         let soon = (FARTHEST / speed).min(LONGEST);
         let longest = soon.max(least);
         let fall = 0.5 * system.control.gravity.norm() * longest * longest;
         let reach = Reach {
-            most: kept + 2.0 * FARTHEST,
+            max: offset + 2.0 * FARTHEST,
             ahead: Some(Ahead {
                 velocities: &state.velocities,
-                kept,
+                offset,
                 pinned: &system.prescribed.pinned,
                 time: longest,
-                least: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
+                min_path: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
             }),
         };
         let (memory, x) = (&state.cloth, &state.positions);

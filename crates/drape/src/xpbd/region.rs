@@ -330,7 +330,7 @@ impl Region {
         }
     }
 
-    /// Multipliers start from zero.
+    /// Multipliers start from zero, so that nothing sticks from one substep to the next.
     fn clear(&mut self) {
         self.membrane_sums.fill([Row::splat(0.0); 3]);
         self.bending_sums.fill([[Row::splat(0.0); 3]; 3]);

@@ -49,12 +49,11 @@ fn angular_momentum(system: &System, state: &State) -> Vec3 {
 }
 
 /// Methods that keep angular momentum exactly: symplectic, or implicit midpoint.
-const SPINNING: [&str; 5] = [
+const SPINNING: [&str; 4] = [
     "symplectic-euler",
     "velocity-verlet",
     "patch-verlet",
     "implicit-midpoint",
-    "newmark",
 ];
 
 /// Gradient at which a step of the flight counts as solved [N].

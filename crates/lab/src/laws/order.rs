@@ -8,12 +8,11 @@ use toile_geometry::{Vec2, Vec3};
 
 /// Methods whose error falls with the square of the step; the others are of first order, but for
 /// Runge and Kutta's, which is of fourth.
-const SECOND: [&str; 5] = [
+const SECOND: [&str; 4] = [
     "velocity-verlet",
     "patch-verlet",
     "bdf2",
     "implicit-midpoint",
-    "newmark",
 ];
 
 /// The order by steps h and h/2, of first order in h.

@@ -127,7 +127,7 @@ fn note_moves(record: &mut Record, name: &str, (system, state): &Frozen) {
         return;
     }
     let (mut detector, mut contacts) = (ContactDetector::default(), ContactSet::default());
-    let reach = Reach::all(2.0 * system.contact.cloth_offset);
+    let reach = Reach::uniform(2.0 * system.contact.cloth_offset);
     let (memory, x) = (&state.cloth, &state.positions);
     detector.detect(system, memory, x, &reach, &mut contacts);
     let mut numbers = Numbers(5);

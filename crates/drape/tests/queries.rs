@@ -1,4 +1,4 @@
-//! Looks that go on from what earlier ones found, against brute force and against looks that search all.
+//! Queries that go on from the front of earlier ones, against brute force and against queries that search everything.
 
 #[path = "support/crumpled.rs"]
 mod crumpled;
@@ -16,13 +16,14 @@ use toile_drape::collision::{
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Nothing keeps clear by this.
+/// A clearance by which no region passes the curvature test.
 const NEVER_CLEAR: Clearance = Clearance {
-    kept: 0.0,
-    beyond: -1.0,
+    offset: 0.0,
+    max_drift: -1.0,
 };
 
-/// Pairs of features with a vertex of some that come within a distance [m] of each other, and how near.
+/// Pairs of features within a distance of each other [m], where vertices are marked only those with one of them; and
+/// their distance [m].
 fn within(
     surface: &ClothSurface,
     x: &[Vec3],
@@ -41,9 +42,9 @@ fn within(
 }
 
 #[test]
-fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
-    let (reach, mut told, mut crossed, mut opened) = (4e-3, 0, 0, 0);
-    let looks = Reach::all(reach);
+fn queries_find_the_pairs_of_brute_force_while_the_cloth_moves() {
+    let (reach, mut pair_count, mut crossed, mut opened) = (4e-3, 0, 0, 0);
+    let of_contacts = Reach::uniform(reach);
     for seed in 0..12 {
         let mesh = crumpled(seed, 12);
         let pairs = all_pairs(&mesh);
@@ -60,14 +61,14 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
             let both = mesh.positions.iter().zip(&goal);
             let x: Vec<Vec3> = both.map(|(a, b)| turned * (a + (b - a) * share)).collect();
             if step % 7 > 0 {
-                surface.look(
+                surface.query(
                     LinearTrajectories::together(&from, &x),
-                    &Reach::all(5e-4),
+                    &Reach::uniform(5e-4),
                     NEVER_CLEAR,
                 );
             }
-            surface.look(LinearTrajectories::still(&x), &looks, NEVER_CLEAR);
-            opened += surface.opened()[0];
+            surface.query(LinearTrajectories::still(&x), &of_contacts, NEVER_CLEAR);
+            opened += surface.region_counts()[0];
             let found = within(&surface, &x, reach, None);
             let expected = pairs
                 .iter()
@@ -77,22 +78,25 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
                 .collect();
             expected.sort_by_key(|found| found.0);
             assert_eq!(found, expected, "state {seed}, step {step}");
-            told += found.len();
+            pair_count += found.len();
             let crossing = crossings(&surface, Near::Listed, &x);
-            let near = fresh.near(LinearTrajectories::still(&x), 0.0);
+            let near = fresh.near_leaves(LinearTrajectories::still(&x), 0.0);
             let expected = crossings(&fresh, &near, &x);
             assert_eq!(crossing, expected, "state {seed}, step {step}");
             crossed += crossing.len();
             from = x;
         }
     }
-    assert!(told > 10_000 && crossed > 10_000, "{told} {crossed}");
-    assert!(opened < 20_000, "{opened} regions looked into");
+    assert!(
+        pair_count > 10_000 && crossed > 10_000,
+        "{pair_count} {crossed}"
+    );
+    assert!(opened < 20_000, "{opened} regions opened");
 }
 
 #[test]
-fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
-    let (reach, mut told) = (2e-3, 0);
+fn a_marked_query_finds_all_pairs_of_vertices_on_new_trajectories() {
+    let (reach, mut pair_count) = (2e-3, 0);
     for seed in 0..40 {
         let mesh = crumpled(seed, 16);
         let (x, count) = (&mesh.positions, mesh.positions.len());
@@ -101,12 +105,12 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
             .map(|p| p + Vec3::new(p.z, 0.0, -p.x) * 0.1)
             .collect();
         let mut surface = ClothSurface::of_mesh(&mesh);
-        surface.look(
+        surface.query(
             LinearTrajectories::together(x, &ends),
-            &Reach::all(reach),
+            &Reach::uniform(reach),
             NEVER_CLEAR,
         );
-        // One round after another, as where impulses push on.
+        // Round after round, as impulses change trajectories.
         for round in 0..3 {
             let mut marks = vec![false; count];
             for k in 0..3 {
@@ -114,67 +118,67 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
                 marks[v] = true;
                 ends[v] += Vec3::new(0.02, -0.01 * k as f64, 0.03);
             }
-            let ways = LinearTrajectories::together(x, &ends);
-            let all = Reach::all(reach);
-            surface.look_again(ways, &all, NEVER_CLEAR, Some(&marks));
+            let trajectories = LinearTrajectories::together(x, &ends);
+            let all = Reach::uniform(reach);
+            surface.query_marked(trajectories, &all, NEVER_CLEAR, Some(&marks));
             let mut anew = ClothSurface::of_mesh(&mesh);
-            anew.look(ways, &all, NEVER_CLEAR);
-            for part in [0.0, 0.5, 1.0] {
+            anew.query(trajectories, &all, NEVER_CLEAR);
+            for time in [0.0, 0.5, 1.0] {
                 let both = x.iter().zip(&ends);
-                let then: Vec<Vec3> = both.map(|(a, b)| a + (b - a) * part).collect();
-                let found = within(&surface, &then, reach, Some(&marks));
-                let expected = within(&anew, &then, reach, Some(&marks));
+                let positions: Vec<Vec3> = both.map(|(a, b)| a + (b - a) * time).collect();
+                let found = within(&surface, &positions, reach, Some(&marks));
+                let expected = within(&anew, &positions, reach, Some(&marks));
                 assert_eq!(found, expected, "state {seed}");
-                told += found.len();
+                pair_count += found.len();
             }
         }
     }
-    assert!(told > 1_000, "{told}");
+    assert!(pair_count > 1_000, "{pair_count}");
 }
 
 #[test]
-fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
-    let mut told = 0;
+fn a_query_with_velocities_finds_all_pairs_within_their_reach() {
+    let mut pair_count = 0;
     for seed in 0..20 {
         let mesh = crumpled(seed, 12);
         let (x, count) = (&mesh.positions, mesh.positions.len());
         let mut surface = ClothSurface::of_mesh(&mesh);
         let mut numbers = Numbers(seed + 5);
         for time in [0.0, 5e-3, 5e-3] {
-            let drift = numbers.vector(2.0);
-            let velocities: Vec<Vec3> = (0..count).map(|_| drift + numbers.vector(0.2)).collect();
+            let common = numbers.vector(2.0);
+            let velocities: Vec<Vec3> = (0..count).map(|_| common + numbers.vector(0.2)).collect();
             let pinned: Vec<bool> = (0..count).map(|_| numbers.next() < 0.05).collect();
             let ahead = Ahead {
                 velocities: &velocities,
                 pinned: &pinned,
-                kept: 2e-3,
+                offset: 2e-3,
                 time,
-                least: 5e-4,
+                min_path: 5e-4,
             };
             let reach = Reach {
-                most: 6e-3,
+                max: 6e-3,
                 ahead: Some(ahead),
             };
-            surface.look(LinearTrajectories::still(x), &reach, NEVER_CLEAR);
+            surface.query(LinearTrajectories::still(x), &reach, NEVER_CLEAR);
             let found = surface.features(Near::Listed, |pair, _, found| found.push(pair));
             let found: BTreeSet<FeaturePair> = found.into_iter().collect();
             for pair in all_pairs(&mesh) {
                 if Nearness::distance(pair, x) <= reach.of(pair) {
                     assert!(found.contains(&pair), "state {seed}: {pair:?}");
-                    told += 1;
+                    pair_count += 1;
                 }
             }
         }
     }
-    assert!(told > 5_000, "{told}");
+    assert!(pair_count > 5_000, "{pair_count}");
 }
 
 #[test]
-fn a_vertex_lost_or_come_back_is_looked_for() {
+fn pairs_of_a_vertex_that_is_not_finite_remain_candidates() {
     let mesh = crumpled(3, 12);
-    let all = Reach::all(4e-3);
+    let all = Reach::uniform(4e-3);
     let mut surface = ClothSurface::of_mesh(&mesh);
-    surface.look(
+    surface.query(
         LinearTrajectories::still(&mesh.positions),
         &all,
         NEVER_CLEAR,
@@ -183,7 +187,7 @@ fn a_vertex_lost_or_come_back_is_looked_for() {
     for lost in [f64::NAN, f64::INFINITY] {
         let mut x = mesh.positions.clone();
         x[80] = Vec3::repeat(lost);
-        surface.look(
+        surface.query(
             LinearTrajectories::together(&mesh.positions, &x),
             &all,
             NEVER_CLEAR,
@@ -193,8 +197,8 @@ fn a_vertex_lost_or_come_back_is_looked_for() {
         });
         let count = with.len();
         assert!(count > 100, "{count} pairs at a vertex that is {lost}");
-        surface.look(LinearTrajectories::still(&x), &all, NEVER_CLEAR);
-        surface.look(
+        surface.query(LinearTrajectories::still(&x), &all, NEVER_CLEAR);
+        surface.query(
             LinearTrajectories::still(&mesh.positions),
             &all,
             NEVER_CLEAR,
@@ -214,17 +218,21 @@ fn an_edge_through_a_face_that_is_a_line_but_for_rounding_is_found() {
         let face = [from, from + side, from + side * (1.0 + numbers.next())];
         // Through a point of the line.
         let point = from + side * (2.0 * numbers.next());
-        let way = numbers.vector(0.02);
-        let [a, b] = [point - way, point + way];
+        let half_edge = numbers.vector(0.02);
+        let [a, b] = [point - half_edge, point + half_edge];
         let mesh = TriangleMesh {
             positions: vec![face[0], face[1], face[2], a, b, b + numbers.vector(0.02)],
             triangles: vec![[0, 1, 2], [3, 4, 5]],
         };
         let x = &mesh.positions;
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let near = surface.near(LinearTrajectories::still(x), 0.0);
+        let near = surface.near_leaves(LinearTrajectories::still(x), 0.0);
         let expected = crossings(&surface, &near, x);
-        surface.look(LinearTrajectories::still(x), &Reach::all(1e-3), NEVER_CLEAR);
+        surface.query(
+            LinearTrajectories::still(x),
+            &Reach::uniform(1e-3),
+            NEVER_CLEAR,
+        );
         assert_eq!(crossings(&surface, Near::Listed, x), expected, "{seed}");
         crossed += expected.len();
     }
