@@ -1,7 +1,7 @@
 //! Tables under the pattern: measurements by size, variables, the history.
 
 use crate::app::ToileApp;
-use crate::app::shows::Tab;
+use crate::app::panes::Tab;
 use crate::fields::Entered;
 use crate::inspector::number_field_id;
 use crate::theme::Palette;

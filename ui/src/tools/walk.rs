@@ -2,7 +2,7 @@
 //! pointer, keys or a typed distance. It changes no document.
 
 use super::number;
-use super::{Event, Going, Outcome, Overlay, Pointer, Reading, Tone};
+use super::{Event, LineStep, Outcome, Overlay, Pointer, Reading, Tone};
 use crate::canvas::fill::Fill;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
@@ -86,7 +86,7 @@ impl<'r> Seen<'r> {
     /// From the plane of a piece to the table. The other piece of a pair is seen as the panel is
     /// drawn, of which it is the mirror image.
     fn on_table(&self, piece: &Piece) -> Affine {
-        let moved = Affine::translation(self.reading.boards.panel(piece.id.panel));
+        let moved = Affine::translation(self.reading.table_layout.panel(piece.id.panel));
         let panel = self.pattern.panel(piece.id.panel);
         let is_mirrored = panel.is_some_and(|p| p.cut.mirrored) && piece.id.copy % 2 == 1;
         match is_mirrored {
@@ -224,10 +224,10 @@ pub(super) fn step(
         Event::Go(way) => {
             next.typed.clear();
             next.along = match way {
-                Going::Back => state.along.min(whole) - STEP,
-                Going::On => state.along + STEP,
-                Going::ToStart => 0.0,
-                Going::ToEnd => whole,
+                LineStep::Back => state.along.min(whole) - STEP,
+                LineStep::On => state.along + STEP,
+                LineStep::ToStart => 0.0,
+                LineStep::ToEnd => whole,
             };
         }
         Event::Hover(_) | Event::Enter | Event::Leave | Event::Drop => {}

@@ -1,4 +1,5 @@
-//! The marker: its order and fabric, the search for a short one, and what is done in its view.
+//! The pane with the marker: its order and fabric, the search for a short one, and the edits made in its
+//! view.
 
 use super::ToileApp;
 use super::job::Job;
@@ -39,8 +40,8 @@ impl Default for SearchChoice {
 impl ToileApp {
     /// Shows or hides the marker; the first one is made where there is none.
     pub(crate) fn toggle_marker(&mut self) {
-        self.shows.marker = !self.shows.marker;
-        if self.shows.marker && self.base.pattern().markers.is_empty() && self.has_panels() {
+        self.panes.marker = !self.panes.marker;
+        if self.panes.marker && self.base.pattern().markers.is_empty() && self.has_panels() {
             self.new_marker();
         }
         self.marker_view.fit();
@@ -62,7 +63,7 @@ impl ToileApp {
         if self.edit(planned.map(|(edits, _)| edits), "Add marker") {
             self.marker_view.chosen = id;
             self.marker_view.fit();
-            self.shows.marker = true;
+            self.panes.marker = true;
             self.follow_marker();
         }
     }
@@ -80,7 +81,7 @@ impl ToileApp {
 
     /// Brings the view up to date with the document, also while pieces are dragged.
     pub(crate) fn follow_marker(&mut self) {
-        if !self.shows.marker {
+        if !self.panes.marker {
             return;
         }
         let Some(id) = self.marker_id() else {
@@ -381,7 +382,7 @@ impl ToileApp {
     }
 
     pub(crate) fn has_pieces(&self) -> bool {
-        self.shows.marker && !self.marker_view.selection.is_empty()
+        self.panes.marker && !self.marker_view.selection.is_empty()
     }
 
     pub(crate) fn remove_marker(&mut self) {
@@ -402,7 +403,7 @@ impl ToileApp {
         };
         let how = (Start::Anew, Search::seconds(self.search_choice.seconds));
         let unit = self.base.pattern().unit;
-        self.shows.marker = true;
+        self.panes.marker = true;
         self.searching = Some(Searching {
             job: Job::start(move |follower| {
                 let stop = follower.stop_flag().ok_or(SessionError::Cancelled)?;
@@ -450,7 +451,7 @@ impl ToileApp {
         self.searching = None;
         match result.map(|found| self.session.adopt_marker(found)) {
             Ok(Ok(Some(events))) => {
-                self.hear(&events);
+                self.handle_events(&events);
                 self.marker_view.fit();
                 self.follow_marker();
                 let (words, _) = self.marker_words();

@@ -1,7 +1,7 @@
-//! The side of the window with the garment on the mannequin.
+//! The pane with the garment on the mannequin.
 
 use super::ToileApp;
-use super::making::{Moment, Shown};
+use super::background_work::{GarmentStatus, Moment};
 use crate::theme::{self, Palette};
 use egui::{
     Align, Button, ComboBox, Label, Layout, Panel, Rect, RichText, Ui, UiBuilder, pos2, vec2,
@@ -20,11 +20,11 @@ impl ToileApp {
             .exact_size(STRIP)
             .show(ui, |ui| self.drape_strip(ui));
         let view = ui.available_rect_before_wrap();
-        let empty = match self.making.is_making_body() {
+        let empty = match self.background_work.is_making_body() {
             true => "Making the mannequin\u{2026}",
             false => "No mannequin yet",
         };
-        let is_old = matches!(self.making.shown(), Shown::OutOfDate(_));
+        let is_old = matches!(self.background_work.status(), GarmentStatus::OutOfDate(_));
         self.stage.set_out_of_date(is_old);
         self.stage.show(ui, empty);
         self.drape_progress(ui, view);
@@ -42,14 +42,14 @@ impl ToileApp {
         });
         self.body_of = Some((project.clone(), self.revision));
         if !same {
-            self.making.start_body(&self.session);
+            self.background_work.start_body(&self.session);
         }
     }
 
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
         ui.horizontal_centered(|ui| {
             let palette = Palette::of(ui.ctx());
-            let name = match self.making.hangs() {
+            let name = match self.background_work.hangs() {
                 true => "Hang again",
                 false => "Drape",
             };
@@ -59,7 +59,7 @@ impl ToileApp {
                 self.command_widget(ui, command, button, None);
             }
             if let Some(command) = super::command_table::named("Pause") {
-                let button = Button::new(command.name).selected(self.making.is_paused());
+                let button = Button::new(command.name).selected(self.background_work.is_paused());
                 self.command_widget(ui, command, button, None);
             }
             self.command_button(ui, "Stop");
@@ -90,7 +90,7 @@ impl ToileApp {
     /// What the drape is doing, over the lower end of the 3D view.
     pub(crate) fn drape_progress(&self, ui: &mut Ui, view: Rect) {
         let share = self
-            .making
+            .background_work
             .moment()
             .map_or(0.0, |moment| moment.share as f32);
         let palette = Palette::of(ui.ctx());
@@ -99,7 +99,7 @@ impl ToileApp {
             return;
         }
         let bar = Rect::from_min_max(pos2(view.left(), view.bottom() - 4.0), view.max);
-        if self.making.is_draping() {
+        if self.background_work.is_draping() {
             ui.painter().rect_filled(bar, 0.0, palette.rule);
             let done = Rect::from_min_size(bar.min, vec2(bar.width() * share, bar.height()));
             ui.painter().rect_filled(done, 0.0, palette.accent);
@@ -108,8 +108,8 @@ impl ToileApp {
             pos2(view.left() + 12.0, view.bottom() - 80.0),
             pos2(view.right() - 12.0, view.bottom() - 12.0),
         );
-        let (colour, is_old) = match self.making.shown() {
-            Shown::OutOfDate(_) => (palette.warning, true),
+        let (colour, is_old) = match self.background_work.status() {
+            GarmentStatus::OutOfDate(_) => (palette.warning, true),
             _ => (palette.ink_soft, false),
         };
         let layout = Layout::bottom_up(Align::Min);
@@ -124,18 +124,20 @@ impl ToileApp {
     }
 
     fn drape_words(&self) -> String {
-        let moment = self.making.moment();
+        let moment = self.background_work.moment();
         let state = moment.map_or_else(String::new, |moment| moment_words(&moment));
         let rests = moment.is_some_and(|moment| moment.stage == Stage::Finished);
-        match self.making.shown() {
-            Shown::Nothing => String::new(),
-            Shown::Preparing => "Cutting the cloth into triangles and placing it\u{2026}".into(),
-            Shown::Moving if rests => "Moving: taking over the change".into(),
-            Shown::Moving => format!("Moving: {state}"),
-            Shown::Held => format!("Paused: {state}"),
-            Shown::Stopped => format!("Stopped: {state}"),
-            Shown::AtRest => state,
-            Shown::OutOfDate(why) => format!("Out of date: {why}"),
+        match self.background_work.status() {
+            GarmentStatus::Nothing => String::new(),
+            GarmentStatus::Preparing => {
+                "Cutting the cloth into triangles and placing it\u{2026}".into()
+            }
+            GarmentStatus::Moving if rests => "Moving: taking over the change".into(),
+            GarmentStatus::Moving => format!("Moving: {state}"),
+            GarmentStatus::Held => format!("Paused: {state}"),
+            GarmentStatus::Stopped => format!("Stopped: {state}"),
+            GarmentStatus::AtRest => state,
+            GarmentStatus::OutOfDate(why) => format!("Out of date: {why}"),
         }
     }
 }

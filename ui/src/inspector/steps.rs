@@ -1,4 +1,4 @@
-//! The steps of a panel beside the view: their order, and how each is done.
+//! The inspector's list of a panel's operations: their order and settings.
 
 use crate::app::ToileApp;
 use crate::canvas::selection::{Item, Selection};

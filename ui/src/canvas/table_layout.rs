@@ -1,5 +1,5 @@
-//! Where sheets and panels lie on the table. A sheet lies where the document says; sheets that all
-//! lie at one place, as in files that say nothing of it, are laid side by side.
+//! The layout of the table: places of sheets and panels. A sheet lies where the document says; sheets that
+//! all lie at one place, as in files without places, are laid side by side.
 
 use super::scene::{PanelScene, Scene, SheetScene};
 use std::collections::BTreeMap;
@@ -15,8 +15,8 @@ const ASPECT: f64 = 1.15;
 
 /// Table places of the origins of sheets and panels.
 #[derive(Clone, Debug, Default)]
-pub struct Boards {
-    /// Sheets that were moved so that none covers another: the place the document gave, and the way
+pub struct TableLayout {
+    /// Sheets that were moved so that none covers another: the place the document gave, and the shift
     /// from there [m]. It stays while a pattern is edited, so that nothing jumps, until the document
     /// gives another place.
     shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
@@ -24,7 +24,7 @@ pub struct Boards {
     panels: BTreeMap<PanelId, Vec2>,
 }
 
-impl Boards {
+impl TableLayout {
     /// Lays the sheets of a pattern that was just opened.
     pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
         self.shifted.clear();

@@ -1,19 +1,19 @@
-//! What of the window is on show.
+//! Which panes of the window and which overlays of the pattern are visible.
 
 use serde::{Deserialize, Serialize};
 use toile_pattern::VariableId;
 
-/// Parts of the window that can be hidden.
+/// Visibility of the parts of the window that can be hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Shows {
+pub struct Panes {
     /// The 3D view.
     pub garment: bool,
     /// The marker.
     pub marker: bool,
     /// Measurements, variables, sizes, history.
     pub tables: bool,
-    /// What is found wrong.
+    /// The list of faults.
     pub findings: bool,
     /// Lines to cut along.
     pub allowances: bool,
@@ -23,7 +23,7 @@ pub struct Shows {
     pub guides: bool,
 }
 
-impl Default for Shows {
+impl Default for Panes {
     fn default() -> Self {
         Self {
             garment: true,

@@ -1,5 +1,4 @@
-//! Paints what a tool lays on the table: a piece as a ghost, lines, marks, and words that keep clear
-//! of each other.
+//! Paints the overlay of a tool: a piece as a ghost, lines, marks, and words that keep clear of each other.
 
 use super::paint::Picture;
 use crate::tools::{Overlay, Tone};

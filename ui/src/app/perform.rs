@@ -1,11 +1,11 @@
-//! What the commands of the window do, and what becomes of what a tool says.
+//! Performs commands of the window, and applies the outcomes of tools.
 
 use super::ToileApp;
 use super::notice::Notice;
 use crate::canvas::grading::Grading;
 use crate::canvas::selection::{Item, Selection};
 use crate::tools::select::move_sheets;
-use crate::tools::{Event, Outcome, Shown, Tool};
+use crate::tools::{Event, Outcome, PreviewChange, Tool};
 use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
 use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, SheetId, plan};
@@ -87,13 +87,13 @@ impl ToileApp {
             self.notice = Notice::default();
         }
         match outcome.shown {
-            Shown::Same => {}
-            Shown::Nothing => {
+            PreviewChange::Same => {}
+            PreviewChange::Nothing => {
                 if self.session.cancel().is_some() {
                     self.refresh();
                 }
             }
-            Shown::Edits(edits) => self.preview(&edits),
+            PreviewChange::Edits(edits) => self.preview(&edits),
         }
         match outcome.commit {
             // A tool that only tells something.
@@ -162,7 +162,7 @@ impl ToileApp {
     /// Takes over what is shown, as one step of the history.
     pub(crate) fn commit(&mut self, label: &str) {
         match self.session.commit(label) {
-            Ok(events) => self.hear(&events),
+            Ok(events) => self.handle_events(&events),
             Err(error) => self.notice = Notice::fault(error.to_string()),
         }
     }
@@ -231,8 +231,8 @@ impl ToileApp {
 
     pub(crate) fn drape(&mut self) {
         self.notice = Notice::default();
-        self.shows.garment = true;
-        self.making.start_garment(&self.session);
+        self.panes.garment = true;
+        self.background_work.start_garment(&self.session);
     }
 
     pub(crate) fn can_isolate(&self) -> bool {
@@ -335,7 +335,7 @@ impl ToileApp {
             return;
         }
         if moves_sheets {
-            let moved = move_sheets(&self.base, &self.view.boards, &sheets, way);
+            let moved = move_sheets(&self.base, &self.view.table_layout, &sheets, way);
             self.edit(moved, "Move sheet");
             return;
         }

@@ -1,4 +1,4 @@
-//! The place of a guide in the inspector, counted as the rulers count.
+//! The inspector's field for the place of a guide, counted as the rulers count.
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
@@ -65,8 +65,8 @@ impl ToileApp {
 
     /// Shows or hides guides; what is hidden is not selected.
     pub(crate) fn toggle_guides(&mut self) {
-        self.shows.guides = !self.shows.guides;
-        if !self.shows.guides {
+        self.panes.guides = !self.panes.guides;
+        if !self.panes.guides {
             let items = self.view.selection.items().iter().copied();
             let kept = items.filter(|item| !matches!(item, Item::Guide(_)));
             self.view.selection = kept.collect();

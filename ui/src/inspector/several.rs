@@ -1,4 +1,4 @@
-//! What several selected parts have in common: their numbers are set for all of them at once.
+//! The inspector for several selected parts: numbers they have in common are set for all at once.
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;

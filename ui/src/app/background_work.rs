@@ -1,6 +1,6 @@
-//! Work that must not hold up the window: the mannequin and the meshed garment are made on a
-//! thread of their own from a snapshot, then the drape runs live. A garment that hangs follows the
-//! edits of its pattern from there; how it does is found on a thread of its own, too.
+//! Work on other threads: the mannequin and the meshed garment are made from a snapshot, then the drape runs
+//! live. A garment that hangs follows the edits of its pattern; how it follows is found on another thread
+//! too.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -9,9 +9,9 @@ use toile_session::{
     SessionError, Stage,
 };
 
-/// What is being made.
+/// The work in progress and the live drape.
 #[derive(Default)]
-pub struct Making {
+pub struct BackgroundWork {
     body: Option<Receiver<Made<Result<(), SessionError>>>>,
     garment: Option<Receiver<Made<Result<GarmentJob, SessionError>>>>,
     edit: Option<Receiver<Made<Result<GarmentEdit, CannotFollow>>>>,
@@ -23,19 +23,19 @@ pub struct Making {
     compared: Option<(Project, u64)>,
     /// Why the garment cannot go on to the present project.
     standstill: Option<String>,
-    /// What there is to tell of the garment at rest was told.
+    /// Whether the report on the garment at rest was shown.
     told: bool,
 }
 
-/// What a thread hands back.
+/// The result of a thread.
 struct Made<T> {
     session: Session,
     result: T,
 }
 
-/// What the picture of the garment shows.
+/// The status of the garment in the 3D view.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum GarmentStatus {
     /// No garment.
     Nothing,
     /// A garment that is being meshed.
@@ -52,7 +52,7 @@ pub enum Shown {
     OutOfDate(String),
 }
 
-/// A live drape in a few numbers.
+/// The main numbers of a live drape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// What is being done.
@@ -85,15 +85,15 @@ impl From<&LiveFrame> for Moment {
     }
 }
 
-/// Something that came about since the last look.
-pub enum News {
+/// An event of the work since the last frame.
+pub enum WorkEvent {
     /// The session knows its mannequin now.
     Body,
     /// The garment is meshed and placed; the drape begins.
     Begun(Arc<GarmentJob>),
     /// The cloth has moved.
     Frame(LiveFrame),
-    /// The drape has come to rest, and is the session's. What is told of it.
+    /// The drape has come to rest and was handed to the session, with its events.
     Finished(Vec<Event>),
     /// The garment that followed an edit has come to rest with shortcomings.
     Warned(Vec<String>),
@@ -101,7 +101,7 @@ pub enum News {
     Failed(String),
 }
 
-impl Making {
+impl BackgroundWork {
     /// Begins to make the mannequin of a session's wearer.
     pub fn start_body(&mut self, session: &Session) {
         self.body = Some(on_thread(session, |session| {
@@ -181,42 +181,42 @@ impl Making {
     }
 
     /// What the picture shows.
-    pub fn shown(&self) -> Shown {
+    pub fn status(&self) -> GarmentStatus {
         if self.garment.is_some() {
-            return Shown::Preparing;
+            return GarmentStatus::Preparing;
         }
         let (Some(given), Some(last)) = (&self.given, self.last) else {
-            return Shown::Nothing;
+            return GarmentStatus::Nothing;
         };
         if let Some(why) = &self.standstill {
-            return Shown::OutOfDate(why.clone());
+            return GarmentStatus::OutOfDate(why.clone());
         }
         let waits = last.revision != given.revision;
         match last.stage {
-            _ if waits && self.run.is_none() => Shown::OutOfDate(STOPPED.to_owned()),
+            _ if waits && self.run.is_none() => GarmentStatus::OutOfDate(STOPPED.to_owned()),
             _ if waits && self.is_paused() => {
-                Shown::OutOfDate("it is held: Pause lets it follow".to_owned())
+                GarmentStatus::OutOfDate("it is held: Pause lets it follow".to_owned())
             }
-            Stage::Sewing if waits => Shown::OutOfDate(
+            Stage::Sewing if waits => GarmentStatus::OutOfDate(
                 "it is still being sewn, and follows when its seams are closed".to_owned(),
             ),
-            _ if waits && !last.takes_edits => Shown::OutOfDate(
+            _ if waits && !last.takes_edits => GarmentStatus::OutOfDate(
                 "it still hangs on a coarse mesh, and follows on the fine one".to_owned(),
             ),
-            _ if self.is_paused() => Shown::Held,
-            Stage::Finished if !waits && self.edit.is_none() => Shown::AtRest,
-            _ if self.run.is_none() => Shown::Stopped,
-            _ => Shown::Moving,
+            _ if self.is_paused() => GarmentStatus::Held,
+            Stage::Finished if !waits && self.edit.is_none() => GarmentStatus::AtRest,
+            _ if self.run.is_none() => GarmentStatus::Stopped,
+            _ => GarmentStatus::Moving,
         }
     }
 
     /// What came about since the last look. What threads derived goes to the session.
-    pub fn news(&mut self, session: &mut Session) -> Vec<News> {
+    pub fn news(&mut self, session: &mut Session) -> Vec<WorkEvent> {
         let mut news = Vec::new();
         match take(&mut self.body, session) {
-            Some(Ok(Ok(()))) => news.push(News::Body),
-            Some(Ok(Err(error))) => news.push(News::Failed(error.to_string())),
-            Some(Err(words)) => news.push(News::Failed(words)),
+            Some(Ok(Ok(()))) => news.push(WorkEvent::Body),
+            Some(Ok(Err(error))) => news.push(WorkEvent::Failed(error.to_string())),
+            Some(Err(words)) => news.push(WorkEvent::Failed(words)),
             None => {}
         }
         match take(&mut self.garment, session) {
@@ -224,10 +224,10 @@ impl Making {
                 self.run = Some(LiveRun::start(job.clone()));
                 let job = Arc::new(job);
                 self.given = Some(job.clone());
-                news.extend([News::Body, News::Begun(job)]);
+                news.extend([WorkEvent::Body, WorkEvent::Begun(job)]);
             }
-            Some(Ok(Err(error))) => news.push(News::Failed(error.to_string())),
-            Some(Err(words)) => news.push(News::Failed(words)),
+            Some(Ok(Err(error))) => news.push(WorkEvent::Failed(error.to_string())),
+            Some(Err(words)) => news.push(WorkEvent::Failed(words)),
             None => {}
         }
         self.follow_edits(session);
@@ -286,29 +286,29 @@ impl Making {
         }
     }
 
-    fn follow_run(&mut self, session: &mut Session, news: &mut Vec<News>) {
+    fn follow_run(&mut self, session: &mut Session, news: &mut Vec<WorkEvent>) {
         let Some(run) = &self.run else { return };
         // Asked before the last frame is taken, or that frame could be missed.
         let finished = run.is_finished();
         if let Some(frame) = run.latest() {
             self.last = Some(Moment::from(&frame));
-            news.push(News::Frame(frame));
+            news.push(WorkEvent::Frame(frame));
         }
         if !finished {
             self.told = false;
         } else if let Some(words) = run.failure() {
-            news.push(News::Failed(words));
+            news.push(WorkEvent::Failed(words));
             self.run = None;
         } else if !self.told && !session.is_previewing() {
             self.told = true;
             match run.result() {
                 Some(result) if session.draped().is_none() => {
-                    news.extend(session.adopt_drape(result).map(News::Finished));
+                    news.extend(session.adopt_drape(result).map(WorkEvent::Finished));
                 }
                 Some(_) => {}
                 None => {
                     let warnings = Some(run.warnings()).filter(|words| !words.is_empty());
-                    news.extend(warnings.map(News::Warned));
+                    news.extend(warnings.map(WorkEvent::Warned));
                 }
             }
         }
