@@ -20,7 +20,7 @@ pub(crate) struct TemplateMarks {
     /// The point of the bust, left.
     pub(crate) bust_point: Vec3,
     /// Rise of the body's middle over the crotch, before and behind it, at even depths from
-    /// [`Marks::fork_at`] on [m].
+    /// [`TemplateMarks::fork_at`] on [m].
     pub(crate) fork: [f64; FORK],
     /// Depth of the first of them [m].
     pub(crate) fork_at: f64,
