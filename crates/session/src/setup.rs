@@ -8,7 +8,9 @@ use crate::outfit::{DraftedPart, GarmentPart, MeshedPart, Outfit};
 use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, PlacementBody};
 use toile_body::{Mannequin, Part};
-use toile_drape::{Cloth, ContactSettings, GarmentLevel, GarmentSetup, RestSettings, SewSettings};
+use toile_drape::{
+    Cloth, ContactSettings, GarmentLevel, GarmentSetup, Material, RestSettings, SewSettings,
+};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_pattern::{BodyPart, Draft, PieceId};
 
@@ -130,12 +132,16 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
     let mut rest = vec![[Vec2::zeros(); 3]; garment.triangles.len()];
     let mut material_of = vec![0; garment.triangles.len()];
     let mut panel_of = vec![0; garment.triangles.len()];
+    // A fabric that no panel is cut from must not act: contact and sewing go by the materials listed.
+    let mut fabrics: Vec<usize> = garment.panels.iter().map(|panel| panel.fabric).collect();
+    fabrics.sort_unstable();
+    fabrics.dedup();
     for (index, panel) in garment.panels.iter().enumerate() {
         let (sine, cosine) = panel.grain.sin_cos();
         let turned = |p: Vec2| Vec2::new(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
         for t in panel.triangles.clone() {
             rest[t] = garment.triangles[t].map(|v| turned(garment.flat[v as usize]));
-            material_of[t] = panel.fabric as u16;
+            material_of[t] = fabrics.partition_point(|&fabric| fabric < panel.fabric) as u16;
             panel_of[t] = index as u32;
         }
     }
@@ -145,7 +151,14 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
         rest,
         material: material_of,
         panel: panel_of,
-        materials: draft.fabrics.iter().map(cloth_material).collect(),
+        materials: (fabrics.into_iter())
+            .map(|fabric| {
+                draft
+                    .fabrics
+                    .get(fabric)
+                    .map_or_else(Material::default, cloth_material)
+            })
+            .collect(),
     }
 }
 
