@@ -130,13 +130,16 @@ impl MethodKind {
         self != Self::Xpbd
     }
 
-    /// Largest stable product of angular frequency and substep of an undamped vibration; nothing
-    /// for implicit methods, which have no limit, and for forward Euler 0.
-    pub fn stability_limit(self) -> Option<f64> {
+    /// What kind of method it is.
+    fn family(self) -> Family {
         match self {
-            Self::ForwardEuler => Some(0.0),
-            Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => Some(2.0),
-            Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
+            Self::ForwardEuler => Family::Explicit { limit: 0.0 },
+            Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => {
+                Family::Explicit { limit: 2.0 }
+            }
+            Self::RungeKutta4 => Family::Explicit {
+                limit: 2.0 * std::f64::consts::SQRT_2,
+            },
             Self::SemiImplicitEuler
             | Self::ImplicitEuler
             | Self::Bdf2
@@ -144,38 +147,47 @@ impl MethodKind {
             | Self::ProjectiveDynamics
             | Self::Lbfgs
             | Self::VertexBlockDescent
-            | Self::ChebyshevBlockDescent
-            | Self::DynamicRelaxation
-            | Self::Rest
-            | Self::Xpbd => None,
+            | Self::ChebyshevBlockDescent => Family::Implicit,
+            Self::Xpbd => Family::Constraints,
+            Self::DynamicRelaxation | Self::Rest => Family::Equilibrium,
+        }
+    }
+
+    /// Largest stable product of angular frequency and substep of an undamped vibration; nothing
+    /// for implicit methods, which have no limit, and for forward Euler 0.
+    pub fn stability_limit(self) -> Option<f64> {
+        match self.family() {
+            Family::Explicit { limit } => Some(limit),
+            Family::Implicit | Family::Constraints | Family::Equilibrium => None,
         }
     }
 
     /// The fields of [`MethodSettings`] that it has a use for, by their names.
     pub fn settings(self) -> &'static [&'static str] {
-        match self {
-            Self::ForwardEuler
-            | Self::SymplecticEuler
-            | Self::VelocityVerlet
-            | Self::RungeKutta4
-            | Self::PatchVerlet => &["substeps"],
-            Self::Xpbd => &["substeps", "iterations"],
-            Self::Rest | Self::DynamicRelaxation => &["iterations", "tolerance"],
-            Self::SemiImplicitEuler
-            | Self::ImplicitEuler
-            | Self::Bdf2
-            | Self::ImplicitMidpoint
-            | Self::ProjectiveDynamics
-            | Self::Lbfgs
-            | Self::VertexBlockDescent
-            | Self::ChebyshevBlockDescent => &["substeps", "iterations", "tolerance"],
+        match self.family() {
+            Family::Explicit { .. } => &["substeps"],
+            Family::Constraints => &["substeps", "iterations"],
+            Family::Equilibrium => &["iterations", "tolerance"],
+            Family::Implicit => &["substeps", "iterations", "tolerance"],
         }
     }
 
     /// Whether it looks for rest rather than running in time.
     pub fn is_equilibrium(self) -> bool {
-        matches!(self, Self::Rest | Self::DynamicRelaxation)
+        matches!(self.family(), Family::Equilibrium)
     }
+}
+
+/// Kinds of methods.
+enum Family {
+    /// Forces at known positions; stable while angular frequency times substep stays below the limit.
+    Explicit { limit: f64 },
+    /// Each substep minimises a potential.
+    Implicit,
+    /// Constraints solved one after the other.
+    Constraints,
+    /// To equilibrium; time does not run.
+    Equilibrium,
 }
 
 /// A method with its settings; what is not given is the method's own default.
