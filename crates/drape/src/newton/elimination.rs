@@ -124,23 +124,23 @@ impl Workspace {
         ring.truncate(count.count());
         let limit = (MAX_REGION_SHARE * squares.len() as f64) as usize;
         let mut inside = vec![false; squares.len()];
-        let mut all = Vec::new();
+        let mut members = Vec::new();
         for _ in 0..=REGION_RINGS {
             ring.retain(|&v| !std::mem::replace(&mut inside[v as usize], true));
-            all.extend_from_slice(&ring);
-            if all.len() > limit {
+            members.extend_from_slice(&ring);
+            if members.len() > limit {
                 return Vec::new();
             }
             let next = (ring.iter()).flat_map(|&v| system.topology.pattern.row_columns(v as usize));
             ring = next.copied().collect();
         }
-        let bending_pairs = all.iter().flat_map(|&v| {
+        let bending_pairs = members.iter().flat_map(|&v| {
             let columns = system.rest.bending.row_entries(v as usize).0;
             columns.iter().map(move |&u| [v, u])
         });
         let coupling_pairs = system.couplings.ends();
         let contact_pairs = self.contacts.cloth.couples();
-        let edges = all.iter().flat_map(|&v| {
+        let edges = members.iter().flat_map(|&v| {
             let columns = system.topology.pattern.row_columns(v as usize);
             columns.iter().map(move |&u| [v, u])
         });
@@ -150,10 +150,10 @@ impl Workspace {
             .chain(contact_pairs);
         let coupled = pairs.filter(|pair| pair.iter().all(|&v| inside[v as usize]));
         let (region_of, _) = merge_map(squares.len(), coupled);
-        all.retain(|&v| !system.prescribed.pinned[v as usize]);
-        all.sort_unstable();
+        members.retain(|&v| !system.prescribed.pinned[v as usize]);
+        members.sort_unstable();
         let mut regions: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for v in all {
+        for v in members {
             let region = regions.entry(region_of[v as usize]).or_default();
             region.push(v);
         }

@@ -69,7 +69,7 @@ pub struct Substeps {
     pub drag: f64,
 }
 
-/// In lane_group_start of an index of a vertex that is not in the patch.
+/// In place of the index of a vertex that is not in the patch.
 const OUTSIDE: u32 = u32::MAX;
 
 impl Patch {

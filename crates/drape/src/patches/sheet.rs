@@ -224,8 +224,9 @@ impl Sheet {
     /// Copies all vertices and contacts from the patches.
     fn unload(&mut self) {
         let patches = &self.patches;
-        let all = (&mut self.positions, &mut self.velocities, &self.owner).into_par_iter();
-        all.with_min_len(UNLOAD_CHUNK)
+        let vertices = (&mut self.positions, &mut self.velocities, &self.owner).into_par_iter();
+        vertices
+            .with_min_len(UNLOAD_CHUNK)
             .for_each(|(x, v, &[patch, at])| (*x, *v) = patches[patch as usize].vertex(at));
         for contact in patches.iter().flat_map(Patch::own_contacts) {
             self.contacts.store(contact);

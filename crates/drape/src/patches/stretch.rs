@@ -31,7 +31,7 @@ impl Stretches {
             scattered: Vec::new(),
             shapes: Vec::new(),
         };
-        let mut known = BTreeMap::new();
+        let mut known_shapes = BTreeMap::new();
         let mut single = Vec::new();
         let mut rest = &sorted[..];
         while let Some(first) = rest.first() {
@@ -47,19 +47,23 @@ impl Stretches {
             for triangle in group {
                 lanes[(triangle.0[0] - start) as usize] = Some(*triangle);
             }
-            stretches.add(lanes, &mut known);
+            stretches.add(lanes, &mut known_shapes);
         }
         for group in single.chunks(WIDTH) {
             let mut lanes = [None; WIDTH];
             for (lane, triangle) in lanes.iter_mut().zip(group) {
                 *lane = Some(*triangle);
             }
-            stretches.add(lanes, &mut known);
+            stretches.add(lanes, &mut known_shapes);
         }
         stretches
     }
 
-    fn add(&mut self, lanes: [Option<Triangle>; WIDTH], known: &mut BTreeMap<Vec<u64>, u32>) {
+    fn add(
+        &mut self,
+        lanes: [Option<Triangle>; WIDTH],
+        known_shapes: &mut BTreeMap<Vec<u64>, u32>,
+    ) {
         let strains = [0, 1, 2].map(|side| {
             let indices = lanes.map(|lane| lane.map(|(sides, _)| sides[side] + PAD as u32));
             Operands::new(indices, &mut self.scattered)
@@ -67,7 +71,7 @@ impl Stretches {
         let shape =
             [0, 1, 2, 3].map(|k| Octet(lanes.map(|lane| lane.map_or(0.0, |(_, shape)| shape[k]))));
         let bits = shape.iter().flat_map(|octet| octet.0).map(f64::to_bits);
-        let at = *known.entry(bits.collect()).or_insert_with(|| {
+        let at = *known_shapes.entry(bits.collect()).or_insert_with(|| {
             self.shapes.push(shape);
             self.shapes.len() as u32 - 1
         });

@@ -206,28 +206,28 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
     fn choose_start(&self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
         let system = problem.system;
         let farthest = problem.longest_move(LONGEST_MOVE);
-        let here = state.positions.clone();
+        let present = state.positions.clone();
         let potential = |workspace: &mut Workspace, state: &State, x: &[Vec3]| {
             workspace.contacts.refresh(system, state, x);
             workspace.potential(system, x, &problem.inertia)
         };
-        let mut lowest = potential(workspace, state, &here);
+        let mut lowest = potential(workspace, state, &present);
         for fall in [Vec3::zeros(), system.control.gravity / problem.weight] {
-            let mut there = problem.inertia.target.to_vec();
+            let mut candidate = problem.inertia.target.to_vec();
             let mut longest = 0.0f64;
-            for (v, x) in there.iter_mut().enumerate() {
+            for (v, x) in candidate.iter_mut().enumerate() {
                 if !system.prescribed.pinned[v] {
                     *x += fall;
                 }
-                longest = longest.max((*x - here[v]).norm());
+                longest = longest.max((*x - present[v]).norm());
             }
             if longest > farthest {
                 continue;
             }
-            let energy = potential(workspace, state, &there);
+            let energy = potential(workspace, state, &candidate);
             if energy < lowest {
                 lowest = energy;
-                state.positions = there;
+                state.positions = candidate;
             }
         }
     }

@@ -42,8 +42,8 @@ impl Impact {
         contact: &ContactConstraint,
         restitution: Option<f32>,
     ) -> Option<Self> {
-        let each = slots.iter().zip(weights);
-        let inverse_mass: f32 = each
+        let points = slots.iter().zip(weights);
+        let inverse_mass: f32 = points
             .map(|(&slot, a)| a * a * particles.start[slot as usize][3])
             .sum();
         (contact.lambda_normal > 0.0 && inverse_mass > 0.0).then(|| Self {
@@ -112,8 +112,9 @@ pub fn bounce<'a>(
             ));
         }
     }
-    let each = stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
-    for (first, stencil) in each.filter(|(_, stencil)| stencil.constraint.lambda_normal > 0.0) {
+    let stencils =
+        stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
+    for (first, stencil) in stencils.filter(|(_, stencil)| stencil.constraint.lambda_normal > 0.0) {
         let restitution = match stencil.constraint.sample {
             NO_SAMPLE => stencil.restitution,
             _ => sample_restitution(samples, &stencil.constraint),

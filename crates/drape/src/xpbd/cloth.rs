@@ -105,8 +105,8 @@ impl ClothContacts {
     /// forces [m/s].
     fn slip_speed(&self, velocities: &[Vec3]) -> f64 {
         let speed = |contact: &ClothContact| {
-            let four = contact.vertices.iter().zip(contact.weights);
-            let velocity: Vec3 = four.map(|(&v, w)| velocities[v as usize] * w).sum();
+            let corners = contact.vertices.iter().zip(contact.weights);
+            let velocity: Vec3 = corners.map(|(&v, w)| velocities[v as usize] * w).sum();
             velocity.norm()
         };
         let ContactSet {
@@ -255,14 +255,14 @@ impl Xpbd {
                 restitution: contact.restitution.map(|e| e as f32),
             }
         };
-        let each = contacts.all().flat_map(|contact| {
+        let constraints = contacts.all().flat_map(|contact| {
             let hard = contact.plane.depth + travel > contact.law.hard_from;
             std::iter::once((contact, false)).chain(hard.then_some((contact, true)))
         });
-        let each: Vec<(&ClothContact, bool)> = each.collect();
+        let constraints: Vec<(&ClothContact, bool)> = constraints.collect();
         self.regions.set_cloth_contacts(
             &self.partition,
-            &each,
+            &constraints,
             |(contact, _)| slots(contact),
             stencil,
         );
@@ -372,9 +372,9 @@ mod tests {
                     rest -= pieces[pieces.len() - 1];
                 }
                 let (last, before) = pieces.split_last().expect("one at the least");
-                let most = f64::from(MIN_SUBSTEPS).max(valid_for + 1e-3);
+                let longest = f64::from(MIN_SUBSTEPS).max(valid_for + 1e-3);
                 assert!(
-                    pieces.iter().all(|&n| n > 0 && f64::from(n) <= most),
+                    pieces.iter().all(|&n| n > 0 && f64::from(n) <= longest),
                     "{remaining} {valid_for}"
                 );
                 assert!(

@@ -276,12 +276,17 @@ fn curve_of<S: Simd>(
     }
     let mut target = [Row::splat(0.0); 3];
     let mut compliance = [Row::splat(0.0); 4];
-    let least = 1e-3 * f64::from(law.stiffness[0].min(law.stiffness[1]).min(law.stiffness[3]));
+    let min_stiffness =
+        1e-3 * f64::from(law.stiffness[0].min(law.stiffness[1]).min(law.stiffness[3]));
     for lane in 0..S::F32_LANES {
         let strain = [0, 1, 2].map(|k| f64::from(rows[k].0[lane]));
         let (stress, _) = curve.stress(strain);
         let [d11, d22, d12, d33, ..] = curve.slope(strain);
-        let (d11, d22, d33) = (d11 + least, d22 + least, d33 + least);
+        let (d11, d22, d33) = (
+            d11 + min_stiffness,
+            d22 + min_stiffness,
+            d33 + min_stiffness,
+        );
         let determinant = d11 * d22 - d12 * d12;
         let inverse = [
             d22 / determinant,
@@ -340,18 +345,18 @@ fn solve_system<S: Simd>(
     [c1, c2, c3]: [S::f32s; 3],
 ) -> [S::f32s; 3] {
     let one = simd.splat_f32s(1.0);
-    let least = simd.splat_f32s(MIN_PIVOT_RATIO);
+    let min_ratio = simd.splat_f32s(MIN_PIVOT_RATIO);
     let i1 = simd.div_f32s(one, m11);
     let (l21, l31) = (simd.mul_f32s(m12, i1), simd.mul_f32s(m13, i1));
     let d2 = simd.max_f32s(
         subtract_product(simd, m22, l21, m12),
-        simd.mul_f32s(least, m22),
+        simd.mul_f32s(min_ratio, m22),
     );
     let t = subtract_product(simd, m23, l31, m12);
     let i2 = simd.div_f32s(one, d2);
     let l32 = simd.mul_f32s(t, i2);
     let d3 = subtract_product(simd, subtract_product(simd, m33, l31, m13), l32, t);
-    let d3 = simd.max_f32s(d3, simd.mul_f32s(least, m33));
+    let d3 = simd.max_f32s(d3, simd.mul_f32s(min_ratio, m33));
     let y2 = subtract_product(simd, c2, l21, c1);
     let y3 = subtract_product(simd, subtract_product(simd, c3, l31, c1), l32, y2);
     let z3 = simd.div_f32s(y3, d3);
