@@ -171,7 +171,7 @@ impl Contacts {
     }
 
     /// Remembers which samples a surface was put over, for explicit methods, after
-    /// [`Self::settle`]. Methods with a memory of their own remember none.
+    /// [`Self::remember_step`]. Methods with a memory of their own store none.
     pub fn remember_buried(&self, model: &Model, state: &mut State) {
         if !matches!(state.memory, StateMemory::Nothing | StateMemory::Buried(_)) {
             return;
@@ -183,9 +183,9 @@ impl Contacts {
         state.memory = StateMemory::of_buried(buried.map(|contact| contact.sample));
     }
 
-    /// Moves the friction anchors after a step, and remembers the normal forces.
-    pub fn settle(&self, model: &Model, state: &mut State) {
-        self.cloth.settle(model, state);
+    /// Stores the end of a step in the state: friction anchors, moved along where contacts slide, and normal forces.
+    pub fn remember_step(&self, model: &Model, state: &mut State) {
+        self.cloth.remember_step(model, state);
         state.anchors.fill(None);
         state.normal_forces.fill(0.0);
         state.follow_samples();

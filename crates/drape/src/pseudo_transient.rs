@@ -176,7 +176,7 @@ impl PseudoTransientContinuation {
                 if workspace.eliminate(system, state, enough) {
                     workspace.contacts.refresh(system, state, &state.positions);
                 }
-                workspace.contacts.settle(system, state);
+                workspace.contacts.remember_step(system, state);
                 let before = self.memory.residual;
                 self.memory.residual = residual(system, state, workspace);
                 self.adapt(&report, before);

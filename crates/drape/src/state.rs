@@ -108,11 +108,11 @@ impl State {
             memory: _,
         } = self;
         let ClothMemory {
-            places,
-            held,
+            positions: previous,
+            friction,
             layer_reach: _,
-            drawn,
-            crossed_for,
+            recovery_directions,
+            crossing_counts,
         } = cloth;
         let [count, triangles] = [model.vertex_count(), model.topology.triangles.len()];
         let of_sample = |sample: &ContactSample| {
@@ -120,8 +120,8 @@ impl State {
             corners && sample.triangle.is_none_or(|t| (t as usize) < triangles)
         };
         let is_vertex = |v: u32| (v as usize) < count;
-        let mut pairs = held.iter().map(|held| held.pair.vertices());
-        let mut pulled = drawn.iter().map(|drawn| drawn.vertex);
+        let mut pairs = friction.iter().map(|contact| contact.pair.vertices());
+        let mut recovering = recovery_directions.iter().map(|entry| entry.vertex);
         let is_full = |length: usize, whole: usize| length == 0 || length == whole;
         let fits = [
             ("positions", positions.len() == count),
@@ -129,14 +129,20 @@ impl State {
             ("samples", samples.iter().all(of_sample)),
             ("anchors", anchors.len() == samples.len()),
             ("normal_forces", normal_forces.len() == samples.len()),
-            ("cloth.places", is_full(places.len(), count)),
+            ("cloth.positions", is_full(previous.len(), count)),
             (
-                "cloth.held",
+                "cloth.friction",
                 pairs.all(|pair| pair.into_iter().all(is_vertex)),
             ),
-            ("cloth.held", held.is_empty() || !places.is_empty()),
-            ("cloth.drawn", pulled.all(is_vertex)),
-            ("cloth.crossed_for", is_full(crossed_for.len(), count)),
+            (
+                "cloth.friction",
+                friction.is_empty() || !previous.is_empty(),
+            ),
+            ("cloth.recovery_directions", recovering.all(is_vertex)),
+            (
+                "cloth.crossing_counts",
+                is_full(crossing_counts.len(), count),
+            ),
             ("internal strain", is_full(internal_strain.len(), triangles)),
         ];
         if let Some((field, _)) = fits.iter().find(|(_, fits)| !fits) {

@@ -117,7 +117,7 @@ fn implicit_euler(
         };
     }
     workspace.contacts.refresh(system, state, &state.positions);
-    workspace.contacts.settle(system, state);
+    workspace.contacts.remember_step(system, state);
     state.time += h;
     report
 }

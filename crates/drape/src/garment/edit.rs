@@ -38,7 +38,7 @@ impl GarmentRun {
                 self.made_for.get_or_insert(before);
             }
             true => {
-                self.simulation.let_rest();
+                self.simulation.reset_motion();
                 self.made_for = Some(rest.clone());
                 self.begin_caches();
             }

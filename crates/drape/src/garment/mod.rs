@@ -156,7 +156,7 @@ impl GarmentRun {
             WorldEdit::ReplaceMesh(self.garment, cloth, level.layers()),
         ];
         self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
-        self.simulation.let_rest();
+        self.simulation.reset_motion();
         Ok(())
     }
 
@@ -246,7 +246,7 @@ impl GarmentRun {
         match self.stage.stage() {
             Stage::Sewing => self.sew()?,
             Stage::Swinging => self.swing()?,
-            Stage::Settling => self.settle()?,
+            Stage::Settling => self.relax()?,
             Stage::Finished => {}
         }
         Ok(self.progress())
@@ -304,7 +304,9 @@ impl GarmentRun {
         Ok(())
     }
 
-    fn settle(&mut self) -> Result<(), DrapeError> {
+    /// Takes a step of pseudo-transient continuation, then goes on to another swing, to the next finer level or to
+    /// the end where its time has come.
+    fn relax(&mut self) -> Result<(), DrapeError> {
         let StageState::Settling(settling) = &mut self.stage else {
             return Ok(());
         };
@@ -418,7 +420,7 @@ impl GarmentRun {
             WorldEdit::Merge(self.setup.levels[self.level].seams(self.garment)),
         ];
         self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
-        self.simulation.let_rest();
+        self.simulation.reset_motion();
         self.steps[0] += steps;
         self.gap_before_merging = gap;
         self.stage = self.swinging(Attempts::default());

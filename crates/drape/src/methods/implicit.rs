@@ -224,7 +224,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             return Err(Failure::Runaway(fastest(state).0));
         }
         // `is_possible` found the contacts of the new positions.
-        self.workspace.contacts.settle(system, state);
+        self.workspace.contacts.remember_step(system, state);
         state.time += h;
         Ok(report)
     }

@@ -89,7 +89,7 @@ impl Workspace {
         let share = self.line_search(system, &state.positions, inertia);
         if share > 0.0 {
             std::mem::swap(&mut state.positions, &mut self.trial);
-            self.contacts.settle(system, state);
+            self.contacts.remember_step(system, state);
         }
         share
     }

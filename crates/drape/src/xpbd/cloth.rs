@@ -51,7 +51,7 @@ pub(crate) struct ClothWatch {
     /// Positions before the last substeps [m], and how far they went.
     before: Vec<Vec3>,
     moves: Vec<Vec3>,
-    lightness: Vec<f64>,
+    inverse_mass: Vec<f64>,
 }
 
 impl ClothWatch {
@@ -94,7 +94,7 @@ impl ClothWatch {
         };
         let (memory, x) = (&state.cloth, &state.positions);
         (self.detector).detect(system, memory, x, &reach, &mut self.contacts);
-        self.contacts.remember(state);
+        self.contacts.remember_crossings(state);
         let shifts = SHIFTS / self.shifting(&state.velocities);
         let least = f64::from(self.fewest()) * substep;
         self.serves = Some(soon.min(shifts).max(least));
@@ -128,14 +128,14 @@ impl ClothWatch {
         self.moves.clear();
         self.moves.extend(ways.map(|(x, from)| x - from));
         let masses = system.rest.mass.iter().zip(&system.prescribed.pinned);
-        self.lightness.clear();
-        self.lightness
+        self.inverse_mass.clear();
+        self.inverse_mass
             .extend(masses.map(|(m, &pinned)| if pinned { 0.0 } else { 1.0 / m }));
         let mut motion = Motions {
             x: &self.before,
             moves: &mut self.moves,
             velocities: &mut state.velocities,
-            lightness: &self.lightness,
+            inverse_mass: &self.inverse_mass,
             span,
         };
         let exemptions = &self.contacts.exemptions;
