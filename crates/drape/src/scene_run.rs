@@ -149,7 +149,7 @@ impl SceneRun {
         let simulation = Simulation::laid_out(world, checkpoint.layout, Solids::new());
         run.simulation = simulation.map_err(|error| refuse("layout", error.to_string()))?;
         run.simulation
-            .go_on_from(checkpoint.state, checkpoint.control)?;
+            .restore(checkpoint.state, checkpoint.control)?;
         run.steps = checkpoint.steps;
         run.split_steps = checkpoint.split_steps;
         run.refinements = checkpoint.refinements;

@@ -157,7 +157,7 @@ impl Simulation {
     ///
     /// # Errors
     /// The field that does not fit the system.
-    pub(crate) fn go_on_from(&mut self, state: State, control: Control) -> Result<(), DrapeError> {
+    pub(crate) fn restore(&mut self, state: State, control: Control) -> Result<(), DrapeError> {
         let count = self.system.vertex_count() as u32;
         let attachments = (control.attachments.all().iter()).map(|attachment| attachment.vertex);
         let frames = control.frames.iter().map(|frame| frame.vertex);
