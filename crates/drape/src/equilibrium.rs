@@ -103,7 +103,7 @@ impl Equilibrium {
         self.state.follow_shapes(&self.system);
         self.state.positions = prediction.step.positions;
         self.continuation
-            .go_on(self.settings.residual, self.settings.steps);
+            .continue_to(self.settings.residual, self.settings.steps);
     }
 
     /// Takes so many steps towards rest at the most; whether it is there.

@@ -389,7 +389,7 @@ impl SceneRun {
     pub fn elastic_gap(&self) -> f64 {
         let gap = |elastic: Elastic| elastic.gap(&self.state.positions).norm();
         let frames = self.system.control.frames.iter().map(|one| {
-            let place = one.place(self.state.time);
+            let place = one.target(self.state.time);
             (self.state.positions[one.vertex as usize] - place).norm()
         });
         let all = self.system.elastics().map(gap).chain(frames);

@@ -45,7 +45,7 @@ impl MeshDigest {
         structure.whole(layer.iter().map(|&l| u32::from(l)));
         let mut shapes = Digest::new();
         shapes.shapes(&cloth.rest);
-        shapes.places(&cloth.positions);
+        shapes.vectors(&cloth.positions);
         Self {
             vertices: cloth.positions.len(),
             triangles: cloth.triangles.len(),
@@ -62,7 +62,7 @@ impl SetupDigest {
         let mut body = Digest::new();
         for surface in &setup.colliders {
             let mesh = surface.mesh();
-            body.places(&mesh.positions);
+            body.vectors(&mesh.positions);
             body.whole(mesh.triangles.iter().flatten().copied());
         }
         // The debug format of a number is exact to the last bit.

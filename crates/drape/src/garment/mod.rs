@@ -135,7 +135,7 @@ impl GarmentRun {
         let stitches = self.setup.levels[self.level].stitches.clone();
         let Simulation { system, state, .. } = &mut self.simulation;
         let mut sewing = SewRun::new(system, stitches, self.setup.sew);
-        sewing.look(state);
+        sewing.measure_gap(state);
         let closed = sewing.closed();
         self.stage = StageState::Sewing(sewing);
         self.made_for = None;
@@ -199,7 +199,7 @@ impl GarmentRun {
             let settings = self.setup.rest_on(self.level);
             settling
                 .continuation
-                .go_on(settings.residual, settings.steps);
+                .continue_to(settings.residual, settings.steps);
             self.stage = StageState::Settling(settling);
             self.warnings.clear();
         }
@@ -353,7 +353,7 @@ impl GarmentRun {
                     let settings = self.setup.rest;
                     settling
                         .continuation
-                        .go_on(settings.residual, settings.steps / 4);
+                        .continue_to(settings.residual, settings.steps / 4);
                     return;
                 }
             }

@@ -299,7 +299,7 @@ impl Workspace {
             energy += elastic.law.energy(elastic.gap(x));
         }
         for contact in &self.contacts.active {
-            let place = contact.point.place(x);
+            let place = contact.point.position(x);
             energy += contact.law.energy(&contact.plane, place);
         }
         for contact in self.contacts.cloth.all() {
@@ -332,7 +332,7 @@ impl Workspace {
                 g += corner_gradients[corner as usize / 3][corner as usize % 3];
             }
             for (e, other) in system.elastics_at(v) {
-                g += (x[v] - other.place(x)) * secants[e];
+                g += (x[v] - other.position(x)) * secants[e];
             }
             if let Some(inertia) = inertia {
                 g += (x[v] - inertia.target[v]) * inertia.weight[v];
@@ -341,7 +341,7 @@ impl Workspace {
         });
         for contact in &self.contacts.active {
             let sample = &contact.point;
-            let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
+            let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.position(x));
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
                 self.gradient[v as usize] += gradient * w;
             }
@@ -383,7 +383,7 @@ impl Workspace {
         }
         for contact in &self.contacts.active {
             let sample = &contact.point;
-            let place = sample.place(x);
+            let place = sample.position(x);
             let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, place);
             hessian -= contact.law.missing_curvature(&contact.plane, place) * curvature.0;
             match sample.triangle {
