@@ -61,7 +61,8 @@ impl BendingStructure {
         };
         let entries: Vec<(u32, u32, f64)> = stencils.iter().flat_map(pairs).collect();
         let pattern = ScalarMatrix::from_entries(count, &entries);
-        let index = |&(i, j, _): &(u32, u32, f64)| pattern.place(i, j).unwrap_or_default() as u32;
+        let index =
+            |&(i, j, _): &(u32, u32, f64)| pattern.index_of(i, j).unwrap_or_default() as u32;
         let mut start = vec![0];
         for stencil in &stencils {
             start.push(start[start.len() - 1] + stencil.vertices.len().pow(2));

@@ -41,7 +41,7 @@ impl State {
             }
         }));
         self.samples = Arc::new(samples);
-        self.begin_rest_anew();
+        self.clear_equilibrium_memory();
     }
 }
 

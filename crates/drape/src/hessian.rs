@@ -247,8 +247,8 @@ mod tests {
             for v in 0..441 {
                 let p = flat([v % 21, v / 21]);
                 let wave = 0.004 * (40.0 * p.x).sin() * (30.0 * p.y).cos();
-                let place = Vec3::new(p.x, p.y, 0.02 * f64::from(sheet) + wave);
-                cloth.positions.push(place);
+                let position = Vec3::new(p.x, p.y, 0.02 * f64::from(sheet) + wave);
+                cloth.positions.push(position);
             }
             for (i, j) in (0..400).map(|q| (q % 20, q / 20)) {
                 let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
@@ -264,16 +264,16 @@ mod tests {
 
     /// Norm of A x - b, b the weights, over that of b; and over what rounding x alone leaves,
     /// |A| |x| + |b|, with pseudo steps of `step` seconds.
-    fn residuals(system: &System, places: &[Vec3], step: f64) -> [f64; 2] {
-        let state = State::at_rest(system, places.to_vec());
+    fn residuals(system: &System, positions: &[Vec3], step: f64) -> [f64; 2] {
+        let state = State::at_rest(system, positions.to_vec());
         let mut workspace = Workspace::default();
         workspace.net_force(system, &state);
         let weight: Vec<f64> = system.rest.mass.iter().map(|m| m / (step * step)).collect();
         let inertia = Inertia {
             weight: &weight,
-            target: places,
+            target: positions,
         };
-        workspace.fill_hessian(system, places, &inertia, Curvature::CONVEX);
+        workspace.fill_hessian(system, positions, &inertia, Curvature::CONVEX);
         let hessian = workspace.hessian(system);
         let free = |v: usize, p: Vec3| {
             if system.prescribed.pinned[v] {
@@ -282,7 +282,7 @@ mod tests {
                 p
             }
         };
-        let b: Vec<Vec3> = (0..places.len())
+        let b: Vec<Vec3> = (0..positions.len())
             .map(|v| free(v, system.control.gravity * system.rest.mass[v]))
             .collect();
         let mut x = vec![Vec3::zeros(); b.len()];
@@ -301,8 +301,8 @@ mod tests {
         [off / whole, off / (largest * found + whole)]
     }
 
-    fn check(system: &System, places: &[Vec3], step: f64) {
-        let [relative, rounding] = residuals(system, places, step);
+    fn check(system: &System, positions: &[Vec3], step: f64) {
+        let [relative, rounding] = residuals(system, positions, step);
         assert!(rounding < 1e-14, "{step} s: {rounding:e}");
         assert!(relative < 1e-3, "{step} s: {relative:e}");
     }
@@ -342,8 +342,8 @@ mod tests {
         let cloth = sheets(stiff(1.0));
         let system = System::new("sheets", &cloth).unwrap();
         for scale in [0.0, 0.1, 4.0] {
-            let places: Vec<Vec3> = cloth.positions.iter().map(|p| p * scale).collect();
-            check(&system, &places, 0.02);
+            let positions: Vec<Vec3> = cloth.positions.iter().map(|p| p * scale).collect();
+            check(&system, &positions, 0.02);
         }
     }
 

@@ -239,7 +239,7 @@ mod tests {
         assert!(stops >= 2, "{stops}");
         assert!(state.velocities.iter().all(|v| *v == Vec3::zeros()));
         assert!(state.positions[83].y < -0.15, "{}", state.positions[83]);
-        // Newton's method finds the tip near its place.
+        // Newton's method finds the tip near the same position.
         let tip = state.positions[83];
         let mut rest = PseudoTransientContinuation::near(RestSettings::default());
         let mut workspace = Workspace::default();

@@ -70,7 +70,7 @@ impl Workspace {
                 break;
             }
             moved = true;
-            for (v, place) in submodels.iter().flat_map(SubModel::places) {
+            for (v, place) in submodels.iter().flat_map(SubModel::own_positions) {
                 state.positions[v as usize] = place;
             }
         }

@@ -30,7 +30,7 @@ impl Lbfgs {
         energy: &mut Option<f64>,
     ) -> f64 {
         let metric = &mut self.metric;
-        self.pairs.aim(&mut self.direction, |q, r| {
+        self.pairs.descent_direction(&mut self.direction, |q, r| {
             metric.solve(problem.system, q, r);
         });
         shorten(problem, &mut self.direction);
@@ -68,7 +68,7 @@ impl Solver for Lbfgs {
         descend(problem, state, workspace, |state, workspace, _| {
             self.metric.press(problem, state, workspace);
             let (x, gradient) = (&state.positions, &workspace.gradient);
-            self.pairs.note(x, gradient, MEMORY);
+            self.pairs.push(x, gradient, MEMORY);
             let share = self.step(problem, state, workspace, &mut energy);
             if share > 0.0 || self.pairs.is_empty() {
                 return share;

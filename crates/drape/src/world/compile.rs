@@ -80,7 +80,7 @@ impl World {
             Some(apart) => {
                 builder.layer = Vec::new();
                 let own = merged_layers(&layers, &map.target, map.count);
-                builder.keep_layers_off(&own, apart);
+                builder.offset_layers(&own, apart);
             }
         }
         builder.policies = self.policies(map);

@@ -139,7 +139,7 @@ impl Simulation {
             Some(Change::BoundaryConditions) => {
                 self.system = world.furnish(&self.map, self.system.edit(), &mut self.solids);
                 self.world = world;
-                self.state.begin_rest_anew();
+                self.state.clear_equilibrium_memory();
                 let (prescribed, gripped) = self.present().prescribed();
                 let velocities = self.state.velocities.iter_mut();
                 let marks = prescribed.into_iter().zip(gripped);
