@@ -1,5 +1,5 @@
-//! The structure of bending, which is reused when rest shapes change: the neighbours of each curvature estimate, and the
-//! matrix entries of their products.
+//! The structure of bending, which is reused when rest shapes change: the neighbours of each curvature estimate, and
+//! the matrix entries of their products.
 
 use crate::Material;
 use crate::laws::bending::{BendingMatrix, BendingStencil};
@@ -78,8 +78,8 @@ impl BendingStructure {
         Ok((structure, stencils.into_iter().map(Arc::new).collect()))
     }
 
-    /// The stencils for new rest shapes; `before` are the last rest shapes with their stencils, which are reused where no
-    /// shape in their neighbourhood changed.
+    /// The stencils for new rest shapes; `before` are the last rest shapes with their stencils, which are reused where
+    /// no shape in their neighbourhood changed.
     ///
     /// # Errors
     /// A triangle whose rings are ill-conditioned for the new shapes.

@@ -78,8 +78,8 @@ pub(crate) fn exchange_again(
     Ok(rest)
 }
 
-/// The rest shapes of cap and neighbour after the exchange; none where the warp directions differ or a triangle would be
-/// inverted.
+/// The rest shapes of cap and neighbour after the exchange; none where the warp directions differ or a triangle would
+/// be inverted.
 fn exchanged(rest: &[[Vec2; 3]], exchange: &Exchange) -> Option<[[Vec2; 3]; 2]> {
     let ((t, k), (s, at)) = (exchange.cap, exchange.behind);
     let [pn, pa, pb] = [0, 1, 2].map(|i| rest[t as usize][(k + i) % 3]);
@@ -151,8 +151,8 @@ impl Flipper {
         Self { cloth, edges }
     }
 
-    /// Exchanges the long edge of a cap. None where the triangle is no cap, where its long edge is free, sewn or between
-    /// different materials, and where the exchange would not lower the largest angle.
+    /// Exchanges the long edge of a cap. None where the triangle is no cap, where its long edge is free, sewn or
+    /// between different materials, and where the exchange would not lower the largest angle.
     fn flip(&mut self, t: u32) -> Option<Exchange> {
         let (k, cosine) = largest_angle(self.cloth.rest[t as usize]);
         if cosine >= CAP {

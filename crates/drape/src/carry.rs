@@ -70,8 +70,8 @@ impl Carry {
     }
 
     /// Positions of the new vertices on the old mesh in a shape of it [m], with Phong tessellation (Boubekeur and Alexa
-    /// 2008) so that the facets of a coarse mesh do not show on the finer one. `shape` has the triangles of the old mesh
-    /// in the same order.
+    /// 2008) so that the facets of a coarse mesh do not show on the finer one. `shape` has the triangles of the old
+    /// mesh in the same order.
     pub fn apply(&self, shape: &TriangleMesh) -> Vec<Vec3> {
         let normals = shape.vertex_normals();
         self.coordinates

@@ -26,8 +26,8 @@ pub struct Cloth {
 const MOST_PANEL: u32 = 1 << 24;
 
 impl Cloth {
-    /// A cloth whose rest shape is the mesh itself: each triangle is a panel of its own with the size and shape it has in
-    /// the mesh. The warp runs along the mesh's first axis, projected.
+    /// A cloth whose rest shape is the mesh itself: each triangle is a panel of its own with the size and shape it has
+    /// in the mesh. The warp runs along the mesh's first axis, projected.
     ///
     /// # Errors
     /// Bad indices, coordinates that are not finite, triangles without area.
@@ -96,8 +96,8 @@ impl Cloth {
         }
     }
 
-    /// The cloth with merged vertices: `target[v]` is the new index of vertex `v`. The position of a merged vertex is the
-    /// mean; triangles keep their rest shapes. A triangle with two of its vertices merged is dropped.
+    /// The cloth with merged vertices: `target[v]` is the new index of vertex `v`. The position of a merged vertex is
+    /// the mean; triangles keep their rest shapes. A triangle with two of its vertices merged is dropped.
     pub fn merged(&self, target: &[u32], count: usize) -> Self {
         let mut sums = vec![(Vec3::zeros(), 0.0); count];
         for (position, &to) in self.positions.iter().zip(target) {

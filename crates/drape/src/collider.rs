@@ -84,8 +84,8 @@ impl Collider {
         self.corners.iter().map(displacement).fold(0.0, f64::max)
     }
 
-    /// Pairs of a triangle of `cloth` and one of the surface at a time [s] that intersect, by exact predicates on corners
-    /// rounded to the frame of the solid; the triangle of the cloth comes first.
+    /// Pairs of a triangle of `cloth` and one of the surface at a time [s] that intersect, by exact predicates on
+    /// corners rounded to the frame of the solid; the triangle of the cloth comes first.
     pub fn crossings(&self, time: f64, cloth: &TriangleMesh) -> Vec<[u32; 2]> {
         match self.pose(time) {
             None => self.surface.intersections_with(cloth),

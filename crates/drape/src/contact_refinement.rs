@@ -8,10 +8,10 @@ use std::sync::Arc;
 const EXTRA_OFFSET: f64 = 1e-3;
 
 impl State {
-    /// Adds contact samples at the centroid and the edge midpoints of a triangle that is too large for the curvature of a
-    /// solid; where it has them already, enlarges their contact offset and that of its corners. A triangle of an object
-    /// that ignores the solid ([`PairPolicies`](crate::PairPolicies)) may be given, too: its samples make no contact with
-    /// that solid.
+    /// Adds contact samples at the centroid and the edge midpoints of a triangle that is too large for the curvature of
+    /// a solid; where it has them already, enlarges their contact offset and that of its corners. A triangle of an
+    /// object that ignores the solid ([`PairPolicies`](crate::PairPolicies)) may be given, too: its samples make no
+    /// contact with that solid.
     pub fn refine_contact(&mut self, model: &Model, triangle: u32) {
         let samples = Arc::make_mut(&mut self.samples);
         for triangle in covering(model, triangle) {
@@ -20,8 +20,8 @@ impl State {
         self.follow_samples();
     }
 
-    /// Adapts the state to other rest shapes of the same triangles: contact samples and friction anchors stay, the areas
-    /// of samples change. The memory of an equilibrium method is cleared.
+    /// Adapts the state to other rest shapes of the same triangles: contact samples and friction anchors stay, the
+    /// areas of samples change. The memory of an equilibrium method is cleared.
     pub(crate) fn follow_shapes(&mut self, model: &Model) {
         let at_vertices = model.rest.samples.iter().copied();
         let mut samples: Vec<ContactSample> = at_vertices.collect();

@@ -5,8 +5,8 @@ use crate::{DrapeError, Material};
 /// Distance from a solid to which its distance field extends [m].
 pub(crate) const FIELD_REACH: f64 = 0.03;
 
-/// Largest extra offset of the contact samples of a triangle that crosses a solid [m]: a crossing that remains then is not
-/// cured by distance.
+/// Largest extra offset of the contact samples of a triangle that crosses a solid [m]: a crossing that remains then is
+/// not cured by distance.
 pub(crate) const MOST_EXTRA: f64 = 8e-3;
 
 /// Largest contact offset from solids [m]: the extent of the distance field less the largest extra offset.
@@ -16,15 +16,15 @@ pub const MOST_OFFSET: f64 = FIELD_REACH - MOST_EXTRA;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSettings {
     /// Distance of the middle of the cloth from a solid at which contact begins [m], at most [`MOST_OFFSET`]; half the
-    /// cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an edge on the tightest
-    /// curve of the body, e^2 / (8 R).
+    /// cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an edge on the
+    /// tightest curve of the body, e^2 / (8 R).
     pub offset: f64,
     /// Normal stiffness per area of cloth [N/m3]: pressure per depth.
     pub stiffness: f64,
     /// Whether friction acts.
     pub friction: bool,
-    /// Distance between the middles of two cloths at which contact begins [m], the cloth's thickness where that is more;
-    /// at 0 cloth passes through cloth.
+    /// Distance between the middles of two cloths at which contact begins [m], the cloth's thickness where that is
+    /// more; at 0 cloth passes through cloth.
     pub cloth_offset: f64,
 }
 
@@ -42,8 +42,8 @@ impl Default for ContactSettings {
 }
 
 impl ContactSettings {
-    /// The settings for cloth of some materials: the offset from solids is at least half of the largest thickness, that of
-    /// cloth with cloth, unless it is zero, at least all of it.
+    /// The settings for cloth of some materials: the offset from solids is at least half of the largest thickness, that
+    /// of cloth with cloth, unless it is zero, at least all of it.
     #[must_use]
     pub fn for_cloth<'a>(self, materials: impl IntoIterator<Item = &'a Material>) -> Self {
         let each = materials.into_iter().map(|material| material.thickness);

@@ -144,8 +144,8 @@ impl Contacts {
         self.active.extend(found.into_iter().flatten());
     }
 
-    /// Adds the damping of contact with solids to the forces [N], for explicit methods in substeps of `h` [s], and limits
-    /// the force on buried samples, which would throw the cloth off.
+    /// Adds the damping of contact with solids to the forces [N], for explicit methods in substeps of `h` [s], and
+    /// limits the force on buried samples, which would throw the cloth off.
     pub fn damp(&self, model: &Model, state: &State, h: f64, force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &contact.point;
@@ -202,8 +202,8 @@ impl Contacts {
     }
 }
 
-/// Whether a sample is buried: deeper in a solid than the offset, which happens when a solid is put over the cloth and not
-/// by motion, or remembered as buried and not yet out.
+/// Whether a sample is buried: deeper in a solid than the offset, which happens when a solid is put over the cloth and
+/// not by motion, or remembered as buried and not yet out.
 fn is_buried(model: &Model, state: &State, contact: &Contact, position: Vec3) -> bool {
     let depth = contact.plane.depth_of(position);
     let offset = model.contact.offset + contact.point.extra_offset;
@@ -305,7 +305,8 @@ fn find(
     });
 }
 
-/// The negative and the positive part of a symmetric matrix, both positive semidefinite: it is the second minus the first.
+/// The negative and the positive part of a symmetric matrix, both positive semidefinite: it is the second minus the
+/// first.
 fn split_by_sign(matrix: Matrix3<f64>) -> [Matrix3<f64>; 2] {
     let eigen = matrix.symmetric_eigen();
     let part = |sign: f64| {

@@ -24,8 +24,8 @@ pub struct Environment {
     pub damping: Damping,
     /// Contact settings.
     pub contact: ContactSettings,
-    /// Extra contact offset from solids of each layer over that of the next inner one [m], while layers pass through each
-    /// other; none where contact keeps their order. It applies when a structure is compiled.
+    /// Extra contact offset from solids of each layer over that of the next inner one [m], while layers pass through
+    /// each other; none where contact keeps their order. It applies when a structure is compiled.
     pub(crate) layers_apart: Option<f64>,
 }
 

@@ -5,7 +5,8 @@ use crate::newton::FirstOrder;
 use crate::{DrapeError, PseudoTransientContinuation, RestSettings, State, System, Workspace};
 use toile_geometry::{Vec2, Vec3};
 
-/// A system at rest with the memory of the solver: the last factor, the pseudo step and the share of negative curvature.
+/// A system at rest with the memory of the solver: the last factor, the pseudo step and the share of negative
+/// curvature.
 pub struct Equilibrium {
     pub(crate) system: System,
     pub(crate) state: State,

@@ -1,5 +1,5 @@
-//! Features of a world beyond elastic cloth under gravity, and the methods that support each. A world with a feature that
-//! its method does not support is refused.
+//! Features of a world beyond elastic cloth under gravity, and the methods that support each. A world with a feature
+//! that its method does not support is refused.
 
 use crate::world::{Kind, Object, World};
 use crate::{Compression, DrapeError, Material, MethodKind};

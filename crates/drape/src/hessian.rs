@@ -1,5 +1,6 @@
-//! The matrix of a Newton step: membrane, contact and inertia as 3x3 blocks over the mesh's edges, bending as scalars over
-//! two rings of neighbours, elastics between any two vertices. Rows are computed on demand; a direct solver factorises it.
+//! The matrix of a Newton step: membrane, contact and inertia as 3x3 blocks over the mesh's edges, bending as scalars
+//! over two rings of neighbours, elastics between any two vertices. Rows are computed on demand; a direct solver
+//! factorises it.
 
 use crate::collision::Couplings;
 use crate::{ElasticEnd, Model, System};
@@ -262,8 +263,8 @@ mod tests {
         cloth
     }
 
-    /// Norm of A x - b, b the weights, over that of b; and over what rounding x alone leaves,
-    /// |A| |x| + |b|, with pseudo steps of `step` seconds.
+    /// Norm of A x - b over the norm of b, the weights, and over |A| |x| + |b|, the scale of rounding, with pseudo
+    /// steps of `step` seconds.
     fn residuals(system: &System, positions: &[Vec3], step: f64) -> [f64; 2] {
         let state = State::at_rest(system, positions.to_vec());
         let mut workspace = Workspace::default();
@@ -321,8 +322,8 @@ mod tests {
     fn ill_conditioned_systems_are_solved() {
         let cloth = sheets(stiff(1e4));
         let mut system = System::new("sheets", &cloth).unwrap();
-        // Pseudo steps from the first to the longest of the way to rest; sheets that hang by one
-        // corner, and sheets that float, held by inertia alone.
+        // Pseudo steps from the first to the longest of pseudo-transient continuation; sheets pinned at one corner, and
+        // free sheets, whose matrix is regular by inertia alone.
         for (pins, step) in [
             (vec![], 0.02),
             (vec![], 1.0),
@@ -386,7 +387,7 @@ mod tests {
         assert!(held.fits(&system, &Couplings::default()));
         assert_eq!(held.factor.graph().vertex_count(), 441);
         assert!(held.factor.operations() < 0.51 * free.factor.operations());
-        // Contact with cloth that is pinned couples nothing, contact of what is free does.
+        // Contact with a pinned vertex adds no coupling, contact of free vertices does.
         let mut touching = Couplings::default();
         touching.add(3, 600, Matrix3::identity());
         touching.sort(system.vertex_count());

@@ -6,10 +6,10 @@
 //! methods add the same forces at their velocities ([`add_forces_of_motion`]). In statics
 //! ([`IncrementalPotential::begin_static`]) only internal strain and the steady force of the wind are left.
 //!
-//! Internal strain is that of a standard linear solid: S = C (E - p v) with v' = (E - v) / tau, p the relaxed
-//! fraction and tau the relaxation time. Under constant strain the stress falls to 1 - p of its first value;
-//! released, the cloth retains p of the strain at first and recovers over tau / (1 - p). The same holds for curvature. v is constant
-//! during a step; at its end it is integrated exactly for the strain reached ([`relax`]).
+//! Internal strain is that of a standard linear solid: S = C (E - p v) with v' = (E - v) / tau, p the relaxed fraction
+//! and tau the relaxation time. Under constant strain the stress falls to 1 - p of its first value; released, the cloth
+//! retains p of the strain at first and recovers over tau / (1 - p). The same holds for curvature. v is constant during
+//! a step; at its end it is integrated exactly for the strain reached ([`relax`]).
 
 use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};

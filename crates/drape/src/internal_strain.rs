@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The internal variable v of a triangle's standard linear solid, for stretch and for bending: the strain from which the
-/// relaxed fraction of the stress is measured.
+/// The internal variable v of a triangle's standard linear solid, for stretch and for bending: the strain from which
+/// the relaxed fraction of the stress is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InternalStrain {

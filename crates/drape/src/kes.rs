@@ -41,8 +41,8 @@ pub struct KesValues {
 }
 
 impl KesValues {
-    /// An elastic material. KES does not measure lateral contraction, so `poisson` is 0, nor bending along the bias, which is
-    /// set to the mean of warp and weft (618 fabrics have medians of
+    /// An elastic material. KES does not measure lateral contraction, so `poisson` is 0, nor bending along the bias,
+    /// which is set to the mean of warp and weft (618 fabrics have medians of
     /// 13.8, 8.8 and 11.5 uN m along warp, weft and bias; Feng et al. 2022).
     pub fn material(&self) -> Material {
         let curves = [0, 1].map(|k| tensile_curve(self.extension[k], self.linearity[k]));
@@ -60,8 +60,8 @@ impl KesValues {
         }
     }
 
-    /// Share of a fold that remains: KES bends to 2.5/cm and back, and at zero moment the curvature is HB / B. The larger of
-    /// warp and weft, at most 0.95, for [`Material::relaxed_fraction`].
+    /// Share of a fold that remains: KES bends to 2.5/cm and back, and at zero moment the curvature is HB / B. The
+    /// larger of warp and weft, at most 0.95, for [`Material::relaxed_fraction`].
     pub fn kept_fold(&self) -> f64 {
         let share = |k: usize| {
             let left = 0.5 * self.bending_hysteresis[k] / self.bending[k];

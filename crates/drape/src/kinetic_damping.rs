@@ -50,8 +50,8 @@ impl SwingWorkspace {
     }
 }
 
-/// Courant number: edges that a wave in the cloth passes in a substep. The error of one XPBD sweep makes the cloth softer
-/// by the square of this number, so it is below 1.
+/// Courant number: edges that a wave in the cloth passes in a substep. The error of one XPBD sweep makes the cloth
+/// softer by the square of this number, so it is below 1.
 const COURANT: f64 = 0.7;
 /// Longest substep [s].
 const LONGEST_SUBSTEP: f64 = 5e-4;
@@ -65,8 +65,8 @@ const LONGEST: f64 = 3.0;
 const LONGEST_CARRIED: f64 = 0.3;
 /// Mean speed [m/s] whose kinetic energy a peak must not exceed for the swing to end.
 const CALM: f64 = 0.0015;
-/// A peak of kinetic energy is a new low below this share of the lowest before. With crossings left, the swing ends after
-/// more than `PATIENCE` peaks without a new low.
+/// A peak of kinetic energy is a new low below this share of the lowest before. With crossings left, the swing ends
+/// after more than `PATIENCE` peaks without a new low.
 const LOWER: f64 = 0.8;
 const PATIENCE: u32 = 12;
 

@@ -1,8 +1,8 @@
-//! Simulation of cloth: worlds and scenes, models, states, materials, force laws, contact, elastics, merging, methods in
-//! time and to equilibrium. It does not depend on patterns, bodies, files or windows.
+//! Simulation of cloth: worlds and scenes, models, states, materials, force laws, contact, elastics, merging, methods
+//! in time and to equilibrium. It does not depend on patterns, bodies, files or windows.
 //!
-//! Five lifetimes: a [`Model`] is constant, a [`Control`] may change with each step, a [`State`] changes in time, contacts
-//! are recomputed, a [`Workspace`] is private memory. A model is compiled from a [`World`].
+//! Five lifetimes: a [`Model`] is constant, a [`Control`] may change with each step, a [`State`] changes in time,
+//! contacts are recomputed, a [`Workspace`] is private memory. A model is compiled from a [`World`].
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod bending_structure;

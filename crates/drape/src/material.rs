@@ -21,15 +21,16 @@ pub struct Material {
     /// Hardening k along warp and weft: stress C (E + k E^3) in tension. 0 is a linear law; a
     /// weave whose stiffness doubles at 5 % of stretch has 130.
     pub hardening: [f64; 2],
-    /// Stretch beyond which warp and weft are 100 times as stiff, as a share of the rest length; infinite for none. Usual:
+    /// Stretch beyond which warp and weft are 100 times as stiff, as a share of the rest length; infinite for none.
+    /// Usual:
     /// 0.01 to 0.1.
     pub strain_limit: [f64; 2],
     /// Law of the membrane under compression.
     pub compression: Compression,
     /// Bending stiffness of strips cut along warp, weft and bias [N m].
     pub bend: [f64; 3],
-    /// Poisson ratio in bending: how much a fold along the warp bends the weft the other way. Little
-    /// measured; 0 for cloth.
+    /// Poisson ratio in bending: curvature of the weft opposed to that of the warp. Rarely measured; 0 for
+    /// cloth.
     pub bend_poisson: f64,
     /// Viscosity of stretch and shear (Kelvin-Voigt) [N s/m].
     pub viscosity: f64,
@@ -122,7 +123,8 @@ impl Material {
         bending_matrix(self.plate())
     }
 
-    /// D_warp, D_weft, D_nu, D_twist [N m]. A strip can curl across, so it is softer than a plate by the factor 1 - nu^2: D_warp = B_warp / (1 - nu^2), D_nu = nu sqrt(D_warp D_weft).
+    /// D_warp, D_weft, D_nu, D_twist [N m]. A strip can curl across, so it is softer than a plate by the factor 1 -
+    /// nu^2: D_warp = B_warp / (1 - nu^2), D_nu = nu sqrt(D_warp D_weft).
     fn plate(&self) -> [f64; 4] {
         let spread = 1.0 - self.bend_poisson * self.bend_poisson;
         let [warp, weft, bias] = self.bend.map(|b| b / spread);
@@ -166,7 +168,7 @@ impl Material {
     /// Checks every number.
     ///
     /// # Errors
-    /// Names the first number that cannot be simulated and what would be right.
+    /// The first number out of range, with the remedy.
     pub fn check(&self, object: &str) -> Result<(), DrapeError> {
         // An exhaustive pattern: a new field does not compile before it is checked.
         let &Self {

@@ -5,8 +5,8 @@ use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Measures of one state. Crossings and depths of objects that ignore each other ([`PairPolicies`](crate::PairPolicies))
-/// do not count.
+/// Measures of one state. Crossings and depths of objects that ignore each other
+/// ([`PairPolicies`](crate::PairPolicies)) do not count.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Norm of the net forces over the norm of the weights, over free vertices; contact and
@@ -143,8 +143,8 @@ pub fn measure(
     measures
 }
 
-/// Pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of objects that ignore
-/// each other.
+/// Pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of objects that
+/// ignore each other.
 pub(crate) fn self_intersections(system: &System, cloth: &SurfaceTree) -> Vec<[u32; 2]> {
     let mut pairs = cloth.self_intersections();
     let triangles = &cloth.mesh().triangles;

@@ -4,8 +4,8 @@ use crate::laws::membrane::Curvature;
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// Memory of a method from step to step beside positions and velocities. Other methods than the one that wrote it ignore
-/// it.
+/// Memory of a method from step to step beside positions and velocities. Other methods than the one that wrote it
+/// ignore it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Memory {

@@ -23,8 +23,8 @@ impl Sets {
         v
     }
 
-    /// Unites two sets, given by their roots. The smaller root remains, so that the result does not depend on the order of
-    /// pairs.
+    /// Unites two sets, given by their roots. The smaller root remains, so that the result does not depend on the order
+    /// of pairs.
     fn join(&mut self, [a, b]: [u32; 2]) {
         self.parent[a.max(b) as usize] = a.min(b);
     }
@@ -36,8 +36,8 @@ pub(crate) fn keeps_corners(triangle: [u32; 3], target: &[u32]) -> bool {
     a != b && b != c && c != a
 }
 
-/// Merges `count` vertices by pairs. Returns the new index of each vertex and the number of new vertices; new indices are
-/// in the order of the smallest old vertex.
+/// Merges `count` vertices by pairs. Returns the new index of each vertex and the number of new vertices; new indices
+/// are in the order of the smallest old vertex.
 pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
     let mut sets = Sets::new(count);
     for pair in pairs {

@@ -122,15 +122,15 @@ impl MethodKind {
             .map_or("", |(name, _)| name)
     }
 
-    /// Whether the method converges to states with balanced forces of the model, so that net force over weight measures the
-    /// distance from equilibrium. `xpbd` does not: its unconverged constraints act as additional compliance, and its
-    /// friction has no anchors.
+    /// Whether the method converges to states with balanced forces of the model, so that net force over weight measures
+    /// the distance from equilibrium. `xpbd` does not: its unconverged constraints act as additional compliance, and
+    /// its friction has no anchors.
     pub fn balances_forces(self) -> bool {
         self != Self::Xpbd
     }
 
-    /// Largest stable product of angular frequency and substep of an undamped vibration: none for implicit methods, which
-    /// have no limit, and 0 for forward Euler.
+    /// Largest stable product of angular frequency and substep of an undamped vibration: none for implicit methods,
+    /// which have no limit, and 0 for forward Euler.
     pub fn stability_limit(self) -> Option<f64> {
         match self {
             Self::ForwardEuler => Some(0.0),

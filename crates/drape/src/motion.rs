@@ -16,8 +16,8 @@ pub struct MotionKey {
     pub rotation: Vec3,
 }
 
-/// A rigid motion. Translation and rotation vector are linear between two keys, so the angular velocity is constant where
-/// the axis is; before the first key and after the last the body is at rest.
+/// A rigid motion. Translation and rotation vector are linear between two keys, so the angular velocity is constant
+/// where the axis is; before the first key and after the last the body is at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {

@@ -4,7 +4,8 @@
 pub const BETWEEN_OBJECTS: u16 = u16::MAX;
 
 /// Pairs of objects that ignore each other. A pair of features of two such objects makes no contact, no impact and no
-/// recovery force; a contact sample of an object that ignores a solid makes no contact with it. The default has no pair.
+/// recovery force; a contact sample of an object that ignores a solid makes no contact with it. The default has no
+/// pair.
 ///
 /// A feature (vertex, edge, face, or sample) belongs to the object of its vertices; one whose vertices all are
 /// [`BETWEEN_OBJECTS`] belongs to none and ignores none.
@@ -100,7 +101,8 @@ impl PairPolicies {
         others
     }
 
-    /// The object of a contact sample on some vertices, for [`Self::ignores_solid`]; none where no object ignores a solid.
+    /// The object of a contact sample on some vertices, for [`Self::ignores_solid`]; none where no object ignores a
+    /// solid.
     #[inline]
     pub(crate) fn object_of_sample(&self, vertices: &[u32]) -> Option<u16> {
         if self.ignored_solids.is_empty() {

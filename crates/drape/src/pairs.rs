@@ -40,8 +40,8 @@ impl Pairs {
         self.pairs.is_empty()
     }
 
-    /// Adds an iterate with its gradient. The step from the last iterate becomes a pair if its curvature s.y is positive;
-    /// at most `most` pairs remain.
+    /// Adds an iterate with its gradient. The step from the last iterate becomes a pair if its curvature s.y is
+    /// positive; at most `most` pairs remain.
     pub fn push(&mut self, x: &[Vec3], gradient: &[Vec3], most: usize) {
         if self.iterate.len() == x.len() {
             let mut pair = match self.pairs.len() >= most {
@@ -67,8 +67,9 @@ impl Pairs {
         self.gradient.extend_from_slice(gradient);
     }
 
-    /// The descent direction at the last iterate by the two-loop recursion (Nocedal and Wright 2006, algorithm 7.4): q = g; for the pairs from new to old a_i = s_i.q / s_i.y_i, q -= a_i y_i; r = A^-1 q; from
-    /// old to new r += (a_i - y_i.r / s_i.y_i) s_i; the direction is -r. `solve` gives A^-1 of a vector.
+    /// The descent direction at the last iterate by the two-loop recursion (Nocedal and Wright 2006, algorithm 7.4):
+    /// q = g; for the pairs from new to old a_i = s_i.q / s_i.y_i, q -= a_i y_i; r = A^-1 q;
+    /// from old to new r += (a_i - y_i.r / s_i.y_i) s_i; the direction is -r. `solve` gives A^-1 of a vector.
     pub fn descent_direction(
         &mut self,
         direction: &mut [Vec3],

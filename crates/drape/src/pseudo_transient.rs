@@ -1,9 +1,9 @@
-//! Equilibrium by pseudo-transient continuation (Kelley and Keyes 1998). Each step is one Newton iteration with an added
-//! inertia m/h^2 about the present positions. The pseudo step h grows while full steps lower the residual and shrinks
-//! when the line search cuts a step: far from rest steps are short, near rest they are those of Newton's method. After
-//! each Newton step follow chord steps with the same factor, and then regions with most of the net force are solved by
-//! themselves (nonlinear elimination). The Hessian has the largest tried share of the negative curvature of compression
-//! with which it is positive definite.
+//! Equilibrium by pseudo-transient continuation (Kelley and Keyes 1998). Each step is one Newton iteration with an
+//! added inertia m/h^2 about the present positions. The pseudo step h grows while full steps lower the residual and
+//! shrinks when the line search cuts a step: far from rest steps are short, near rest they are those of Newton's
+//! method. After each Newton step follow chord steps with the same factor, and then regions with most of the net force
+//! are solved by themselves (nonlinear elimination). The Hessian has the largest tried share of the negative curvature
+//! of compression with which it is positive definite.
 
 use crate::laws::membrane::Curvature;
 use crate::measure::{residual, weight_norm};
@@ -132,8 +132,8 @@ impl PseudoTransientContinuation {
     /// Takes one step.
     ///
     /// # Errors
-    /// Numbers that are not finite; no step that lowers the potential although the residual is not reached. The state is
-    /// then the last good one.
+    /// Numbers that are not finite; no step that lowers the potential although the residual is not reached. The state
+    /// is then the last good one.
     pub fn advance(
         &mut self,
         system: &System,
@@ -202,8 +202,8 @@ impl PseudoTransientContinuation {
         Ok(())
     }
 
-    /// Enlarges the pseudo step after a full step that does not raise the residual; shortens it where the line search or
-    /// the longest displacement limited the step.
+    /// Enlarges the pseudo step after a full step that does not raise the residual; shortens it where the line search
+    /// or the longest displacement limited the step.
     fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
         let (fraction, moved) = (report.fraction, report.moved);
         self.memory.curvature = report.next_curvature();

@@ -57,8 +57,8 @@ impl RestData {
         })
     }
 
-    /// The data for other rest shapes of the same topology. With a structure of bending unchanged stencils are shared, and
-    /// [`Self::curvatures`] must be those of `self`.
+    /// The data for other rest shapes of the same topology. With a structure of bending unchanged stencils are shared,
+    /// and [`Self::curvatures`] must be those of `self`.
     ///
     /// # Errors
     /// A triangle without area, or one that is ill-conditioned in the structure; the message names `object`.

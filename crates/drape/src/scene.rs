@@ -65,7 +65,7 @@ pub enum ObjectKind {
     },
     /// The simulation: it is cloth.
     Deformable {
-        /// What it is made of.
+        /// Its material.
         material: Material,
         /// Vertices that do not move.
         pins: Vec<u32>,
@@ -83,8 +83,8 @@ pub struct SceneObject {
     pub mesh: TriangleMesh,
     /// Rest shape of a garment's panels; none where the mesh itself is the rest shape.
     pub cloth: Option<Cloth>,
-    /// Layer of a cloth among cloths worn over one another. Larger numbers lie farther out, on the side of the inner ones'
-    /// normals; cloths of one layer have no order.
+    /// Layer of a cloth among cloths worn over one another. Larger numbers lie farther out, on the side of the inner
+    /// ones' normals; cloths of one layer have no order.
     pub layer: u16,
 }
 

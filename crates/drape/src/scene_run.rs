@@ -305,8 +305,8 @@ impl SceneRun {
         Ok(edited)
     }
 
-    /// Refines contact samples of triangles that cross a solid although their corners are clear of it: where the solid is
-    /// too sharp for the mesh.
+    /// Refines contact samples of triangles that cross a solid although their corners are clear of it: where the solid
+    /// is too sharp for the mesh.
     fn refine(&mut self) {
         let Simulation { system, state, .. } = &mut self.simulation;
         if system.colliders.is_empty() || self.refinements >= MOST_REFINEMENTS {
@@ -400,8 +400,8 @@ impl SceneRun {
         whole_energy(system, state, &mut self.workspace)
     }
 
-    /// Number of pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of objects
-    /// that ignore each other.
+    /// Number of pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of
+    /// objects that ignore each other.
     pub fn crossings(&self) -> usize {
         let mesh = self.system.mesh(&self.state.positions);
         self_intersections(&self.system, &SurfaceTree::new(mesh)).len()

@@ -20,8 +20,8 @@ pub struct StepSettings {
 /// Most halvings of a step, to a thousandth of its size.
 const STEP_HALVINGS: u32 = 10;
 
-/// Advances by `settings.step`, in smaller steps after a failure. Returns the report of the last solve and the number of
-/// steps.
+/// Advances by `settings.step`, in smaller steps after a failure. Returns the report of the last solve and the number
+/// of steps.
 ///
 /// # Errors
 /// Failure of the smallest step; the state is then unchanged.

@@ -57,8 +57,8 @@ impl Numbers {
             .any(|(v, w)| *w != 0.0 && own(v))
     }
 
-    /// The bending entries with an own vertex. The energy counts a pair once in the row of each of its vertices, so rows of
-    /// the rim have their entries with own vertices.
+    /// The bending entries with an own vertex. The energy counts a pair once in the row of each of its vertices, so
+    /// rows of the rim have their entries with own vertices.
     fn bending(&mut self, system: &System) -> Vec<(u32, u32, f64)> {
         let mut entries = Vec::new();
         for i in 0..self.own {
@@ -134,8 +134,8 @@ impl Numbers {
 }
 
 impl SubModel {
-    /// The submodel of some free vertices; `contacts` are those of cloth with cloth. It has no viscosity, no internal strain
-    /// of bending and no wind: [`crate::newton::elimination`] refuses systems with these.
+    /// The submodel of some free vertices; `contacts` are those of cloth with cloth. It has no viscosity, no internal
+    /// strain of bending and no wind: [`crate::newton::elimination`] refuses systems with these.
     pub fn new(system: &System, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
         let corners = (own.iter()).flat_map(|&v| system.topology.corners_of(v as usize));
         let mut used: Vec<u32> = corners.map(|corner| corner / 3).collect();
@@ -328,7 +328,7 @@ mod tests {
                 .all(|g| *g == Vec3::zeros())
         );
 
-        // Its vertices moved: the same change of the potential.
+        // A displacement of its own vertices changes both potentials equally.
         let moved = |v: u32| 1e-3 * Vec3::new(0.0, f64::from(v % 5) - 2.0, f64::from(v % 3) - 1.0);
         let mut there = [state.positions.clone(), submodel.state.positions.clone()];
         for (k, &v) in own.iter().enumerate() {

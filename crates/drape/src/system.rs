@@ -35,7 +35,7 @@ impl Deref for System {
 }
 
 impl System {
-    /// A cloth that hangs free on earth.
+    /// A free cloth under gravity.
     ///
     /// # Errors
     /// Bad indices, triangles without area, materials that cannot be simulated; the message names `object`.
@@ -70,12 +70,12 @@ impl System {
         builder.build()
     }
 
-    /// The system with other rest shapes for the triangles of [`Topology::surface_triangles`], in the same order [m]. The
-    /// topology is shared; at the first change it is replaced by one with a structure of bending.
+    /// The system with other rest shapes for the triangles of [`Topology::surface_triangles`], in the same order [m].
+    /// The topology is shared; at the first change it is replaced by one with a structure of bending.
     ///
     /// # Errors
-    /// A wrong number of shapes, one without area, and [`DrapeError::NeedsRemesh`] for ill-conditioned ones; the message
-    /// names `object`.
+    /// A wrong number of shapes, one without area, and [`DrapeError::NeedsRemesh`] for ill-conditioned ones; the
+    /// message names `object`.
     pub fn reshaped(&self, object: &str, rest: Vec<[Vec2; 3]>) -> Result<Self, DrapeError> {
         let count = self.topology.triangles.len();
         if rest.len() != count {
@@ -209,7 +209,7 @@ pub struct SystemBuilder {
 }
 
 impl SystemBuilder {
-    /// A cloth that hangs free on earth.
+    /// A free cloth under gravity.
     ///
     /// # Errors
     /// Bad indices, triangles without area, materials that cannot be simulated; the message names `object`.
@@ -258,8 +258,8 @@ impl SystemBuilder {
         self.pinned.len()
     }
 
-    /// Enlarges the contact offset of outer layers from solids, by `apart` [m] for each layer inside of them; `layer` has the
-    /// layer of each vertex, or is empty.
+    /// Enlarges the contact offset of outer layers from solids, by `apart` [m] for each layer inside of them; `layer`
+    /// has the layer of each vertex, or is empty.
     pub(crate) fn offset_layers(&mut self, layer: &[u16], apart: f64) {
         let mut layers = layer.to_vec();
         layers.sort_unstable();

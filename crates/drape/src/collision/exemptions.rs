@@ -82,8 +82,8 @@ impl ContactExemptions {
         self.policies.clone_from(&model.policies);
     }
 
-    /// Marks the vertices of an entanglement, and those round crossings that persist. `crossing_counts` has the counts of
-    /// the last detection.
+    /// Marks the vertices of an entanglement, and those round crossings that persist. `crossing_counts` has the counts
+    /// of the last detection.
     pub(super) fn mark(
         &mut self,
         surface: &ClothSurface,

@@ -1,5 +1,5 @@
-//! Edits of the pattern of a worn garment: other rest shapes, or another mesh of the same panels. The simulation goes on
-//! from the present positions.
+//! Edits of the pattern of a worn garment: other rest shapes, or another mesh of the same panels. The simulation goes
+//! on from the present positions.
 
 use super::stage::{Attempts, Settling};
 use super::{GarmentLevel, GarmentRun, Stage, StageState};
@@ -17,8 +17,8 @@ impl GarmentRun {
     /// on from its present positions without velocity; friction anchors stay.
     ///
     /// # Errors
-    /// A garment that is sewn or on a coarser mesh; too few or too many shapes, or one without area. The garment is then
-    /// unchanged.
+    /// A garment that is sewn or on a coarser mesh; too few or too many shapes, or one without area. The garment is
+    /// then unchanged.
     pub fn reshape(&mut self, rest: Vec<[Vec2; 3]>, counted: Vec<bool>) -> Result<(), DrapeError> {
         self.refuse_edit()?;
         let level = &self.setup.levels[self.level];

@@ -191,8 +191,8 @@ impl GarmentRun {
         }
     }
 
-    /// Restarts the settling of a merged garment with all the steps of its setup, after a caller changed the attachments
-    /// of its control. No effect in other stages.
+    /// Restarts the settling of a merged garment with all the steps of its setup, after a caller changed the
+    /// attachments of its control. No effect in other stages.
     pub fn unsettle(&mut self) {
         if let StageState::Settling(settling) | StageState::Finished(settling) = &self.stage {
             let mut settling = settling.clone();
@@ -223,8 +223,8 @@ impl GarmentRun {
         self.tally.then(swinging).then(settling)
     }
 
-    /// Number of symbolic factorisations and constraint layouts in the present stage: one, and one for each change of the
-    /// model.
+    /// Number of symbolic factorisations and constraint layouts in the present stage: one, and one for each change of
+    /// the model.
     pub fn structures(&self) -> usize {
         self.swing_workspace.builds() + self.workspace.structures()
     }

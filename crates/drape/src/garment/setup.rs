@@ -84,8 +84,8 @@ impl GarmentSetup {
         Ok(self)
     }
 
-    /// The environment of sewing: no gravity, no friction. Layers pass through each other; the contact offset from solids
-    /// grows with the layer, so that most of each comes to lie in order.
+    /// The environment of sewing: no gravity, no friction. Layers pass through each other; the contact offset from
+    /// solids grows with the layer, so that most of each comes to lie in order.
     pub(super) fn sewing_environment(&self) -> Environment {
         Environment {
             gravity: Vec3::zeros(),

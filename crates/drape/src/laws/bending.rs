@@ -1,15 +1,14 @@
 //! Bending on a triangle mesh whose only unknowns are the positions of its vertices.
 //!
 //! The curvature of a triangle is the mean of the second derivatives over it, which Gauss's theorem converts to a sum
-//! over its edges,
-//! kappa_T = 1/A sum_e l_e sym(n_e (x) g_e), with g_e the gradient of the surface at the edge's
-//! midpoint. Along the edge g_e is the difference of its ends; across it, it is estimated from the
-//! vertices around, **once for both triangles** and **exactly for every parabola**. With the first property
-//! a constant moment is balanced at each inner vertex, so that no mesh is too soft; with the second a cylinder has the exact
-//! energy, so that no mesh is too stiff. These are the two patch tests. Estimates that pass only one do not converge on
-//! irregular meshes: parabolas fitted triangle by triangle were 6 to 38 % too soft, edge gradients averaged from the two triangles (Onate and Zarate 2000, whose
-//! sum over edges this is) 15 to 30 % too stiff. The error of
-//! this one is 0.05 % with 40 elements along a cantilever on every kind of mesh, and quadratic in the element size.
+//! over its edges, kappa_T = 1/A sum_e l_e sym(n_e (x) g_e), with g_e the gradient of the surface at the edge's
+//! midpoint. Along the edge g_e is the difference of its ends; across it, it is estimated from the vertices around,
+//! **once for both triangles** and **exactly for every parabola**. With the first property a constant moment is
+//! balanced at each inner vertex, so that no mesh is too soft; with the second a cylinder has the exact energy, so that
+//! no mesh is too stiff. These are the two patch tests. Estimates that pass only one do not converge on irregular
+//! meshes: parabolas fitted triangle by triangle were 6 to 38 % too soft, edge gradients averaged from the two
+//! triangles (Onate and Zarate 2000, whose sum over edges this is) 15 to 30 % too stiff. This one has an error of
+//! 0.05 % with 40 elements along a cantilever on every kind of mesh, quadratic in the element size.
 //!
 //! Curvatures are linear in the vertex positions, so E = A/2 kappa : D : kappa is quadratic with a
 //! constant positive semidefinite Hessian that is the same for x, y and z. No moment acts at a free
@@ -110,8 +109,8 @@ impl RestSheet<'_> {
         edges.map(|edge| self.across(edge, None)).collect()
     }
 
-    /// The stencils of some triangles with numbers of rings chosen for other rest shapes: the vertices of a stencil depend
-    /// on triangles and rings only.
+    /// The stencils of some triangles with numbers of rings chosen for other rest shapes: the vertices of a stencil
+    /// depend on triangles and rings only.
     ///
     /// # Errors
     /// A triangle whose estimate is ill-conditioned with these rings.

@@ -18,9 +18,9 @@ pub struct ContactLaw {
     pub hard_from: f64,
 }
 
-/// Factor of the additional stiffness of a contact beyond its hard depth. A linear spring between two cloths has its largest
-/// force when they touch: under a greater load only step truncation would keep them apart, and no method would reach
-/// equilibrium.
+/// Factor of the additional stiffness of a contact beyond its hard depth. A linear spring between two cloths has its
+/// largest force when they touch: under a greater load only step truncation would keep them apart, and no method would
+/// reach equilibrium.
 pub const HARDER: f64 = 100.0;
 
 /// A point near a surface, with a second-order model of the surface at it.
@@ -96,11 +96,10 @@ impl ContactLaw {
 
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
     ///
-    /// Normal part: k d^2 / 2 for depth d > 0, and [`HARDER`] k (d - h)^2 / 2 more beyond the hard depth h.
-    /// Its Hessian has k g g' and, where the surface is
-    /// concave, the change of the normal along the surface: without it Newton's steps in an armpit are several times too
-    /// long and do not converge. Tangential part: the Huber function of the slip
-    /// from the anchor with limit mu N; N is lagged, so that friction has a potential.
+    /// Normal part: k d^2 / 2 for depth d > 0, and [`HARDER`] k (d - h)^2 / 2 more beyond the hard depth h. Its Hessian
+    /// has k g g' and, where the surface is concave, the change of the normal along the surface: without it Newton's
+    /// steps in an armpit are several times too long and do not converge. Tangential part: the Huber function of the
+    /// slip from the anchor with limit mu N; N is lagged, so that friction has a potential.
     pub fn evaluate(&self, plane: &ContactPlane, point: Vec3) -> (f64, Vec3, Matrix3<f64>) {
         let n = plane.normal;
         let depth = plane.depth_of(point);
@@ -139,8 +138,8 @@ impl ContactLaw {
         (energy, gradient, hessian)
     }
 
-    /// The Hessian of [`Self::evaluate`] minus the exact one, from the convex curvature of the surface, which destabilises
-    /// sliding [N/m].
+    /// The Hessian of [`Self::evaluate`] minus the exact one, from the convex curvature of the surface, which
+    /// destabilises sliding [N/m].
     pub fn missing_curvature(&self, plane: &ContactPlane, point: Vec3) -> Matrix3<f64> {
         let [_, force, _] = self.normal_spring(plane.depth_of(point));
         plane.bulge * force
@@ -173,8 +172,8 @@ impl ContactLaw {
         energy
     }
 
-    /// Force on a landing point above the surface with which the Newton step ends at the surface: that of the normal spring
-    /// extended to negative depths \[N\]. None for other points.
+    /// Force on a landing point above the surface with which the Newton step ends at the surface: that of the normal
+    /// spring extended to negative depths \[N\]. None for other points.
     pub fn pull_down(&self, plane: &ContactPlane, point: Vec3) -> Option<Vec3> {
         let depth = plane.depth_of(point);
         (plane.landing && depth < 0.0).then(|| plane.gradient * (self.normal * depth))
@@ -203,8 +202,8 @@ impl ContactLaw {
         force * plane.gradient.norm()
     }
 
-    /// The anchor after a step [m]: unchanged inside the friction cone of `normal_force`, else moved to the boundary of the
-    /// cone (return mapping).
+    /// The anchor after a step [m]: unchanged inside the friction cone of `normal_force`, else moved to the boundary of
+    /// the cone (return mapping).
     pub fn slide(&self, plane: &ContactPlane, point: Vec3, normal_force: f64) -> Vec3 {
         let n = plane.normal;
         let offset = point - plane.anchor;

@@ -38,8 +38,8 @@ impl FoldTerm {
         -self.internal_moment.dot(&s) + 0.5 * change.dot(&(self.viscous * change))
     }
 
-    /// Gradient of the energy with respect to the three curvature vectors [N m2], and to the corners through the normal [N].
-    /// None for a triangle without area, which has no normal.
+    /// Gradient of the energy with respect to the three curvature vectors [N m2], and to the corners through the normal
+    /// [N]. None for a triangle without area, which has no normal.
     pub fn gradient(&self, x: [Vec3; 3], curvature: [Vec3; 3]) -> Option<([Vec3; 3], [Vec3; 3])> {
         let normal = area_normal(x);
         let size = normal.norm();

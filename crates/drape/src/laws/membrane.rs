@@ -21,8 +21,8 @@ pub struct MembraneElement {
     pub area: f64,
 }
 
-/// Share of the negative curvature of compression in a Hessian, 0..=1. With 1 the Hessian is exact, and indefinite where
-/// cloth is about to buckle.
+/// Share of the negative curvature of compression in a Hessian, 0..=1. With 1 the Hessian is exact, and indefinite
+/// where cloth is about to buckle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curvature(pub f64);
 
@@ -123,8 +123,8 @@ impl MembraneElement {
         (self.area * density, gradient)
     }
 
-    /// Gradient with respect to one corner [N] and the positive semidefinite diagonal block of the Hessian [N/m]: one corner
-    /// of [`Self::gradient`] and [`Self::hessian`].
+    /// Gradient with respect to one corner [N] and the positive semidefinite diagonal block of the Hessian [N/m]: one
+    /// corner of [`Self::gradient`] and [`Self::hessian`].
     pub fn corner(&self, law: &impl StrainLaw, x: [Vec3; 3], i: usize) -> (Vec3, Matrix3<f64>) {
         let [fu, fv] = self.tangents(x);
         let strain = green_strain([fu, fv]);
@@ -146,9 +146,9 @@ impl MembraneElement {
 
     /// The Hessian: blocks of the corner pairs 00, 01, 02, 11, 12, 22 [N/m].
     ///
-    /// The material part is positive semidefinite. The geometric part is the 2x2 stress times the identity; its negative
-    /// (compressive) principal stresses are multiplied by `curvature`: with 0 the matrix is exact in tension and positive
-    /// semidefinite where the cloth buckles.
+    /// The material part is positive semidefinite. The geometric part is the 2x2 stress times the identity; its
+    /// negative (compressive) principal stresses are multiplied by `curvature`: with 0 the matrix is exact in tension
+    /// and positive semidefinite where the cloth buckles.
     pub fn hessian(
         &self,
         law: &impl StrainLaw,

@@ -41,9 +41,9 @@ const LARGEST_INVERSE: f64 = 1e3;
 const MOST_RINGS: u8 = 3;
 
 impl RestSheet<'_> {
-    /// The estimate of the derivative across an edge between two triangles, with a given number of rings, or with the least
-    /// number that is well conditioned. None at a free edge, at an edge of more than two triangles, and where the given
-    /// number is ill-conditioned.
+    /// The estimate of the derivative across an edge between two triangles, with a given number of rings, or with the
+    /// least number that is well conditioned. None at a free edge, at an edge of more than two triangles, and where the
+    /// given number is ill-conditioned.
     pub(super) fn across(&self, edge: usize, given_rings: Option<u8>) -> Option<Across> {
         let [first, second] = self.topology.edge_triangles[edge][..] else {
             return None;
@@ -107,8 +107,8 @@ impl RestSheet<'_> {
         edges.iter().position(|&other| other as usize == edge)
     }
 
-    /// The mean of the two triangles' derivatives along `n`, weighted by their heights over the edge, so that the weights of
-    /// a sliver are bounded.
+    /// The mean of the two triangles' derivatives along `n`, weighted by their heights over the edge, so that the
+    /// weights of a sliver are bounded.
     fn blend(
         &self,
         pair: [u32; 2],

@@ -5,13 +5,13 @@
 //! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2)
 //!   + 1/4 (C11 k_u <E_uu>^4 + C22 k_v <E_vv>^4) + W_limit(E_uu) + W_limit(E_vv),
 //!
-//! where `<x>` = max(x, 0): along a thread S = C (E + k E^3), the J-shaped curve of a woven cloth, whose yarns lose their
-//! crimp before they stretch.
+//! where `<x>` = max(x, 0): along a thread S = C (E + k E^3), the J-shaped curve of a woven cloth, whose yarns lose
+//! their crimp before they stretch.
 //!
-//! The strain limit adds K r(E - L) to the stress, with L the limit as Green strain, K = 100 C,
-//! r(x) = 0 below zero, x^2 / (2 d) up to d = L / 50, then x - d / 2. Energy and stress are smooth,
-//! the stiffness is continuous and bounded, so a cloth may start far beyond its limit. At twice the load that reaches the
-//! limit, the strain exceeds the limit by 2 %.
+//! The strain limit adds K r(E - L) to the stress, with L the limit as Green strain, K = 100 C, r(x) = 0 below zero,
+//! x^2 / (2 d) up to d = L / 50, then x - d / 2. Energy and stress are smooth, the stiffness is continuous and bounded,
+//! so a cloth may start far beyond its limit. At twice the load that reaches the limit, the strain exceeds the limit by
+//! 2 %.
 //!
 //! In a tension field the first line is replaced by the least energy over all finer wrinkles (Pipkin
 //! 1986): min over A >= 0 of W(E + A), whose dual is max over stresses S >= 0 of

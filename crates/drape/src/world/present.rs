@@ -58,8 +58,8 @@ impl Present<'_> {
         (prescribed, gripped)
     }
 
-    /// For each pair of mesh vertices whether it may merge. Two prescribed vertices may only where both are pinned at the
-    /// same position.
+    /// For each pair of mesh vertices whether it may merge. Two prescribed vertices may only where both are pinned at
+    /// the same position.
     fn joinable(&self, pairs: &[[MeshVertex; 2]]) -> Vec<bool> {
         let (prescribed, gripped) = self.prescribed();
         let x = &self.state.positions;

@@ -226,7 +226,7 @@ impl Simulation {
         }
     }
 
-    /// Pairs of vertices that attachments have drawn close enough to become one, and may.
+    /// Pairs of vertices that may merge and are within the merging distance of their attachment.
     pub(crate) fn closed_pairs(&self) -> Vec<[MeshVertex; 2]> {
         self.present().closed_pairs()
     }

@@ -114,9 +114,9 @@ impl Transfer {
         }
     }
 
-    /// Positions [m] and velocities [m/s] of the new vertices. A prescribed vertex keeps its position to the bit; others
-    /// meet as `meeting` says, with the velocity that keeps their total momentum. `mass` is that of the former vertices
-    /// [kg], zero for a vertex without cloth.
+    /// Positions [m] and velocities [m/s] of the new vertices. A prescribed vertex keeps its position to the bit;
+    /// others meet as `meeting` says, with the velocity that keeps their total momentum. `mass` is that of the former
+    /// vertices [kg], zero for a vertex without cloth.
     pub fn motion(
         &self,
         state: &State,
@@ -169,8 +169,8 @@ impl Transfer {
         }
     }
 
-    /// A vector for each new vertex from those of the former ones: the vector of the prescribed vertex among its origins,
-    /// else their weighted mean; for an object that starts, `start` of position and velocity.
+    /// A vector for each new vertex from those of the former ones: the vector of the prescribed vertex among its
+    /// origins, else their weighted mean; for an object that starts, `start` of position and velocity.
     fn blend(&self, weights: &[f64], of: &[Vec3], start: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<Vec3> {
         let vector = |origin: &Origin| match origin {
             Origin::Start(position, velocity) => start(*position, *velocity),
