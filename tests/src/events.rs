@@ -13,7 +13,8 @@ use toile_measure::Measurements;
 use toile_pattern::{Edit, Evaluation, PartId, Pattern, plan};
 use toile_session::{Command, Session, Silent};
 use toile_ui::{
-    Beginning, Held, Item, Menu, Overlay, Pointer, ToileApp, ToolEvent, UiCommand, commands, named,
+    Beginning, Item, Menu, Overlay, Pointer, ToileApp, ToolEvent, ToolModifiers, UiCommand,
+    commands, named,
 };
 
 /// Events of one run: fewer than a history and a journal keep.
@@ -242,7 +243,7 @@ impl Run {
                     true => {
                         let mut way = || self.random.between(-0.05, 0.05);
                         let table = from.table + Vec2::new(way(), way());
-                        self.app.view().pointer(table, from.held)
+                        self.app.view().pointer(table, from.modifiers)
                     }
                     false => self.pointer(),
                 };
@@ -301,11 +302,11 @@ impl Run {
                 Vec2::new(place(), place())
             }
         };
-        let held = Held {
+        let modifiers = ToolModifiers {
             shift: self.random.percent(15),
             command: self.random.percent(5),
         };
-        self.app.view().pointer(table, held)
+        self.app.view().pointer(table, modifiers)
     }
 
     fn click(&mut self) {

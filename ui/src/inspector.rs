@@ -1,5 +1,9 @@
 //! The inspector: what is selected, with its name and numbers, each a value or a formula.
 
+mod guide_place;
+mod several;
+mod steps;
+
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
 use crate::fields::{Entered, choice};

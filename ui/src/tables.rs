@@ -1,7 +1,7 @@
 //! Tables under the pattern: measurements by size, variables, the history.
 
 use crate::app::ToileApp;
-use crate::app::shows::Tab;
+use crate::app::panes::Tab;
 use crate::fields::Entered;
 use crate::inspector::number_field_id;
 use crate::theme::Palette;
@@ -295,7 +295,7 @@ impl ToileApp {
         let table = match pattern.sizes.last() {
             Some(last) => last.measurements.clone(),
             None => {
-                let wearer = self.session.project().wearer();
+                let wearer = self.session.project().body_measurements();
                 let mut table = Measurements::new();
                 for name in FIRST {
                     if let Some(found) = wearer.measured(name) {
@@ -313,7 +313,7 @@ impl ToileApp {
 
     /// A measurement in every size, as far as the wearer has it.
     fn add_measurement(&mut self, name: &str) {
-        let wearer = self.session.project().wearer();
+        let wearer = self.session.project().body_measurements();
         let value = wearer.get(name).unwrap_or(0.5);
         let sizes = self.base.pattern().sizes.clone();
         let mut edits = Vec::new();

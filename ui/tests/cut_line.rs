@@ -8,7 +8,7 @@ use toile_cut::CutPiece;
 use toile_geometry::{Vec2, point_segment_distance};
 use toile_pattern::{PanelId, Pattern, PointId};
 use toile_session::Command;
-use toile_ui::{Beginning, Held, ToileApp, ToolEvent, named};
+use toile_ui::{Beginning, ToileApp, ToolEvent, ToolModifiers, named};
 
 /// Farthest the drawn line may be from the true one [m].
 const FARTHEST: f64 = 0.000_02;
@@ -44,7 +44,7 @@ fn drawn(app: &ToileApp, panel: PanelId) -> Vec<Ring> {
     let (pattern_view, view) = (app.view(), view());
     let (centre, scale) = (pattern_view.camera.centre, pattern_view.camera.scale);
     assert!((scale - TRUE_SIZE).abs() < 1e-9, "{scale}");
-    let origin = pattern_view.boards.panel(panel);
+    let origin = pattern_view.table_layout.panel(panel);
     let on_panel = |at: Pos2| {
         let way = at - view.center();
         centre + Vec2::new(f64::from(way.x), -f64::from(way.y)) / TRUE_SIZE - origin
@@ -133,15 +133,15 @@ fn while_a_corner_is_dragged_the_line_follows() {
     let pattern = app.session().project().pattern.clone();
     let corner: PointId = pattern.panels[0].edges().next().unwrap().ends[0];
     let (sheet, _) = pattern.point(corner).unwrap();
-    let at = app.base().point(corner).unwrap() + app.view().boards.sheet(sheet.id);
-    let held = Held {
+    let at = app.base().point(corner).unwrap() + app.view().table_layout.sheet(sheet.id);
+    let modifiers = ToolModifiers {
         shift: false,
         command: true,
     };
     let before: Vec<_> = true_rings(&app);
-    let from = app.view().pointer(at, held);
+    let from = app.view().pointer(at, modifiers);
     for way in [0.004, 0.011] {
-        let to = app.view().pointer(at + Vec2::new(-way, way), held);
+        let to = app.view().pointer(at + Vec2::new(-way, way), modifiers);
         app.give(&ToolEvent::Drag(from.clone(), to));
         assert!(app.session().is_previewing(), "{:?}", app.fault());
         assert!(compared(&app, "dragged") >= 3);

@@ -327,8 +327,8 @@ fn guides_are_saved_and_lie_beside_the_same_pieces_when_opened_again() {
     let sleeve = pattern.panel_named("sleeve").unwrap();
     let end = sleeve.edges().next().unwrap().ends[0];
     let sheet = pattern.sheet_of(sleeve).unwrap();
-    let at =
-        again.evaluation().point(end).unwrap() + again.window.state().view().boards.sheet(sheet);
+    let at = again.evaluation().point(end).unwrap()
+        + again.window.state().view().table_layout.sheet(sheet);
     let [(_, y), (_, x)] = again.guides()[..] else {
         panic!("{:?}", again.guides())
     };

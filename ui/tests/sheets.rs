@@ -454,7 +454,7 @@ fn a_new_sheet_lies_beside_panels_that_are_hidden_too() {
     let mut drafter = Drafter::opened("t-shirt");
     let right = |drafter: &Drafter| {
         let view = drafter.window.state().view();
-        view.boards.bounds(&view.scene).unwrap().max.x
+        view.table_layout.bounds(&view.scene).unwrap().max.x
     };
     let free = right(&drafter);
     drafter.click(drafter.part("Panel front"));
@@ -474,7 +474,7 @@ fn panels_seen(drafter: &Drafter) -> Vec<Rect> {
     let view_state = drafter.window.state().view();
     let view = drafter.window.get_by_label("Pattern view").rect();
     let panels = view_state.scene.panels.iter().map(|panel| {
-        let origin = view_state.boards.panel(panel.id);
+        let origin = view_state.table_layout.panel(panel.id);
         let bounds = panel.bounds();
         let corners = [bounds.min, bounds.max].map(|at| view_state.screen(view, origin, at));
         Rect::from_two_pos(corners[0], corners[1])

@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable;
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::plan;
 use toile_session::Command;
-use toile_ui::{Going, Held, Overlay, Pointer, Tone, ToolEvent};
+use toile_ui::{LineStep, Overlay, Pointer, Tone, ToolEvent, ToolModifiers};
 
 /// The T-shirt with the shoulder seam of the wearer's left selected and walked.
 fn walking() -> Drafter {
@@ -333,7 +333,7 @@ fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
             f64::from(next(100)) * 0.01 - 0.8,
         );
         let state = drafter.window.state_mut();
-        let pointer = state.view().pointer(at, Held::default());
+        let pointer = state.view().pointer(at, ToolModifiers::default());
         let event = match next(11) {
             0 => ToolEvent::Hover(pointer),
             1 => ToolEvent::Drag(pointer.clone(), pointer),
@@ -342,9 +342,9 @@ fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
                 hits: Vec::new(),
                 ..pointer
             }),
-            3 => ToolEvent::Go(Going::On),
-            4 => ToolEvent::Go(Going::Back),
-            5 => ToolEvent::Go([Going::ToStart, Going::ToEnd][next(2) as usize]),
+            3 => ToolEvent::Go(LineStep::On),
+            4 => ToolEvent::Go(LineStep::Back),
+            5 => ToolEvent::Go([LineStep::ToStart, LineStep::ToEnd][next(2) as usize]),
             6 => ToolEvent::Text(["3", ".", "-", "cm", "=waist", "("][next(6) as usize].into()),
             7 => ToolEvent::Enter,
             8 => ToolEvent::Backspace,

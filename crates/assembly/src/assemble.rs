@@ -1,8 +1,8 @@
-//! The whole way from a draft to a garment placed round the body.
+//! Makes a placed garment from a draft.
 
 use crate::mesh::{PieceMeshes, mesh_pieces};
 use crate::placement::{crossing_triangles, place};
-use crate::{AssemblyError, Diagnostic, Garment, GarmentPanel, Wearer};
+use crate::{AssemblyError, Diagnostic, Garment, GarmentPanel, PlacementBody};
 use std::sync::Arc;
 use toile_geometry::TriangleMesh;
 use toile_pattern::Draft;
@@ -27,7 +27,7 @@ pub struct Assembled {
     pub garment: Garment,
     /// The meshes it was made from, which can follow an edit of the draft: see [`crate::morph`].
     pub meshes: Arc<PieceMeshes>,
-    /// What is worth telling.
+    /// Notes for the user.
     pub diagnostics: Vec<Diagnostic>,
     /// Pairs of cloth and skin triangles that cross: 0 unless a diagnostic says why.
     pub body_intersections: usize,
@@ -35,19 +35,19 @@ pub struct Assembled {
     pub panel_intersections: usize,
 }
 
-/// Meshes the sewn pieces of a draft and places them round a wearer, at least 5 mm outside the
+/// Meshes the sewn pieces of a draft and places them round a body, at least 5 mm outside the
 /// skin where that is possible. The same input gives the same garment.
 ///
 /// # Errors
 /// See [`mesh_pieces`].
 pub fn assemble(
     draft: &Draft,
-    wearer: &Wearer,
+    body: &PlacementBody,
     options: &AssemblyOptions,
 ) -> Result<Assembled, AssemblyError> {
     let meshes = mesh_pieces(draft, options.edge_length)?;
     let mut diagnostics = meshes.diagnostics.clone();
-    let placement = place(draft, &meshes, wearer, &mut diagnostics);
+    let placement = place(draft, &meshes, body, &mut diagnostics);
     let crossings = crossing_triangles(&meshes, &placement.positions);
     let mut named: Vec<[usize; 2]> = crossings.iter().map(|c| c.0).collect();
     named.sort_unstable();
@@ -66,7 +66,7 @@ pub fn assemble(
             positions: positions.clone(),
             triangles: meshes.pieces[k].triangles.clone(),
         };
-        let count = wearer.skin.intersections_with(&mesh).len();
+        let count = body.skin.intersections_with(&mesh).len();
         if count > 0 {
             diagnostics.push(Diagnostic::warning(
                 name(k),

@@ -1,4 +1,4 @@
-//! The internal lines of a piece as points and segments that its mesh follows.
+//! Internal lines of a piece, as constraints of its mesh.
 
 use crate::Diagnostic;
 use crate::boundary::Boundary;
@@ -33,7 +33,7 @@ impl LinePlace {
     }
 }
 
-/// What the mesh of a piece follows inside its outline.
+/// Constraints of the mesh of a piece inside its outline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Creases {
     /// Pairs of vertices, numbered after the boundary's.
@@ -111,7 +111,7 @@ impl Creases {
         }
     }
 
-    /// What is worth telling of them.
+    /// A note on lines that were left out, if any.
     pub fn note(&self, piece: &Piece) -> Option<Diagnostic> {
         left_out_note(piece, self.left_out)
     }

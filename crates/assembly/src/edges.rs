@@ -5,7 +5,7 @@ use crate::AssemblyError;
 use toile_geometry::{Curve, Vec2};
 use toile_pattern::{Draft, Piece, PieceEdge};
 
-/// Smallest size the shape of an outline may ask for, as a share of the wanted edge length.
+/// Smallest size the shape of an outline may ask for, as a share of the target edge length.
 /// Smaller would follow needle-thin points into ever smaller triangles and time steps.
 const SMALLEST_SHAPE_SIZE: f64 = 0.35;
 /// A point across the piece counts as near when the way to it along the outline is this much

@@ -1,4 +1,4 @@
-//! Why a draft cannot be assembled, and what is worth telling when it can.
+//! Errors that keep a draft from being assembled, and notes on one that was assembled.
 
 /// Why no mesh could be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,7 +43,7 @@ pub enum Severity {
     Warning,
 }
 
-/// Something worth telling about a garment that was assembled all the same.
+/// A note on a garment that was assembled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     /// How much it matters.

@@ -3,7 +3,6 @@
 
 mod assemble;
 mod boundary;
-mod chain;
 mod creases;
 mod edges;
 mod error;
@@ -13,7 +12,9 @@ mod links;
 mod mesh;
 mod morph;
 mod outline_curve;
+mod part_frames;
 mod placement;
+mod placement_body;
 mod planar;
 mod quality;
 mod refinement;
@@ -21,11 +22,10 @@ mod role;
 mod rows;
 mod sampling;
 mod sanity;
+mod seam_match;
 mod size_field;
 mod smoothing;
 mod source;
-mod space;
-mod wearer;
 mod wrap;
 
 pub use assemble::{Assembled, AssemblyOptions, assemble};
@@ -33,6 +33,6 @@ pub use error::{AssemblyError, Diagnostic, Severity};
 pub use garment::{Garment, GarmentPanel, Stitch};
 pub use mesh::{PieceMesh, PieceMeshes, mesh_pieces};
 pub use morph::{MorphError, morph};
+pub use placement_body::{Levels, Limb, PlacementBody};
 pub use quality::{MeshQuality, combine, smallest_angle};
 pub use sanity::{Sanity, sanity};
-pub use wearer::{Levels, Limb, Wearer};

@@ -1,13 +1,13 @@
 //! Pieces of a draft as triangle meshes in their planes, with matching seams.
 
 use crate::boundary::Boundary;
-use crate::chain::match_seams;
 use crate::creases::Creases;
 use crate::edges::EdgeTable;
 use crate::planar::{Frame, Planar, PlanarError};
 use crate::quality::{MeshQuality, smallest_angle};
 use crate::refinement::refine;
 use crate::sampling::{Sampling, sample};
+use crate::seam_match::match_seams;
 use crate::size_field::SizeField;
 use crate::source::{EdgeSource, MeshSource};
 use crate::{AssemblyError, Diagnostic, Stitch};
@@ -35,7 +35,7 @@ pub struct PieceMesh {
     pub edge_vertices: Vec<Vec<u32>>,
     /// Arc-length fraction of each edge's samples, in the order of its vertices.
     pub edge_fractions: Vec<Vec<f64>>,
-    /// What it was made from: a later shape of the piece is told by its difference from this.
+    /// The shape it was made from, with which a later shape of the piece is compared.
     pub(crate) source: Arc<MeshSource>,
 }
 
@@ -46,7 +46,7 @@ pub struct PieceMeshes {
     pub pieces: Vec<PieceMesh>,
     /// Pairs of vertices; numbered piece after piece.
     pub stitches: Vec<Stitch>,
-    /// What is worth telling.
+    /// Notes for the user.
     pub diagnostics: Vec<Diagnostic>,
     /// The mean edge that was asked for [m].
     pub edge_length: f64,

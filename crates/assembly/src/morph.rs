@@ -1,13 +1,13 @@
 //! Meshes that follow an edit of the pattern: the same triangles at new places.
 
 use crate::boundary::Boundary;
-use crate::chain::{Nodes, match_seams};
 use crate::creases::left_out_note;
 use crate::edges::EdgeTable;
 use crate::harmonic::HarmonicWeights;
 use crate::mesh::stitches;
 use crate::quality::smallest_angle;
 use crate::sampling::Sampling;
+use crate::seam_match::{Nodes, match_seams};
 use crate::source::EdgeSource;
 use crate::{AssemblyError, PieceMesh, PieceMeshes, Stitch};
 use std::collections::{HashMap, VecDeque};

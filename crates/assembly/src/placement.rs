@@ -2,11 +2,11 @@
 //! clear of the skin and of each other.
 
 use crate::mesh::PieceMeshes;
+use crate::part_frames::{PartFrame, label_skin};
 use crate::role::{Role, roles};
-use crate::rows::{Laid, Row, lay, rows, set_heights, set_shifts, ties};
-use crate::space::{PartFrame, label_skin};
+use crate::rows::{FlatPiece, Row, flat_pieces, rows, set_heights, set_shifts, ties};
 use crate::wrap::{Fit, Surroundings, lay_over, wrap_row};
-use crate::{Diagnostic, Wearer};
+use crate::{Diagnostic, PlacementBody};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_pattern::{BodyPart, Draft, Facing};
 
@@ -37,9 +37,9 @@ type Attempt = ((f64, usize), Fit, Vec<Vec<Vec3>>);
 struct Placer<'a> {
     draft: &'a Draft,
     meshes: &'a PieceMeshes,
-    wearer: &'a Wearer<'a>,
+    body: &'a PlacementBody<'a>,
     labels: Vec<BodyPart>,
-    laid: Vec<Laid>,
+    laid: Vec<FlatPiece>,
     roles: Vec<Role>,
     positions: Vec<Vec<Vec3>>,
 }
@@ -48,17 +48,17 @@ struct Placer<'a> {
 pub(crate) fn place(
     draft: &Draft,
     meshes: &PieceMeshes,
-    wearer: &Wearer,
+    body: &PlacementBody,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Placement {
     let roles = roles(draft, meshes, diagnostics);
     let turned: Vec<bool> = meshes.pieces.iter().map(is_counter_clockwise).collect();
-    let mut laid = lay(meshes, &turned);
+    let mut laid = flat_pieces(meshes, &turned);
     let ties = ties(meshes, &laid);
-    set_heights(&mut laid, &roles, &ties, (draft, meshes, wearer));
+    set_heights(&mut laid, &roles, &ties, (draft, meshes, body));
     let mut rows = rows(&laid, &roles);
     for row in &rows {
-        let frame = PartFrame::new(wearer, row.part);
+        let frame = PartFrame::new(body, row.part);
         set_shifts(&mut laid, &roles, row, &ties, &frame);
     }
     // Trunk last, over sleeves: its fronts and backs go round what is placed already.
@@ -66,8 +66,8 @@ pub(crate) fn place(
     let mut placer = Placer {
         draft,
         meshes,
-        wearer,
-        labels: label_skin(wearer),
+        body,
+        labels: label_skin(body),
         positions: vec![Vec::new(); laid.len()],
         laid,
         roles,
@@ -108,10 +108,10 @@ impl Placer<'_> {
         }
     }
 
-    /// How far inside the wanted distance from the skin a piece comes [m], and, where it keeps
+    /// How far inside the distance kept from the skin a piece comes [m], and, where it keeps
     /// that distance, how many of its triangles cross the skin all the same.
     fn trouble(&self, k: usize, positions: &[Vec3]) -> (f64, usize) {
-        let skin = self.wearer.skin;
+        let skin = self.body.skin;
         let mut depth: f64 = 0.0;
         for (i, &p) in positions.iter().enumerate() {
             // A piece that crosses nothing has all vertices on one side: one look far is enough.
@@ -134,7 +134,7 @@ impl Placer<'_> {
         let mut best: Option<Attempt> = None;
         for step in 0..CLEAR_STEPS {
             let around = Surroundings {
-                wearer: self.wearer,
+                body: self.body,
                 labels: &self.labels,
                 placed: &placed,
             };
@@ -251,7 +251,7 @@ impl Placer<'_> {
     fn outward(&self, positions: &[Vec3], normal: Vec3) -> Vec3 {
         let middle = positions.iter().sum::<Vec3>() / positions.len().max(1) as f64;
         let mut nearest = (f64::INFINITY, Vec3::zeros());
-        for limb in &self.wearer.limbs {
+        for limb in &self.body.limbs {
             for pair in limb.axis.windows(2) {
                 for step in 0..=8 {
                     let p = pair[0] + (pair[1] - pair[0]) * (f64::from(step) / 8.0);
@@ -290,7 +290,7 @@ impl Placer<'_> {
                 .map(|&v| self.laid[k].points[v as usize])
                 .collect();
             let name = &self.draft.pieces[mesh.draft_piece].name;
-            let (positions, clear) = lay_over(&self.laid[k], &hole, self.wearer, lift);
+            let (positions, clear) = lay_over(&self.laid[k], &hole, self.body, lift);
             if !clear && !hole.is_empty() {
                 diagnostics.push(Diagnostic::warning(
                     name,

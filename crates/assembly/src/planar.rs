@@ -8,7 +8,7 @@ use toile_geometry::{Vec2, orient2d};
 /// No triangle on the other side of an edge.
 pub(crate) const NONE: usize = usize::MAX;
 
-/// What is fixed in a triangulation.
+/// The fixed part of a triangulation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frame {
     /// Segments with the inside of the piece on their left.

@@ -1,4 +1,4 @@
-//! How good a triangle mesh is: angles and edge lengths.
+//! Quality of a triangle mesh: angles and edge lengths.
 
 use toile_geometry::Vec2;
 

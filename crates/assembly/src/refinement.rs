@@ -8,12 +8,12 @@ use toile_geometry::{Vec2, orient2d};
 
 /// Rounds of adding and removing vertices.
 const ROUNDS: usize = 10;
-/// A triangle is too large when its circumradius exceeds this share of the wanted edge length
+/// A triangle is too large when its circumradius exceeds this share of the target edge length
 /// (an equilateral triangle of that edge has 0.577).
 const LARGEST_RADIUS: f64 = 0.76;
-/// Vertices nearer to each other than this share of the wanted edge length are thinned out.
+/// Vertices nearer to each other than this share of the target edge length are thinned out.
 const CROWDED: f64 = 0.62;
-/// New vertices keep this distance from the boundary, as a share of the wanted edge length.
+/// New vertices keep this distance from the boundary, as a share of the target edge length.
 const BOUNDARY_CLEARANCE: f64 = 0.38;
 
 /// Meshes the inside of a frame: the first `frame.fixed` points stay as they are.
@@ -29,7 +29,7 @@ pub(crate) fn refine(
     for round in 0..ROUNDS {
         smoothing::relax(&mut planar, frame, field, 6);
         let removed = crowded(&planar, frame, field);
-        let added = wanted(&planar, frame, field);
+        let added = missing_vertices(&planar, frame, field);
         let changes = added.len() + removed.iter().filter(|&&r| r).count();
         if changes == 0 || (round + 1 == ROUNDS) {
             break;
@@ -77,7 +77,7 @@ fn crowded(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<bool> {
 }
 
 /// New vertices where triangles are too large or cross from boundary to boundary.
-fn wanted(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<Vec2> {
+fn missing_vertices(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<Vec2> {
     let mut candidates: Vec<(f64, Vec2)> = Vec::new();
     for t in 0..planar.triangles.len() {
         let [a, b, c] = planar.corners(t);

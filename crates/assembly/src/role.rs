@@ -1,5 +1,5 @@
-//! Which part of the body every piece belongs to: as the document says, else from its name,
-//! else from its seams and size.
+//! The body part that every piece belongs to: as the document says, else from its name, else from its seams
+//! and size.
 
 use crate::Diagnostic;
 use crate::mesh::PieceMeshes;
@@ -72,7 +72,7 @@ pub(crate) fn roles(
         .collect()
 }
 
-/// What a piece's name says about its place.
+/// The place that a piece's name suggests.
 #[derive(Clone, Copy, Debug, Default)]
 struct Guess {
     part: Option<BodyPart>,

@@ -3,9 +3,9 @@
 
 use crate::links::Links;
 use crate::mesh::PieceMeshes;
+use crate::part_frames::PartFrame;
 use crate::role::Role;
-use crate::space::PartFrame;
-use crate::{Stitch, Wearer};
+use crate::{PlacementBody, Stitch};
 use toile_geometry::Vec2;
 use toile_pattern::{BodyPart, Draft, Facing};
 
@@ -14,9 +14,9 @@ const FACING_WEIGHT: f64 = 0.5;
 /// Sweeps of the solver for places; garments have few pieces.
 const SWEEPS: usize = 400;
 
-/// A piece seen from its right side, with its offsets on the laid-out part.
+/// A piece seen from its right side, with its offsets in the plane in which rows are arranged.
 #[derive(Clone, Debug)]
-pub(crate) struct Laid {
+pub(crate) struct FlatPiece {
     /// Points of the piece seen from the right side of the cloth [m].
     pub points: Vec<Vec2>,
     /// Box of the points [m].
@@ -28,7 +28,7 @@ pub(crate) struct Laid {
     pub shift: f64,
 }
 
-impl Laid {
+impl FlatPiece {
     /// Width [m].
     pub fn width(&self) -> f64 {
         self.high.x - self.low.x
@@ -51,7 +51,7 @@ pub(crate) struct Row {
 }
 
 /// Turns every piece to its right side and measures it.
-pub(crate) fn lay(meshes: &PieceMeshes, counter_clockwise: &[bool]) -> Vec<Laid> {
+pub(crate) fn flat_pieces(meshes: &PieceMeshes, counter_clockwise: &[bool]) -> Vec<FlatPiece> {
     meshes
         .pieces
         .iter()
@@ -67,7 +67,7 @@ pub(crate) fn lay(meshes: &PieceMeshes, counter_clockwise: &[bool]) -> Vec<Laid>
             let (low, high) = points
                 .iter()
                 .fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
-            Laid {
+            FlatPiece {
                 points,
                 low,
                 high,
@@ -85,7 +85,7 @@ pub(crate) struct Tie {
 }
 
 /// Stitches between different pieces.
-pub(crate) fn ties(meshes: &PieceMeshes, laid: &[Laid]) -> Vec<Tie> {
+pub(crate) fn ties(meshes: &PieceMeshes, laid: &[FlatPiece]) -> Vec<Tie> {
     let mut starts = vec![0];
     for piece in laid {
         starts.push(starts.last().copied().unwrap_or(0) + piece.points.len());
@@ -132,10 +132,10 @@ fn wrapped(role: &Role) -> Option<(BodyPart, Facing, Option<f64>)> {
 /// Sets every wrapped piece's height: sewn edges level with each other, then each connected
 /// group moved to where it hangs.
 pub(crate) fn set_heights(
-    laid: &mut [Laid],
+    laid: &mut [FlatPiece],
     roles: &[Role],
     ties: &[Tie],
-    (draft, meshes, wearer): (&Draft, &PieceMeshes, &Wearer),
+    (draft, meshes, body): (&Draft, &PieceMeshes, &PlacementBody),
 ) {
     let count = laid.len();
     let mut links = Links::new(count);
@@ -176,7 +176,7 @@ pub(crate) fn set_heights(
             &members,
             laid,
             roles,
-            (draft, meshes, wearer, &reaches_upward),
+            (draft, meshes, body, &reaches_upward),
         );
         for &k in &members {
             laid[k].rise += lift;
@@ -187,9 +187,9 @@ pub(crate) fn set_heights(
 /// How far a group of pieces must rise to hang where it belongs.
 fn group_lift(
     members: &[usize],
-    laid: &[Laid],
+    laid: &[FlatPiece],
     roles: &[Role],
-    (draft, meshes, wearer, reaches_upward): (&Draft, &PieceMeshes, &Wearer, &[bool]),
+    (draft, meshes, body, reaches_upward): (&Draft, &PieceMeshes, &PlacementBody, &[bool]),
 ) -> f64 {
     let told: Vec<f64> = members
         .iter()
@@ -212,7 +212,7 @@ fn group_lift(
             .map(|&k| laid[k].span()[1])
             .fold(f64::NEG_INFINITY, f64::max)
     };
-    let levels = &wearer.levels;
+    let levels = &body.levels;
     match members.first().and_then(|&k| part_of(k)) {
         Some(BodyPart::LeftArm | BodyPart::RightArm) => return -top_of(&|_| true),
         Some(BodyPart::Head) => {
@@ -234,7 +234,7 @@ fn group_lift(
 /// Whether a front is sewn to a back along the top of both: what tops have and skirts have not.
 fn has_shoulder_seam(
     members: &[usize],
-    laid: &[Laid],
+    laid: &[FlatPiece],
     roles: &[Role],
     (draft, meshes): (&Draft, &PieceMeshes),
 ) -> bool {
@@ -264,7 +264,7 @@ fn has_shoulder_seam(
 }
 
 /// Groups wrapped pieces of one part whose heights overlap.
-pub(crate) fn rows(laid: &[Laid], roles: &[Role]) -> Vec<Row> {
+pub(crate) fn rows(laid: &[FlatPiece], roles: &[Role]) -> Vec<Row> {
     let count = laid.len();
     let mut links = Links::new(count);
     for a in 0..count {
@@ -299,14 +299,14 @@ pub(crate) fn rows(laid: &[Laid], roles: &[Role]) -> Vec<Row> {
 /// Sets every piece's distance round the part: sewn edges near each other, pieces near the
 /// side they face, on a ring as long as all pieces of the row together.
 pub(crate) fn set_shifts(
-    laid: &mut [Laid],
+    laid: &mut [FlatPiece],
     roles: &[Role],
     row: &Row,
     ties: &[Tie],
     frame: &PartFrame,
 ) {
     let girth = row.girth.max(1e-6);
-    let home = |laid: &[Laid], k: usize| {
+    let home = |laid: &[FlatPiece], k: usize| {
         let facing = wrapped(&roles[k]).map_or(Facing::Front, |r| r.1);
         let quarter = frame.quarter(facing);
         let turn = if quarter == 3 { -1.0 } else { quarter as f64 };

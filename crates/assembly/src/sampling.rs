@@ -1,9 +1,9 @@
 //! Samples along every edge: the same number on both sides of each seam, whatever their
 //! lengths, with interval lengths that grow gently away from short ones.
 
-use crate::chain::{Matching, Nodes, Sewing};
 use crate::edges::EdgeTable;
 use crate::links::{Links, OrientedLinks};
+use crate::seam_match::{Matching, Nodes, SeamChains};
 use toile_pattern::Draft;
 
 /// How much the interval length may grow per metre walked. Neighbouring intervals then differ
@@ -48,7 +48,7 @@ struct Class {
     members: Vec<(usize, bool)>,
     /// The length its samples are counted for [m].
     length: f64,
-    /// Wanted interval [m] at equal steps along it.
+    /// Target interval [m] at equal steps along it.
     size: Vec<f64>,
     /// Whether it is sewn to itself end for end, so that its samples must be symmetric.
     symmetric: bool,
@@ -96,7 +96,7 @@ fn intervals(table: &EdgeTable, nodes: &Nodes) -> (Vec<Interval>, Vec<usize>) {
 fn spanned(
     nodes: &Nodes,
     first: &[usize],
-    sewing: &Sewing,
+    sewing: &SeamChains,
     side: usize,
 ) -> Vec<Option<(usize, bool)>> {
     let mut found = Vec::new();
@@ -212,8 +212,8 @@ fn node_groups(table: &EdgeTable, nodes: &Nodes) -> Vec<usize> {
     (0..nodes.all.len()).map(|n| links.root(n)).collect()
 }
 
-/// Limits the growth of the wanted interval along each class and round the corners of pieces.
-/// What a member gets is the class's interval times its share of the class's length.
+/// Limits the growth of the target interval along each class and round the corners of pieces.
+/// A member gets the class's interval times its share of the class's length.
 fn grade(classes: &mut [Class], intervals: &[Interval], groups: &[usize], spacing: f64) {
     let mut node_size = vec![f64::INFINITY; groups.len()];
     for _ in 0..100 {
@@ -265,7 +265,7 @@ impl Class {
     }
 
     /// Fractions of its samples, both ends included: equal steps of the integral of one over
-    /// the wanted interval.
+    /// the target interval.
     fn places(&self) -> Vec<f64> {
         let last = self.size.len() - 1;
         let step = self.length / last as f64;
@@ -276,7 +276,7 @@ impl Class {
         }
         let wanted = total[last];
         let low = wanted.floor().max(1.0);
-        // The count whose intervals are nearest to the wanted ones by ratio.
+        // The count whose intervals are nearest to the target ones by ratio.
         let count = if wanted > (low * (low + 1.0)).sqrt() {
             low + 1.0
         } else {
@@ -363,7 +363,7 @@ impl Sampling {
 fn stitch(
     sampling: &mut Sampling,
     matching: &Matching,
-    sewing: &Sewing,
+    sewing: &SeamChains,
     first: &[usize],
     intervals: &[Interval],
 ) {

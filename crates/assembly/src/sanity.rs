@@ -1,4 +1,4 @@
-//! What the sewn garment will be: checked on the mesh with stitched vertices made one.
+//! Checks of the sewn mesh: its topology with stitched vertices made one.
 
 use crate::Garment;
 use crate::links::Links;

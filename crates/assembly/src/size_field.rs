@@ -1,4 +1,4 @@
-//! How large triangles should be inside a piece, and which boundary is near.
+//! Edge lengths for the triangles inside a piece, and the nearest boundary.
 
 use crate::boundary::Boundary;
 use crate::sampling::GROWTH;
@@ -59,7 +59,7 @@ impl Grid {
     }
 }
 
-/// Size of triangle wanted at every point of a piece: the edge length, less near short
+/// Target size of triangles at every point of a piece: the edge length, less near short
 /// boundary intervals, growing gently away from them.
 pub(crate) struct SizeField {
     spacing: f64,
@@ -119,7 +119,7 @@ impl SizeField {
         self.spacing
     }
 
-    /// Wanted edge length at a point [m].
+    /// Target edge length at a point [m].
     pub fn size(&self, p: Vec2) -> f64 {
         self.near_sources
             .at(p)

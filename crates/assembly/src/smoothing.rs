@@ -12,7 +12,7 @@ const POOR: f64 = 0.56;
 const NARROW_EAR: f64 = 1.25;
 
 /// Sweeps of optimal Delaunay smoothing (Chen 2004): each vertex moves to the mean of the
-/// circumcentres of its triangles, weighted by area over wanted area, then edges are flipped.
+/// circumcentres of its triangles, weighted by area over target area, then edges are flipped.
 /// Circumcentres outside their triangle are drawn back to it, which keeps the sweep stable at
 /// the boundary.
 pub(crate) fn relax(planar: &mut Planar, frame: &Frame, field: &SizeField, sweeps: usize) {

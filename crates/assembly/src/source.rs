@@ -1,4 +1,5 @@
-//! What the mesh of a piece was made from, so that its triangles can follow a later shape.
+//! A record of the shape that the mesh of a piece was made from, so that its triangles can follow a later
+//! shape.
 
 use crate::creases::{Creases, LinePlace};
 use crate::edges::contours;
@@ -66,7 +67,7 @@ impl EdgeSource {
 }
 
 impl MeshSource {
-    /// What a mesh of these points was made from.
+    /// The source of a mesh of these points.
     pub fn new(piece: &Piece, points: Vec<Vec2>, edges: Vec<EdgeSource>, creases: Creases) -> Self {
         Self {
             points,

@@ -1,10 +1,10 @@
 //! Rows of pieces wrapped round a body part, outside the skin, without stretching them.
 
-use crate::Wearer;
+use crate::PlacementBody;
 use crate::outline_curve::OutlineCurve;
+use crate::part_frames::PartFrame;
 use crate::role::Role;
-use crate::rows::{Laid, Row};
-use crate::space::PartFrame;
+use crate::rows::{FlatPiece, Row};
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Facing};
 
@@ -21,16 +21,16 @@ const SMALLEST_FOLD: f64 = 0.04;
 /// Distance that pieces of one leg keep from the middle of the body [m].
 const MIDDLE_CLEARANCE: f64 = 0.006;
 
-/// What a row goes round.
+/// The curve that a row goes round.
 pub(crate) struct Surroundings<'a> {
-    pub wearer: &'a Wearer<'a>,
+    pub body: &'a PlacementBody<'a>,
     /// Part of each vertex of the skin.
     pub labels: &'a [BodyPart],
     /// Points of pieces placed before.
     pub placed: &'a [Vec3],
 }
 
-/// How a row is wrapped: what the search for a clear place changes.
+/// Parameters of a wrapped row, which the search for a clear place changes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fit {
     /// Extra distance from the skin [m].
@@ -48,12 +48,12 @@ enum Bend {
     Sides,
 }
 
-fn bend(row: &Row, laid: &[Laid], wearer: &Wearer) -> Bend {
+fn bend(row: &Row, laid: &[FlatPiece], body: &PlacementBody) -> Bend {
     match row.part {
         BodyPart::LeftLeg | BodyPart::RightLeg => Bend::Sides,
         BodyPart::Trunk => {
             let top = row.pieces.iter().map(|&k| laid[k].span()[1]);
-            if top.fold(f64::NEG_INFINITY, f64::max) > wearer.levels.chest + BAND {
+            if top.fold(f64::NEG_INFINITY, f64::max) > body.levels.chest + BAND {
                 Bend::Sides
             } else {
                 Bend::Ring
@@ -73,17 +73,17 @@ fn facing_of(role: &Role) -> Facing {
 /// Positions of every piece of a row [m], in the order of the row.
 pub(crate) fn wrap_row(
     row: &Row,
-    laid: &[Laid],
+    laid: &[FlatPiece],
     roles: &[Role],
     around: &Surroundings,
     fit: Fit,
 ) -> Vec<Vec<Vec3>> {
-    let frame = PartFrame::new(around.wearer, row.part);
+    let frame = PartFrame::new(around.body, row.part);
     let spans = row.pieces.iter().map(|&k| laid[k].span());
     let band = spans.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], [a, b]| {
         [l.min(a + fit.lift - BAND), h.max(b + fit.lift + BAND)]
     });
-    let shape = bend(row, laid, around.wearer);
+    let shape = bend(row, laid, around.body);
     let ring = ring_for(row, around, &frame, band, fit.distance);
     row.pieces
         .iter()
@@ -113,7 +113,7 @@ fn obstacles(
     [low, high]: [f64; 2],
     keep: impl Fn(Vec3, BodyPart) -> bool,
 ) -> Vec<Vec3> {
-    let skin = &around.wearer.skin.mesh().positions;
+    let skin = &around.body.skin.mesh().positions;
     let mut found: Vec<Vec3> = Vec::new();
     for (&p, &label) in skin.iter().zip(around.labels) {
         let height = frame.height(p);
@@ -172,7 +172,7 @@ fn ring_for(
 
 fn wrap_ring(
     row: &Row,
-    piece: &Laid,
+    piece: &FlatPiece,
     frame: &PartFrame,
     ring: &OutlineCurve,
     fit: Fit,
@@ -198,7 +198,7 @@ struct SidePlace<'a> {
 /// Wraps a piece over the front or back of the trunk or of a leg.
 fn wrap_side(
     row: &Row,
-    piece: &Laid,
+    piece: &FlatPiece,
     around: &Surroundings,
     place: &SidePlace,
     fit: Fit,
@@ -261,24 +261,24 @@ fn wrap_side(
 /// Lays a piece flat over the body like a poncho: the hole (else the middle) over the neck, at
 /// the lowest height above the shoulders where the hole clears the skin. Says whether it does.
 pub(crate) fn lay_over(
-    piece: &Laid,
+    piece: &FlatPiece,
     hole: &[Vec2],
-    wearer: &Wearer,
+    body: &PlacementBody,
     lift: f64,
 ) -> (Vec<Vec3>, bool) {
-    let neck = wearer
+    let neck = body
         .limbs
         .iter()
         .find(|l| l.part == BodyPart::Head)
         .and_then(|l| l.axis.first().copied())
-        .unwrap_or_else(|| Vec3::new(0.0, wearer.levels.neck, 0.0));
+        .unwrap_or_else(|| Vec3::new(0.0, body.levels.neck, 0.0));
     let ring: &[Vec2] = if hole.is_empty() { &piece.points } else { hole };
     let middle = ring.iter().sum::<Vec2>() / ring.len().max(1) as f64;
     let at = |p: Vec2, height: f64| {
         // The top of the piece lies behind the neck, its right side up.
         Vec3::new(neck.x + p.x - middle.x, height, neck.z - (p.y - middle.y))
     };
-    let skin = &wearer.skin.mesh().positions;
+    let skin = &body.skin.mesh().positions;
     let clears = |height: f64| {
         let slab = 0.012;
         skin.iter()
@@ -288,9 +288,9 @@ pub(crate) fn lay_over(
                 inside_by(flat, hole, 0.004)
             })
     };
-    let mut height = wearer.levels.shoulder + 0.02;
+    let mut height = body.levels.shoulder + 0.02;
     let mut clear = false;
-    while height < wearer.levels.crown + 0.05 {
+    while height < body.levels.crown + 0.05 {
         if clears(height) {
             clear = true;
             break;

@@ -481,7 +481,7 @@ fn a_garment_takes_new_shapes_where_it_is() {
     let draft = tee();
     let doll = Doll::new();
     let options = AssemblyOptions { edge_length: 0.03 };
-    let made = assemble(&draft, &doll.wearer(), &options).unwrap();
+    let made = assemble(&draft, &doll.body(), &options).unwrap();
     let mut edited = draft.clone();
     move_point(
         &mut edited,

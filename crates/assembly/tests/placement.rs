@@ -9,12 +9,7 @@ use toile_geometry::{Rigid, Vec3};
 use toile_pattern::{BodyPart, Draft, Facing, Worn};
 
 fn made(draft: &Draft, doll: &Doll) -> Assembled {
-    assemble(
-        draft,
-        &doll.wearer(),
-        &AssemblyOptions { edge_length: 0.02 },
-    )
-    .unwrap()
+    assemble(draft, &doll.body(), &AssemblyOptions { edge_length: 0.02 }).unwrap()
 }
 
 fn centre(assembled: &Assembled, name: &str) -> Vec3 {

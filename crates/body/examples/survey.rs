@@ -47,8 +47,8 @@ fn run(person: &Person) -> Outcome {
     let rows = body.measure();
     let missed = rows
         .iter()
-        .filter(|row| row.origin == Origin::Asked && row.gap().abs() > 1e-3)
-        .map(|row| format!("{} {:+.1} mm", row.name, row.gap() * 1e3))
+        .filter(|row| row.origin == Origin::Asked && row.deviation().abs() > 1e-3)
+        .map(|row| format!("{} {:+.1} mm", row.name, row.deviation() * 1e3))
         .collect();
     let crossings = is_closed(body.skin()).then(|| body.skin_tree().self_intersections().len());
     let taken = |name: &str| body.taken(name).unwrap_or(f64::NAN);

@@ -1,9 +1,10 @@
-//! Triangles of a template sorted by where they lie, so that a tape looks at few of them.
+//! An index of a template's triangles by height, distance along the arm and distance from the middle, so that
+//! a tape tests few of them.
 
 use crate::Part;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Where on a template a tape looks for its triangles: from one place to another.
+/// The range in which a tape searches for triangles of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Near {
     /// Heights above the floor [m].

@@ -1,4 +1,4 @@
-//! Measurements that no single body has together.
+//! Contradictions: measurements that no single body has together.
 
 use std::f64::consts::SQRT_2;
 use toile_measure::{Measurements, Origin};

@@ -1,4 +1,4 @@
-//! The mannequin as a small file: what it is grown from, not what it looks like.
+//! The data from which a mannequin is made again.
 
 use crate::rigging::Rigging;
 use crate::template::Template;
@@ -34,10 +34,10 @@ impl Mannequin {
         Description {
             figure: self.figure,
             measurements: self.measurements.clone(),
-            frame: self.cast.template.frame(),
-            rigging: self.cast.template.rigging.clone(),
+            frame: self.template_body.template.frame(),
+            rigging: self.template_body.template.rigging.clone(),
             primitives: self
-                .cast
+                .template_body
                 .template
                 .primitives
                 .iter()
@@ -54,15 +54,15 @@ impl Mannequin {
     /// As [`Mannequin::new`].
     pub fn framed(figure: Figure) -> Result<Description, BodyError> {
         let body = Self::new(&figure.average(), figure)?;
-        let cast = &body.cast;
+        let template_body = &body.template_body;
         Ok(Description {
             frame: Some(BodyFrame {
-                height: cast.template.height,
-                crotch: cast.template.crotch,
-                armpit: cast.marks.armpit,
-                hand: cast.template.hand,
-                neck_radius: cast.template.neck_radius,
-                joints: cast.template.joints,
+                height: template_body.template.height,
+                crotch: template_body.template.crotch,
+                armpit: template_body.marks.armpit,
+                hand: template_body.template.hand,
+                neck_radius: template_body.template.neck_radius,
+                joints: template_body.template.joints,
             }),
             measurements: Measurements::new(),
             ..body.description()

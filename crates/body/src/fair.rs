@@ -1,4 +1,4 @@
-//! Fairing: small bumps of a mesh taken away without shrinking it.
+//! Smooths small bumps of a mesh without shrinking it.
 
 use toile_geometry::{TriangleMesh, Vec3};
 

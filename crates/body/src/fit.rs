@@ -1,11 +1,11 @@
-//! Our own mannequin fitted to somebody's closed mesh.
+//! Fits our mannequin to a foreign closed mesh of a person.
 
 use crate::describe::{Description, both_sides};
 use crate::fit_check::{FitMisfit, misfit};
 use crate::fit_field::{self, Goal};
-use crate::fit_frame::{self, Found};
-use crate::fit_girths::{Girth, girths};
-use crate::fit_samples::{PARTS, Sample, Wanted, samples};
+use crate::fit_frame::{self, FoundFrame};
+use crate::fit_girths::{GirthResidual, girths};
+use crate::fit_samples::{DensityTarget, PARTS, Sample, samples};
 use crate::fit_start::start;
 use crate::request::Request;
 use crate::rigging::Rigging;
@@ -97,22 +97,22 @@ fn sound(
 }
 
 /// Primitives of both sides, and how far their skin lies from the mesh.
-fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit), BodyError> {
+fn fitted(scan: &Scan, found: &mut FoundFrame) -> Result<(Vec<Primitive>, FitMisfit), BodyError> {
     let own = Scan::new(template_skin(Figure::Woman)?, ScanLandmarks::default())?;
     let rows = start(scan, found, &own);
     let tree = SurfaceTree::new(scan.mesh().clone());
-    let mut wanted = samples(scan, &tree, found);
+    let mut targets = samples(scan, &tree, found);
     let height = found.frame.height;
     let mut groups: Vec<Vec<Primitive>> = PARTS
         .iter()
         .map(|&part| rows.iter().filter(|p| p.part == part).copied().collect())
         .collect();
-    let mut tapes: [Vec<Girth>; 4] = Default::default();
+    let mut tapes: [Vec<GirthResidual>; 4] = Default::default();
     let mut best: Option<(Vec<Primitive>, FitMisfit, BodyFrame)> = None;
     for round in 0..=ROUNDS {
         groups
             .par_iter_mut()
-            .zip(wanted.par_iter().zip(&tapes))
+            .zip(targets.par_iter().zip(&tapes))
             .for_each(|(own, (samples, girths))| {
                 let goal = Goal {
                     samples,
@@ -124,7 +124,7 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
         let primitives = both_sides(groups.concat());
         let (skin, checked) = cast_best(scan, found, &primitives)?;
         let misfit = misfit(scan, &checked, &found.frame.joints, [0.0, found.chin]);
-        for (part, samples) in PARTS.iter().zip(&mut wanted) {
+        for (part, samples) in PARTS.iter().zip(&mut targets) {
             drawn(samples, *part, &skin, height);
         }
         tapes = girths([scan, &checked], found, (&groups, round + 1));
@@ -139,14 +139,14 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
     Ok((primitives, misfit))
 }
 
-/// A level of the frame that is looked for.
+/// A level of the frame whose best height is searched for.
 #[derive(Clone, Copy, PartialEq)]
-enum Sought {
+enum SearchedLevel {
     Armpit,
     Crotch,
 }
 
-impl Sought {
+impl SearchedLevel {
     fn level(self, frame: &mut BodyFrame) -> &mut f64 {
         match self {
             Self::Armpit => &mut frame.armpit,
@@ -155,14 +155,14 @@ impl Sought {
     }
 }
 
-/// A skin cast on a frame of its own.
-struct Cast {
+/// A skin cast on a frame, to be compared with the mesh.
+struct CandidateSkin {
     skin: TemplateSkin,
     checked: Scan,
     frame: BodyFrame,
 }
 
-impl Cast {
+impl CandidateSkin {
     fn new(scan: &Scan, frame: BodyFrame, primitives: &[Primitive]) -> Result<Self, BodyError> {
         let mut template = Template::framed(&frame, primitives.to_vec());
         let skin = rings::cast_framed(&mut template)?;
@@ -182,7 +182,7 @@ impl Cast {
 /// few places are free.
 fn cast_best(
     scan: &Scan,
-    found: &mut Found,
+    found: &mut FoundFrame,
     primitives: &[Primitive],
 ) -> Result<(TemplateSkin, Scan), BodyError> {
     /// Places tried for a level, nearest first, and how far round it the mesh is compared, over
@@ -190,17 +190,20 @@ fn cast_best(
     const ELSEWHERE: [f64; 6] = [-0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
     const ROUND: f64 = 0.035;
     let height = found.frame.height;
-    let mut best = Cast::new(scan, found.frame, primitives);
-    for sought in [Sought::Armpit, Sought::Crotch] {
-        let from = *sought.level(&mut found.frame);
+    let mut best = CandidateSkin::new(scan, found.frame, primitives);
+    for searched in [SearchedLevel::Armpit, SearchedLevel::Crotch] {
+        let from = *searched.level(&mut found.frame);
         let range = [-ROUND, ROUND].map(|d| from + d * height);
-        let bad =
-            |cast: &Cast| misfit(scan, &cast.checked, &cast.frame.joints, range).badness(height);
+        let bad = |candidate: &CandidateSkin| {
+            misfit(scan, &candidate.checked, &candidate.frame.joints, range).badness(height)
+        };
         let mut least = best.as_ref().map_or(f64::INFINITY, bad);
         for step in ELSEWHERE {
-            let mut frame = best.as_ref().map_or(found.frame, |cast| cast.frame);
-            *sought.level(&mut frame) = from + step * height;
-            let tried = Cast::new(scan, frame, primitives);
+            let mut frame = best
+                .as_ref()
+                .map_or(found.frame, |candidate| candidate.frame);
+            *searched.level(&mut frame) = from + step * height;
+            let tried = CandidateSkin::new(scan, frame, primitives);
             let own = tried.as_ref().map_or(f64::INFINITY, bad);
             if own < least {
                 (least, best) = (own, tried);
@@ -212,12 +215,11 @@ fn cast_best(
     Ok((best.skin, best.checked))
 }
 
-/// How often the skin is cast and what it misses by is added to what is wanted; the best of all
-/// is kept.
+/// Rounds of casting the skin and moving the samples by its misfit; the result is the best of all rounds.
 const ROUNDS: usize = 5;
 
-/// By how much the skin misses a place of the surface wanted.
-struct Missed {
+/// The distance of the skin from a sample of the surface.
+struct SurfaceMiss {
     place: Vec3,
     normal: Vec3,
     /// Along the normal [m].
@@ -225,7 +227,7 @@ struct Missed {
     weight: f64,
 }
 
-/// Moves the surface wanted of a part by what the skin misses it by, averaged over a
+/// Moves the surface samples of a part by the distance of the skin from them, averaged over a
 /// neighbourhood: a cast skin's chords lie within the surface, and a fit has its bias.
 fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
     let cell = 0.03 * height;
@@ -240,16 +242,16 @@ fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
     }
     let tree = SurfaceTree::new(own);
     let key = |p: Vec3| [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64);
-    let mut cells: BTreeMap<[i64; 3], Vec<Missed>> = BTreeMap::new();
+    let mut cells: BTreeMap<[i64; 3], Vec<SurfaceMiss>> = BTreeMap::new();
     for sample in samples.iter() {
-        let Wanted::Surface { normal, own } = sample.wanted else {
+        let DensityTarget::Surface { normal, own } = sample.target else {
             continue;
         };
         let Some(closest) = tree.closest_point(own, 0.02 * height) else {
             continue;
         };
         let miss = (closest.point - own).dot(&normal);
-        cells.entry(key(own)).or_default().push(Missed {
+        cells.entry(key(own)).or_default().push(SurfaceMiss {
             place: own,
             normal,
             miss,
@@ -257,7 +259,7 @@ fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
         });
     }
     for sample in samples {
-        let Wanted::Surface { normal, own } = sample.wanted else {
+        let DensityTarget::Surface { normal, own } = sample.target else {
             continue;
         };
         let [x, y, z] = key(own);

@@ -1,4 +1,4 @@
-//! How far a skin lies from the mesh it was fitted to, by sections.
+//! The misfit: distances of a skin from the mesh it was fitted to, by sections.
 
 use crate::rings::crossings;
 use crate::{Joints, Loop, Scan};

@@ -1,8 +1,8 @@
 //! Primitives of one part fitted to samples of its surface by damped least squares (Levenberg
 //! 1944, Marquardt 1963) with derivatives in closed form.
 
-use crate::fit_girths::Girth;
-use crate::fit_samples::{Sample, Wanted};
+use crate::fit_girths::GirthResidual;
+use crate::fit_samples::{DensityTarget, Sample};
 use crate::{Part, Primitive, THRESHOLD};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Rotation3};
 use toile_geometry::Vec3;
@@ -42,7 +42,7 @@ pub(crate) type Row = (usize, [f64; UNKNOWNS]);
 /// What a part is fitted to.
 pub(crate) struct Goal<'a> {
     pub(crate) samples: &'a [Sample],
-    pub(crate) girths: &'a [Girth],
+    pub(crate) girths: &'a [GirthResidual],
     /// Stature [m].
     pub(crate) height: f64,
 }
@@ -240,19 +240,19 @@ fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> Syst
     let least = 6.0 / height;
     for sample in goal.samples {
         let (value, gradient) = surface.at(sample.place, &mut touched);
-        let miss = match sample.wanted {
-            Wanted::Surface { .. } => value - THRESHOLD,
-            Wanted::Within => (value - THRESHOLD - ROOM[0]).min(0.0),
-            Wanted::Beyond => (value - THRESHOLD + ROOM[1]).max(0.0),
-            Wanted::Far => (value - 0.4 * THRESHOLD).max(0.0),
-            Wanted::Below => (value - THRESHOLD).max(0.0),
+        let miss = match sample.target {
+            DensityTarget::Surface { .. } => value - THRESHOLD,
+            DensityTarget::Within => (value - THRESHOLD - ROOM[0]).min(0.0),
+            DensityTarget::Beyond => (value - THRESHOLD + ROOM[1]).max(0.0),
+            DensityTarget::Far => (value - 0.4 * THRESHOLD).max(0.0),
+            DensityTarget::Below => (value - THRESHOLD).max(0.0),
         };
         if miss == 0.0 {
             continue;
         }
         let steep = gradient.norm().max(least);
-        let steep = match sample.wanted {
-            Wanted::Surface { .. } => steep,
+        let steep = match sample.target {
+            DensityTarget::Surface { .. } => steep,
             _ => steep.max(2.5 * least),
         };
         system.add(&touched, miss / steep, steep, (sample.weight, FAR * height));
@@ -291,10 +291,10 @@ impl System {
 
     /// Adds the residual of a tape [m]: what the surface's moves off its corners lengthen it by,
     /// less what is wanted.
-    fn tape(&mut self, surface: &Surface, girth: &Girth) {
+    fn tape(&mut self, surface: &Surface, girth: &GirthResidual) {
         let mut touched = Vec::new();
         let mut rows = vec![None; surface.all.len()];
-        let mut long = -girth.wanted;
+        let mut long = -girth.target;
         for &(place, turn) in &girth.corners {
             let (beyond, steep) = surface.beyond(place, &mut touched);
             long += turn * beyond;

@@ -1,11 +1,11 @@
-//! Where levels and joints of somebody's mesh lie: found by sections of its limbs.
+//! Levels and joints of a foreign mesh of a person, found by sections of its limbs.
 
 use crate::template::{BodyFrame, Joints};
 use crate::{BodyError, Loop, Scan};
 use toile_geometry::Vec3;
 
-/// A frame with what else was found on the way.
-pub(crate) struct Found {
+/// A frame, with places of the arm and the chin that were found with it.
+pub(crate) struct FoundFrame {
     pub(crate) frame: BodyFrame,
     /// The tip of the left hand [m].
     pub(crate) finger_tip: Vec3,
@@ -25,11 +25,11 @@ const LEAST_ARM: usize = 4;
 /// Height of the shoulder joint over the armpit, over stature.
 const JOINT_RISE: f64 = 0.037;
 
-/// Finds them on a mesh that stands on y = 0 with its middle at x = 0.
+/// Finds levels and joints on a mesh that stands on y = 0 with its middle at x = 0.
 ///
 /// # Errors
-/// What could not be found, and which landmark to give.
-pub(crate) fn find(scan: &Scan) -> Result<Found, BodyError> {
+/// A level or limb that could not be found, with the landmark to give.
+pub(crate) fn find(scan: &Scan) -> Result<FoundFrame, BodyError> {
     let missing = |what: &str| BodyError::Mesh(format!("has no {what} that could be found"));
     let marks = scan.landmarks();
     let height = scan.height();
@@ -91,7 +91,7 @@ pub(crate) fn find(scan: &Scan) -> Result<Found, BodyError> {
         neck: [0.0, neck.base, neck.depth],
         head: [0.0, head_y, middle(brow) - 0.002 * height],
     };
-    Ok(Found {
+    Ok(FoundFrame {
         frame: BodyFrame {
             height,
             crotch,

@@ -1,4 +1,4 @@
-//! What a level tape asks of a fit: that the hull of every section be as long as the mesh's.
+//! Girth residuals of a fit: the convex hull of each section must be as long as the mesh's.
 //!
 //! A point of a convex hull that moves outward by d lengthens it by d times the angle the hull turns
 //! by there (to first order: the edges' directions t change by `(t_before - t_after) . dp`).
@@ -6,18 +6,18 @@
 
 use crate::fit_check::{LevelPart, pairs, tape};
 use crate::fit_field::Surface;
-use crate::fit_frame::Found;
+use crate::fit_frame::FoundFrame;
 use crate::fit_samples::PARTS;
 use crate::{Loop, Part, Primitive, Scan};
 use std::f64::consts::TAU;
 use toile_geometry::{Vec2, Vec3, convex_hull};
 
-/// One part's share of a tape's way.
-pub(crate) struct Girth {
+/// The residual of one tape, of the hull corners that lie on one part.
+pub(crate) struct GirthResidual {
     /// Corners of the mesh's hull, folded to the left [m], and the angle it turns by there [rad].
     pub(crate) corners: Vec<(Vec3, f64)>,
     /// By how much the surface's moves off the corners should lengthen the tape [m].
-    pub(crate) wanted: f64,
+    pub(crate) target: f64,
     /// Its share of the sum of squares [m2].
     pub(crate) weight: f64,
 }
@@ -31,17 +31,17 @@ const TURN: f64 = TAU / 64.0;
 /// The most a tape is asked to change by at a time, over stature.
 const FAR: f64 = 0.012;
 
-/// The tapes of each of [`PARTS`]: how a skin cast from primitives differs from the mesh, and what
-/// the primitives' surface should be moved by instead of where it is. Girths count for more from
+/// The tapes of each of [`PARTS`]: the difference of a skin cast from primitives and the mesh, as moves of
+/// the primitives' surface. Girths count for more from
 /// round to round.
 pub(crate) fn girths(
     [mesh, skin]: [&Scan; 2],
-    found: &Found,
+    found: &FoundFrame,
     (groups, round): (&[Vec<Primitive>], usize),
-) -> [Vec<Girth>; 4] {
+) -> [Vec<GirthResidual>; 4] {
     let height = found.frame.height;
     let surfaces: Vec<Surface> = groups.iter().map(|own| Surface::new(own)).collect();
-    let mut all: [Vec<Girth>; 4] = Default::default();
+    let mut all: [Vec<GirthResidual>; 4] = Default::default();
     let first = (0.04 / SPACING) as usize;
     for k in first.. {
         let y = (k as f64 + 0.5) * SPACING * height;
@@ -73,8 +73,8 @@ pub(crate) fn girths(
                 if model.abs() > 4.0 * FAR * height {
                     continue;
                 }
-                all[k].push(Girth {
-                    wanted: model - gap * share,
+                all[k].push(GirthResidual {
+                    target: model - gap * share,
                     weight: STRESS * round as f64 * around * SPACING * height / (TAU * TAU * share),
                     corners: own,
                 });
@@ -117,7 +117,7 @@ fn corners(loops: &[Loop], y: f64) -> Vec<(Vec3, f64)> {
 
 /// Which of [`PARTS`] a corner belongs to: of those whose surfaces the skin follows there, the one
 /// that lies farthest out.
-fn outermost(surfaces: &[Surface], level: LevelPart, p: Vec3, found: &Found) -> usize {
+fn outermost(surfaces: &[Surface], level: LevelPart, p: Vec3, found: &FoundFrame) -> usize {
     /// Over stature: over which rings two parts meet.
     const MEET: f64 = 0.018;
     let frame = &found.frame;

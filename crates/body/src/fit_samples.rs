@@ -1,38 +1,38 @@
-//! What the primitives of a part are fitted to: places of somebody's mesh where the part's surface
-//! is, and places that lie within it or beyond it.
+//! Samples that the primitives of a part are fitted to: places of a foreign mesh where the part's surface is,
+//! and places within it or beyond it.
 
 use crate::curve::smooth_step;
 use crate::fit_check::outermost;
-use crate::fit_frame::Found;
+use crate::fit_frame::FoundFrame;
 use crate::rings::FAN;
 use crate::{Part, Scan};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
-/// What a density is wanted to be at a place.
+/// The value that the density should have at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Wanted {
-    /// The threshold's: the surface is here.
+pub(crate) enum DensityTarget {
+    /// Equal to the threshold: the surface is here.
     Surface {
         /// Its outward normal.
         normal: Vec3,
         /// The mesh's own place, wherever the sample has been drawn since [m].
         own: Vec3,
     },
-    /// The threshold's or more, with some room.
+    /// Above the threshold by a margin.
     Within,
-    /// Less than the threshold's, with some room.
+    /// Below the threshold by a margin.
     Beyond,
-    /// Next to nothing: far beyond.
+    /// Nearly 0: far beyond the surface.
     Far,
-    /// No more than the threshold's: another part's surface is here.
+    /// At most the threshold: another part's surface is here.
     Below,
 }
 
-/// A place of the left half with what is wanted there and its share [m2].
+/// A place of the left half with the target of the density there and its area [m2].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) place: Vec3,
-    pub(crate) wanted: Wanted,
+    pub(crate) target: DensityTarget,
     pub(crate) weight: f64,
 }
 
@@ -47,11 +47,11 @@ struct Spot {
 /// Parts that are fitted: the others are their mirror images.
 pub(crate) const PARTS: [Part; 4] = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg];
 
-/// How far within and beyond the surface places are taken, over stature.
+/// Distances of the samples within and beyond the surface, over stature.
 const DEPTH: [f64; 2] = [0.010, 0.007];
 
 /// The samples of each of [`PARTS`].
-pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &Found) -> [Vec<Sample>; 4] {
+pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [Vec<Sample>; 4] {
     let spots = {
         let top = TOP * found.frame.height;
         let neck = found.chin;
@@ -66,15 +66,15 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &Found) -> [Vec<Sa
         let mut all = Vec::new();
         for spot in &spots {
             let [own, other] = zones.shares(part, spot);
-            let mut add = |place: Vec3, wanted: Wanted, weight: f64| {
+            let mut add = |place: Vec3, target: DensityTarget, weight: f64| {
                 all.push(Sample {
                     place,
-                    wanted,
+                    target,
                     weight: weight * spot.area,
                 });
             };
             if own > 0.0 {
-                let surface = Wanted::Surface {
+                let surface = DensityTarget::Surface {
                     normal: spot.normal,
                     own: spot.place,
                 };
@@ -95,26 +95,26 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &Found) -> [Vec<Sa
                 for depth in depths {
                     let inner = spot.place - spot.normal * (depth * within);
                     if own > 0.3 && inner.x > 0.0 && tree.contains(inner) {
-                        add(inner, Wanted::Within, 0.5 * own);
+                        add(inner, DensityTarget::Within, 0.5 * own);
                     }
                 }
                 let free = |p: Vec3| zones.is_alien(part, spot, p) || !tree.contains(p);
                 if free(outer) {
-                    add(outer, Wanted::Beyond, own);
+                    add(outer, DensityTarget::Beyond, own);
                 }
                 for times in [2.5, 5.0, 9.0, 14.0] {
                     let far = spot.place + spot.normal * (times * beyond);
                     if free(far) {
-                        let wanted = if times < 4.0 {
-                            Wanted::Beyond
+                        let target = if times < 4.0 {
+                            DensityTarget::Beyond
                         } else {
-                            Wanted::Far
+                            DensityTarget::Far
                         };
-                        add(far, wanted, 0.4 * own);
+                        add(far, target, 0.4 * own);
                     }
                 }
             } else if other > 0.0 {
-                add(spot.place, Wanted::Below, other);
+                add(spot.place, DensityTarget::Below, other);
             }
         }
         all.extend(zones.axis(part));
@@ -127,7 +127,12 @@ const TOP: f64 = 0.975;
 
 /// The outermost places of a head's level sections on the left: mouth, nose and ears have
 /// surfaces within that no skin of ours follows.
-fn head_spots(scan: &Scan, tree: &SurfaceTree, found: &Found, [low, high]: [f64; 2]) -> Vec<Spot> {
+fn head_spots(
+    scan: &Scan,
+    tree: &SurfaceTree,
+    found: &FoundFrame,
+    [low, high]: [f64; 2],
+) -> Vec<Spot> {
     const RAYS: usize = 24;
     let step = 0.006 * found.frame.height;
     let depth = found.frame.joints.head[2];
@@ -159,7 +164,7 @@ fn head_spots(scan: &Scan, tree: &SurfaceTree, found: &Found, [low, high]: [f64;
 }
 
 /// Every triangle's middle, folded to the left, with whether it belongs to an arm.
-fn spots(mesh: &TriangleMesh, found: &Found) -> Vec<Spot> {
+fn spots(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<Spot> {
     let is_arm = arms(mesh, found);
     let normals = mesh.face_normals();
     mesh.triangles
@@ -181,7 +186,7 @@ fn spots(mesh: &TriangleMesh, found: &Found) -> Vec<Spot> {
 
 /// The vertices of both arms: what hangs together with the finger tips beyond the plane across
 /// the arm where its own sections begin.
-fn arms(mesh: &TriangleMesh, found: &Found) -> Vec<bool> {
+fn arms(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<bool> {
     let j = &found.frame.joints;
     let shoulder = Vec3::from(j.shoulder);
     let along = (Vec3::from(j.elbow) - shoulder).normalize();
@@ -213,7 +218,7 @@ fn arms(mesh: &TriangleMesh, found: &Found) -> Vec<bool> {
 
 /// One spot a cell of a grid, with the area of all in it: dense feet and hands count no more than
 /// their area.
-fn thinned(spots: Vec<Spot>, found: &Found) -> Vec<Spot> {
+fn thinned(spots: Vec<Spot>, found: &FoundFrame) -> Vec<Spot> {
     let height = found.frame.height;
     let cell = 0.006 * height;
     let key = |p: Vec3| [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64);
@@ -238,14 +243,14 @@ fn thinned(spots: Vec<Spot>, found: &Found) -> Vec<Spot> {
 
 /// Which part's surface is where.
 struct Zones<'a> {
-    found: &'a Found,
+    found: &'a FoundFrame,
     focus: Vec3,
     /// Elevation of the ray over the shoulder [rad].
     top: f64,
 }
 
 impl<'a> Zones<'a> {
-    fn new(found: &'a Found) -> Self {
+    fn new(found: &'a FoundFrame) -> Self {
         let f = &found.frame;
         let scale = f.height / 1.7;
         let shoulder = Vec3::from(f.joints.shoulder);
@@ -360,7 +365,7 @@ impl<'a> Zones<'a> {
             })
             .map(|place| Sample {
                 place,
-                wanted: Wanted::Within,
+                target: DensityTarget::Within,
                 weight: 3e-4 * f.height * f.height,
             })
             .collect()

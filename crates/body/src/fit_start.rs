@@ -1,6 +1,6 @@
-//! Where a fit starts: our own figure's primitives carried to the joints and girths of a mesh.
+//! The start of a fit: our own figure's primitives carried to the joints and girths of a mesh.
 
-use crate::fit_frame::Found;
+use crate::fit_frame::FoundFrame;
 use crate::rings::at_length;
 use crate::template::{BodyFrame, Template};
 use crate::{Figure, Part, Primitive, Scan};
@@ -68,7 +68,7 @@ impl Side<'_> {
 }
 
 /// The left side's and the middle's primitives of the woman's figure carried to a mesh.
-pub(crate) fn start(scan: &Scan, found: &Found, own: &Scan) -> Vec<Primitive> {
+pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitive> {
     let template = Template::of(Figure::Woman);
     let frame = BodyFrame {
         height: template.height,

@@ -1,9 +1,9 @@
-//! Every girth a body is solved for: where it lies and which scale it sets.
+//! Every girth a body is solved for: its place on the template and the scale it sets.
 
 use crate::Part;
 use crate::bands::Near;
 use crate::levels::{Level, Levels};
-use crate::marks::{Marks, Plane};
+use crate::template_marks::{Plane, TemplateMarks};
 use crate::warp::{Follow, Warp};
 use toile_geometry::Vec3;
 
@@ -30,7 +30,7 @@ pub(crate) enum Girth {
     Wrist,
 }
 
-/// Where a girth lies.
+/// The place of a girth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Site {
     /// Level round the trunk.
@@ -85,7 +85,7 @@ impl Girth {
     }
 
     /// Where it lies on a template; the thigh's place follows the crotch.
-    pub(crate) fn site(self, marks: &Marks) -> Site {
+    pub(crate) fn site(self, marks: &TemplateMarks) -> Site {
         match self {
             Girth::Head => Site::Plane(Part::Head, marks.head),
             Girth::Neck => Site::Plane(Part::Head, marks.neck),
@@ -109,7 +109,12 @@ impl Girth {
     }
 
     /// The part it lies on, and its plane on the body: a point and a unit normal.
-    pub(crate) fn plane(self, marks: &Marks, levels: &Levels, warp: &Warp) -> (Part, [Vec3; 2]) {
+    pub(crate) fn plane(
+        self,
+        marks: &TemplateMarks,
+        levels: &Levels,
+        warp: &Warp,
+    ) -> (Part, [Vec3; 2]) {
         let level = |part, y: f64| (part, [Vec3::new(0.0, y, 0.0), Vec3::y()]);
         match self.site(marks) {
             Site::Trunk(at) => level(Part::Trunk, levels.at(at)),
@@ -133,7 +138,7 @@ impl Girth {
     }
 
     /// Where on the template its triangles are to be looked for.
-    pub(crate) fn near(self, marks: &Marks, plane: [Vec3; 2], warp: &Warp) -> Near {
+    pub(crate) fn near(self, marks: &TemplateMarks, plane: [Vec3; 2], warp: &Warp) -> Near {
         match self.site(marks) {
             // Up there the ends of the shoulders are moved besides.
             Site::Trunk(Level::HighBust) => warp.near(plane[0].y, 0.08),

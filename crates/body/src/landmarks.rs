@@ -1,9 +1,9 @@
 //! Named points of a body, its axes and its levels.
 
 use crate::levels::{Level, Levels};
-use crate::marks::middle_depth;
-use crate::solve::Grown;
+use crate::solve::SolveInput;
 use crate::tape::outermost;
+use crate::template_marks::middle_depth;
 use crate::warp::{Follow, Warp};
 use crate::{Joint, Mannequin, Part};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
@@ -69,18 +69,18 @@ fn pair(left: Vec3) -> [Vec3; 2] {
 
 impl Landmarks {
     pub(crate) fn find(
-        grown: &Grown,
+        input: &SolveInput,
         (levels, warp): (&Levels, &Warp),
         mesh: &TriangleMesh,
     ) -> Self {
         let level = |level: Level| levels.at(level);
         let trunk_section = |y: f64| -> Vec<Vec2> {
             let near = warp.near(y, 0.08);
-            let trunk = grown
+            let trunk = input
                 .skin
                 .bands
                 .of(near)
-                .filter(|&t| matches!(grown.skin.parts[t], Part::Trunk | Part::Head));
+                .filter(|&t| matches!(input.skin.parts[t], Part::Trunk | Part::Head));
             horizontal_section(mesh, trunk, y)
         };
         let front = |y: f64| {
@@ -89,15 +89,15 @@ impl Landmarks {
         };
         let nape_z = -middle_extreme(&trunk_section(level(Level::Nape)), -1.0);
         let spine = |y: f64| Vec3::new(0.0, y, middle_depth(&trunk_section(y)));
-        let tip = grown.marks.tip_on.at(&mesh.positions);
-        let neck = grown.marks.neck_side_on.at(&mesh.positions);
+        let tip = input.marks.tip_on.at(&mesh.positions);
+        let neck = input.marks.neck_side_on.at(&mesh.positions);
         let bust_level = level(Level::Bust);
         let ends = trunk_section(bust_level);
         let section: Vec<[Vec2; 2]> = ends.chunks_exact(2).map(|s| [s[0], s[1]]).collect();
-        let point = warp.apply(grown.marks.bust_point, Follow::default());
+        let point = warp.apply(input.marks.bust_point, Follow::default());
         let bust =
             outermost(&section, point.x).map_or(point, |on| Vec3::new(on.x, bust_level, on.y));
-        let middle = |v: &usize| grown.skin.mirror[*v] as usize == *v;
+        let middle = |v: &usize| input.skin.mirror[*v] as usize == *v;
         let lowest = (0..mesh.positions.len())
             .filter(middle)
             .map(|v| mesh.positions[v])
@@ -107,7 +107,7 @@ impl Landmarks {
             .map(|v| mesh.positions[v])
             .max_by(|a, b| a.y.total_cmp(&b.y))
             .unwrap_or_default();
-        let neck_base = warp.apply(Vec3::from(grown.template.joints.neck), Follow::default());
+        let neck_base = warp.apply(Vec3::from(input.template.joints.neck), Follow::default());
         let outline: Vec<Vec3> = (0..mesh.positions.len())
             .filter(middle)
             .map(|v| mesh.positions[v])

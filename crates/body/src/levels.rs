@@ -1,8 +1,8 @@
-//! Heights of the landmarks, from whatever lengths are asked for.
+//! Heights of the landmarks, solved from the lengths that are asked for.
 
 use crate::conflict::gives_way;
-use crate::marks::{Marks, UNDERBUST};
 use crate::request::Request;
+use crate::template_marks::{TemplateMarks, UNDERBUST};
 use nalgebra::{SMatrix, SVector};
 use toile_measure::{Measurements, Origin};
 
@@ -41,9 +41,9 @@ impl Levels {
     }
 }
 
-/// How much more than the difference of its levels a measurement is on the skin [m].
+/// Differences of measurements on the skin from the differences of their levels [m].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Excess {
+pub(crate) struct SkinOffsets {
     /// Of the landmark on the skin over its level.
     pub(crate) level: [f64; COUNT],
     /// From the side of the neck out to the end of the shoulder; none before it is known.
@@ -137,7 +137,7 @@ const NECK_SIDE_DROP: f64 = 0.020;
 
 /// Heights that meet the lengths of a completed table in the sense of least squares: what is
 /// asked for weighs most, then what goes with the definitions, then predictions.
-pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels {
+pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffsets) -> Levels {
     let table = &request.table;
     let height = table.get("height").unwrap_or(1.7);
     let mut system = System {
@@ -154,10 +154,10 @@ pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels
             continue;
         };
         let mut terms = vec![(upper, 1.0)];
-        let mut value = measured.value - excess.level[upper as usize];
+        let mut value = measured.value - offsets.level[upper as usize];
         if let Some(lower) = lower {
             terms.push((lower, -1.0));
-            value += excess.level[lower as usize];
+            value += offsets.level[lower as usize];
         }
         let deviation = match name {
             _ if asked(name) => ASKED,
@@ -173,7 +173,7 @@ pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels
         }
         let mut terms = vec![(upper, 1.0)];
         terms.extend(lower.map(|lower| (lower, -1.0)));
-        let value = table.get(name).unwrap_or_default() - excess.over[k];
+        let value = table.get(name).unwrap_or_default() - offsets.over[k];
         let other = name == "bust_to_underbust" && request.follows_skin();
         let deviation = match other || gives_way(name, &request.conflicts) {
             true => PREDICTED,
@@ -181,7 +181,7 @@ pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels
         };
         system.add(&terms, value, deviation * height);
     }
-    proportions(&mut system, table, marks, height, excess);
+    proportions(&mut system, table, marks, height, offsets);
     let solved = system
         .normal
         .cholesky()
@@ -193,9 +193,9 @@ pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels
 fn proportions(
     system: &mut System,
     table: &Measurements,
-    marks: &Marks,
+    marks: &TemplateMarks,
     height: f64,
-    excess: &Excess,
+    offsets: &SkinOffsets,
 ) {
     let h = height;
     system.add(
@@ -208,13 +208,13 @@ fn proportions(
         table.get("shoulder_w"),
         table.get("neck_w"),
     ) {
-        let run = excess.run.unwrap_or(0.5 * (shoulders - neck));
+        let run = offsets.run.unwrap_or(0.5 * (shoulders - neck));
         let fall = run * slope.value.clamp(-0.2, 1.2).tan();
         let deviation = match slope.origin {
             Origin::Asked => ASKED,
             Origin::Predicted => PROPORTION,
         };
-        let value = fall + excess.level[Tip as usize] - excess.level[NeckSide as usize];
+        let value = fall + offsets.level[Tip as usize] - offsets.level[NeckSide as usize];
         system.add(&[(NeckSide, 1.0), (Tip, -1.0)], value, deviation * h);
     }
     let t = marks;

@@ -5,15 +5,15 @@ use crate::bones;
 use crate::field::VISIBLE_RATIO;
 use crate::hang::hang;
 use crate::landmarks::Landmarks;
-use crate::levels::{self, Excess, Levels};
-use crate::marks::Marks;
+use crate::levels::{self, Levels, SkinOffsets};
 use crate::refit::refitted;
 use crate::request::Request;
 use crate::rigging::sources;
 use crate::rings::{self, TemplateSkin};
 use crate::skinning::Skinning;
-use crate::solve::{Grown, Solved};
+use crate::solve::{SolveInput, Solved};
 use crate::template::Template;
+use crate::template_marks::TemplateMarks;
 use crate::warp::{Follow, Warp};
 use crate::{AttachedPrimitive, BodyError, Field, Figure, Joint, Part, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
@@ -27,14 +27,14 @@ pub struct Mannequin {
     pub(crate) figure: Figure,
     pub(crate) measurements: Measurements,
     pub(crate) request: Request,
-    pub(crate) cast: Arc<Cast>,
+    pub(crate) template_body: Arc<TemplateBody>,
     pub(crate) levels: Levels,
     pub(crate) warp: Warp,
     pub(crate) crotch: Vec<u32>,
     pub(crate) skeleton: Skeleton,
     pub(crate) landmarks: Landmarks,
     skin: TriangleMesh,
-    // What follows is made from the rest when first asked for.
+    // The following fields are computed from the others when first asked for.
     tree: OnceLock<SurfaceTree>,
     skinning: OnceLock<Skinning>,
     primitives: OnceLock<Vec<AttachedPrimitive>>,
@@ -42,19 +42,19 @@ pub struct Mannequin {
 }
 
 /// A template with its skin and marks.
-pub(crate) struct Cast {
+pub(crate) struct TemplateBody {
     pub(crate) template: Template,
     pub(crate) skin: TemplateSkin,
-    pub(crate) marks: Marks,
+    pub(crate) marks: TemplateMarks,
 }
 
-impl Cast {
+impl TemplateBody {
     fn of(mut template: Template) -> Result<Arc<Self>, BodyError> {
         let skin = match template.armpit {
             Some(_) => rings::cast_framed(&mut template)?,
             None => rings::cast(&template, &Field::new(&template.primitives))?,
         };
-        let marks = Marks::of(&template, &skin)?;
+        let marks = TemplateMarks::of(&template, &skin)?;
         Ok(Arc::new(Self {
             template,
             skin,
@@ -64,7 +64,8 @@ impl Cast {
 }
 
 /// The figures' own templates, cast when first needed.
-static CAST: [OnceLock<Result<Arc<Cast>, BodyError>>; 3] = [const { OnceLock::new() }; 3];
+static TEMPLATE_BODIES: [OnceLock<Result<Arc<TemplateBody>, BodyError>>; 3] =
+    [const { OnceLock::new() }; 3];
 
 /// The skin of a figure's own primitives, before any measurement is applied: cast anew [m].
 ///
@@ -86,8 +87,9 @@ impl Mannequin {
     pub fn new(measurements: &Measurements, figure: Figure) -> Result<Self, BodyError> {
         // Children share the template of the mean.
         let place = (figure as usize).min(Figure::Mean as usize);
-        let cast = CAST[place].get_or_init(|| Cast::of(Template::of(figure)));
-        Self::grown(measurements, figure, cast.clone()?)
+        let template_body =
+            TEMPLATE_BODIES[place].get_or_init(|| TemplateBody::of(Template::of(figure)));
+        Self::grown(measurements, figure, template_body.clone()?)
     }
 
     pub(crate) fn from_template(
@@ -95,7 +97,7 @@ impl Mannequin {
         figure: Figure,
         template: Template,
     ) -> Result<Self, BodyError> {
-        Self::grown(measurements, figure, Cast::of(template)?)
+        Self::grown(measurements, figure, TemplateBody::of(template)?)
     }
 
     /// The body of a template of its own frame as it is: nothing is solved for.
@@ -104,10 +106,10 @@ impl Mannequin {
         figure: Figure,
         template: Template,
     ) -> Result<Self, BodyError> {
-        let cast = Cast::of(template)?;
-        // What is not said of the body is that of people of its own frame.
+        let template_body = TemplateBody::of(template)?;
+        // Measurements that are not given are predicted from the frame.
         let mut known = measurements.clone();
-        let template = &cast.template;
+        let template = &template_body.template;
         for (name, value) in [
             ("height", Some(template.height)),
             ("inside_leg", Some(template.crotch)),
@@ -122,12 +124,12 @@ impl Mannequin {
             }
         }
         let request = Request::read(&known, figure)?;
-        let warp = Warp::still(&cast.template, &cast.marks);
-        let levels = levels::solve(&request, &cast.marks, &Excess::default());
-        let mesh = cast.skin.mesh.clone();
+        let warp = Warp::still(&template_body.template, &template_body.marks);
+        let levels = levels::solve(&request, &template_body.marks, &SkinOffsets::default());
+        let mesh = template_body.skin.mesh.clone();
         Ok(Self::with(
             (measurements, figure, request),
-            cast,
+            template_body,
             (levels, warp),
             mesh,
         ))
@@ -136,24 +138,24 @@ impl Mannequin {
     fn grown(
         measurements: &Measurements,
         figure: Figure,
-        cast: Arc<Cast>,
+        template_body: Arc<TemplateBody>,
     ) -> Result<Self, BodyError> {
-        let grown = Grown {
-            template: &cast.template,
-            skin: &cast.skin,
-            marks: cast.marks,
+        let input = SolveInput {
+            template: &template_body.template,
+            skin: &template_body.skin,
+            marks: template_body.marks,
             request: Request::read(measurements, figure)?,
         };
         let Solved {
             shape,
             levels,
             mesh,
-        } = grown.solve()?;
-        let warp = Warp::new(&cast.template, &cast.marks, shape);
-        let request = grown.request;
+        } = input.solve()?;
+        let warp = Warp::new(&template_body.template, &template_body.marks, shape);
+        let request = input.request;
         Ok(Self::with(
             (measurements, figure, request),
-            cast,
+            template_body,
             (levels, warp),
             mesh,
         ))
@@ -161,27 +163,27 @@ impl Mannequin {
 
     fn with(
         (measurements, figure, request): (&Measurements, Figure, Request),
-        cast: Arc<Cast>,
+        template_body: Arc<TemplateBody>,
         (levels, warp): (Levels, Warp),
         skin: TriangleMesh,
     ) -> Self {
-        let grown = Grown {
-            template: &cast.template,
-            skin: &cast.skin,
-            marks: cast.marks,
+        let input = SolveInput {
+            template: &template_body.template,
+            skin: &template_body.skin,
+            marks: template_body.marks,
             request,
         };
         Self {
             figure,
             measurements: measurements.clone(),
             skeleton: hung(
-                bones::skeleton(&cast.template, &warp),
+                bones::skeleton(&template_body.template, &warp),
                 &skin,
-                &cast.skin.arm,
+                &template_body.skin.arm,
             ),
-            landmarks: Landmarks::find(&grown, (&levels, &warp), &skin),
-            crotch: grown.crotch_vertices(),
-            request: grown.request,
+            landmarks: Landmarks::find(&input, (&levels, &warp), &skin),
+            crotch: input.crotch_vertices(),
+            request: input.request,
             levels,
             warp,
             skin,
@@ -189,13 +191,13 @@ impl Mannequin {
             skinning: OnceLock::new(),
             primitives: OnceLock::new(),
             field: OnceLock::new(),
-            cast,
+            template_body,
         }
     }
 
     /// The template's primitives carried by the map, scaled to lie on the skin, and fixed.
     fn fitted_primitives(&self) -> Vec<AttachedPrimitive> {
-        let template = &self.cast.template;
+        let template = &self.template_body.template;
         let own: Vec<Primitive> = template
             .primitives
             .iter()
@@ -233,7 +235,7 @@ impl Mannequin {
                 body
             })
             .collect();
-        refitted(left, &self.skin, &self.cast.skin.parts)
+        refitted(left, &self.skin, &self.template_body.skin.parts)
             .iter()
             .zip(sources)
             .map(attached)
@@ -242,7 +244,7 @@ impl Mannequin {
 
     /// How the skin hangs on the joints.
     pub(crate) fn skinning(&self) -> &Skinning {
-        let skin = &self.cast.skin;
+        let skin = &self.template_body.skin;
         self.skinning
             .get_or_init(|| Skinning::new(self, &skin.arm, &skin.leg))
     }
@@ -275,7 +277,7 @@ impl Mannequin {
 
     /// The part each triangle of the skin belongs to.
     pub fn part_of_triangle(&self) -> &[Part] {
-        &self.cast.skin.parts
+        &self.template_body.skin.parts
     }
 
     /// The joints, where they are at rest.

@@ -1,4 +1,4 @@
-//! Primitives fitted anew to the skin that was grown from them.
+//! Fits primitives anew to the skin that was made from them.
 
 use crate::describe::both_sides;
 use crate::{Blend, Part, Primitive, THRESHOLD};

@@ -1,5 +1,5 @@
-//! What is particular about single primitives of a body: the joint one is fixed to, how it
-//! changes with a reference joint, and which ones go together.
+//! Properties of single primitives of a body: the joint one is fixed to, its change with a reference joint,
+//! and groups of primitives.
 
 use crate::deform::Deformation;
 use crate::{BodyError, Joint, Primitive};

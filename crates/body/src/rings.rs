@@ -1,4 +1,5 @@
-//! The skin of a template: rings cast from the axes of the parts onto their implicit surfaces.
+//! Casts the skin of a template: rays from the axes of limbs and trunk meet the implicit surface in rings of
+//! vertices.
 //!
 //! Only the left half, x >= 0, is cast; the right half is its mirror image. Trunk, neck and head
 //! are one tube of half rings with a hole for the arm; the arm's first ring is the border of that

@@ -2,8 +2,8 @@
 //! found or given, and the same tape as on our own bodies: the convex hull of a section.
 
 use crate::BodyError;
-use crate::marks::{CALF, UNDERBUST};
 use crate::tape::extent;
+use crate::template_marks::{CALF, UNDERBUST};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};

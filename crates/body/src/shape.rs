@@ -1,11 +1,11 @@
-//! From scales and levels to the curves of the warp.
+//! Builds the curves of the warp from scales and levels.
 
 use crate::BodyError;
 use crate::curve::Monotone;
 use crate::girths::{Girth, Site, THIGH_DROP};
 use crate::levels::{Level, Levels};
-use crate::marks::{Marks, UNDERBUST};
-use crate::solve::Grown;
+use crate::solve::SolveInput;
+use crate::template_marks::{TemplateMarks, UNDERBUST};
 use crate::warp::Shape;
 use std::cmp::Ordering;
 
@@ -47,7 +47,7 @@ pub(crate) struct Scales {
 
 impl Scales {
     /// All the template's own, at a ratio of statures.
-    pub(crate) fn new(global: f64, marks: &Marks) -> Self {
+    pub(crate) fn new(global: f64, marks: &TemplateMarks) -> Self {
         Self {
             girth: [global; Girth::COUNT],
             aspect: [1.0; Girth::COUNT],
@@ -94,8 +94,8 @@ type Section = [f64; 4];
 const APART: f64 = 0.006;
 
 /// The shape of given scales and levels.
-pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
-    let (m, q, t) = (&grown.marks, &grown.request, grown.template);
+pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
+    let (m, q, t) = (&input.marks, &input.request, input.template);
     let height = levels.at(Level::Crown);
     let global = q.get("height") / t.height;
     let knee = levels.at(Level::Knee);
@@ -140,7 +140,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     let row = |k: usize| [places[k], middle[k]];
     let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + forward[k]];
     let on_template = |level: f64| curve.inverse(level);
-    let sections = trunk(grown, s, levels, &on_template);
+    let sections = trunk(input, s, levels, &on_template);
     let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
     let aspect = s.aspect[Girth::Hips as usize].sqrt();
     let shape = Shape {
@@ -148,10 +148,10 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         lateral: column(1),
         front: column(2),
         back: column(3),
-        corners: corners(grown, s, levels, &on_template),
+        corners: corners(input, s, levels, &on_template),
         folds: folds(s, m, levels, &on_template),
-        leg: leg(grown, s, levels, &on_template),
-        arm: arm(grown, s, global),
+        leg: leg(input, s, levels, &on_template),
+        arm: arm(input, s, global),
         arm_length: vec![
             [0.0, 0.0],
             [m.elbow, s.elbow.clamp(0.2 * s.wrist, 0.8 * s.wrist)],
@@ -212,12 +212,12 @@ fn in_order(shape: &Shape) -> Result<(), BodyError> {
 /// Sections of trunk, neck and head from below. Of two that lie too close, the more important
 /// one stands.
 fn trunk(
-    grown: &Grown,
+    input: &SolveInput,
     s: &Scales,
     levels: &Levels,
     on_template: &dyn Fn(f64) -> f64,
 ) -> Vec<Section> {
-    let (m, t) = (&grown.marks, grown.template);
+    let (m, t) = (&input.marks, input.template);
     let section = |y: f64, girth: Girth| -> Section {
         let k = girth as usize;
         let (scale, form) = (s.girth[k], s.aspect[k].sqrt());
@@ -234,7 +234,7 @@ fn trunk(
         Girth::HighBust,
         Girth::HighHips,
     ] {
-        if let (Some(_), Site::Trunk(level)) = (grown.request.girth(girth), girth.site(m)) {
+        if let (Some(_), Site::Trunk(level)) = (input.request.girth(girth), girth.site(m)) {
             let y = on_template(levels.at(level));
             if rows.iter().all(|row| (row[0] - y).abs() > APART * t.height) {
                 rows.push(section(y, girth));
@@ -244,7 +244,7 @@ fn trunk(
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let top = rows[rows.len() - 1];
     rows.retain(|row| row[0] < m.tip.y - APART * t.height);
-    let global = grown.request.get("height") / t.height;
+    let global = input.request.get("height") / t.height;
     let (neck, head) = (s.of(Girth::Neck), s.of(Girth::Head));
     let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
     let tip = [m.tip.y, s.shoulder, front, back];
@@ -261,13 +261,13 @@ fn trunk(
 
 /// How much fuller the corners of the sections are over template height: nothing at the shoulders.
 fn corners(
-    grown: &Grown,
+    input: &SolveInput,
     s: &Scales,
     levels: &Levels,
     on_template: &dyn Fn(f64) -> f64,
 ) -> Vec<[f64; 2]> {
-    let m = &grown.marks;
-    let apart = APART * grown.template.height;
+    let m = &input.marks;
+    let apart = APART * input.template.height;
     let mut rows = vec![[m.tip.y, 0.0]];
     for (girth, level) in [
         (Girth::Hips, Level::Hips),
@@ -289,7 +289,7 @@ fn corners(
 /// nothing at the waist and at the shoulders.
 fn folds(
     s: &Scales,
-    m: &Marks,
+    m: &TemplateMarks,
     levels: &Levels,
     on_template: &dyn Fn(f64) -> f64,
 ) -> Vec<[f64; 2]> {
@@ -320,12 +320,12 @@ fn under_the_arm(rows: &[Section], tip: Section, armpit: f64, apart: f64) -> Opt
 
 /// Scales of the leg over template height.
 fn leg(
-    grown: &Grown,
+    input: &SolveInput,
     s: &Scales,
     levels: &Levels,
     on_template: &dyn Fn(f64) -> f64,
 ) -> Vec<[f64; 2]> {
-    let (m, t, q) = (&grown.marks, grown.template, &grown.request);
+    let (m, t, q) = (&input.marks, input.template, &input.request);
     let global = q.get("height") / t.height;
     let foot = if q.girth(Girth::Heel).is_some() {
         s.of(Girth::Heel)
@@ -353,8 +353,8 @@ fn leg(
 }
 
 /// Scales of the arm over template distance from the shoulder joint.
-fn arm(grown: &Grown, s: &Scales, global: f64) -> Vec<[f64; 2]> {
-    let (m, q) = (&grown.marks, &grown.request);
+fn arm(input: &SolveInput, s: &Scales, global: f64) -> Vec<[f64; 2]> {
+    let (m, q) = (&input.marks, &input.request);
     let mut rows = vec![[0.0, 0.5 * (global + s.of(Girth::UpperArm))]];
     for (girth, distance) in [
         (Girth::UpperArm, m.upper_arm),

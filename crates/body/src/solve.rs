@@ -1,35 +1,35 @@
-//! The shape whose skin has the measurements asked for.
+//! Solves for the shape whose skin has the measurements asked for.
 
 use crate::BodyError;
 use crate::girths::Girth;
-use crate::levels::{self, Excess, Level, Levels, OVER};
-use crate::marks::Marks;
+use crate::levels::{self, Level, Levels, OVER, SkinOffsets};
+use crate::measured::TapedSkin;
 use crate::request::Request;
 use crate::rings::TemplateSkin;
 use crate::shape::{Scales, shape};
-use crate::taken::Taken;
 use crate::tape::{Skinned, extent, half_length};
 use crate::template::Template;
+use crate::template_marks::TemplateMarks;
 use crate::warp::{Follow, Shape, Warp};
 use toile_geometry::{TriangleMesh, Vec3, closed_length};
 
-/// A template with its skin and marks.
-pub(crate) struct Grown<'a> {
+/// Input of the solution: a template with its skin and marks, and the measurements asked for.
+pub(crate) struct SolveInput<'a> {
     pub(crate) template: &'a Template,
     pub(crate) skin: &'a TemplateSkin,
-    pub(crate) marks: Marks,
+    pub(crate) marks: TemplateMarks,
     pub(crate) request: Request,
 }
 
-/// What was found.
+/// The solution.
 pub(crate) struct Solved {
     pub(crate) shape: Shape,
     pub(crate) levels: Levels,
     pub(crate) mesh: TriangleMesh,
 }
 
-/// Every so many rounds the unknowns are extrapolated to the limit they tend to.
-const LEAP: usize = 8;
+/// Rounds between two extrapolations of the unknowns to their limit.
+const EXTRAPOLATION_INTERVAL: usize = 8;
 /// Rounds in which posture and form are still corrected, where a bust's form pulls at everything
 /// else and where not; most bodies need 8 to 15.
 const FORMING: [usize; 2] = [32, 24];
@@ -39,7 +39,7 @@ const SHAPING: usize = 12;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
 
-impl Grown<'_> {
+impl SolveInput<'_> {
     /// Finds the shape by fixed-point iteration: each scale is multiplied by asked over got, each
     /// level moved by what its landmark misses. Only the rings the tape meets are placed until
     /// the last round is over.
@@ -47,13 +47,13 @@ impl Grown<'_> {
         let height = self.request.get("height");
         let global = height / self.template.height;
         let mut scales = Scales::new(global, &self.marks);
-        let mut excess = Excess::default();
+        let mut offsets = SkinOffsets::default();
         let crotch = self.crotch_vertices();
         let mut before: Option<[Scales; 2]> = None;
         let slow = self.request.follows_skin();
         let forming = FORMING[usize::from(!slow)];
         for round in 0..forming + LAST {
-            let levels = levels::solve(&self.request, &self.marks, &excess);
+            let levels = levels::solve(&self.request, &self.marks, &offsets);
             let shape = shape(self, &scales, &levels)?;
             let warp = Warp::new(self.template, &self.marks, shape);
             let place = |v: usize| self.place(&warp, height, v);
@@ -63,7 +63,7 @@ impl Grown<'_> {
                 &place,
             );
             let taken = self.taken(&skinned, (&levels, &warp), &crotch);
-            let mut moved = self.correct(&mut scales, &mut excess, &taken);
+            let mut moved = self.correct(&mut scales, &mut offsets, &taken);
             if round < forming {
                 if round < SHAPING {
                     self.form(&mut scales, &taken);
@@ -75,16 +75,18 @@ impl Grown<'_> {
             }
             before = Some(match before {
                 Some([older, old])
-                    if slow && round % LEAP == LEAP - 1 && round + LEAP < forming =>
+                    if slow
+                        && round % EXTRAPOLATION_INTERVAL == EXTRAPOLATION_INTERVAL - 1
+                        && round + EXTRAPOLATION_INTERVAL < forming =>
                 {
-                    leap(&mut scales, [older, old]);
+                    extrapolate(&mut scales, [older, old]);
                     [scales.clone(), scales.clone()]
                 }
                 Some([_, old]) => [old, scales.clone()],
                 None => [scales.clone(), scales.clone()],
             });
         }
-        let levels = levels::solve(&self.request, &self.marks, &excess);
+        let levels = levels::solve(&self.request, &self.marks, &offsets);
         let shape = shape(self, &scales, &levels)?;
         let mesh = self.skin_of(&Warp::new(self.template, &self.marks, shape.clone()));
         Ok(Solved {
@@ -109,12 +111,12 @@ impl Grown<'_> {
         skinned: &'a Skinned<'a>,
         on: (&'a Levels, &'a Warp),
         crotch: &'a [u32],
-    ) -> Taken<'a> {
-        Taken::new(skinned, (&self.marks, self.skin.armpit), on, crotch)
+    ) -> TapedSkin<'a> {
+        TapedSkin::new(skinned, (&self.marks, self.skin.armpit), on, crotch)
     }
 
-    /// Corrects scales and excesses by what the tape found. Returns the largest miss [m].
-    fn correct(&self, scales: &mut Scales, excess: &mut Excess, taken: &Taken) -> f64 {
+    /// Corrects scales and offsets by the values of the tape. Returns the largest error [m].
+    fn correct(&self, scales: &mut Scales, offsets: &mut SkinOffsets, taken: &TapedSkin) -> f64 {
         let q = &self.request;
         let mut miss: f64 = 0.0;
         for girth in Girth::ALL {
@@ -165,10 +167,10 @@ impl Grown<'_> {
         } else {
             scales.elbow = scales.wrist * self.marks.elbow / self.marks.wrist;
         }
-        excess.run = Some(tip.x - neck.x);
+        offsets.run = Some(tip.x - neck.x);
         for level in [Level::Tip, Level::NeckSide, Level::Crotch] {
             let found = taken.height(level) - taken.levels.at(level);
-            let known = &mut excess.level[level as usize];
+            let known = &mut offsets.level[level as usize];
             miss = miss.max((found - *known).abs());
             *known = found;
         }
@@ -179,16 +181,16 @@ impl Grown<'_> {
                 let lower = lower.map_or(0.0, |level| taken.levels.at(level));
                 let found = got - (taken.levels.at(upper) - lower);
                 // Half steps: a way over the body moves what it is taken over.
-                let step = 0.5 * (found - excess.over[k]);
+                let step = 0.5 * (found - offsets.over[k]);
                 miss = miss.max(step.abs());
-                excess.over[k] += step;
+                offsets.over[k] += step;
             }
         }
         miss
     }
 
     /// Corrects the form of sections at equal girth: breadth over depth, front over back.
-    fn form(&self, scales: &mut Scales, taken: &Taken) {
+    fn form(&self, scales: &mut Scales, taken: &TapedSkin) {
         let q = &self.request;
         for (girth, breadth, depth) in [
             (Girth::Waist, "waist_breadth", "waist_depth"),
@@ -244,7 +246,7 @@ impl Grown<'_> {
     /// Corrects where the neck stands between front and back lengths, where side lines, armpits and
     /// the middle of the crotch lie, how flat that is, and how far the bust points stand out and are
     /// apart. Returns the largest miss that can still be corrected [m].
-    fn posture(&self, scales: &mut Scales, taken: &Taken, round: usize) -> f64 {
+    fn posture(&self, scales: &mut Scales, taken: &TapedSkin, round: usize) -> f64 {
         let q = &self.request;
         let height = q.get("height");
         let mut miss: f64 = 0.0;
@@ -344,9 +346,9 @@ impl Grown<'_> {
     }
 }
 
-/// Goes where unknowns tend to whose steps shrink evenly: each by its own ratio of steps (Aitken
-/// 1926), none by more than four more steps.
-fn leap(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
+/// Extrapolates unknowns whose steps shrink evenly to their limit: each by its own ratio of steps (Aitken
+/// 1926), by at most four more steps.
+fn extrapolate(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
     let history = older.coupled().zip(old.coupled());
     for (now, (older, old)) in scales.coupled().zip(history) {
         let [first, second] = [*old - *older, *now - *old];

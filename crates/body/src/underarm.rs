@@ -1,5 +1,4 @@
-//! The first rings of the arm under the shoulder, drawn even where a large chest and a thick arm
-//! would run into each other.
+//! Smooths the skin under the shoulder, and holds arm and trunk apart.
 
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec3};

@@ -7,9 +7,9 @@
 use crate::bands::Near;
 use crate::curve::{Monotone, smooth_step};
 use crate::girths::Girth;
-use crate::marks::{FORK, FORK_STEP, Marks};
 use crate::rings::at_length;
 use crate::template::Template;
+use crate::template_marks::{FORK, FORK_STEP, TemplateMarks};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
@@ -83,7 +83,7 @@ pub(crate) struct Follow {
 }
 
 /// Rises of the body's middle over the crotch by their depth [m].
-fn fork(marks: &Marks) -> Vec<[f64; 2]> {
+fn fork(marks: &TemplateMarks) -> Vec<[f64; 2]> {
     let at = |k: usize| marks.fork_at + k as f64 * FORK_STEP * marks.crown;
     (0..FORK).map(|k| [at(k), marks.fork[k]]).collect()
 }
@@ -104,7 +104,7 @@ pub(crate) struct Warp {
     middle: Monotone,
     middle_to: Monotone,
     fork: Monotone,
-    marks: Marks,
+    marks: TemplateMarks,
     shape: Shape,
     leg_axis: [Vec3; 3],
     shoulder: Vec3,
@@ -115,7 +115,7 @@ pub(crate) struct Warp {
 }
 
 impl Warp {
-    pub(crate) fn new(template: &Template, marks: &Marks, shape: Shape) -> Self {
+    pub(crate) fn new(template: &Template, marks: &TemplateMarks, shape: Shape) -> Self {
         let j = template.joints;
         let shoulder = Vec3::from(j.shoulder);
         let along = (Vec3::from(j.wrist) - shoulder).normalize();
@@ -146,7 +146,7 @@ impl Warp {
     }
 
     /// The map that leaves everything as it is.
-    pub(crate) fn still(template: &Template, marks: &Marks) -> Self {
+    pub(crate) fn still(template: &Template, marks: &TemplateMarks) -> Self {
         let level = |y: f64| [y, y];
         let one = vec![[0.0, 1.0], [marks.crown, 1.0]];
         let none = vec![[0.0, 0.0], [marks.crown, 0.0]];

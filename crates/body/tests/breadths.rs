@@ -62,7 +62,7 @@ fn an_asked_chest_is_as_broad_between_the_folds_and_as_deep() {
                     "chest_breadth" | "chest_depth" => 1e-3,
                     _ => continue,
                 };
-                assert!(row.gap().abs() < limit, "{figure:?} {row:?}");
+                assert!(row.deviation().abs() < limit, "{figure:?} {row:?}");
             }
         }
     }

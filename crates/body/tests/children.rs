@@ -17,7 +17,7 @@ fn children_of_every_age_have_their_measurements() {
         for row in body.measure() {
             let limit = if row.is_girth() { 5e-4 } else { 1e-3 };
             let exact = row.origin == Origin::Asked && !row.is_angle();
-            assert!(!exact || row.gap().abs() <= limit, "{age}: {row:?}");
+            assert!(!exact || row.deviation().abs() <= limit, "{age}: {row:?}");
         }
         let crown = body.levels().crown;
         assert!((crown - figure.average().get("height").unwrap()).abs() < 1e-3);

@@ -5,7 +5,7 @@ mod common;
 
 use common::shared;
 use proptest::prelude::*;
-use toile_body::{BodyError, Conflict, Description, Figure, Gap, Mannequin, Part};
+use toile_body::{BodyError, Conflict, Description, Deviation, Figure, Mannequin, Part};
 use toile_geometry::Vec3;
 use toile_measure::{Measurements, Origin};
 
@@ -89,7 +89,7 @@ fn check(figure: Figure, table: &Measurements) {
     let rows = body.measure();
     for name in SOLVED {
         let row = rows.iter().find(|row| row.name == name);
-        let met = |row: &Gap| row.origin == Origin::Asked && row.gap().abs() < 5e-4;
+        let met = |row: &Deviation| row.origin == Origin::Asked && row.deviation().abs() < 5e-4;
         assert!(row.is_some_and(met), "{figure:?} {name}: {row:?}");
     }
     let [low, high] = skin.bounds().unwrap();
@@ -412,7 +412,7 @@ fn what_is_missing_is_predicted_and_marked() {
         3
     );
     for row in rows.iter().filter(|row| row.is_girth()) {
-        assert!(row.gap().abs() < 5e-4, "{row:?}");
+        assert!(row.deviation().abs() < 5e-4, "{row:?}");
     }
     assert!(body.conflicts().is_empty(), "{:?}", body.conflicts());
     let nobody = Mannequin::new(&Measurements::new(), Figure::Man).unwrap();
@@ -472,7 +472,7 @@ proptest! {
                     // Only what broke a rule before the body was made is let off.
                     let broke = |c: &Conflict| c.names.len() > 1 && c.names.contains(&gap.name);
                     let asked = gap.origin == Origin::Asked;
-                    let met = gap.gap().abs() < 2e-3;
+                    let met = gap.deviation().abs() < 2e-3;
                     prop_assert!(!asked || met || conflicts.iter().any(broke), "{:?}", gap);
                 }
             }

@@ -141,7 +141,7 @@ fn the_tape_of_a_scaled_body_is_laid_on_that_body() {
     let own = taped(1.0);
     for ratio in [0.8, 1.15] {
         let scaled = taped(ratio);
-        let got = |name: &str, table: &[toile_body::Gap]| {
+        let got = |name: &str, table: &[toile_body::Deviation]| {
             let row = table.iter().find(|row| row.name == name);
             row.unwrap_or_else(|| panic!("no {name}")).got
         };

@@ -73,8 +73,12 @@ fn every_freesewing_set_has_its_girths_and_names_what_contradicts() {
             // Only what contradicts itself is missed, and no farther than it must.
             let own = contradictions.iter().filter(|c| c.0.contains(&row.name));
             let limit = own.map(|c| c.1).fold(limit, f64::max);
-            if row.gap().abs() > limit {
-                missed.push(format!("{name}: {} {:.1} mm", row.name, 1e3 * row.gap()));
+            if row.deviation().abs() > limit {
+                missed.push(format!(
+                    "{name}: {} {:.1} mm",
+                    row.name,
+                    1e3 * row.deviation()
+                ));
             }
         }
         for (names, _) in &contradictions {
@@ -127,7 +131,7 @@ fn dump(name: &str, body: &Mannequin) {
             row.name,
             row.asked * 1e3,
             row.got * 1e3,
-            row.gap() * 1e3,
+            row.deviation() * 1e3,
             row.origin
         );
     }
@@ -166,8 +170,8 @@ fn people_of_the_survey_have_what_was_measured() {
             .into_iter()
             .filter(|row| row.origin == Origin::Asked);
         let missed: Vec<String> = asked
-            .filter(|row| row.gap().abs() > 1e-3)
-            .map(|row| format!("{} {:.1} mm", row.name, row.gap() * 1e3))
+            .filter(|row| row.deviation().abs() > 1e-3)
+            .map(|row| format!("{} {:.1} mm", row.name, row.deviation() * 1e3))
             .collect();
         if !missed.is_empty() {
             failed.push(format!("person {index}: {}", missed.join(", ")));

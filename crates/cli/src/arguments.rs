@@ -1,8 +1,8 @@
-//! What can be asked on the command line.
+//! The commands of the command line with their options.
 
+use crate::body_options::BodyOptions;
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
-use crate::stretch::Stretch;
 use crate::values::blend;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -372,7 +372,7 @@ pub struct Body {
     #[arg(long, value_name = "FILE")]
     pub landmarks: Option<PathBuf>,
     #[command(flatten)]
-    pub stretch: Stretch,
+    pub stretch: BodyOptions,
     /// Edits of its ellipsoids, made last (JSON list, m and rad), as in
     /// [{"edit": "weigh", "primitive": 3, "weight": 1.2}]; also create, delete, move, turn, scale,
     /// group, blend, deform, attach, detach, join, part: their fields are in docs/FORMATS.md. Ellipsoids are counted from 0: those of

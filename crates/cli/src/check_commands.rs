@@ -1,4 +1,4 @@
-//! `toile check`: faults of patterns and of markers.
+//! Runs `toile check`: faults of patterns and of markers.
 
 use crate::arguments::Check;
 use crate::bar::Bar;
@@ -92,7 +92,7 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
             })
         })
         .collect();
-    output.tell(&events);
+    output.print_events(&events);
     let errors = events
         .iter()
         .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
@@ -128,21 +128,21 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
 /// A marker judged as it stands.
 fn marker(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure> {
     let judged = judge_marker_file(path, check.out.as_deref())?;
-    let nested = &judged.nested;
+    let summary = &judged.summary;
     for path in &judged.files {
         output.say(format!("wrote {}", path.display()));
     }
     let report = json!({
         "files": judged.files,
-        "pieces": nested.pieces,
-        "length_m": nested.length,
+        "pieces": summary.pieces,
+        "length_m": summary.length,
         "faults": judged.faults,
     });
     if judged.faults.is_empty() {
         output.say(format!(
             "{} on {:.1} cm of fabric: no faults",
-            count(nested.pieces, "piece"),
-            nested.length * 100.0
+            count(summary.pieces, "piece"),
+            summary.length * 100.0
         ));
         return Ok(report);
     }

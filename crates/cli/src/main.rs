@@ -5,6 +5,7 @@
 
 mod arguments;
 mod bar;
+mod body_options;
 mod check_commands;
 mod lab_commands;
 mod nest_arguments;
@@ -13,7 +14,6 @@ mod output;
 mod print_arguments;
 mod print_commands;
 mod session_commands;
-mod stretch;
 mod tool_commands;
 mod values;
 

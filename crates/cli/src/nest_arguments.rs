@@ -1,4 +1,4 @@
-//! What can be asked of `toile nest`.
+//! Options of `toile nest`.
 
 use crate::values::{flaw, repeat, roll, size_count};
 use clap::{Args, ValueEnum};

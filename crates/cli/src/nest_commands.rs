@@ -1,4 +1,4 @@
-//! `toile nest`: pieces laid on fabric.
+//! Runs `toile nest`: pieces laid on fabric.
 
 use crate::bar::Bar;
 use crate::nest_arguments::Nest;
@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Budget, Event, MarkerJob, MarkerSettings, NestOptions, Nested, Start, is_nesting_instance,
-    nest_instance, nest_marker, nest_patterns, open_marker, open_marker_settings, rule_table,
-    study_rules,
+    Budget, Event, MarkerJob, MarkerSettings, MarkerSummary, NestOptions, Start,
+    is_nesting_instance, nest_instance, nest_marker, nest_patterns, open_marker,
+    open_marker_settings, rule_table, study_rules,
 };
 
 /// A yard [m].
@@ -38,7 +38,7 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
         nap: nest.nap.map(Into::into),
         tilt: nest.tilt.map(f64::to_radians),
         repeat: nest.repeat,
-        defects: nest.defect.clone(),
+        flaws: nest.defect.clone(),
         spread: nest.spread.map(Into::into),
         plies: nest.plies,
         price_per_metre: price(nest.price)?,
@@ -82,7 +82,7 @@ fn solve(
     options: &NestOptions,
     output: &Output,
 ) -> Result<Value, Failure> {
-    let (nested, notes, file) =
+    let (summary, notes, file) =
         nest_instance(path, options, (&nest.out, &mut Bar::stopped_by_a_signal()))
             .map_err(|error| Failure::from(error).about(path))?;
     for note in &notes {
@@ -90,21 +90,21 @@ fn solve(
     }
     output.say(format!(
         "{} laid on a strip of {:.4} by {:.4}, density {:.3} %",
-        count(nested.pieces, "item"),
-        nested.length,
-        nested.width,
-        nested.efficiency * 100.0
+        count(summary.pieces, "item"),
+        summary.length,
+        summary.width,
+        summary.efficiency * 100.0
     ));
     output.say(format!("wrote {}", file.display()));
     Ok(json!({
         "files": [file],
-        "instance": nested.fabric,
-        "pieces": nested.pieces,
-        "unplaced": nested.unplaced,
-        "strip_width": nested.length,
-        "strip_height": nested.width,
-        "density": nested.efficiency,
-        "sound": nested.sound,
+        "instance": summary.fabric,
+        "pieces": summary.pieces,
+        "unplaced": summary.unplaced,
+        "strip_width": summary.length,
+        "strip_height": summary.width,
+        "density": summary.efficiency,
+        "sound": summary.sound,
     }))
 }
 
@@ -112,7 +112,7 @@ fn solve(
 fn marker_of_file(
     nest: &Nest,
     (name, options): (&str, &NestOptions),
-) -> Result<(Vec<Nested>, Vec<PathBuf>), Failure> {
+) -> Result<(Vec<MarkerSummary>, Vec<PathBuf>), Failure> {
     let [path] = &nest.patterns[..] else {
         let message = "--marker names a marker of one pattern; give that pattern alone";
         return Err(Failure::bad_input(message));
@@ -128,8 +128,8 @@ fn marker_of_file(
     };
     let bar = &mut Bar::stopped_by_a_signal();
     let made = nest_marker(path, &job, (&nest.out, bar));
-    let (nested, paths) = made.map_err(|error| Failure::from(error).about(path))?;
-    Ok((vec![nested], paths))
+    let (summary, paths) = made.map_err(|error| Failure::from(error).about(path))?;
+    Ok((vec![summary], paths))
 }
 
 /// Pieces laid on fabric.
@@ -147,7 +147,7 @@ pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
     if nest.study {
         return study(nest, &options, output);
     }
-    let (layings, paths) = match &nest.marker {
+    let (summaries, paths) = match &nest.marker {
         Some(name) => marker_of_file(nest, (name, &options))?,
         None => nest_patterns(
             &nest.patterns,
@@ -155,55 +155,55 @@ pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
             (&nest.out, &mut Bar::stopped_by_a_signal()),
         )?,
     };
-    let listed: Vec<Value> = layings
+    let listed: Vec<Value> = summaries
         .iter()
-        .map(|laying| {
+        .map(|summary| {
             json!({
-                "fabric": laying.fabric,
-                "roll": laying.roll,
-                "pieces": laying.pieces,
-                "unplaced": laying.unplaced,
-                "missing": laying.missing.iter().map(|[name, reason]| {
+                "fabric": summary.fabric,
+                "roll": summary.roll,
+                "pieces": summary.pieces,
+                "unplaced": summary.unplaced,
+                "missing": summary.missing.iter().map(|[name, reason]| {
                     json!({ "name": name, "reason": reason })
                 }).collect::<Vec<_>>(),
-                "width_m": laying.width,
-                "length_m": laying.length,
-                "plies": laying.plies,
-                "fabric_needed_m": laying.yardage,
-                "cost": laying.cost,
-                "currency": laying.currency,
-                "efficiency": laying.efficiency,
-                "utilisation": laying.utilisation,
-                "notes": laying.notes,
-                "sound": laying.sound,
+                "width_m": summary.width,
+                "length_m": summary.length,
+                "plies": summary.plies,
+                "fabric_needed_m": summary.yardage,
+                "cost": summary.cost,
+                "currency": summary.currency,
+                "efficiency": summary.efficiency,
+                "utilisation": summary.utilisation,
+                "notes": summary.notes,
+                "sound": summary.sound,
             })
         })
         .collect();
     let report = json!({ "files": paths, "markers": listed });
-    for laying in &layings {
-        output.tell(&[Event::Nested(laying.clone())]);
-        for note in &laying.notes {
+    for summary in &summaries {
+        output.print_events(&[Event::Nested(summary.clone())]);
+        for note in &summary.notes {
             output.say(format!("note: {note}"));
         }
-        for [name, reason] in &laying.missing {
+        for [name, reason] in &summary.missing {
             output.warn(format!("not laid: {name}: {reason}"));
         }
     }
-    yardage(&layings, output);
-    output.tell(&[Event::FilesWritten { paths }]);
+    yardage(&summaries, output);
+    output.print_events(&[Event::FilesWritten { paths }]);
     Ok(report)
 }
 
 /// What is needed of each fabric, and what it costs.
-fn yardage(layings: &[Nested], output: &Output) {
+fn yardage(summaries: &[MarkerSummary], output: &Output) {
     let mut fabrics: Vec<&str> = Vec::new();
-    for laying in layings {
-        if !fabrics.contains(&laying.fabric.as_str()) {
-            fabrics.push(&laying.fabric);
+    for summary in summaries {
+        if !fabrics.contains(&summary.fabric.as_str()) {
+            fabrics.push(&summary.fabric);
         }
     }
     for fabric in fabrics {
-        let own = || layings.iter().filter(|l| l.fabric == fabric);
+        let own = || summaries.iter().filter(|l| l.fabric == fabric);
         let length: f64 = own().map(|l| l.yardage).sum();
         let cost: Option<f64> = own().map(|l| l.cost).sum();
         let currency = own().next().map_or("", |l| l.currency.as_str());

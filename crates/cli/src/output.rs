@@ -1,4 +1,4 @@
-//! Words for people, or one JSON report for programs.
+//! Output: words for people, or one JSON report for programs.
 
 use serde_json::{Value, json};
 use std::fmt::Display;
@@ -119,7 +119,7 @@ impl Output {
     }
 
     /// Tells what happened in plain words.
-    pub fn tell(&self, events: &[Event]) {
+    pub fn print_events(&self, events: &[Event]) {
         for event in events {
             match event {
                 Event::Warned { message } => self.warn(format!("note: {message}")),
@@ -179,17 +179,17 @@ fn words(event: &Event) -> Option<String> {
                 count(*warnings, "warning")
             ),
         }),
-        Event::Nested(nested) => Some(format!(
+        Event::Nested(summary) => Some(format!(
             "laid out: {} on {}{}, {:.0} cm wide and {:.1} cm long, {:.1} % used",
-            count(nested.pieces, "piece"),
-            nested.fabric,
-            nested
+            count(summary.pieces, "piece"),
+            summary.fabric,
+            summary
                 .roll
                 .as_ref()
                 .map_or_else(String::new, |roll| format!(" ({roll})")),
-            nested.width * 100.0,
-            nested.length * 100.0,
-            nested.efficiency * 100.0,
+            summary.width * 100.0,
+            summary.length * 100.0,
+            summary.efficiency * 100.0,
         )),
         Event::Assembled(mesh) => Some(format!(
             "meshed: {}, {} triangles, {} stitches",

@@ -1,4 +1,4 @@
-//! What can be asked of `toile print`.
+//! Options of `toile print`.
 
 use crate::values::{scale, shrinkage};
 use clap::{Args, ValueEnum};

@@ -1,4 +1,4 @@
-//! `toile print`: pieces on paper.
+//! Runs `toile print`: pieces on paper.
 
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};

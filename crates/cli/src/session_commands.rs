@@ -5,7 +5,7 @@ use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use toile_session::{Command, Event, Session, Wanted, read_input, read_journal};
+use toile_session::{Command, Event, ExpectedKind, Session, read_input, read_journal};
 
 /// The whole job.
 pub fn make(make: &Make, output: &Output) -> Result<Value, Failure> {
@@ -46,9 +46,13 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure>
         "{}, size {}, {:.0} cm tall",
         names.join(" + "),
         project.size_name().unwrap_or("as drawn"),
-        project.wearer().get("height").unwrap_or_default() * 100.0,
+        project
+            .body_measurements()
+            .get("height")
+            .unwrap_or_default()
+            * 100.0,
     ));
-    output.tell(&events);
+    output.print_events(&events);
     Ok(outcome(&events, &make.out))
 }
 
@@ -91,10 +95,10 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
 /// A journal done again.
 pub fn replay(replay: &Replay, output: &Output) -> Result<Value, Failure> {
     let about = |error: toile_session::SessionError| Failure::from(error).about(&replay.journal);
-    let text = read_input(&replay.journal, Wanted::Journal).map_err(about)?;
+    let text = read_input(&replay.journal, ExpectedKind::Journal).map_err(about)?;
     let commands = read_journal(&text).map_err(about)?;
     let (_, events) = Session::replay(&commands, &replay.out, &mut Bar::new()).map_err(about)?;
-    output.tell(&events);
+    output.print_events(&events);
     Ok(outcome(&events, &replay.out))
 }
 

@@ -1,4 +1,4 @@
-//! Values of options that have several parts.
+//! Parsers for options with several values.
 
 use toile_geometry::Length;
 use toile_session::{GivenFlaw, Shrinkage};

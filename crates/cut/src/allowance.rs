@@ -12,7 +12,7 @@ use crate::ring::{Chord, FLATNESS, Ring};
 use crate::{Finding, MITRE_LIMIT, SegmentKind};
 use toile_geometry::Vec2;
 
-/// The cloth of one ring: its chain with the loops of its corners, and what was found on the way.
+/// The cloth of one ring: its chain with the loops of its corners, and findings.
 pub(crate) struct Cloth {
     pub chains: Vec<Chain>,
     /// Which edges of the ring are legs of darts, without allowance of their own.
@@ -25,7 +25,7 @@ struct Corners {
     cloth: Vec<Option<CornerCloth>>,
 }
 
-/// What the corner at the start of an edge cuts away.
+/// The cloth that the corner at the start of an edge cuts away.
 struct Trim {
     plane: HalfPlane,
     corner: usize,
@@ -70,7 +70,7 @@ impl Corners {
         Self { cloth }
     }
 
-    /// What is cut away beside a chord by the corners at its edge's ends.
+    /// The cloth beside a chord that is cut away by the corners at the ends of its edge.
     fn trims(&self, ring: &Ring, k: usize) -> Vec<Trim> {
         let chord = &ring.chords[k];
         let edge = &ring.edges[chord.edge];

@@ -1,10 +1,10 @@
-//! A closed loop of sides round cloth, each with what it is a part of.
+//! A closed polygon round cloth; each side is tagged with the edge it comes from.
 
 use crate::SegmentKind;
 use crate::ring::Ring;
 use toile_geometry::Vec2;
 
-/// What a side of the chain is a part of.
+/// The origin of a side of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tag {
     /// Edge of the ring.
@@ -33,7 +33,7 @@ impl Chain {
     }
 }
 
-/// Tag of what belongs to the corner at an edge's start. In a ring walked backwards the corner is
+/// Tag of the sides that belong to the corner at an edge's start. In a ring walked backwards the corner is
 /// named after the edge before, which starts there as given.
 pub(crate) fn corner_tag(ring: &Ring, edge: usize) -> Tag {
     Tag {

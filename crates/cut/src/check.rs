@@ -1,4 +1,4 @@
-//! Seam lines are flattened once nothing is found wrong with them.
+//! Checks a seam line, then flattens it to chords.
 
 use crate::ring::Ring;
 use crate::{CutError, EdgeIndex, SeamEdge, SeamLine};

@@ -89,7 +89,7 @@ impl HalfPlane {
     }
 }
 
-/// What became of a corner.
+/// The outcome of a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outcome {
     AsAsked,

@@ -3,7 +3,7 @@
 use crate::{EdgeIndex, Finding};
 use toile_geometry::{Polygon, Vec2};
 
-/// What a segment of a cut line is.
+/// The kind of a segment of a cut line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SegmentKind {
     /// A piece of an edge's cut line, in the edge's width beside it; of width 0 the edge itself.
@@ -20,7 +20,7 @@ pub enum SegmentKind {
 pub struct Origin {
     /// The edge of the seam line.
     pub edge: EdgeIndex,
-    /// What the segment is.
+    /// Its kind.
     pub kind: SegmentKind,
 }
 
@@ -41,12 +41,12 @@ pub struct CutLine {
     pub outline: CutRing,
     /// Inside it: what remains of the holes, in their order, and bays that have grown shut.
     pub holes: Vec<CutRing>,
-    /// What could not be done as asked.
+    /// Its faults.
     pub findings: Vec<Finding>,
 }
 
 impl CutLine {
-    /// The piece as cut, without what its segments are.
+    /// The piece as cut, without the kinds of its segments.
     pub fn polygon(&self) -> Polygon {
         Polygon {
             outer: self.outline.points.clone(),

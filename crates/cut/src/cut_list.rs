@@ -1,9 +1,9 @@
-//! What is to be cut, by fabric.
+//! The cut list: pieces to cut, by fabric.
 
 use crate::piece::CutPiece;
 use toile_pattern::{Draft, Pattern};
 
-/// What is cut from one fabric.
+/// The pieces cut from one fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutList {
     /// The fabric.

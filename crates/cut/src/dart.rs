@@ -10,7 +10,7 @@ use crate::ring::{Chord, Ring};
 use crate::{CapFault, CutError, Dart, MITRE_LIMIT, SegmentKind};
 use toile_geometry::{Polygon, Vec2};
 
-/// What replaces the legs of a dart in the chain round the cloth.
+/// The points that replace the legs of a dart in the chain round the cloth.
 pub(crate) struct Cap {
     /// Edges of the ring.
     pub legs: [usize; 2],

@@ -1,5 +1,5 @@
-//! What is drawn of a cut piece: lines, areas and words by kind. Prints, markers, their files and
-//! the window draw a piece from this alone.
+//! The drawing of a cut piece: lines, areas and words by kind. Prints, markers, their files and the window
+//! draw a piece from this alone.
 
 use crate::label::{GAP, LINES, SMALLEST, Spot, roomiest_spot};
 use crate::piece::{CutPiece, PieceRing, PieceSegment};
@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Polygon, Vec2};
 use toile_pattern::{CornerName, LineName, NotchId};
 
-/// What a line is for.
+/// The purpose of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StrokeKind {
     /// To cut along.
@@ -26,7 +26,7 @@ pub enum StrokeKind {
     Drill,
 }
 
-/// What a line is drawn of.
+/// The part of the piece that a line shows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StrokeName {
     /// A closed line, each segment by name.
@@ -44,9 +44,9 @@ pub enum StrokeName {
 /// A line through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
-    /// What it is for.
+    /// Its purpose.
     pub kind: StrokeKind,
-    /// What it is drawn of.
+    /// The part of the piece that it shows.
     pub name: StrokeName,
     /// Its corners \[m\].
     pub points: Vec<Vec2>,
@@ -57,7 +57,7 @@ pub struct Stroke {
 /// Words, the middle of their baseline at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Words {
-    /// What is written.
+    /// The text.
     pub text: String,
     /// Middle of the baseline \[m\].
     pub at: Vec2,

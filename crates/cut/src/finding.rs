@@ -1,4 +1,4 @@
-//! What a cut line does not do as asked.
+//! Faults of a cut line: what was not done as asked.
 
 use crate::EdgeIndex;
 use toile_geometry::Vec2;
@@ -17,28 +17,28 @@ pub enum CapFault {
     Crossing,
 }
 
-/// Something a cut line does not do as asked. Places along edges are counted from the start of
+/// A fault of a cut line. Places along edges are counted from the start of
 /// the edge as given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// Along a stretch of an edge its own cut line is missing, for other cloth or allowance lies
-    /// there: the piece is cut farther out.
+    /// Along a span of an edge its own cut line is missing, because other cloth or allowance lies there:
+    /// the piece is cut farther out.
     Swallowed {
         /// The edge.
         edge: EdgeIndex,
-        /// The stretch, from and to \[m\].
-        stretch: [f64; 2],
+        /// The span, from and to \[m\].
+        span: [f64; 2],
         /// Whether it starts or ends at an inner corner or a dart, where allowances always
         /// overlap.
         inner_corner: bool,
     },
-    /// Along a stretch of an edge the allowance, measured square to the seam line, is narrower
+    /// Along a span of an edge the allowance, measured square to the seam line, is narrower
     /// than asked: a corner takes some of it.
     Narrow {
         /// The edge.
         edge: EdgeIndex,
-        /// The stretch, from and to \[m\].
-        stretch: [f64; 2],
+        /// The span, from and to \[m\].
+        span: [f64; 2],
         /// Least width \[m\].
         least: f64,
     },

@@ -1,4 +1,4 @@
-//! Where the words of a piece go, and how large they are.
+//! Places and sizes of the words on a piece.
 
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 

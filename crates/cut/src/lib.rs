@@ -29,8 +29,8 @@ mod region;
 mod ring;
 mod seam_line;
 mod seams;
-mod stretch;
 mod trace;
+mod uncovered;
 mod words;
 
 pub use corner::{Corner, MITRE_LIMIT};

@@ -1,4 +1,4 @@
-//! Names of what a cut piece is made of, in words.
+//! Names of edges and corners of a cut piece, in words.
 
 use toile_pattern::{EdgeOrigin, Name, Panel};
 

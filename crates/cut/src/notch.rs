@@ -1,4 +1,4 @@
-//! Notches: where they lie on the seam line and the cut line, and what is drawn of them.
+//! Notches: their places on the seam line and the cut line, and the lines drawn for them.
 
 use crate::seams::Plane;
 use toile_geometry::{Polygon, Vec2};
@@ -33,12 +33,12 @@ pub struct CutNotch {
 }
 
 impl CutNotch {
-    /// What is drawn on the seam line, each line through points \[m\].
+    /// Lines drawn on the seam line, each through points \[m\].
     pub fn on_seam_line(&self) -> Vec<Vec<Vec2>> {
         self.strokes(self.point, NOTCH_DEPTH)
     }
 
-    /// What is cut, or drawn at the cut line; nothing where that is the seam line.
+    /// Lines cut, or drawn at the cut line; none where the cut line is the seam line.
     pub fn on_cut_line(&self) -> Vec<Vec<Vec2>> {
         let width = (self.on_cut - self.point).norm();
         match width > ON_SEAM {

@@ -1,4 +1,4 @@
-//! What is asked of cut pieces beside what the pattern says.
+//! Options of cut pieces that the pattern does not give: shrinkage, and cloth for fusing.
 
 /// Share of its length a cloth loses when it is washed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,7 +25,7 @@ impl Shrinkage {
     }
 }
 
-/// What is asked of cut pieces beside what the pattern says.
+/// Options of cut pieces that the pattern does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CutOptions {
     /// What the cloth loses in the wash. The seam line grows; allowances keep their widths.

@@ -4,8 +4,8 @@ use crate::allowance::{Cloth, cloth};
 use crate::dart::caps;
 use crate::region::{Frame, hole_region, outline_region};
 use crate::ring::Ring;
-use crate::stretch::{covered, stretches};
 use crate::trace::{Sides, Traced};
+use crate::uncovered::{covered, uncovered_findings};
 use crate::{CutError, CutLine, CutRing, Finding, SeamLine};
 use toile_geometry::{CrossingKind, Polygon, Vec2};
 
@@ -71,7 +71,8 @@ impl CutLine {
         }
         if !cut.is_empty() {
             let covered = covered(ring, &sides, &traced);
-            self.findings.extend(stretches(ring, cloth, &covered, &cut));
+            self.findings
+                .extend(uncovered_findings(ring, cloth, &covered, &cut));
         }
         let mut cut = cut.into_iter();
         if ring.number == 0 {

@@ -10,7 +10,7 @@ use crate::{CutError, CutRing, EdgeIndex, Finding, SeamEdge, SegmentKind};
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_pattern::{CornerName, Draft, EdgeOrigin, LineName, Name, Pattern, Piece, PieceId, Role};
 
-/// What a segment of a cut piece's line is.
+/// The kind of a segment of a cut piece's line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PieceSegment {
     /// Beside an edge, in its allowance; of a line that is sewn the edge itself.
@@ -30,7 +30,7 @@ pub enum PieceSegment {
 pub struct PieceRing {
     /// Its corners \[m\]; the first is not repeated.
     pub points: Vec<Vec2>,
-    /// What the segment from each corner to the next is, one each.
+    /// The kind of the segment from each corner to the next.
     pub segments: Vec<PieceSegment>,
 }
 
@@ -54,10 +54,10 @@ pub struct Drill {
     pub at: Vec2,
 }
 
-/// What a text of a cut piece says.
+/// The kind of a text on a cut piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TextKind {
-    /// What the piece is called.
+    /// The name of the piece.
     Name,
     /// The size it is drafted to.
     Size,
@@ -70,7 +70,7 @@ pub enum TextKind {
 /// A text of a cut piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PieceText {
-    /// What it says.
+    /// Its kind.
     pub kind: TextKind,
     /// The words.
     pub text: String,
@@ -100,9 +100,9 @@ pub struct CutPiece {
     pub notches: Vec<CutNotch>,
     /// Ends of darts.
     pub drills: Vec<Drill>,
-    /// What is written on it.
+    /// Its texts.
     pub texts: Vec<PieceText>,
-    /// What the cut line does not do as asked.
+    /// Faults of the cut line.
     pub findings: Vec<Finding>,
     /// The edge each number in a finding stands for.
     pub(crate) names: Vec<Vec<EdgeOrigin>>,
@@ -245,7 +245,7 @@ impl CutPiece {
         polygon_of(&self.cut)
     }
 
-    /// The piece as cut without its holes: what is laid on fabric.
+    /// The outline of the piece as cut, without its holes, as it is laid on fabric.
     pub fn outer(&self) -> Polygon {
         Polygon::new(self.cut.first().map_or_else(Vec::new, |r| r.points.clone()))
     }

@@ -1,9 +1,9 @@
-//! What is given: the line a piece is sewn along, and what is wanted outside it.
+//! Input: the seam line of a piece, with allowances, corners and darts.
 
 use crate::Corner;
 use toile_geometry::{Curve, Vec2};
 
-/// An edge of a seam line and the cloth wanted beside it.
+/// An edge of a seam line, and the allowance beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeamEdge {
     /// Where it is sewn \[m\]; it ends where the next edge of its loop starts.

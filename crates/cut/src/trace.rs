@@ -1,4 +1,4 @@
-//! Which side of the cloth every segment of the cleaned outline comes from.
+//! Finds the side of the cloth that every segment of the cleaned outline comes from.
 
 use crate::chain::{Chain, Tag};
 use crate::region::Frame;
@@ -27,7 +27,7 @@ pub(crate) struct Traced {
     pub spans: Vec<[f64; 2]>,
 }
 
-/// A stretch of a segment that lies on a side.
+/// A span of a segment that lies on a side.
 struct Overlap {
     /// Along the segment [m].
     from: f64,

@@ -1,4 +1,4 @@
-//! What a cut line does not do as asked, in words for people.
+//! Diagnostics made from the findings about a cut line.
 
 use crate::names::edge_words;
 use crate::piece::CutPiece;
@@ -11,8 +11,8 @@ const SHORT: f64 = 0.002;
 /// Allowances that are this much narrower than asked are as good as those asked \[m\].
 const NARROWER: f64 = 5e-4;
 
-/// What the cut lines of a draft do not do as asked, once for all copies and halves of a panel, and
-/// the pieces that have none.
+/// Diagnostics of the cut lines of a draft, once for all copies and halves of a panel, and of the pieces
+/// that have no cut line.
 pub fn cut_diagnostics(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (k, piece) in draft.pieces.iter().enumerate() {
@@ -36,8 +36,8 @@ pub fn cut_diagnostics(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
     found
 }
 
-/// A finding in words: how bad, what kind, where, what, and what to do.
-struct Said {
+/// A finding in words: severity, code, edge, text and remedy.
+struct Message {
     severity: Severity,
     code: Code,
     edge: Option<EdgeOrigin>,
@@ -51,8 +51,8 @@ fn mm(length: f64) -> String {
 }
 
 impl CutPiece {
-    /// What its cut line does not do as asked, in words with millimetres and the names of edges. The
-    /// same of both halves of a folded panel is said once.
+    /// Diagnostics of its cut line, with millimetres and the names of edges. A finding on both halves of a
+    /// folded panel is reported once.
     pub fn diagnostics(&self, pattern: &Pattern) -> Vec<Diagnostic> {
         let id = self.id.panel;
         let Some(panel) = pattern.panel(id) else {
@@ -61,33 +61,37 @@ impl CutPiece {
         let mut seen = BTreeSet::new();
         let mut found = Vec::new();
         let lineage = pattern.lineage(panel);
-        for said in self.findings.iter().filter_map(|f| self.said(&lineage, f)) {
-            if !seen.insert(said.what.clone()) {
+        for message in self
+            .findings
+            .iter()
+            .filter_map(|f| self.message(&lineage, f))
+        {
+            if !seen.insert(message.what.clone()) {
                 continue;
             }
-            let place = match said.edge.map(|edge| edge.name) {
+            let place = match message.edge.map(|edge| edge.name) {
                 Some(Name::Drawn(edge)) => Place::Edge(id, edge),
                 Some(Name::Made { by, .. }) => Place::Operation(id, by),
                 None => Place::Panel(id),
             };
-            let message = format!("panel {:?}: {}", panel.name, said.what);
+            let text = format!("panel {:?}: {}", panel.name, message.what);
             found.push(Diagnostic::new(
-                said.severity,
-                said.code,
+                message.severity,
+                message.code,
                 place,
-                message,
-                said.hint,
+                text,
+                message.hint,
             ));
         }
         found
     }
 
-    fn said(&self, lineage: &[&Panel], finding: &Finding) -> Option<Said> {
+    fn message(&self, lineage: &[&Panel], finding: &Finding) -> Option<Message> {
         let words = |index: EdgeIndex| match self.edge(index) {
             Some(origin) => edge_words(lineage, origin),
             None => "an edge".to_owned(),
         };
-        let said = |severity, code, at: Option<EdgeIndex>, what, hint| Said {
+        let message = |severity, code, at: Option<EdgeIndex>, what, hint| Message {
             severity,
             code,
             edge: at.and_then(|index| self.edge(index)),
@@ -98,12 +102,12 @@ impl CutPiece {
             Finding::Swallowed {
                 inner_corner: true, ..
             } => return None,
-            Finding::Swallowed { edge, stretch, .. } => {
-                let length = stretch[1] - stretch[0];
+            Finding::Swallowed { edge, span, .. } => {
+                let length = span[1] - span[0];
                 if length < SHORT {
                     return None;
                 }
-                said(
+                message(
                     Severity::Note,
                     Code::AllowanceSwallowed,
                     Some(*edge),
@@ -115,17 +119,13 @@ impl CutPiece {
                     "lessen the allowance, and clip it to the seam after sewing",
                 )
             }
-            Finding::Narrow {
-                edge,
-                stretch,
-                least,
-            } => {
+            Finding::Narrow { edge, span, least } => {
                 let asked = self.width(*edge);
-                let length = stretch[1] - stretch[0];
+                let length = span[1] - span[0];
                 if length < SHORT || asked.is_some_and(|asked| asked - least < NARROWER) {
                     return None;
                 }
-                said(
+                message(
                     Severity::Note,
                     Code::AllowanceNarrow,
                     Some(*edge),
@@ -142,7 +142,7 @@ impl CutPiece {
                 corner,
                 asked,
                 kept,
-            } => said(
+            } => message(
                 Severity::Warning,
                 Code::SharpCorner,
                 Some(*corner),
@@ -154,7 +154,7 @@ impl CutPiece {
                 ),
                 "blunt the corner, or lessen the seam allowance of its edges",
             ),
-            Finding::Mitred { corner, asked } => said(
+            Finding::Mitred { corner, asked } => message(
                 Severity::Note,
                 Code::BluntCorner,
                 Some(*corner),
@@ -170,7 +170,7 @@ impl CutPiece {
                 depth,
                 length,
                 ..
-            } => said(
+            } => message(
                 Severity::Warning,
                 Code::SlitShut,
                 Some(edges[0]),
@@ -183,7 +183,7 @@ impl CutPiece {
                 ),
                 "widen the slit, or lessen the seam allowance of its sides",
             ),
-            Finding::BayShut { area, .. } => said(
+            Finding::BayShut { area, .. } => message(
                 Severity::Warning,
                 Code::SlitShut,
                 None,
@@ -207,7 +207,7 @@ impl CutPiece {
                     _ => None,
                 };
                 let line = line.map_or("a hole".to_owned(), |line| format!("line {:?}", line.name));
-                said(
+                message(
                     Severity::Warning,
                     Code::HoleShut,
                     Some(edge),
@@ -218,7 +218,7 @@ impl CutPiece {
             Finding::StraightCap { dart, fault } => {
                 let leg = self.darts.get(*dart).copied();
                 let name = leg.map_or_else(|| "a dart".to_owned(), |leg| edge_words(lineage, leg));
-                Said {
+                Message {
                     severity: Severity::Note,
                     code: Code::StraightDart,
                     edge: leg,

@@ -204,21 +204,14 @@ fn a_hem_turned_up_lies_flush() {
 #[test]
 fn a_tapered_hem_is_narrower_at_its_ends_and_says_so() {
     let cut = cut_line(&cornered(120.0, Corner::MirroredInPrevious, [0.04, 0.01])).unwrap();
-    let [
-        Finding::Narrow {
-            edge,
-            stretch,
-            least,
-        },
-    ] = cut.findings[..]
-    else {
+    let [Finding::Narrow { edge, span, least }] = cut.findings[..] else {
         panic!("{:?}", cut.findings);
     };
     assert_eq!(edge, EdgeIndex { ring: 0, edge: 0 });
     // Its end lies on x sin 60 - y cos 60 = 0.01 (turned by 120 degrees, mirrored).
     let (sin, cos) = 120f64.to_radians().sin_cos();
     let end = (0.01 + 0.04 * cos) / sin;
-    assert!((stretch[0] - (0.3 + end)).abs() < EXACT && (stretch[1] - 0.3).abs() < EXACT);
+    assert!((span[0] - (0.3 + end)).abs() < EXACT && (span[1] - 0.3).abs() < EXACT);
     assert!((least - 0.01 / -cos).abs() < EXACT, "{least}");
 }
 
@@ -259,8 +252,8 @@ fn inner_corners_meet_whatever_their_kind() {
         assert!((cut.polygon().area() - (0.32 * 0.12 + 0.12 * 0.2)).abs() < 1e-9);
         assert!(vertex_near(&cut.outline.points, Vec2::new(0.19, 0.11), EXACT).is_some());
         let inner = |f: &&Finding| {
-            matches!(f, Finding::Swallowed { inner_corner: true, stretch, .. }
-            if (stretch[1] - stretch[0] - 0.01).abs() < 1e-7)
+            matches!(f, Finding::Swallowed { inner_corner: true, span, .. }
+            if (span[1] - span[0] - 0.01).abs() < 1e-7)
         };
         assert_eq!(
             cut.findings.iter().filter(inner).count(),

@@ -220,8 +220,8 @@ fn a_curve_tighter_than_its_allowance_is_swallowed() {
         .findings
         .iter()
         .filter_map(|f| match f {
-            Finding::Swallowed { edge, stretch, .. } if *edge == EdgeIndex { ring: 0, edge: 3 } => {
-                Some(stretch[1] - stretch[0])
+            Finding::Swallowed { edge, span, .. } if *edge == EdgeIndex { ring: 0, edge: 3 } => {
+                Some(span[1] - span[0])
             }
             _ => None,
         })

@@ -313,12 +313,12 @@ fn check_edge(
         .findings
         .iter()
         .filter_map(|finding| match finding {
-            Finding::Swallowed { edge, stretch, .. } => Some((*edge, *stretch, true)),
-            Finding::Narrow { edge, stretch, .. } => Some((*edge, *stretch, false)),
+            Finding::Swallowed { edge, span, .. } => Some((*edge, *span, true)),
+            Finding::Narrow { edge, span, .. } => Some((*edge, *span, false)),
             _ => None,
         })
         .filter(|(edge, ..)| *edge == index)
-        .map(|(_, stretch, swallowed)| (stretch, swallowed))
+        .map(|(_, span, swallowed)| (span, swallowed))
         .collect();
     let length = edge.curve.length();
     let count = (length / SAMPLE).ceil() as usize;
@@ -370,9 +370,7 @@ fn check_edge(
 /// Number of stretches that do not hang on how curves are flattened, which is not the same backwards.
 fn long_stretches(cut: &CutLine) -> usize {
     let long = |finding: &&Finding| match finding {
-        Finding::Swallowed { stretch, .. } | Finding::Narrow { stretch, .. } => {
-            stretch[1] - stretch[0] > SLACK
-        }
+        Finding::Swallowed { span, .. } | Finding::Narrow { span, .. } => span[1] - span[0] > SLACK,
         _ => false,
     };
     cut.findings.iter().filter(long).count()

@@ -129,13 +129,16 @@ impl MethodKind {
         self != Self::Xpbd
     }
 
-    /// Largest stable product of angular frequency and substep of an undamped vibration: none for implicit methods,
-    /// which have no limit, and 0 for forward Euler.
-    pub fn stability_limit(self) -> Option<f64> {
+    /// The family of the method.
+    fn family(self) -> Family {
         match self {
-            Self::ForwardEuler => Some(0.0),
-            Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => Some(2.0),
-            Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
+            Self::ForwardEuler => Family::Explicit { limit: 0.0 },
+            Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => {
+                Family::Explicit { limit: 2.0 }
+            }
+            Self::RungeKutta4 => Family::Explicit {
+                limit: 2.0 * std::f64::consts::SQRT_2,
+            },
             Self::SemiImplicitEuler
             | Self::ImplicitEuler
             | Self::Bdf2
@@ -143,38 +146,47 @@ impl MethodKind {
             | Self::ProjectiveDynamics
             | Self::Lbfgs
             | Self::VertexBlockDescent
-            | Self::ChebyshevBlockDescent
-            | Self::DynamicRelaxation
-            | Self::Rest
-            | Self::Xpbd => None,
+            | Self::ChebyshevBlockDescent => Family::Implicit,
+            Self::Xpbd => Family::Constraints,
+            Self::DynamicRelaxation | Self::Rest => Family::Equilibrium,
+        }
+    }
+
+    /// Largest stable product of angular frequency and substep of an undamped vibration: none for implicit methods,
+    /// which have no limit, and 0 for forward Euler.
+    pub fn stability_limit(self) -> Option<f64> {
+        match self.family() {
+            Family::Explicit { limit } => Some(limit),
+            Family::Implicit | Family::Constraints | Family::Equilibrium => None,
         }
     }
 
     /// Names of the fields of [`MethodSettings`] that it uses.
     pub fn settings(self) -> &'static [&'static str] {
-        match self {
-            Self::ForwardEuler
-            | Self::SymplecticEuler
-            | Self::VelocityVerlet
-            | Self::RungeKutta4
-            | Self::PatchVerlet => &["substeps"],
-            Self::Xpbd => &["substeps", "iterations"],
-            Self::Rest | Self::DynamicRelaxation => &["iterations", "tolerance"],
-            Self::SemiImplicitEuler
-            | Self::ImplicitEuler
-            | Self::Bdf2
-            | Self::ImplicitMidpoint
-            | Self::ProjectiveDynamics
-            | Self::Lbfgs
-            | Self::VertexBlockDescent
-            | Self::ChebyshevBlockDescent => &["substeps", "iterations", "tolerance"],
+        match self.family() {
+            Family::Explicit { .. } => &["substeps"],
+            Family::Constraints => &["substeps", "iterations"],
+            Family::Equilibrium => &["iterations", "tolerance"],
+            Family::Implicit => &["substeps", "iterations", "tolerance"],
         }
     }
 
     /// Whether it computes equilibrium instead of motion in time.
     pub fn is_equilibrium(self) -> bool {
-        matches!(self, Self::Rest | Self::DynamicRelaxation)
+        matches!(self.family(), Family::Equilibrium)
     }
+}
+
+/// Families of methods.
+enum Family {
+    /// Explicit in time; stable while angular frequency times substep is below the limit.
+    Explicit { limit: f64 },
+    /// Each substep minimises a potential.
+    Implicit,
+    /// Constraints solved one after the other.
+    Constraints,
+    /// Equilibrium; time does not advance.
+    Equilibrium,
 }
 
 /// A method with its settings; fields that are none have the method's default.

@@ -1,4 +1,4 @@
-//! Motions from BVH files (Biovision hierarchy), carried to this program's joints.
+//! Motions from BVH files (Biovision hierarchy), mapped to the joints of `toile-body`.
 
 use crate::FormatError;
 use nalgebra::UnitQuaternion;
@@ -97,7 +97,7 @@ const MOST: [usize; 2] = [1000, 200_000];
 /// have stay as they are at rest to the one they hang on.
 ///
 /// # Errors
-/// What is wrong, where, and the remedy; a file with none of hips, knees and shoulders.
+/// The fault, its place and a remedy; a file with none of hips, knees and shoulders.
 pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> {
     let mut words = Words::new(text);
     words.expect("HIERARCHY")?;

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toile_drape::{Checkpoint, SceneCheckpoint};
 
-/// What the first line says.
+/// The first line of the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Head {
@@ -17,7 +17,7 @@ struct Head {
     checksum: u32,
 }
 
-/// What may be saved as a checkpoint, with the name of its format.
+/// A type that may be saved as a checkpoint, with the name of its format.
 pub trait CheckpointFormat: Serialize + DeserializeOwned {
     /// The name of the format.
     const FORMAT: &'static str;

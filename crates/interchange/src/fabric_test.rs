@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use toile_drape::kes::{bending_of_length, bending_of_overhang, drape_coefficient};
 use toile_drape::{KesValues, Material};
 
-/// What a file of test values says.
+/// The test values of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FabricTest {
     /// The material of the values; what was not measured is that of [`Material::default`].

@@ -23,7 +23,7 @@ pub struct JaguaInstance {
     pub items: Vec<Item>,
     /// The strip \[m\].
     pub strip: Strip,
-    /// What was assumed.
+    /// Notes on assumptions.
     pub notes: Vec<String>,
     ids: Vec<Value>,
     document: Map<String, Value>,
@@ -262,7 +262,7 @@ pub fn write_jagua_instance(
     Ok((format!("{instance}\n"), left_out(items, strip)))
 }
 
-/// What of a job an instance does not say.
+/// The parts of a job that an instance cannot express.
 fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
     let any = |has: &dyn Fn(&Item) -> bool| items.iter().any(has);
     let all = [
@@ -273,7 +273,7 @@ fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
         ("end margins", strip.end_margin > 0.0),
         ("the length at hand", strip.max_length.is_some()),
         ("the print", strip.stripes.is_some()),
-        ("flaws", !strip.defects.is_empty()),
+        ("flaws", !strip.flaws.is_empty()),
         ("folds", any(&|i| i.fold_edge.is_some())),
         ("locked pieces", any(&|i| !i.locked.is_empty())),
         ("holes", any(&|i| !i.outline.holes.is_empty())),

@@ -26,8 +26,8 @@ mod marker_report;
 mod marker_settings;
 mod marker_strokes;
 mod marker_svg;
-mod measurements;
 mod measurements_foreign;
+mod measurements_garmentcode;
 mod measurements_json;
 mod measurements_seamly;
 mod native;
@@ -62,7 +62,7 @@ pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua, write
 pub use mannequin_json::{read_mannequin, write_mannequin};
 pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
 pub use marker_json::{
-    MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFold,
+    MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFlaw, MarkerFold,
     MarkerMatch, MarkerPrint, read_marker_json, write_marker_json,
 };
 pub use marker_plot::{write_marker_dxf, write_marker_hpgl, write_marker_pdf};
@@ -72,8 +72,8 @@ pub use marker_settings::{
     PieceSettings, PrintSettings, RollSettings, read_marker_settings,
 };
 pub use marker_svg::write_marker_svg;
-pub use measurements::read_body_yaml;
 pub use measurements_foreign::read_freesewing;
+pub use measurements_garmentcode::read_body_yaml;
 pub use measurements_json::{read_measurements, read_sized_measurements, write_measurements};
 pub use measurements_seamly::{SizeChoice, read_seamly};
 pub use native::{read_pattern, write_pattern};
@@ -81,7 +81,7 @@ pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
 pub use print::{Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock};
 pub use proportions::{proportion_boxes, read_proportions};
-pub use recognise::{FileKind, Wanted};
+pub use recognise::{ExpectedKind, FileKind};
 pub use scene::{
     AirFile, DampingFile, ElasticFile, EndFile, ObjectFile, SceneFile, TransformFile, read_scene,
 };

@@ -45,7 +45,7 @@ struct MannequinFile {
     joined: Vec<Vec<usize>>,
 }
 
-/// What is particular about a primitive, counted from 0 over trunk, head, arm and leg.
+/// Properties of a single primitive, counted from 0 over trunk, head, arm and leg.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ParticularRow {
@@ -219,7 +219,7 @@ fn is_angle(name: &str) -> bool {
 /// Reads what [`write_mannequin`] wrote.
 ///
 /// # Errors
-/// What is wrong, where, and the remedy.
+/// The fault, its place and a remedy.
 pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
     let hint = "write {\"toile\": 1, \"kind\": \"mannequin\", \"figure\": \"woman\", \"measurements\": {\"height\": 170}}";
     let file: MannequinFile = serde_json::from_str(text).map_err(|error| {

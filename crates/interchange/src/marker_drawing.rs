@@ -1,4 +1,4 @@
-//! Everything that is drawn of a marker, whatever the format.
+//! The drawing of a marker: everything that is drawn of it, whatever the format.
 
 use crate::FormatError;
 use std::sync::Arc;
@@ -21,13 +21,13 @@ pub struct MarkerDrawing {
     pub pieces: Vec<MarkerPiece>,
     /// Names of the copies that found no place, and why.
     pub unplaced: Vec<[String; 2]>,
-    /// What is cut twice, in the plane of the fabric \[m\]; nothing on a sound marker.
+    /// Regions where pieces overlap, in the plane of the fabric \[m\]; nothing on a sound marker.
     pub overlaps: Vec<Polygon>,
-    /// What else is known.
+    /// Facts for the report.
     pub facts: MarkerFacts,
 }
 
-/// What a report says beside the drawing.
+/// Facts that a report lists beside the drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkerFacts {
     /// Name of the fabric.
@@ -42,9 +42,9 @@ pub struct MarkerFacts {
     pub utilisation: f64,
     /// Price of a metre of length.
     pub price_per_metre: Option<f64>,
-    /// What the price is in.
+    /// Currency of the price.
     pub currency: String,
-    /// What else the cutter must know.
+    /// Notes for the cutter.
     pub notes: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ pub struct MarkerPiece {
     pub name: String,
     /// Number that pieces of one kind share: they are filled with one colour.
     pub item: usize,
-    /// What is drawn on it, in its own plane.
+    /// Its drawing, in its own plane.
     pub piece: Arc<CutPiece>,
     /// Marker from piece.
     pub pose: Pose,

@@ -4,7 +4,7 @@ use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::{
-    Defect, Fold, Item, Marker, MatchPoint, Nap, Phase, Placement, Strip, Stripes, Unplaced,
+    Flaw, Fold, Item, Marker, MatchPoint, Nap, Phase, Placement, Strip, Stripes, Unplaced,
 };
 
 const FORMAT: &str = "toile-marker";
@@ -74,8 +74,8 @@ pub struct MarkerFabric {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub print: Option<MarkerPrint>,
     /// Flaws no piece may lie on.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub defects: Vec<MarkerDefect>,
+    #[serde(rename = "defects", default, skip_serializing_if = "Vec::is_empty")]
+    pub flaws: Vec<MarkerFlaw>,
 }
 
 /// Folds of the fabric, in a marker file; its width is then that of the folded fabric.
@@ -126,7 +126,7 @@ pub struct MarkerPrint {
 /// A flaw of the fabric, in a marker file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MarkerDefect {
+pub struct MarkerFlaw {
     /// Its outline \[m\].
     pub outline: Vec<[f64; 2]>,
     /// Distance pieces keep from it \[m\].
@@ -236,7 +236,7 @@ impl MarkerFile {
                 at: [placement.translation.x, placement.translation.y],
                 garment: item.bundle(placement.copy),
                 gap: item.gap,
-                over_flaws: item.over_defects,
+                over_flaws: item.over_flaws,
                 on_print: item
                     .match_point
                     .filter(|_| strip.stripes.is_some())
@@ -278,7 +278,7 @@ impl MarkerFile {
                     repeat: s.repeat.into(),
                     origin: s.origin.into(),
                 }),
-                defects: strip.defects.iter().map(MarkerDefect::of).collect(),
+                flaws: strip.flaws.iter().map(MarkerFlaw::of).collect(),
             },
             length: marker.length,
             efficiency: marker.efficiency,
@@ -336,26 +336,21 @@ impl MarkerFile {
                 repeat: Vec2::from(print.repeat),
                 origin: Vec2::from(print.origin),
             }),
-            defects: self
-                .fabric
-                .defects
-                .iter()
-                .map(MarkerDefect::defect)
-                .collect(),
+            flaws: self.fabric.flaws.iter().map(MarkerFlaw::flaw).collect(),
         }
     }
 }
 
-impl MarkerDefect {
-    fn of(defect: &Defect) -> Self {
+impl MarkerFlaw {
+    fn of(flaw: &Flaw) -> Self {
         Self {
-            outline: defect.outline.outer.iter().map(|&p| p.into()).collect(),
-            clearance: defect.clearance,
+            outline: flaw.outline.outer.iter().map(|&p| p.into()).collect(),
+            clearance: flaw.clearance,
         }
     }
 
-    fn defect(&self) -> Defect {
-        Defect {
+    fn flaw(&self) -> Flaw {
+        Flaw {
             outline: Polygon::new(self.outline.iter().map(|&p| Vec2::from(p)).collect()),
             clearance: self.clearance,
         }
@@ -426,10 +421,10 @@ fn check_numbers(file: &MarkerFile) -> Result<(), FormatError> {
         .iter()
         .flat_map(|p| p.repeat.into_iter().chain(p.origin));
     let flaws = fabric
-        .defects
+        .flaws
         .iter()
         .flat_map(|d| d.outline.iter().flatten().copied());
-    let clearances = fabric.defects.iter().map(|d| d.clearance);
+    let clearances = fabric.flaws.iter().map(|d| d.clearance);
     let own: Vec<f64> = own
         .into_iter()
         .chain(print)
@@ -525,7 +520,7 @@ mod tests {
                 repeat: Vec2::new(0.05, 0.0),
                 origin: Vec2::zeros(),
             }),
-            defects: vec![Defect {
+            flaws: vec![Flaw {
                 outline: Polygon::rectangle(Bounds2 {
                     min: Vec2::new(0.1, 0.1),
                     max: Vec2::new(0.12, 0.12),

@@ -1,4 +1,4 @@
-//! How many words fit a line.
+//! Breaks a text into lines of a given length.
 
 use crate::pdf::letter_width;
 

@@ -221,7 +221,7 @@ impl Report {
         self.rule();
     }
 
-    /// What is needed of each fabric.
+    /// The length needed of each fabric.
     fn totals(&mut self, title: &str, markers: &[MarkerDrawing]) {
         self.heading(&format!("{title}: fabric needed"));
         let right = |x: f64| (PAGE[0] - BORDER - x, Align::Right);

@@ -1,5 +1,5 @@
-//! `*.marker-settings.json`: what a marker maker adds to a pattern: spreads, rolls, prices, print,
-//! flaws, and what holds for single pieces. Lengths are texts with their unit, angles degrees.
+//! `*.marker-settings.json`: settings that a marker maker adds to a pattern: spreads, rolls, prices, print,
+//! flaws, and rules for single pieces. Lengths are texts with their unit, angles degrees.
 
 use crate::FormatError;
 use serde::de::{Error as _, Visitor};
@@ -25,7 +25,7 @@ pub struct MarkerSettings {
     /// What kind of file this is: `marker-settings`.
     #[serde(default)]
     pub kind: String,
-    /// What prices are in, as in EUR.
+    /// Currency of prices, as in EUR.
     #[serde(default)]
     pub currency: Option<String>,
     /// By name of the fabric.
@@ -39,7 +39,7 @@ pub struct MarkerSettings {
     pub matched: Vec<Vec<String>>,
 }
 
-/// What a marker maker knows of a fabric. What is not given is the pattern's, or usual.
+/// Settings of a fabric. A setting that is not given is the pattern's, or the default.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FabricSettings {
@@ -110,7 +110,7 @@ pub struct FlawSettings {
     pub clearance: Metres,
 }
 
-/// What holds for one piece. What is not given is usual.
+/// Settings of one piece. A setting that is not given is the default.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PieceSettings {

@@ -1,12 +1,12 @@
-//! What a plot of a marker is drawn of: lines and words on layers, in the fabric's own plane [m],
-//! x along the warp from 0, y across from the lower side.
+//! The lines and words of a plotted marker, on layers, in the fabric's own plane [m], x along the warp from
+//! 0, y across from the lower side.
 
 use crate::{MarkerDrawing, MarkerPiece};
 use toile_cut::{StrokeKind, Words};
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::Fold;
 
-/// What a line or a text is for.
+/// The purpose of a line or a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Layer {
     Fabric,
@@ -141,14 +141,14 @@ impl Strokes {
         all
     }
 
-    /// What is drawn of the fabric.
+    /// Adds the lines of the fabric.
     pub fn of_fabric(drawing: &MarkerDrawing) -> Self {
         let mut all = Self::default();
         all.fabric(drawing);
         all
     }
 
-    /// What is drawn of one piece.
+    /// Adds the lines of one piece.
     pub fn of_piece(piece: &MarkerPiece) -> Self {
         let mut all = Self::default();
         all.piece(piece);
@@ -214,8 +214,8 @@ impl Strokes {
                 }
             }
         }
-        for defect in &strip.defects {
-            self.rings(Layer::Flaw, &defect.outline);
+        for flaw in &strip.flaws {
+            self.rings(Layer::Flaw, &flaw.outline);
         }
     }
 

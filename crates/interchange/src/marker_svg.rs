@@ -89,7 +89,7 @@ fn layer(text: &mut String, (id, label, style): (&str, &str, &str), inside: &str
     }
 }
 
-/// What is said above the fabric.
+/// The text above the fabric.
 struct Heading {
     /// Lines with the height of their letters \[mm\] and their colour.
     lines: Vec<(f64, &'static str, String)>,
@@ -214,7 +214,7 @@ fn draw(text: &mut String, class: &str, d: &str, style: &str) {
     }
 }
 
-/// What is cut twice.
+/// The regions where pieces overlap.
 fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
     let page = Page(drawing.strip.width);
     let style = "fill=\"#e60000\" fill-opacity=\"0.8\" fill-rule=\"evenodd\" stroke=\"#e60000\" stroke-width=\"2\"";

@@ -7,7 +7,7 @@ use toile_measure::{FREESEWING, Measurements, Origin, UnitKind, definition, tran
 /// degrees), alone or under `measurements` or `measies`.
 ///
 /// # Errors
-/// What is wrong, where, and the remedy.
+/// The fault, its place and a remedy.
 pub fn read_freesewing(text: &str) -> Result<Measurements, FormatError> {
     let value: serde_json::Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
         .map_err(|error| {

@@ -25,12 +25,12 @@ struct MeasurementsFile {
 /// base is taken.
 ///
 /// # Errors
-/// What is wrong, where, and the remedy.
+/// The fault, its place and a remedy.
 pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
     Ok(read_sized_measurements(text, SizeChoice::default())?.0)
 }
 
-/// The same in a size of a table for several; also tells which was taken and what was left out.
+/// Reads one size of a table for several; also returns notes on the size taken and on parts left out.
 ///
 /// # Errors
 /// The same, and a size that the table does not have, or any size of a table of one body.

@@ -106,7 +106,7 @@ fn unit_of(xml: &Xml<'_>) -> Result<f64, FormatError> {
     }
 }
 
-/// What a table for several sizes says of them.
+/// The sizes that a table for several sizes declares.
 struct Sizes {
     /// Base size and height \[m\]; nothing where the table has dimensions of another kind.
     base: Option<[f64; 2]>,

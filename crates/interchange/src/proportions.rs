@@ -1,4 +1,4 @@
-//! Proportion boxes: our table of them, and tables of one's own in the same form.
+//! Proportion boxes: our table of them, and tables of the user's own in the same form.
 
 use crate::FormatError;
 use toile_body::ProportionBox;
@@ -16,7 +16,7 @@ pub fn proportion_boxes() -> Vec<ProportionBox> {
 /// the shoulders' ends and breadth of the hips in head lengths.
 ///
 /// # Errors
-/// What is wrong, where, and the remedy.
+/// The fault, its place and a remedy.
 pub fn read_proportions(text: &str) -> Result<Vec<ProportionBox>, FormatError> {
     let hint = "write [{\"name\": \"mine\", \"heads\": 7.5, \"crotch\": 3.6}], lengths in heads";
     let table: Vec<ProportionBox> = serde_json::from_str(text).map_err(|error| {

@@ -1,5 +1,5 @@
-//! What a file is, told from its content, so that a file given in the wrong place is refused by
-//! name and not by the first character that does not fit.
+//! Recognises the kind of a file from its content, so that a file given in the wrong place is refused by its
+//! kind and not by the first character that does not fit.
 
 use crate::FormatError;
 use serde_json::{Map, Value};
@@ -151,9 +151,9 @@ impl FileKind {
     }
 }
 
-/// What a reader takes.
+/// The kind of file that a reader expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
+pub enum ExpectedKind {
     /// A pattern.
     Pattern,
     /// Body measurements.
@@ -178,7 +178,7 @@ pub enum Wanted {
     SmallJson,
 }
 
-impl Wanted {
+impl ExpectedKind {
     fn takes(self, kind: FileKind) -> bool {
         match self {
             Self::Pattern => matches!(kind, FileKind::Pattern | FileKind::GarmentCode),
@@ -195,7 +195,7 @@ impl Wanted {
         }
     }
 
-    /// What is read, for the remedy.
+    /// The formats that are read, for the remedy.
     fn reads(self) -> &'static str {
         match self {
             Self::Pattern => {
@@ -423,7 +423,7 @@ mod tests {
 
     #[test]
     fn a_file_of_another_kind_is_refused_by_its_name_with_what_is_read() {
-        let error = Wanted::Pattern
+        let error = ExpectedKind::Pattern
             .check(b"0\nSECTION\n")
             .expect_err("a drawing");
         assert_eq!(
@@ -431,13 +431,13 @@ mod tests {
             "the whole file: this is a DXF drawing, which is not read yet; patterns are read from \
              *.toile.json and from GarmentCode specifications (JSON)"
         );
-        let error = Wanted::Pattern
+        let error = ExpectedKind::Pattern
             .check(br#"{"objects": []}"#)
             .expect_err("a scene");
         assert!(error.hint.starts_with("`toile run` takes it"), "{error}");
-        assert!(Wanted::Scene.check(br#"{"objects": []}"#).is_ok());
+        assert!(ExpectedKind::Scene.check(br#"{"objects": []}"#).is_ok());
         assert!(
-            Wanted::Pattern.check(b"{\"toile\": 1, ").is_ok(),
+            ExpectedKind::Pattern.check(b"{\"toile\": 1, ").is_ok(),
             "the reader says where"
         );
     }

@@ -1,4 +1,4 @@
-//! What a cloth is made of, as scenes and fabric files write it.
+//! Materials of cloth, as scenes and fabric files write them.
 
 use crate::FormatError;
 use crate::scene_motion::Unknown;

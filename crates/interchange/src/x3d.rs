@@ -1,4 +1,5 @@
-//! Motions from VRML 97 and X3D files: OrientationInterpolators routed to H-Anim joints.
+//! Motions from VRML 97 and X3D files: OrientationInterpolators routed to H-Anim joints, mapped to the joints
+//! of `toile-body`.
 
 use crate::FormatError;
 use crate::bvh::{Bone, Carrier};
@@ -79,7 +80,7 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Motion, Vec<String>)
     Ok((motion, clip.notes))
 }
 
-/// What turns and moves joints in one clip.
+/// The rotations and translations of joints in one clip.
 struct Clip<'a> {
     clock: Option<&'a Node>,
     turns: BTreeMap<Joint, Turns>,
@@ -90,12 +91,12 @@ struct Clip<'a> {
 impl<'a> Clip<'a> {
     /// The first clip of a scene.
     fn of(scene: &'a Scene) -> Result<Self, FormatError> {
-        let leads: Vec<Lead<'_>> = leads(scene)?;
-        let turning = || leads.iter().filter(|lead| lead.turns());
+        let joint_routes: Vec<JointRoute<'_>> = joint_routes(scene)?;
+        let turning = || joint_routes.iter().filter(|route| route.turns());
         let clocks: Vec<&Node> = scene
             .nodes
             .iter()
-            .filter(|node| turning().any(|lead| lead.has_clock(node)))
+            .filter(|node| turning().any(|route| route.has_clock(node)))
             .collect();
         let mut clip = Self {
             clock: clocks.first().copied(),
@@ -104,16 +105,16 @@ impl<'a> Clip<'a> {
             notes: Vec::new(),
         };
         let (mut still, mut strange) = (Vec::new(), Vec::new());
-        for lead in &leads {
+        for route in &joint_routes {
             match clip.clock {
-                Some(_) if lead.clocks.is_empty() => still.push(lead.by.name.as_str()),
-                Some(clock) if !lead.has_clock(clock) => {}
-                _ => match (lead.by.kind.as_str(), lead.joint) {
+                Some(_) if route.clocks.is_empty() => still.push(route.by.name.as_str()),
+                Some(clock) if !route.has_clock(clock) => {}
+                _ => match (route.by.kind.as_str(), route.joint) {
                     ("OrientationInterpolator", Some(joint)) => {
-                        clip.turns.insert(joint, turns_of(lead.by)?);
+                        clip.turns.insert(joint, turns_of(route.by)?);
                     }
-                    ("OrientationInterpolator", None) => strange.push(lead.to),
-                    (_, Some(Joint::HumanoidRoot)) => clip.moves = Some(places_of(lead.by)?),
+                    ("OrientationInterpolator", None) => strange.push(route.to),
+                    (_, Some(Joint::HumanoidRoot)) => clip.moves = Some(places_of(route.by)?),
                     _ => {}
                 },
             }
@@ -167,18 +168,18 @@ impl<'a> Clip<'a> {
     }
 }
 
-/// An interpolator that a route leads to a node.
-struct Lead<'a> {
+/// A route from an interpolator to a node.
+struct JointRoute<'a> {
     by: &'a Node,
-    /// The joint it leads to, if it is one of ours.
+    /// The joint that the node is, if it is one of ours.
     joint: Option<Joint>,
-    /// Name of the node it leads to.
+    /// Name of the node.
     to: &'a str,
-    /// Names of the TimeSensors that lead to it.
+    /// Names of the TimeSensors that drive the interpolator.
     clocks: Vec<&'a str>,
 }
 
-impl Lead<'_> {
+impl JointRoute<'_> {
     /// Whether it turns a joint of ours.
     fn turns(&self) -> bool {
         self.by.kind == "OrientationInterpolator" && self.joint.is_some()
@@ -189,9 +190,9 @@ impl Lead<'_> {
     }
 }
 
-/// The interpolators that turn or move something.
-fn leads(scene: &Scene) -> Result<Vec<Lead<'_>>, FormatError> {
-    let mut leads = Vec::new();
+/// The routes from interpolators that rotate or translate a node.
+fn joint_routes(scene: &Scene) -> Result<Vec<JointRoute<'_>>, FormatError> {
+    let mut joint_routes = Vec::new();
     for route in &scene.routes {
         let target = scene.named(&route.to);
         let joint = target
@@ -213,14 +214,14 @@ fn leads(scene: &Scene) -> Result<Vec<Lead<'_>>, FormatError> {
         }
         let is_clock = |name: &&str| scene.named(name).is_some_and(|n| n.kind == "TimeSensor");
         let into = scene.routes.iter().filter(|r| r.to == by.name);
-        leads.push(Lead {
+        joint_routes.push(JointRoute {
             by,
             joint,
             to: &route.to,
             clocks: into.map(|r| r.from.as_str()).filter(is_clock).collect(),
         });
     }
-    Ok(leads)
+    Ok(joint_routes)
 }
 
 fn lost(line: usize, name: &str) -> FormatError {

@@ -66,7 +66,7 @@ impl Route {
     }
 }
 
-/// What a file holds, prototypes left out.
+/// The nodes and routes of a file, prototypes left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Scene {
     pub(crate) nodes: Vec<Node>,

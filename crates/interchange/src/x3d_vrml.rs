@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::iter::Peekable;
 use std::str::Chars;
 
-/// What a file is made of.
+/// A token of a file.
 #[derive(Clone, Debug, PartialEq)]
 enum Token {
     Word(String),

@@ -24,7 +24,7 @@ impl<'a> Xml<'a> {
     /// are not fetched.
     ///
     /// # Errors
-    /// What is not well formed, in which line, with a remedy; entities that grow beyond all
+    /// A fault of the syntax, its line and a remedy; entities that grow beyond all
     /// measure.
     pub fn read(text: &'a str, remedy: &str) -> Result<Self, FormatError> {
         let body = text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerPiece, write_marker_svg};
-use toile_nesting::{Defect, Fold, Nap, Pose, Strip};
+use toile_nesting::{Flaw, Fold, Nap, Pose, Strip};
 
 fn drawing() -> MarkerDrawing {
     let cut = Polygon::rectangle(Bounds2 {
@@ -150,7 +150,7 @@ fn what_is_drawn_lies_on_layers_that_inkscape_shows() {
     let mut drawing = drawing();
     let corners = [[0.1, 0.1], [0.2, 0.1], [0.2, 0.3]].map(Vec2::from);
     drawing.overlaps = vec![Polygon::new(corners.to_vec())];
-    drawing.strip.defects = vec![Defect {
+    drawing.strip.flaws = vec![Flaw {
         outline: drawing.overlaps[0].clone(),
         clearance: 0.0,
     }];
@@ -181,7 +181,7 @@ fn what_is_drawn_lies_on_layers_that_inkscape_shows() {
     assert_eq!(pieces, 2);
     // What a marker does not have is no empty layer.
     drawing.overlaps.clear();
-    drawing.strip.defects.clear();
+    drawing.strip.flaws.clear();
     let text = write_marker_svg(&drawing).unwrap();
     assert_eq!(text.matches("inkscape:groupmode=\"layer\"").count(), 3);
 }

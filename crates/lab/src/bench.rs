@@ -15,7 +15,7 @@ use toile_drape::{
 };
 use toile_session::Watcher;
 
-/// What a benchmark does.
+/// The kinds of benchmarks.
 #[derive(Clone, Copy)]
 enum Work {
     /// Ten frames of 1/60 s of the hang scene by a method, the mesh divided so many times.

@@ -46,7 +46,7 @@ impl Point {
     }
 }
 
-/// What is charted.
+/// The runs of a chart: steps, methods and scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartPlan {
     /// Steps [s] of methods in time.

@@ -225,7 +225,7 @@ pub fn contact_files(found: &[Touched]) -> Result<Vec<(String, String)>, LabErro
     Ok(files)
 }
 
-/// What contact costs and saves, as Markdown.
+/// The cost and savings of contact, as Markdown.
 pub fn contact_table(found: &[Touched]) -> String {
     let mut text = String::from(
         "\nContact of cloth with cloth, the same steps with it and without (processor ms per simulated second; edges through faces at the end, \

@@ -44,7 +44,7 @@ fn csv(points: &[Point], step: &str, wall: &str) -> String {
     text
 }
 
-/// What stands under every chart, and under those of methods that iterate.
+/// Notes under every chart, and under those of methods that iterate.
 const CROSSES: &str = "crosses in the top row: failed or wrong; the reason stands in the CSV";
 const ITERATIONS_AND_CROSSES: &str = "in brackets: iterations a step at the most; crosses in the top row: failed or wrong; the reason stands in the CSV";
 

@@ -1,4 +1,4 @@
-//! One measured number held against what it must be, and tables of them.
+//! Checks: a measured number beside the expected one, and tables of them.
 
 use crate::{LabError, Tolerance};
 use serde::Serialize;
@@ -14,11 +14,11 @@ pub struct Check {
     pub law: &'static str,
     /// Which case of it.
     pub case: String,
-    /// What is measured, with its unit.
+    /// The quantity measured, with its unit.
     pub quantity: &'static str,
-    /// What the law says.
+    /// The expected value.
     pub expected: f64,
-    /// What was measured; nothing when the simulation failed.
+    /// The measured value; none when the simulation failed.
     pub measured: Option<f64>,
     /// |measured - expected| over the scale (that of the expected value unless it is zero).
     pub error: Option<f64>,
@@ -39,14 +39,14 @@ impl Check {
     }
 }
 
-/// What a case must give.
+/// The expectation of a case.
 #[derive(Clone, Copy, Debug)]
 pub struct Expected {
     /// The tolerance that the law declares for it.
     tolerance: Tolerance,
-    /// What the law says.
+    /// The expected value.
     value: f64,
-    /// What errors are measured by; the expected value itself, unless it is zero.
+    /// The scale of errors; the expected value itself, unless it is zero.
     scale: f64,
     /// Largest error allowed, as a share of the scale: the tolerance's, or less.
     allowed: f64,

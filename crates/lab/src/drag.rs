@@ -29,12 +29,12 @@ const REACH: f64 = 0.004;
 
 /// Wall and processor time [s].
 #[derive(Clone, Copy, Debug, Default)]
-struct Spent {
+struct DragTimes {
     wall: f64,
     cpu: f64,
 }
 
-impl Spent {
+impl DragTimes {
     fn since(clock: &Clock) -> Self {
         Self {
             wall: clock.wall(),
@@ -51,8 +51,8 @@ impl Spent {
 }
 
 /// Middle of times, wall and processor each.
-fn middle(times: &[Spent]) -> Spent {
-    Spent {
+fn middle(times: &[DragTimes]) -> DragTimes {
+    DragTimes {
         wall: median(times.iter().map(|t| t.wall)),
         cpu: median(times.iter().map(|t| t.cpu)),
     }
@@ -153,27 +153,27 @@ fn cut(pattern: &Pattern, draft: &Draft, number: usize) -> Option<CutPiece> {
 /// Everything afresh, by its parts.
 #[derive(Clone, Default)]
 struct Whole {
-    values: Vec<Spent>,
-    draft: Vec<Spent>,
+    values: Vec<DragTimes>,
+    draft: Vec<DragTimes>,
     /// Of each piece.
-    cuts: Vec<Vec<Spent>>,
-    all: Vec<Spent>,
+    cuts: Vec<Vec<DragTimes>>,
+    all: Vec<DragTimes>,
 }
 
 impl Whole {
     fn again(&mut self, base: &Evaluation) {
         let clock = Clock::start();
         let evaluation = Evaluation::new(base.pattern(), base.wearer());
-        let values = Spent::since(&clock);
+        let values = DragTimes::since(&clock);
         let clock = Clock::start();
         let (draft, _) = evaluation.draft();
-        let drafted = Spent::since(&clock);
+        let drafted = DragTimes::since(&clock);
         self.cuts.resize_with(draft.pieces.len(), Vec::new);
         let mut all = values.plus(drafted);
         for number in 0..draft.pieces.len() {
             let clock = Clock::start();
             let _ = cut(base.pattern(), &draft, number);
-            let spent = Spent::since(&clock);
+            let spent = DragTimes::since(&clock);
             self.cuts[number].push(spent);
             all = all.plus(spent);
         }
@@ -194,20 +194,20 @@ impl Whole {
 
 /// One point that was dragged.
 struct Dragged {
-    spent: Spent,
+    spent: DragTimes,
     /// The values that depend on it, computed once.
-    values: Spent,
+    values: DragTimes,
     pieces: Vec<usize>,
 }
 
-/// What was found on one pattern.
+/// Results on one pattern.
 struct Found {
     name: String,
     points: usize,
     panels: usize,
     dragged: Vec<Dragged>,
     whole: Whole,
-    redraft: Vec<Spent>,
+    redraft: Vec<DragTimes>,
     measurement: String,
 }
 
@@ -288,7 +288,7 @@ fn measured(name: &str, command: Command, stride: usize) -> Result<Found, LabErr
             let clock = Clock::start();
             pieces = window.drag(goal)?;
             if step > 0 {
-                times.push(Spent::since(&clock));
+                times.push(DragTimes::since(&clock));
             }
         }
         window.release();
@@ -304,7 +304,7 @@ fn measured(name: &str, command: Command, stride: usize) -> Result<Found, LabErr
                 for edits in edits {
                     let clock = Clock::start();
                     window.show(edits)?;
-                    found.redraft.push(Spent::since(&clock));
+                    found.redraft.push(DragTimes::since(&clock));
                 }
                 window.release();
             }
@@ -315,7 +315,7 @@ fn measured(name: &str, command: Command, stride: usize) -> Result<Found, LabErr
 
 /// What computing the values takes that depend on a point: it is moved to and fro, without planner
 /// and session.
-fn values(base: &Evaluation, (id, place): (PointId, Vec2)) -> Result<Spent, LabError> {
+fn values(base: &Evaluation, (id, place): (PointId, Vec2)) -> Result<DragTimes, LabError> {
     let mut kept = base.clone();
     let mut times = Vec::new();
     for step in 0..=MOVES {
@@ -326,7 +326,7 @@ fn values(base: &Evaluation, (id, place): (PointId, Vec2)) -> Result<Spent, LabE
         let clock = Clock::start();
         kept.update(&pattern, base.wearer());
         if step > 0 {
-            times.push(Spent::since(&clock));
+            times.push(DragTimes::since(&clock));
         }
     }
     Ok(middle(&times))
@@ -379,7 +379,7 @@ fn excesses(found: &Found) -> impl Iterator<Item = f64> {
     dragged.map(|one| one.spent.cpu / found.whole.part(one))
 }
 
-/// What stands over the table, and its first two lines.
+/// The text over the table, and its first two lines.
 fn heading() -> String {
     let columns = [
         "pattern",
@@ -404,7 +404,7 @@ fn heading() -> String {
 }
 
 fn line(text: &mut String, found: &Found) {
-    let moves: Vec<Spent> = found.dragged.iter().map(|d| d.spent).collect();
+    let moves: Vec<DragTimes> = found.dragged.iter().map(|d| d.spent).collect();
     let one = middle(&moves);
     let whole = middle(&found.whole.all);
     let cuts = found.whole.cuts.iter().map(|times| middle(times).cpu);

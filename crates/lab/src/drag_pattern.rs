@@ -6,9 +6,9 @@ use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_measure::Measurements;
 use toile_pattern::{
-    Apex, CurveRule, Drawing, Edge, Fabric, Formula, FormulaError, LineKind, Mark, Name, Names,
-    Notch, NotchKind, Number, Operation, OperationKind, PanelId, Pattern, PointId, PointRule,
-    Pressed, Seam, Size,
+    Apex, CurveRule, Edge, Fabric, Formula, FormulaError, LineKind, Mark, Name, Names, Notch,
+    NotchKind, Number, Operation, OperationKind, PanelBuilder, PanelId, Pattern, PointId,
+    PointRule, Pressed, Seam, Size,
 };
 
 /// Corners of an outline. Every second edge is straight, the others are curves with two handles.
@@ -36,7 +36,7 @@ fn rim(share: f64) -> Vec2 {
 fn panel(pattern: &mut Pattern, number: usize) -> (PanelId, Vec<Edge>) {
     let fabric = pattern.fabrics[0].id;
     let mut ids = pattern.ids;
-    let mut drawing = Drawing::new(&mut ids, &format!("panel {number}"), fabric);
+    let mut drawing = PanelBuilder::new(&mut ids, &format!("panel {number}"), fabric);
     let share = |k: usize, beyond: f64| (k as f64 + beyond) / CORNERS as f64;
     let at = |place: Vec2| PointRule::at(place.x, place.y);
     let mut names = (0..).map(|k| format!("p{k}"));

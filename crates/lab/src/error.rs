@@ -1,4 +1,4 @@
-//! What can go wrong in the laboratory.
+//! Errors of the laboratory.
 
 /// Why an experiment could not be made.
 #[derive(Debug, thiserror::Error)]

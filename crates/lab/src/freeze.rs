@@ -1,4 +1,4 @@
-//! How the standard scenes were made.
+//! Generates the standard scenes.
 
 use crate::flat::STRAIGHT;
 use crate::scenes::{Card, ClothCard, Reference, SCENES, apart, card};

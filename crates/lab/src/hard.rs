@@ -1,4 +1,4 @@
-//! Hard cases, one by one: each method stays sound, or stops with an error that says where.
+//! Hard cases: each method must end sound or with an error that says where.
 
 use crate::clock::Clock;
 use crate::stability::shake;
@@ -13,7 +13,7 @@ use toile_drape::{
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_session::Watcher;
 
-/// How a method met a hard case.
+/// The outcome of a method on a hard case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {

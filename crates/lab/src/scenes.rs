@@ -8,7 +8,7 @@ use toile_drape::{Cloth, Collider, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{ObjMesh, read_obj};
 
-/// What a scene is, as written.
+/// A scene as its file has it.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Card {
     /// Its name.
@@ -130,7 +130,7 @@ pub fn card(name: &str) -> Result<Card, LabError> {
 }
 
 impl Card {
-    /// What the cloth is made of.
+    /// The material of the cloth.
     pub fn material(&self) -> Material {
         Material {
             density: self.density,

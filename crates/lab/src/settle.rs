@@ -1,4 +1,4 @@
-//! Leading a cloth to rest, and running it in time, with any method.
+//! Helpers that run a cloth to rest or in time by any method.
 
 use crate::LabError;
 use toile_drape::{

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use toile_drape::{Cloth, Collider, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// What a square does.
+/// The scene of a square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Square {
     /// It lies flat, held at two corners of one side, and swings down.

@@ -11,7 +11,7 @@ use toile_drape::{
 use toile_geometry::{Vec2, Vec3};
 use toile_session::Watcher;
 
-/// How a method did at one step and stiffness.
+/// The outcome of a method at one step and stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {

@@ -1,4 +1,4 @@
-//! What a benchmark found.
+//! The result of one benchmark.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub struct Timed {
     pub wall_s: f64,
     /// Processor time of the process [s].
     pub cpu_s: Option<f64>,
-    /// What else was counted: steps, residual, times of stages [s].
+    /// Further numbers: steps, residual, times of stages [s].
     pub counted: BTreeMap<String, f64>,
     /// A table of its own.
     pub report: Option<String>,

@@ -1,4 +1,4 @@
-//! What laws allow: how near a measured number must be to what the law says.
+//! Tolerances of laws: how near a measured number must be to the expected one.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 /// checks take theirs from there, and one with another tolerance fails.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tolerance {
-    /// What is measured, with its unit.
+    /// The quantity measured, with its unit.
     pub quantity: &'static str,
     /// The cases it holds for; empty where it holds for all of the quantity.
     pub cases: &'static str,

@@ -1,4 +1,4 @@
-//! Why a marker was not made.
+//! Why a marker could not be made.
 
 use toile_interchange::FormatError;
 use toile_nesting::NestingError;

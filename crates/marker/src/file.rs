@@ -1,6 +1,6 @@
-//! Markers as files.
+//! Writes markers as files, in every format asked for.
 
-use crate::{Laying, MarkerError};
+use crate::{FinishedMarker, MarkerError};
 use toile_interchange::{
     FormatError, write_jagua_instance, write_marker_dxf, write_marker_hpgl, write_marker_json,
     write_marker_pdf, write_marker_report, write_marker_svg,
@@ -33,29 +33,30 @@ pub enum MarkerFormat {
 /// A marker that a format cannot hold.
 pub fn marker_files(
     (name, formats): (&str, &[MarkerFormat]),
-    layings: &[Laying],
+    finished_markers: &[FinishedMarker],
     files: &mut Vec<(String, Vec<u8>)>,
 ) -> Result<Vec<Vec<String>>, MarkerError> {
-    let mut lost = vec![Vec::new(); layings.len()];
-    for (k, laying) in layings.iter().enumerate() {
+    let mut lost = vec![Vec::new(); finished_markers.len()];
+    for (k, finished) in finished_markers.iter().enumerate() {
         let stem = match k {
             0 => "marker".to_owned(),
             k => format!("marker-{}", k + 1),
         };
-        let drawing = laying.drawing(name);
+        let drawing = finished.drawing(name);
         for format in formats {
             let (ending, bytes) = match format {
                 MarkerFormat::Svg => ("svg", write_marker_svg(&drawing).map(String::into_bytes)),
                 MarkerFormat::Json => {
-                    let text = write_marker_json(&laying.file(name));
+                    let text = write_marker_json(&finished.file(name));
                     ("json", text.map(String::into_bytes))
                 }
                 MarkerFormat::Dxf => ("dxf", write_marker_dxf(&drawing).map(String::into_bytes)),
                 MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
                 MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
                 MarkerFormat::Instance => {
-                    let (text, left_out) = write_jagua_instance(name, &laying.items, &laying.strip)
-                        .map_err(cannot("marker-instance.json"))?;
+                    let (text, left_out) =
+                        write_jagua_instance(name, &finished.items, &finished.strip)
+                            .map_err(cannot("marker-instance.json"))?;
                     let file = format!("{stem}-instance.json");
                     if !left_out.is_empty() {
                         let left_out = left_out.join(", ");
@@ -73,7 +74,7 @@ pub fn marker_files(
         }
     }
     if formats.contains(&MarkerFormat::Report) {
-        let drawings: Vec<_> = layings.iter().map(|l| l.drawing(name)).collect();
+        let drawings: Vec<_> = finished_markers.iter().map(|l| l.drawing(name)).collect();
         let report = write_marker_report(name, &drawings).map_err(cannot("marker-report.pdf"))?;
         files.push(("marker-report.pdf".to_owned(), report));
     }

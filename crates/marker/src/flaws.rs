@@ -1,9 +1,9 @@
-//! Flaws measured on the fabric laid open, where they lie once it is spread.
+//! Flaws of the fabric: measured on it laid open, mapped to where they lie once it is spread.
 
 use crate::MarkerError;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_interchange::{FlawSettings, Metres};
-use toile_nesting::Defect;
+use toile_nesting::Flaw;
 use toile_pattern::Spread;
 
 /// What a flaw may reach beyond the edge of the fabric and count as within [m].
@@ -73,8 +73,8 @@ pub(crate) fn flaws_on(
     flaws: &[FlawSettings],
     (fabric, width): (&str, f64),
     spread: Spread,
-) -> Result<Vec<Defect>, MarkerError> {
-    let mut defects = Vec::new();
+) -> Result<Vec<Flaw>, MarkerError> {
+    let mut spread_flaws = Vec::new();
     for (k, flaw) in flaws.iter().enumerate() {
         let [x, low] = flaw.at.map(|m| m.0);
         let [length, high] = [flaw.size[0].0, low + flaw.size[1].0];
@@ -90,7 +90,7 @@ pub(crate) fn flaws_on(
             )));
         }
         for [low, high] in as_spread([low, high], width, spread) {
-            defects.push(Defect {
+            spread_flaws.push(Flaw {
                 outline: Polygon::rectangle(Bounds2 {
                     min: Vec2::new(x, low),
                     max: Vec2::new(x + length, high),
@@ -99,7 +99,7 @@ pub(crate) fn flaws_on(
             });
         }
     }
-    Ok(defects)
+    Ok(spread_flaws)
 }
 
 /// Where a span across the open fabric lies once that is spread [m]. Folded, the middle of the
@@ -136,7 +136,7 @@ mod tests {
             clearance: Metres(0.0),
         };
         let found = flaws_on(&[flaw], ("cloth", 1.6), spread).unwrap();
-        let span = |d: &Defect| [d.outline.bounds().min.y, d.outline.bounds().max.y];
+        let span = |d: &Flaw| [d.outline.bounds().min.y, d.outline.bounds().max.y];
         found.iter().map(span).collect()
     }
 

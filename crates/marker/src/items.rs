@@ -4,7 +4,7 @@
 use crate::marks::turned;
 use crate::matching::match_up;
 use crate::options::FabricPlan;
-use crate::pieces::Wanted;
+use crate::pieces::PieceToCut;
 use crate::{MarkerError, NestOptions};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -17,38 +17,38 @@ use toile_nesting::{
 };
 use toile_pattern::Spread;
 
-/// Items, what is drawn on each, and what the cutter must know.
+/// Items, the drawing of each, and notes for the cutter.
 type Items = (Vec<Item>, Vec<Arc<CutPiece>>, Vec<String>);
 
 /// The pieces of one fabric as they are laid on it.
 pub(crate) fn items_on(
-    wanted: &[Wanted],
+    to_cut: &[PieceToCut],
     plan: &FabricPlan,
     options: &NestOptions,
 ) -> Result<Items, MarkerError> {
     let mut items = Vec::new();
     let mut drawn = Vec::new();
     let mut notes: Vec<String> = Vec::new();
-    for note in wanted.iter().flat_map(|wanted| &wanted.notes) {
+    for note in to_cut.iter().flat_map(|to_cut| &to_cut.notes) {
         // Garments that are matched each in itself have the same pieces again.
         if !notes.contains(note) {
             notes.push(note.clone());
         }
     }
     let printed = plan.rolls.iter().any(|r| r.strip.stripes.is_some());
-    let matched = wanted.iter().any(|w| !w.marks.is_empty());
+    let matched = to_cut.iter().any(|w| !w.marks.is_empty());
     let each_alone = plan.rolls.iter().any(|r| r.strip.nap == Nap::PerBundle);
-    for (k, role) in roles(wanted, plan)?.into_iter().enumerate() {
-        let wanted = &wanted[k];
-        let on_print = wanted.settings.on_print.unwrap_or(!matched);
-        let print = printed && on_print && wanted.marks.is_empty();
-        let mut item = item_of(wanted, print, options);
+    for (k, role) in roles(to_cut, plan)?.into_iter().enumerate() {
+        let to_cut = &to_cut[k];
+        let on_print = to_cut.settings.on_print.unwrap_or(!matched);
+        let print = printed && on_print && to_cut.marks.is_empty();
+        let mut item = item_of(to_cut, print, options);
         match role {
             Role::Twin => continue,
             Role::Alone => {}
             Role::Paired => item.allowed.mirror = Mirror::Free,
             Role::Half(half) => {
-                let (halved, piece) = halved(item, &wanted.cut, half);
+                let (halved, piece) = halved(item, &to_cut.cut, half);
                 items.push(halved);
                 drawn.push((k, piece));
                 continue;
@@ -64,11 +64,11 @@ pub(crate) fn items_on(
             }
         }
         items.push(item);
-        drawn.push((k, wanted.cut.clone()));
+        drawn.push((k, to_cut.cut.clone()));
     }
     if printed {
         let order: Vec<usize> = drawn.iter().map(|d| d.0).collect();
-        match_up(&mut items, &order, (wanted, plan))?;
+        match_up(&mut items, &order, (to_cut, plan))?;
     }
     if plan.plies > 1 {
         notes.push(format!(
@@ -99,7 +99,7 @@ fn two_at_once(item: &mut Item, spare: bool, each_alone: bool) -> u32 {
     2 * item.quantity - count
 }
 
-/// What becomes of a piece on fabric of several layers.
+/// The role of a piece on fabric of several layers.
 enum Role {
     /// Cut as it is laid.
     Alone,
@@ -113,31 +113,31 @@ enum Role {
     Two { spare: bool },
 }
 
-fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, MarkerError> {
+fn roles(to_cut: &[PieceToCut], plan: &FabricPlan) -> Result<Vec<Role>, MarkerError> {
     if plan.spread == Spread::Open {
-        return Ok(wanted.iter().map(|_| Role::Alone).collect());
+        return Ok(to_cut.iter().map(|_| Role::Alone).collect());
     }
     let folded = plan.spread != Spread::FaceToFace;
-    let mut roles: Vec<Option<Role>> = wanted.iter().map(|_| None).collect();
-    for k in 0..wanted.len() {
+    let mut roles: Vec<Option<Role>> = to_cut.iter().map(|_| None).collect();
+    for k in 0..to_cut.len() {
         if roles[k].is_some() {
             continue;
         }
         let along = |half: &HalfPlane| {
-            half.runs_along(wanted[k].cut.grain) && wanted[k].cut.is_symmetric_in(half)
+            half.runs_along(to_cut[k].cut.grain) && to_cut[k].cut.is_symmetric_in(half)
         };
-        let fold = wanted[k].cut.fold.filter(along);
-        let on_fold = wanted[k].settings.on_fold.unwrap_or(true);
+        let fold = to_cut[k].cut.fold.filter(along);
+        let on_fold = to_cut[k].settings.on_fold.unwrap_or(true);
         if let Some(half) = fold.filter(|_| folded && on_fold) {
             roles[k] = Some(Role::Half(half));
             continue;
         }
-        let symmetrical = wanted[k].cut.is_mirror_image_of(&wanted[k].cut);
-        let twin = (k + 1..wanted.len()).find(|&other| {
+        let symmetrical = to_cut[k].cut.is_mirror_image_of(&to_cut[k].cut);
+        let twin = (k + 1..to_cut.len()).find(|&other| {
             roles[other].is_none()
                 && !symmetrical
-                && wanted[other].bundles == wanted[k].bundles
-                && wanted[k].cut.is_mirror_image_of(&wanted[other].cut)
+                && to_cut[other].bundles == to_cut[k].bundles
+                && to_cut[k].cut.is_mirror_image_of(&to_cut[other].cut)
         });
         roles[k] = Some(match (twin, symmetrical, folded) {
             (Some(other), ..) => {
@@ -150,7 +150,7 @@ fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, MarkerError>
             (None, false, false) => {
                 return Err(NestingError::Strip(format!(
                     "piece \"{}\" is neither symmetrical nor one of a pair: half of its copies would come out mirrored face to face; spread the fabric open, or cut it from another fabric",
-                    wanted[k].name
+                    to_cut[k].name
                 ))
                 .into());
             }
@@ -163,8 +163,8 @@ fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, MarkerError>
 }
 
 /// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
-fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> Item {
-    let (piece, settings) = (&wanted.cut, &wanted.settings);
+fn item_of(to_cut: &PieceToCut, print: bool, options: &NestOptions) -> Item {
+    let (piece, settings) = (&to_cut.cut, &to_cut.settings);
     let outline = piece.outer();
     // Back to the grain's own axes: the hem lies where the grain starts.
     let bounds = outline.rotated(-piece.grain).bounds();
@@ -181,10 +181,10 @@ fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> Item {
     });
     Item {
         grain: piece.grain,
-        quantity: wanted.bundles.len() as u32,
-        bundles: wanted.bundles.clone(),
+        quantity: to_cut.bundles.len() as u32,
+        bundles: to_cut.bundles.clone(),
         gap: settings.gap.unwrap_or_default().0,
-        over_defects: settings.over_flaws.unwrap_or(false),
+        over_flaws: settings.over_flaws.unwrap_or(false),
         match_point: print.then_some(MatchPoint {
             point: hem,
             phase: Phase::At(Vec2::zeros()),
@@ -201,7 +201,7 @@ fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> Item {
             ..Allowed::turned(turns)
         },
         locked: locked.collect(),
-        ..Item::new(wanted.name.clone(), outline)
+        ..Item::new(to_cut.name.clone(), outline)
     }
 }
 

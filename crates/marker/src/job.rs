@@ -1,12 +1,12 @@
 //! The pieces of one fabric, ready to be laid on it.
 
-use crate::follow::Standing;
-use crate::going_on::{lock, start_of};
+use crate::finished_marker::FinishedMarker;
 use crate::items::items_on;
-use crate::laying::Laying;
 use crate::matching::runs_one_way;
 use crate::options::{FabricPlan, PlannedRoll};
-use crate::pieces::Wanted;
+use crate::pieces::PieceToCut;
+use crate::progress::SearchProgress;
+use crate::starting_marker::{lock, start_of};
 use crate::{MarkerError, NestOptions};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,23 +18,23 @@ use toile_nesting::{
 };
 use toile_pattern::{Fabric, OrderedPiece, SizeId, Spread};
 
-/// Told how far the search on one fabric is; answers whether to go on.
-type Told<'a> = &'a mut dyn FnMut(Standing) -> bool;
+/// Receives the progress of the search on one fabric; returns whether to go on.
+type Report<'a> = &'a mut dyn FnMut(SearchProgress) -> bool;
 
-/// What is to be laid on one fabric.
+/// The pieces to lay on one fabric, with its rolls.
 pub(crate) struct FabricJob {
     fabric: String,
     plan: FabricPlan,
     pub items: Vec<Item>,
     pub pieces: Vec<Arc<CutPiece>>,
     pub notes: Vec<String>,
-    /// What to go on from.
+    /// The marker to start from.
     start: Option<Marker>,
 }
 
 impl FabricJob {
     pub fn new(
-        (fabric, wanted): (&str, &[Wanted]),
+        (fabric, to_cut): (&str, &[PieceToCut]),
         own: Option<&Fabric>,
         options: &NestOptions,
     ) -> Result<Self, MarkerError> {
@@ -45,14 +45,14 @@ impl FabricJob {
                 "fabric {fabric:?} is laid on rolls, and markers on rolls cannot be gone on from; leave out --from, or the rolls"
             )));
         }
-        if runs_one_way(wanted) {
+        if runs_one_way(to_cut) {
             for roll in &mut plan.rolls {
                 if roll.strip.stripes.is_some() && roll.strip.nap == Nap::None {
                     roll.strip.nap = Nap::PerBundle;
                 }
             }
         }
-        let (mut items, pieces, notes) = items_on(wanted, &plan, options)?;
+        let (mut items, pieces, notes) = items_on(to_cut, &plan, options)?;
         let start = start_of(starts, fabric, (&items, &plan.rolls[0].strip));
         if let Some(start) = &start {
             lock(&mut items, start, &options.locked);
@@ -67,17 +67,17 @@ impl FabricJob {
         })
     }
 
-    /// All markers of the fabric. Stops when the flag is set, or the one told says so.
+    /// All markers of the fabric. Stops when the flag is set or `report` returns false.
     pub fn lay(
         &self,
         options: &NestOptions,
-        (flag, told): (&AtomicBool, Told<'_>),
-    ) -> Result<Vec<Laying>, MarkerError> {
+        (flag, report): (&AtomicBool, Report<'_>),
+    ) -> Result<Vec<FinishedMarker>, MarkerError> {
         if self.plan.rolled {
-            return self.lay_on_rolls(options, (flag, told));
+            return self.lay_on_rolls(options, (flag, report));
         }
         let of = (&*self.items, self.start.as_ref());
-        let marker = self.made(of, options.search(), (flag, told))?;
+        let marker = self.made(of, options.search(), (flag, report))?;
         Ok(vec![self.whole(marker, options)])
     }
 
@@ -86,9 +86,9 @@ impl FabricJob {
         &self,
         (items, start): (&[Item], Option<&Marker>),
         search: Search,
-        (flag, told): (&AtomicBool, Told<'_>),
+        (flag, report): (&AtomicBool, Report<'_>),
     ) -> Result<Marker, MarkerError> {
-        let mut follow = |progress| self.follow(progress, flag, told);
+        let mut follow = |progress| self.follow(progress, flag, report);
         let mut control = Control {
             progress: &mut follow,
             cancel: flag,
@@ -104,20 +104,20 @@ impl FabricJob {
         &self,
         progress: Progress,
         flag: &AtomicBool,
-        told: &mut dyn FnMut(Standing) -> bool,
+        report: &mut dyn FnMut(SearchProgress) -> bool,
     ) {
-        if !told(self.standing(progress)) {
+        if !report(self.progress(progress)) {
             flag.store(true, Ordering::Relaxed);
         }
     }
 
     /// A marker of all pieces on the only roll.
-    pub fn whole(&self, marker: Marker, options: &NestOptions) -> Laying {
+    pub fn whole(&self, marker: Marker, options: &NestOptions) -> FinishedMarker {
         let missing = named(&self.items, &marker.unplaced);
         let of = (self.items.clone(), self.pieces.clone());
-        Laying {
+        FinishedMarker {
             missing,
-            ..self.laying(&self.plan.rolls[0], of, marker, options)
+            ..self.finished(&self.plan.rolls[0], of, marker, options)
         }
     }
 
@@ -154,7 +154,7 @@ impl FabricJob {
     }
 
     /// How far a search is. On rolls nothing is known of the whole before the end.
-    fn standing(&self, progress: Progress) -> Standing {
+    fn progress(&self, progress: Progress) -> SearchProgress {
         let length = Some(progress.length).filter(|length| length.is_finite());
         let whole = length.filter(|_| !self.plan.rolled);
         let roll = &self.plan.rolls[0];
@@ -163,7 +163,7 @@ impl FabricJob {
         let area: f64 = area.sum();
         let width = roll.strip.width;
         let efficiency = |length: f64| area / (width * (length - 2.0 * roll.strip.end_margin));
-        Standing {
+        SearchProgress {
             done: progress.done,
             length,
             efficiency: whole.map(efficiency),
@@ -174,9 +174,9 @@ impl FabricJob {
     fn lay_on_rolls(
         &self,
         options: &NestOptions,
-        (flag, told): (&AtomicBool, Told<'_>),
-    ) -> Result<Vec<Laying>, MarkerError> {
-        let mut follow = |progress| self.follow(progress, flag, told);
+        (flag, report): (&AtomicBool, Report<'_>),
+    ) -> Result<Vec<FinishedMarker>, MarkerError> {
+        let mut follow = |progress| self.follow(progress, flag, report);
         let mut control = Control {
             progress: &mut follow,
             cancel: flag,
@@ -184,39 +184,39 @@ impl FabricJob {
         let strips: Vec<Strip> = self.plan.rolls.iter().map(|r| r.strip.clone()).collect();
         let out = make_markers_on_rolls(&self.items, &strips, options.search(), &mut control)?;
         let missing = named(&self.items, &out.unplaced);
-        let mut layings: Vec<Laying> = out
+        let mut finished_markers: Vec<FinishedMarker> = out
             .markers
             .into_iter()
             .map(|made| {
                 let drawn = made.sources.iter().map(|s| self.pieces[s.0].clone());
                 let of = (made.items, drawn.collect());
                 let roll = &self.plan.rolls[made.roll];
-                Laying {
+                FinishedMarker {
                     sources: Some(made.sources),
-                    ..self.laying(roll, of, made.marker, options)
+                    ..self.finished(roll, of, made.marker, options)
                 }
             })
             .collect();
-        let Some(last) = layings.last_mut() else {
+        let Some(last) = finished_markers.last_mut() else {
             let reasons = missing.iter().map(|u| format!("{}: {}", u.name, u.reason));
             let reasons: Vec<String> = reasons.collect();
             let what = format!("no piece fits any roll: {}", reasons.join("; "));
             return Err(NestingError::Strip(what).into());
         };
         last.missing = missing;
-        Ok(layings)
+        Ok(finished_markers)
     }
 
-    /// A marker with what a drawing of it needs; nothing counts as missing yet.
-    fn laying(
+    /// A finished marker of one roll, without missing copies.
+    fn finished(
         &self,
         roll: &PlannedRoll,
         (items, pieces): (Vec<Item>, Vec<Arc<CutPiece>>),
         marker: Marker,
         options: &NestOptions,
-    ) -> Laying {
+    ) -> FinishedMarker {
         let verdict = judge(&items, &roll.strip, &marker);
-        Laying {
+        FinishedMarker {
             fabric: self.fabric.clone(),
             strip: roll.strip.clone(),
             facts: MarkerFacts {

@@ -8,7 +8,7 @@
 use crate::MarkerError;
 use crate::marks::turned;
 use crate::options::FabricPlan;
-use crate::pieces::Wanted;
+use crate::pieces::PieceToCut;
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;
 use toile_nesting::{Item, MatchPoint, Mirror, NestingError, Phase, Stripes};
@@ -16,11 +16,11 @@ use toile_nesting::{Item, MatchPoint, Mirror, NestingError, Phase, Stripes};
 /// How far marks of one set may miss each other [m].
 const MISS: f64 = 1e-6;
 
-/// Gives every item with marks its match point. `order` names the wanted piece of each item.
+/// Gives every item with marks its match point. `order` gives the piece to cut of each item.
 pub(crate) fn match_up(
     items: &mut [Item],
     order: &[usize],
-    (wanted, plan): (&[Wanted], &FabricPlan),
+    (to_cut, plan): (&[PieceToCut], &FabricPlan),
 ) -> Result<(), MarkerError> {
     let Some(stripes) = plan.rolls.iter().find_map(|r| r.strip.stripes) else {
         return Ok(());
@@ -28,12 +28,12 @@ pub(crate) fn match_up(
     let marks: Vec<Vec<(usize, Vec2)>> = order
         .iter()
         .map(|&k| {
-            let grain = wanted[k].cut.grain;
+            let grain = to_cut[k].cut.grain;
             let straight = |m: &(usize, Vec2)| (m.0, turned(m.1, -grain));
-            wanted[k].marks.iter().map(straight).collect()
+            to_cut[k].marks.iter().map(straight).collect()
         })
         .collect();
-    let garment = |k: usize| wanted[order[k]].bundles.first().copied().unwrap_or(0);
+    let garment = |k: usize| to_cut[order[k]].bundles.first().copied().unwrap_or(0);
     let mut members: BTreeMap<(u32, usize), Vec<(usize, Vec2)>> = BTreeMap::new();
     for (k, marks) in marks.iter().enumerate() {
         for &(set, mark) in marks {
@@ -55,13 +55,13 @@ pub(crate) fn match_up(
             let Some(anchor) = anchors[one] else { continue };
             for &(set, mark) in &marks[one] {
                 for &(other, theirs) in &members[&(garment(one), set)] {
-                    let wanted = anchor - mark + theirs;
+                    let expected = anchor - mark + theirs;
                     match anchors[other] {
                         None => {
-                            anchors[other] = Some(wanted);
+                            anchors[other] = Some(expected);
                             joined.push(other);
                         }
-                        Some(has) if missed(has - wanted, &stripes) => {
+                        Some(has) if missed(has - expected, &stripes) => {
                             return Err(cannot_meet(&items[one], &items[other]).into());
                         }
                         Some(_) => {}
@@ -86,8 +86,8 @@ pub(crate) fn match_up(
 }
 
 /// Whether pieces must lie the same way up because one has several marks.
-pub(crate) fn runs_one_way(wanted: &[Wanted]) -> bool {
-    wanted.iter().any(|w| w.marks.len() > 1)
+pub(crate) fn runs_one_way(to_cut: &[PieceToCut]) -> bool {
+    to_cut.iter().any(|w| w.marks.len() > 1)
 }
 
 /// Whether an offset is no whole number of repeats.

@@ -35,7 +35,7 @@ pub struct NestOptions {
     /// the middle of every piece lie on its lines.
     pub repeat: Option<[f64; 2]>,
     /// Flaws of fabrics laid open.
-    pub defects: Vec<GivenFlaw>,
+    pub flaws: Vec<GivenFlaw>,
     /// How the fabric is spread.
     pub spread: Option<Spread>,
     /// Layers cut at once.
@@ -77,7 +77,7 @@ impl Default for NestOptions {
             nap: None,
             tilt: None,
             repeat: None,
-            defects: Vec::new(),
+            flaws: Vec::new(),
             spread: None,
             plies: None,
             price_per_metre: None,
@@ -208,7 +208,7 @@ impl NestOptions {
         };
         let rolls = self.rolls_of(name, &given)?;
         let rolled = !rolls.is_empty();
-        if rolls.len() > 1 && self.defects.iter().any(|flaw| flaw.is_on(name)) {
+        if rolls.len() > 1 && self.flaws.iter().any(|flaw| flaw.is_on(name)) {
             return Err(MarkerError::Conflict(format!(
                 "fabric {name:?} is laid on {} rolls, and a flaw lies on one of them; leave --defect out, and give the flaws under the rolls in the settings",
                 rolls.len()
@@ -301,7 +301,7 @@ impl NestOptions {
             origin: Vec2::new(print.origin[0].0, print.origin[1].0),
         });
         let margin = self.end_margin.or(metres(given.end_margin));
-        let own_flaws = self.defects.iter().filter(|flaw| flaw.is_on(cloth.name));
+        let own_flaws = self.flaws.iter().filter(|flaw| flaw.is_on(cloth.name));
         let own_flaws = own_flaws.map(GivenFlaw::settings);
         let flaws: Vec<FlawSettings> = flaws.iter().copied().chain(own_flaws).collect();
         Ok(Strip {
@@ -319,7 +319,7 @@ impl NestOptions {
                 Spread::Tubular => Fold::Both,
             },
             stripes: of_all.or(of_fabric),
-            defects: flaws_on(&flaws, (cloth.name, cloth.width), cloth.spread)?,
+            flaws: flaws_on(&flaws, (cloth.name, cloth.width), cloth.spread)?,
             ..Strip::of_width(folded(cloth.width, cloth.spread))
         })
     }

@@ -1,8 +1,8 @@
-//! The pieces that a marker of a document cuts, ready to be laid.
+//! The pieces that the order of a document's marker asks for, ready to be laid.
 
 use crate::job::FabricJob;
-use crate::pieces::{Garments, wanted_of};
-use crate::{Laying, MarkerError, NestOptions};
+use crate::pieces::{Garments, pieces_to_cut};
+use crate::{FinishedMarker, MarkerError, NestOptions};
 use std::collections::HashMap;
 use std::sync::Arc;
 use toile_interchange::{FabricSettings, FlawSettings, MarkerSettings, Metres, PrintSettings};
@@ -64,13 +64,13 @@ impl MarkerPieces {
                 label: name.map(|size| &*size.name).filter(|_| several),
             });
         }
-        let wanted = wanted_of(&garments, &options, Some(&fabric.name))?;
-        if wanted.is_empty() {
+        let to_cut = pieces_to_cut(&garments, &options, Some(&fabric.name))?;
+        if to_cut.is_empty() {
             return Err(NestingError::NoItems.into());
         }
         let drafted = garments.iter().flat_map(|garment| &garment.draft.fabrics);
         let own = drafted.into_iter().find(|known| known.name == fabric.name);
-        let job = FabricJob::new((&fabric.name, &wanted), own, &options)?;
+        let job = FabricJob::new((&fabric.name, &to_cut), own, &options)?;
         let keys = job.keys(&ordered);
         let pairs = keys.iter().enumerate().flat_map(|(item, copies)| {
             let copies = copies.iter().zip(0..);
@@ -101,7 +101,7 @@ impl MarkerPieces {
     }
 
     /// A marker of these pieces, judged, to be drawn and written.
-    pub(crate) fn laying(&self, marker: toile_nesting::Marker) -> Laying {
+    pub(crate) fn finished(&self, marker: toile_nesting::Marker) -> FinishedMarker {
         self.job.whole(marker, &self.options)
     }
 
@@ -119,7 +119,7 @@ pub(crate) fn ordered(pattern: &Pattern, order: &[OrderedSize]) -> Vec<(Option<S
     there.map(|one| (one.size, one.quantity)).collect()
 }
 
-/// What a marker's fabric asks of a search.
+/// The options of a search that follow from a marker's fabric.
 fn options_of(cloth: &MarkerCloth, fabric: &str) -> NestOptions {
     let metres = |place: [f64; 2]| place.map(Metres);
     let settings = FabricSettings {

@@ -18,13 +18,13 @@ pub struct Garments<'a> {
     pub draft: &'a Draft,
     /// How many.
     pub count: u32,
-    /// What tells its pieces from those of other drafts, as in a size.
+    /// Added to the names of its pieces to distinguish them from those of other drafts; a size, for example.
     pub label: Option<&'a str>,
 }
 
 /// A piece of one draft that is to be cut from a fabric.
 #[derive(Clone, Debug)]
-pub(crate) struct Wanted {
+pub(crate) struct PieceToCut {
     pub fabric: String,
     pub cut: Arc<CutPiece>,
     pub settings: PieceSettings,
@@ -34,18 +34,18 @@ pub(crate) struct Wanted {
     pub bundles: Vec<u32>,
     /// Marks on the print: number of the set, and the point [m].
     pub marks: Vec<(usize, Vec2)>,
-    /// What its cut line does not do as drawn.
+    /// Faults of its cut line, in words.
     pub notes: Vec<String>,
 }
 
 /// Everything that is to be cut, in the order of the drafts. Where pieces are matched, every
 /// garment's pieces stand alone, as each garment is matched in itself. If a fabric is named, what
 /// is cut from it alone.
-pub(crate) fn wanted_of(
+pub(crate) fn pieces_to_cut(
     garments: &[Garments<'_>],
     options: &NestOptions,
     only: Option<&str>,
-) -> Result<Vec<Wanted>, MarkerError> {
+) -> Result<Vec<PieceToCut>, MarkerError> {
     check_piece_names(garments, options)?;
     check_count(garments, options)?;
     let mut all = Vec::new();
@@ -85,7 +85,7 @@ pub(crate) fn wanted_of(
                     Some(label) => format!("{} {label}", piece.name),
                     None => piece.name.clone(),
                 };
-                let wanted = |fabric: &str, count: u32| Wanted {
+                let to_cut = |fabric: &str, count: u32| PieceToCut {
                     fabric: fabric.to_owned(),
                     name: name.clone(),
                     bundles: bundles
@@ -107,7 +107,7 @@ pub(crate) fn wanted_of(
                 all.extend(
                     cut_from
                         .iter()
-                        .map(|&(fabric, count)| wanted(fabric, count)),
+                        .map(|&(fabric, count)| to_cut(fabric, count)),
                 );
             }
         }
@@ -136,7 +136,7 @@ fn cut_piece(
     })
 }
 
-/// Warnings in words, with what tells their garment from others.
+/// Warnings in words, each with the label of its garment.
 fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
     let of = label.map_or_else(String::new, |label| format!("{label}: "));
     let words = |one: &Diagnostic| format!("{of}{}; {}", one.message, one.hint);

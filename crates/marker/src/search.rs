@@ -1,11 +1,11 @@
 //! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
 
+use crate::finished_marker::FinishedMarker;
 use crate::flaws::check_given;
-use crate::follow::{Follow, Standing};
-use crate::going_on::{check_locks, check_names};
 use crate::job::FabricJob;
-use crate::laying::Laying;
-use crate::pieces::{Garments, Wanted, wanted_of};
+use crate::pieces::{Garments, PieceToCut, pieces_to_cut};
+use crate::progress::{SearchProgress, SearchWatcher};
+use crate::starting_marker::{check_locks, check_names};
 use crate::{MarkerError, NestOptions};
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::ANY_NAME;
@@ -21,13 +21,13 @@ use toile_pattern::Fabric;
 pub fn lay(
     garments: &[Garments<'_>],
     options: &NestOptions,
-    follow: &mut Follow<'_>,
-) -> Result<Vec<Laying>, MarkerError> {
-    let mut groups: Vec<(String, Vec<Wanted>)> = Vec::new();
-    for wanted in wanted_of(garments, options, None)? {
-        match groups.iter_mut().find(|g| g.0 == wanted.fabric) {
-            Some(group) => group.1.push(wanted),
-            None => groups.push((wanted.fabric.clone(), vec![wanted])),
+    follow: &mut SearchWatcher<'_>,
+) -> Result<Vec<FinishedMarker>, MarkerError> {
+    let mut groups: Vec<(String, Vec<PieceToCut>)> = Vec::new();
+    for to_cut in pieces_to_cut(garments, options, None)? {
+        match groups.iter_mut().find(|g| g.0 == to_cut.fabric) {
+            Some(group) => group.1.push(to_cut),
+            None => groups.push((to_cut.fabric.clone(), vec![to_cut])),
         }
     }
     if groups.is_empty() {
@@ -35,30 +35,30 @@ pub fn lay(
     }
     check_fabric_names(&groups, options)?;
     let names: Vec<&str> = groups.iter().map(|group| group.0.as_str()).collect();
-    check_given(&options.defects, &names)?;
+    check_given(&options.flaws, &names)?;
     let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
     check_names(&options.from, &options.locked)?;
     // Everything is refused before anything is searched for.
     let jobs: Vec<FabricJob> = groups
         .iter()
-        .map(|(name, wanted)| {
+        .map(|(name, to_cut)| {
             let own: Option<&Fabric> = fabrics().find(|f| f.name == *name);
-            FabricJob::new((name, wanted), own, options)
+            FabricJob::new((name, to_cut), own, options)
         })
         .collect::<Result<_, _>>()?;
     check_locks(jobs.iter().flat_map(|job| &job.items), &options.locked)?;
     let count = jobs.len() as f64;
     let flag = follow.stop.clone();
-    let mut layings = Vec::new();
+    let mut finished_markers = Vec::new();
     let mut stopped = false;
     for (k, job) in jobs.iter().enumerate() {
         let from = k as f64 / count;
-        let mut part = |standing: Standing| {
-            let done = from + standing.done / count;
-            stopped |= !(follow.told)(&Standing { done, ..standing });
+        let mut part = |progress: SearchProgress| {
+            let done = from + progress.done / count;
+            stopped |= !(follow.report)(&SearchProgress { done, ..progress });
             !stopped
         };
-        let laid = match part(Standing::default()) {
+        let laid = match part(SearchProgress::default()) {
             true => job.lay(options, (&flag, &mut part)),
             false => Err(MarkerError::Cancelled),
         };
@@ -66,9 +66,9 @@ pub fn lay(
         if stopped && !options.keep_best {
             return Err(MarkerError::Cancelled);
         }
-        layings.extend(match laid {
+        finished_markers.extend(match laid {
             // Earlier fabrics are done: this one gets the first marker that is found.
-            Err(MarkerError::Cancelled) if !layings.is_empty() => {
+            Err(MarkerError::Cancelled) if !finished_markers.is_empty() => {
                 stopped = true;
                 let mut shortly = options.clone();
                 shortly.budget = Budget::Evaluations(1);
@@ -78,19 +78,19 @@ pub fn lay(
         });
     }
     if stopped {
-        for laying in &mut layings {
-            laying
+        for finished in &mut finished_markers {
+            finished
                 .facts
                 .notes
                 .push("stopped early: the best so far".to_owned());
         }
     }
-    Ok(layings)
+    Ok(finished_markers)
 }
 
 /// Settings of a fabric that nothing is cut from are a mistake.
 fn check_fabric_names(
-    groups: &[(String, Vec<Wanted>)],
+    groups: &[(String, Vec<PieceToCut>)],
     options: &NestOptions,
 ) -> Result<(), MarkerError> {
     let known = |name: &str| name == ANY_NAME || groups.iter().any(|g| g.0 == name);

@@ -1,8 +1,8 @@
-//! The catalogue: what each measurement is called, what it means and how it is taken.
+//! The catalogue: name, meaning and procedure of each measurement.
 
 use crate::further::FURTHER;
 
-/// What a measurement's value is measured in.
+/// The unit of a measurement's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UnitKind {
     /// A length [m].

@@ -1,4 +1,4 @@
-//! Average children by age, and what goes with a child's measurements.
+//! Average children by age, and the proportions that predict a child's measurements.
 
 use crate::{Measurements, Origin};
 

@@ -1,4 +1,4 @@
-//! Other programs' names for measurements.
+//! Names of measurements in other programs.
 
 /// FreeSewing's names [mm], slopes in degrees, with the catalogue's.
 pub const FREESEWING: &[(&str, &str)] = &[

@@ -1,4 +1,5 @@
-//! The rest of the catalogue: levels, parts of girths, and what surveys and other programs measure.
+//! Measurements that bodies are not made by: levels, parts of girths, and those of surveys and other
+//! programs.
 
 use crate::catalogue::{Definition, length};
 

@@ -1,9 +1,9 @@
-//! Values nobody measured, predicted from those somebody did.
+//! Predicts missing measurements by regression on the given ones.
 
 use crate::survey::{COUNT, MEN, NAMES, Survey, WOMEN};
 use crate::{Measurements, Origin};
 
-/// Which statistics and which averages a prediction stands on.
+/// The statistics and averages that a prediction uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Build {
     /// Adult women.
@@ -186,7 +186,7 @@ impl Measurements {
         }
     }
 
-    /// What is known of the survey's measurements: place, value and error [m], at adult size.
+    /// The known measurements of the survey: index, value and error [m], at adult size.
     fn observations(
         &self,
         statistics: &Statistics,
@@ -233,7 +233,7 @@ impl Measurements {
         seen
     }
 
-    /// What goes with other measurements in proportion.
+    /// Predicts measurements that are in proportion to others.
     fn proportions(&mut self, average: &Self, statistics: &Statistics) {
         let usual_leg = |table: &Self| -> Option<f64> {
             Some(

@@ -4,7 +4,7 @@ use crate::catalogue::definition;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How a value came into a table.
+/// The origin of a value in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Origin {

@@ -1,4 +1,4 @@
-//! Jobs that cannot be done, said before any work.
+//! Refuses jobs that cannot be done, before any work.
 
 use crate::turns::orientations;
 use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, Placement, Pose, Strip, Violation, judge};
@@ -356,9 +356,9 @@ fn check_strip(strip: &Strip) -> Option<String> {
             return Some("the repeat of the print is not 0 or more; give lengths".into());
         }
     }
-    for (k, defect) in strip.defects.iter().enumerate() {
-        let sound = defect.outline.is_simple() && defect.outline.area() > 0.0;
-        if !sound || !defect.clearance.is_finite() || defect.clearance < 0.0 {
+    for (k, flaw) in strip.flaws.iter().enumerate() {
+        let sound = flaw.outline.is_simple() && flaw.outline.area() > 0.0;
+        if !sound || !flaw.clearance.is_finite() || flaw.clearance < 0.0 {
             return Some(format!(
                 "defect {} has no sound outline, or a negative clearance; outline the flaw again",
                 k + 1
@@ -448,7 +448,7 @@ fn check_places(items: &[Item], strip: &Strip, number: Number<'_>) -> Vec<Refusa
             | Violation::Orientation { placement, .. }
             | Violation::OffFold { placement, .. }
             | Violation::OffPrint { placement, .. }
-            | Violation::OnDefect { placement, .. }
+            | Violation::OnFlaw { placement, .. }
             | Violation::Moved { placement }
             | Violation::Nonsense { placement } => placement,
         };

@@ -1,11 +1,10 @@
-//! What lies in the way where pieces keep their places while their outlines change: a part of what
-//! the referee decides, fast enough for every move of a hand.
+//! A quick check, for pieces moved by hand: which overlap, and which reach beyond the fabric.
 
 use crate::referee::{beyond_limit, sides};
 use crate::{Item, Marker, PENETRATION_LIMIT, Side, Strip};
 use toile_geometry::{Polygon, PreparedPolygon, intersection, total_area};
 
-/// Pieces that cannot be cut where they lie, and what the marker comes to. Placements are named by
+/// Pieces that cannot be cut where they lie, with length and efficiency of the marker. Placements are named by
 /// their index in the marker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clashes {
@@ -27,7 +26,7 @@ pub struct Clashes {
 pub struct Overlap {
     /// The placements, the lower index first.
     pub pair: [usize; 2],
-    /// What is cut twice, in the plane of the fabric \[m\].
+    /// Where they overlap, in the plane of the fabric \[m\].
     pub region: Vec<Polygon>,
 }
 
@@ -36,7 +35,7 @@ pub struct Overlap {
 pub struct Outside {
     /// The placement.
     pub placement: usize,
-    /// Where.
+    /// The edge of the fabric that it crosses.
     pub side: Side,
     /// By how much \[m\].
     pub by: f64,

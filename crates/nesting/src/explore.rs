@@ -3,8 +3,8 @@
 
 use crate::job::Job;
 use crate::layout::Layout;
+use crate::random::SplitMix64;
 use crate::separate::{Limit, Outcome, Patience, Separator, TOLERANCE};
-use crate::sequence::Sequence;
 use toile_geometry::Vec2;
 
 /// Patience while searching for shorter strips, and while pressing the best one.
@@ -66,7 +66,7 @@ impl<'a> Island<'a> {
     /// Area left over \[m2\], then length of the best layout \[m\]: less is better.
     pub fn score(&self) -> (f64, f64) {
         let job = self.separator.job;
-        let score = |b: &Layout| (b.left_over(job), b.length);
+        let score = |b: &Layout| (b.missing_area(job), b.length);
         self.best
             .as_ref()
             .map_or((f64::INFINITY, f64::INFINITY), score)
@@ -260,7 +260,7 @@ impl<'a> Island<'a> {
 
 /// Changes a layout thoroughly: a garment is turned round, a matched set moved within the repeat,
 /// the ends of the strip or two large pieces exchanged.
-fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
+fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     match sequence.below(4) {
         0 if job.bundles > 0 => {
             turn_round(job, layout, sequence.below(job.bundles));
@@ -287,7 +287,7 @@ fn move_set(job: &Job<'_>, layout: &mut Layout, (set, phase): (usize, Vec2)) {
         if !moved.present[piece] {
             continue;
         }
-        match moved.settle(job, piece, moved.shape[piece], moved.at[piece]) {
+        match moved.nearest_allowed(job, piece, moved.shape[piece], moved.at[piece]) {
             Some(at) => moved.at[piece] = at,
             None => return,
         }
@@ -296,7 +296,7 @@ fn move_set(job: &Job<'_>, layout: &mut Layout, (set, phase): (usize, Vec2)) {
 }
 
 /// Cuts the strip anywhere and exchanges its two parts.
-fn swap_ends(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
+fn swap_ends(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     let cut = sequence.unit() * layout.length;
     let movable = |&k: &usize| job.pieces[k].locked.is_none() && layout.present[k];
     let pieces: Vec<usize> = (0..layout.at.len()).filter(movable).collect();
@@ -308,14 +308,14 @@ fn swap_ends(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
             -cut
         };
         let at = layout.at[piece] + Vec2::new(by, 0.0);
-        if let Some(at) = layout.settle(job, piece, layout.shape[piece], at) {
+        if let Some(at) = layout.nearest_allowed(job, piece, layout.shape[piece], at) {
             layout.at[piece] = at;
         }
     }
 }
 
 /// Puts a piece anywhere.
-fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut Sequence) {
+fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut SplitMix64) {
     let shapes = job.pieces[piece].shapes.iter().copied();
     let allowed: Vec<usize> = shapes.filter(|&s| layout.allows(job, piece, s)).collect();
     if allowed.is_empty() {
@@ -324,7 +324,7 @@ fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut Sequ
     let shape = allowed[sequence.below(allowed.len())];
     let chance = Vec2::new(sequence.unit(), sequence.unit());
     let at = chance.component_mul(&Vec2::new(layout.length, job.height));
-    if let Some(at) = layout.settle(job, piece, shape, at) {
+    if let Some(at) = layout.nearest_allowed(job, piece, shape, at) {
         layout.put(job, piece, shape, at);
     }
 }
@@ -365,7 +365,7 @@ fn move_middle(
     middle: Vec2,
 ) -> bool {
     let at = middle - job.shapes[shape].size * 0.5;
-    let place = layout.settle(job, piece, shape, at);
+    let place = layout.nearest_allowed(job, piece, shape, at);
     if let Some(at) = place {
         layout.put(job, piece, shape, at);
     }
@@ -373,7 +373,7 @@ fn move_middle(
 }
 
 /// Exchanges two of the larger pieces.
-fn exchange(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
+fn exchange(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     let movable = |&k: &usize| job.pieces[k].locked.is_none() && layout.present[k];
     let mut large: Vec<usize> = (0..job.pieces.len()).filter(movable).collect();
     let area = |k: usize| job.pieces[k].area;

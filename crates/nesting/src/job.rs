@@ -1,4 +1,4 @@
-//! A job made ready: every piece in every orientation, and what each pair may not do.
+//! A job ready for the search: every piece in every orientation, with the constraints of each pair.
 //!
 //! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of the usable
 //! fabric: selvedges and end margins lie outside of all that is searched.
@@ -28,7 +28,7 @@ const WINDOW: f64 = 0.02;
 /// One copy to lay, or something that lies already.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    /// The item; nothing for a defect.
+    /// The item; nothing for a flaw.
     pub item: Option<usize>,
     pub copy: u32,
     /// Orientations it may take.
@@ -211,8 +211,8 @@ impl<'a> Job<'a> {
         let count = self.items.len();
         let gap = match (self.items.get(a), self.items.get(b)) {
             (Some(one), Some(other)) => self.strip.gap_between(one, other),
-            (Some(item), None) if !item.over_defects => self.strip.defects[b - count].clearance,
-            (None, Some(item)) if !item.over_defects => self.strip.defects[a - count].clearance,
+            (Some(item), None) if !item.over_flaws => self.strip.flaws[b - count].clearance,
+            (None, Some(item)) if !item.over_flaws => self.strip.flaws[a - count].clearance,
             _ => return f64::NEG_INFINITY,
         };
         gap + self.safe()
@@ -375,7 +375,7 @@ mod tests {
         let strip = Strip::of_width(1.0);
         let job = Job::new(&items, &strip, &[(0, 0), (1, 0)], &|| false).unwrap();
         assert_eq!(job.shapes.len(), 4 + 10);
-        let mut sequence = crate::sequence::Sequence(7);
+        let mut sequence = crate::random::SplitMix64(7);
         for a in 0..job.shapes.len() {
             let fixed = PreparedPolygon::new(&job.shapes[a].outline(&items[job.shapes[a].kind]));
             for b in 0..job.shapes.len() {

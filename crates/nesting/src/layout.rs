@@ -1,11 +1,11 @@
-//! Where all pieces lie, overlaps allowed.
+//! A layout: where all pieces lie, overlaps allowed.
 
 use crate::job::{Axis, Job, Piece};
 use crate::marker::Phase;
 use toile_geometry::Vec2;
 
-/// Where a piece lies that is not laid: far from the strip and from all others.
-fn nowhere(job: &Job<'_>, piece: usize) -> Vec2 {
+/// The place of a piece that is not laid: far from the strip and from all other pieces.
+fn off_strip(job: &Job<'_>, piece: usize) -> Vec2 {
     let extent = job
         .shapes
         .iter()
@@ -52,7 +52,7 @@ impl Layout {
                 .unwrap_or_else(|| p.shapes[0])
         };
         let shape: Vec<usize> = job.pieces.iter().map(first).collect();
-        let place = |(k, p): (usize, &Piece)| p.locked.map_or_else(|| nowhere(job, k), |l| l.1);
+        let place = |(k, p): (usize, &Piece)| p.locked.map_or_else(|| off_strip(job, k), |l| l.1);
         let mut layout = Self {
             present: job.pieces.iter().map(|p| p.locked.is_some()).collect(),
             at: job.pieces.iter().enumerate().map(place).collect(),
@@ -62,7 +62,7 @@ impl Layout {
             forward,
             phases: vec![Vec2::zeros(); job.sets],
         };
-        layout.obey_locks(job);
+        layout.apply_locks(job);
         layout.ease_phases(job);
         layout
     }
@@ -100,8 +100,8 @@ impl Layout {
         own.into_iter().all(lies)
     }
 
-    /// Ways of garments and phases of sets that locked pieces fix.
-    pub fn obey_locks(&mut self, job: &Job<'_>) {
+    /// Sets the direction of each garment and the phase of each set that a locked piece fixes.
+    pub fn apply_locks(&mut self, job: &Job<'_>) {
         for (k, piece) in job.pieces.iter().enumerate() {
             let Some((shape, _)) = piece.locked else {
                 continue;
@@ -132,16 +132,16 @@ impl Layout {
     /// Takes a piece off the strip.
     pub fn remove(&mut self, job: &Job<'_>, piece: usize) {
         self.present[piece] = false;
-        self.at[piece] = nowhere(job, piece);
+        self.at[piece] = off_strip(job, piece);
     }
 
     /// Area of the pieces that are not laid \[m2\].
-    pub fn left_over(&self, job: &Job<'_>) -> f64 {
+    pub fn missing_area(&self, job: &Job<'_>) -> f64 {
         let missing = (0..self.at.len()).filter(|&k| !self.present[k]);
         missing.map(|k| job.pieces[k].area).sum()
     }
 
-    /// Puts a piece somewhere.
+    /// Puts a piece at a place.
     pub fn put(&mut self, job: &Job<'_>, piece: usize, shape: usize, at: Vec2) {
         self.present[piece] = true;
         self.shape[piece] = shape;
@@ -163,7 +163,13 @@ impl Layout {
     }
 
     /// The allowed place of a shape of a piece nearest to one.
-    pub fn settle(&self, job: &Job<'_>, piece: usize, shape: usize, at: Vec2) -> Option<Vec2> {
+    pub fn nearest_allowed(
+        &self,
+        job: &Job<'_>,
+        piece: usize,
+        shape: usize,
+        at: Vec2,
+    ) -> Option<Vec2> {
         let room = self.room(job, shape)?;
         let axes = job.axes(piece, shape, &self.phases);
         if axes == [Axis::Free; 2] {
@@ -205,7 +211,7 @@ impl Layout {
             if at.x + 0.5 * self.size[piece].x > cut {
                 at.x += by;
             }
-            match self.settle(job, piece, self.shape[piece], at) {
+            match self.nearest_allowed(job, piece, self.shape[piece], at) {
                 Some(at) => self.at[piece] = at,
                 None => self.remove(job, piece),
             }

@@ -13,11 +13,13 @@ mod clashes;
 mod explore;
 mod job;
 mod layout;
+mod layout_marker;
 mod marker;
 mod nofit;
 mod pair;
 mod poses;
 mod queries;
+mod random;
 mod raster;
 mod referee;
 mod refine;
@@ -25,7 +27,6 @@ mod rolls;
 mod rules;
 mod search;
 mod separate;
-mod sequence;
 mod shape;
 mod side_by_side;
 mod simplify;
@@ -33,14 +34,13 @@ mod slide;
 mod start;
 mod tables;
 mod turns;
-mod warm;
 mod words;
 
 pub use check::{ItemProblem, MOST_PIECES, NestingError, Refusal};
 pub use clashes::{Clashes, Outside, Overlap, clashes};
 pub use marker::{
-    Allowed, Defect, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase,
-    Placement, Pose, Strip, Stripes, Unplaced,
+    Allowed, Flaw, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase, Placement,
+    Pose, Strip, Stripes, Unplaced,
 };
 pub use queries::{PairQueries, with_pair_queries};
 pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};

@@ -1,4 +1,4 @@
-//! What is laid, on what, and the result.
+//! Items, the strip they are laid on, and the marker that results.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_geometry::{Polygon, Vec2};
@@ -78,7 +78,7 @@ pub struct Item {
     /// The point that must lie on the stripes.
     pub match_point: Option<MatchPoint>,
     /// Whether it may be cut from flawed fabric (a pocket bag, an inner yoke).
-    pub over_defects: bool,
+    pub over_flaws: bool,
     /// Copies that have their place already.
     pub locked: Vec<Locked>,
 }
@@ -136,7 +136,7 @@ impl Item {
             bundles: Vec::new(),
             fold_edge: None,
             match_point: None,
-            over_defects: false,
+            over_flaws: false,
             locked: Vec::new(),
         }
     }
@@ -192,7 +192,7 @@ pub struct Stripes {
 
 /// A flaw in the fabric.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Defect {
+pub struct Flaw {
     /// What is flawed \[m\], in the plane of the strip.
     pub outline: Polygon,
     /// Distance pieces keep from it \[m\].
@@ -220,7 +220,7 @@ pub struct Strip {
     /// Print that pieces with a match point must meet.
     pub stripes: Option<Stripes>,
     /// Flaws.
-    pub defects: Vec<Defect>,
+    pub flaws: Vec<Flaw>,
 }
 
 impl Strip {
@@ -235,7 +235,7 @@ impl Strip {
             nap: Nap::None,
             fold: Fold::Open,
             stripes: None,
-            defects: Vec::new(),
+            flaws: Vec::new(),
         }
     }
 

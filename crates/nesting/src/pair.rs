@@ -1,22 +1,22 @@
-//! A pair of shapes: how its no-fit polygon follows from one that is kept, and queries of it.
+//! One pair of shapes: the transformation of its no-fit polygon from a shared one, and distance queries.
 
 use crate::nofit::{NoFit, Probe};
 use toile_geometry::Vec2;
 
-/// How the no-fit polygon of two shapes follows from one that is kept.
+/// The transformation that gives the no-fit polygon of two shapes from a shared one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub no_fit: u32,
     /// Number of its depth raster.
     pub raster: u32,
-    /// Columns of the map from the kept polygon's plane.
+    /// Columns of the map from the shared polygon's plane.
     pub axes: [Vec2; 2],
     pub shift: Vec2,
     /// Distance the shapes keep \[m\]; minus infinity if they may overlap.
     pub gap: f64,
 }
 
-/// All that a query of one pair of shapes needs.
+/// The data of a query of one pair of shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairQuery<'a> {
     pub no_fit: &'a NoFit,

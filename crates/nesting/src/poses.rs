@@ -1,4 +1,4 @@
-//! Every piece in every orientation, and flaws.
+//! Shapes of every piece in every allowed orientation, and of flaws.
 
 use crate::job::{Job, Piece, SAFE, SIMPLIFY};
 use crate::marker::{Phase, turned};
@@ -17,17 +17,17 @@ const MOST_CORNERS: usize = 500;
 /// two shapes the same to the search.
 type Alike = (usize, bool, bool, [u64; 9]);
 
-/// Numbers of shapes that there are.
+/// Indices of the shapes made so far.
 #[derive(Default)]
 struct Known {
     /// By item, angle and side.
     of_item: BTreeMap<(usize, i64, bool), usize>,
     /// By outline, angle and side: the first of each.
-    looks: BTreeMap<(usize, i64, bool), usize>,
+    by_outline: BTreeMap<(usize, i64, bool), usize>,
     alike: BTreeMap<Alike, usize>,
 }
 
-/// What another shape must have to be the same to the search.
+/// The key by which shapes are the same to the search.
 fn alike(item: &Item, shape: &Shape) -> Alike {
     let none = Vec2::repeat(f64::NAN);
     let anchor = shape.anchor.unwrap_or(none);
@@ -45,7 +45,7 @@ fn alike(item: &Item, shape: &Shape) -> Alike {
     (
         shape.ring,
         shape.mirrored,
-        item.over_defects,
+        item.over_flaws,
         numbers.map(f64::to_bits),
     )
 }
@@ -123,7 +123,7 @@ impl Job<'_> {
         let next = self.shapes.len();
         let number = *known.alike.entry(alike(item, &shape)).or_insert(next);
         if number == next {
-            shape.look = *known.looks.entry((ring, angle, way.1)).or_insert(next);
+            shape.look = *known.by_outline.entry((ring, angle, way.1)).or_insert(next);
             self.shapes.push(shape);
         }
         known.of_item.insert(key, number);
@@ -181,11 +181,11 @@ impl Job<'_> {
         kept.into_iter().map(|(index, _)| index).collect()
     }
 
-    /// Adds the defects of the strip as shapes that do not move: the search keeps the pieces clear of them by
+    /// Adds the flaws of the strip as shapes that do not move: the search keeps the pieces clear of them by
     /// `Job::gap`.
     pub(crate) fn add_defects(&mut self) {
-        for (k, defect) in self.strip.defects.iter().enumerate() {
-            let outline = defect.outline.oriented();
+        for (k, flaw) in self.strip.flaws.iter().enumerate() {
+            let outline = flaw.outline.oriented();
             let bounds = outline.bounds();
             let ring = self.ring(outline.outer);
             self.shapes.push(Shape {

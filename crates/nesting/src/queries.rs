@@ -1,22 +1,22 @@
-//! The search's own queries of pairs, open to be timed and held against exact ones.
+//! Pair queries of the search, made public for benchmarks and for tests against exact ones.
 
 use crate::check::{NestingError, check};
 use crate::job::Job;
 use crate::pair::PairQuery;
-use crate::sequence::Sequence;
+use crate::random::SplitMix64;
 use crate::{Item, Strip};
 use toile_geometry::{PreparedPolygon, Vec2};
 
 /// Poses in which a pair is queried before the next pair.
 const POSES: usize = 16;
 
-/// How far from a place it is tried whether a pair fits beside it \[m\], and on how many sides.
+/// Distance from a place at which it is tested whether a pair fits \[m\], and number of directions.
 const PINPOINT: f64 = 1e-7;
 const SIDES: usize = 128;
 
 /// One pair of shapes in a pose.
 #[derive(Clone, Copy, Debug)]
-struct Ask<'a> {
+struct PosedPair<'a> {
     fixed: usize,
     moving: usize,
     /// How far the moving shape lies from the fixed one \[m\].
@@ -32,7 +32,7 @@ struct Ask<'a> {
 /// polygon operations.
 pub struct PairQueries<'a> {
     job: &'a Job<'a>,
-    asks: Vec<Ask<'a>>,
+    posed: Vec<PosedPair<'a>>,
 }
 
 /// Runs `work` with so many random queries of the pieces of a job.
@@ -48,9 +48,9 @@ pub fn with_pair_queries<R>(
     check(items, strip)?;
     let copies: Vec<(usize, u32)> = (0..items.len()).map(|item| (item, 0)).collect();
     let job = Job::new(items, strip, &copies, &|| false)?;
-    let mut sequence = Sequence(seed);
+    let mut sequence = SplitMix64(seed);
     let shapes = job.shapes.len();
-    let mut asks = Vec::with_capacity(count);
+    let mut posed = Vec::with_capacity(count);
     let (mut fixed, mut moving) = (0, 0);
     for number in 0..count {
         if number % POSES == 0 {
@@ -59,36 +59,36 @@ pub fn with_pair_queries<R>(
         let (a, b) = (job.shapes[fixed].size, job.shapes[moving].size);
         let chance = Vec2::new(sequence.unit(), sequence.unit());
         let apart = (a + b).component_mul(&chance) - b;
-        asks.extend(job.pair(fixed, moving).map(|pair| Ask {
+        posed.extend(job.pair(fixed, moving).map(|pair| PosedPair {
             fixed,
             moving,
             apart,
             pair,
         }));
     }
-    Ok(work(&PairQueries { job: &job, asks }))
+    Ok(work(&PairQueries { job: &job, posed }))
 }
 
 impl PairQueries<'_> {
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.asks.len()
+        self.posed.len()
     }
 
     /// Makes all queries, in order; the sum of the depths \[m\].
     pub fn sum(&self) -> f64 {
-        let depth = |ask: &Ask<'_>| {
+        let depth = |ask: &PosedPair<'_>| {
             ask.pair
                 .probe(ask.apart)
                 .map_or(0.0, |(probe, _)| probe.depth)
         };
-        self.asks.iter().map(depth).sum()
+        self.posed.iter().map(depth).sum()
     }
 
     /// The depth of one of them \[m\]; nothing if the pair lies farther apart than the search
     /// looks.
     pub fn depth(&self, number: usize) -> Option<f64> {
-        let ask = self.asks.get(number)?;
+        let ask = self.posed.get(number)?;
         ask.pair.probe(ask.apart).map(|(probe, _)| probe.depth)
     }
 
@@ -119,7 +119,7 @@ impl PairQueries<'_> {
 
     /// The outlines of a pair in its pose.
     fn pair(&self, number: usize) -> Option<[PreparedPolygon; 2]> {
-        let ask = self.asks.get(number)?;
+        let ask = self.posed.get(number)?;
         let moving = self.job.taken(ask.moving).translated(ask.apart);
         let fixed = PreparedPolygon::new(&self.job.taken(ask.fixed));
         Some([fixed, PreparedPolygon::new(&moving)])

@@ -2,7 +2,7 @@
 //! and Tsuzuki 2019): rasters of the pairs' losses, computed once each, are added up.
 
 use crate::job::Job;
-use crate::sequence::Sequence;
+use crate::random::SplitMix64;
 use pulp::{Arch, Simd, WithSimd};
 use toile_geometry::Vec2;
 
@@ -153,7 +153,7 @@ impl LossMap {
         &mut self,
         (shape, spacing, room): (usize, f64, Vec2),
         bias: f64,
-        sequence: &mut Sequence,
+        sequence: &mut SplitMix64,
         (found, most): (&mut Vec<Candidate>, usize),
     ) {
         let small = 0.1 * spacing as f32;

@@ -86,11 +86,11 @@ pub enum Violation {
         by: Vec2,
     },
     /// A piece lies on a flaw, or nearer to it than it may.
-    OnDefect {
+    OnFlaw {
         /// The placement.
         placement: usize,
-        /// Number of the defect.
-        defect: usize,
+        /// Number of the flaw.
+        flaw: usize,
         /// Flawed area in the piece \[m2\].
         area: f64,
     },

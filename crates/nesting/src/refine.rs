@@ -171,7 +171,9 @@ impl Mover<'_, '_> {
     pub fn refine(&mut self, shape: usize, from: Vec2) -> Option<(f64, Vec2)> {
         let room = self.layout.room(self.job, shape)?;
         let axes = self.job.axes(self.piece, shape, &self.layout.phases);
-        let mut at = self.layout.settle(self.job, self.piece, shape, from)?;
+        let mut at = self
+            .layout
+            .nearest_allowed(self.job, self.piece, shape, from)?;
         let mut best = self.look_around(shape, at);
         for _ in 0..STEPS {
             if best <= 0.0 {
@@ -189,7 +191,10 @@ impl Mover<'_, '_> {
                 if guess >= best * (1.0 - 1e-9) {
                     break;
                 }
-                let Some(target) = self.layout.settle(self.job, self.piece, shape, target) else {
+                let Some(target) = self
+                    .layout
+                    .nearest_allowed(self.job, self.piece, shape, target)
+                else {
                     continue;
                 };
                 let loss = self.loss(shape, target, best);

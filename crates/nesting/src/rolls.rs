@@ -85,7 +85,7 @@ pub fn make_markers_on_rolls(
                 break;
             }
             let marker = made?;
-            settle(&marker, &sources, &mut left, (roll, rolls.len()));
+            note_result(&marker, &sources, &mut left, (roll, rolls.len()));
             if !marker.placements.is_empty() {
                 out.markers.push(RollMarker {
                     roll,
@@ -263,8 +263,8 @@ fn part_of(item: &Item, copies: &[u32], roll: usize) -> Item {
     part
 }
 
-/// Takes what lies on a roll off the list, and notes why the rest does not.
-fn settle(
+/// Takes the pieces on a roll off the list, and notes why the others found no place.
+fn note_result(
     marker: &Marker,
     sources: &[(usize, Vec<u32>)],
     left: &mut [Remainder],

@@ -16,23 +16,20 @@ pub(crate) fn check_rules(
     marker: &Marker,
     violations: &mut Vec<Violation>,
 ) {
-    let defects = strip
-        .defects
-        .iter()
-        .map(|d| PreparedPolygon::new(&d.outline));
-    let defects: Vec<PreparedPolygon> = defects.collect();
+    let flaws = strip.flaws.iter().map(|d| PreparedPolygon::new(&d.outline));
+    let flaws: Vec<PreparedPolygon> = flaws.collect();
     for (k, item, outline) in laid {
         let placement = &marker.placements[*k];
         violations.extend(check_orientation(*k, placement, item, strip));
         violations.extend(check_fold(*k, placement, (item, outline), strip));
         violations.extend(check_locked(*k, placement, item));
-        for (number, defect) in defects.iter().enumerate() {
-            let clearance = strip.defects[number].clearance;
-            if !item.over_defects && too_near(outline, defect, clearance) {
-                violations.push(Violation::OnDefect {
+        for (number, flaw) in flaws.iter().enumerate() {
+            let clearance = strip.flaws[number].clearance;
+            if !item.over_flaws && too_near(outline, flaw, clearance) {
+                violations.push(Violation::OnFlaw {
                     placement: *k,
-                    defect: number,
-                    area: total_area(&intersection(outline.polygon(), defect.polygon())),
+                    flaw: number,
+                    area: total_area(&intersection(outline.polygon(), flaw.polygon())),
                 });
             }
         }
@@ -41,11 +38,11 @@ pub(crate) fn check_rules(
     check_print(strip, laid, marker, violations);
 }
 
-fn too_near(outline: &PreparedPolygon, defect: &PreparedPolygon, clearance: f64) -> bool {
-    if outline.overlaps(defect) {
-        return outline.penetration_depth(defect) > PENETRATION_LIMIT || clearance > 0.0;
+fn too_near(outline: &PreparedPolygon, flaw: &PreparedPolygon, clearance: f64) -> bool {
+    if outline.overlaps(flaw) {
+        return outline.penetration_depth(flaw) > PENETRATION_LIMIT || clearance > 0.0;
     }
-    outline.distance(defect) < clearance - PENETRATION_LIMIT
+    outline.distance(flaw) < clearance - PENETRATION_LIMIT
 }
 
 fn check_orientation(

@@ -1,12 +1,13 @@
-//! A marker within a budget: islands search side by side, now and then the best layout is shared.
+//! The search within its budget: independent searches (islands) run in parallel and sometimes take over the
+//! best layout.
 
 use crate::check::{NestingError, check};
 use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;
+use crate::layout_marker::{finish, layout_of};
 use crate::separate::Limit;
 use crate::side_by_side::side_by_side;
-use crate::warm::{finish, layout_of};
 use crate::{Item, Marker, PENETRATION_LIMIT, Strip, judge};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -27,7 +28,7 @@ pub struct Search {
     pub budget: Budget,
     /// Start of the sequences of chance; the same seed gives the same marker.
     pub seed: u64,
-    /// Searches side by side; their number changes the marker, the number of processors does not.
+    /// Independent searches in parallel; their number changes the marker, the number of processors does not.
     /// 0 for two, or for one a processor where the clock decides.
     pub islands: usize,
     /// Threads; 0 for as many as the machine has. The search uses one an island at most, the
@@ -64,7 +65,7 @@ impl Search {
     }
 }
 
-/// How far a search has come.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Part of the budget used, 0..=1.
@@ -75,11 +76,11 @@ pub struct Progress {
     pub length: f64,
 }
 
-/// How the outside follows and stops a search.
+/// Receives the progress of a search, and may stop it.
 pub struct Control<'a> {
-    /// Told some twenty times a second, with the same numbers where nothing is new.
+    /// Called some twenty times a second, with the same numbers where nothing is new.
     pub progress: &'a mut dyn FnMut(Progress),
-    /// Set from anywhere to stop: the search ends with the best marker so far, or with
+    /// A flag that any thread may set: the search ends with the best marker so far, or with
     /// [`NestingError::Cancelled`] if there is none yet.
     pub cancel: &'a AtomicBool,
 }
@@ -101,7 +102,7 @@ const EPOCH: u64 = 3_000_000;
 /// Time between two exchanges where the clock decides \[s\].
 const EPOCH_SECONDS: f64 = 0.25;
 
-/// What was used and what is at hand.
+/// Measures how much of the budget is used.
 struct Meter<'a> {
     search: Search,
     cancel: &'a AtomicBool,
@@ -204,7 +205,7 @@ fn run(
 ) -> Result<Marker, NestingError> {
     check(items, strip)?;
     let count: usize = items.iter().map(|item| item.quantity as usize).sum();
-    let search = checked(search, count + strip.defects.len())?;
+    let search = checked(search, count + strip.flaws.len())?;
     let meter = Meter {
         search,
         cancel: control.cancel,
@@ -253,11 +254,11 @@ fn search_for(
     let threads = threads(meter.search);
     job.prepare(threads, &|| meter.stops(PREPARING), &mut told);
     let layout = start.map(|marker| layout_of(&job, marker));
-    let best = hunt(&job, layout.as_ref(), meter, control)?;
+    let best = run_islands(&job, layout.as_ref(), meter, control)?;
     Ok(finish(&job, &best))
 }
 
-/// What is told before there is a first layout.
+/// The progress before the first layout.
 const BEGUN: Progress = Progress {
     done: 0.0,
     evaluations: 0,
@@ -316,7 +317,8 @@ fn islands<'a>(job: &'a Job<'a>, search: Search) -> Vec<Island<'a>> {
         .collect()
 }
 
-fn hunt(
+/// Starts all islands, then lets them search with exchanges until the budget is used; the best layout.
+fn run_islands(
     job: &Job<'_>,
     start: Option<&Layout>,
     meter: &Meter<'_>,
@@ -337,7 +339,7 @@ fn hunt(
     };
     each(&mut islands, threads, (&begin, &mut told));
     share(&mut islands);
-    let mut last = tell(&islands, meter, control);
+    let mut last = report_progress(&islands, meter, control);
     for (part, press) in [(EXPLORING, false), (1.0, true)] {
         loop {
             let most = islands.iter().map(Island::queries).max().unwrap_or(0);
@@ -347,7 +349,7 @@ fn hunt(
             let mut again = || (control.progress)(last);
             epoch(&mut islands, meter, (part, press), &mut again);
             share(&mut islands);
-            last = tell(&islands, meter, control);
+            last = report_progress(&islands, meter, control);
             let now = islands.iter().map(Island::queries).max().unwrap_or(0);
             if now == most {
                 // Nothing is left to try.
@@ -392,7 +394,7 @@ fn epoch(
     each(islands, threads(meter.search), (&work, told));
 }
 
-/// What is done with an island.
+/// Work on one island.
 type Work<'w, 'a> = &'w (dyn Fn(&mut Island<'a>) + Sync);
 
 /// Works on all islands, on so many threads.
@@ -407,7 +409,7 @@ fn each<'a>(
     side_by_side(chunks, &chunk, told);
 }
 
-/// The best layout goes to islands that are clearly behind.
+/// Gives the best layout to islands that are clearly worse.
 fn share(islands: &mut [Island<'_>]) {
     let Some(first) = best_of(islands) else {
         return;
@@ -426,7 +428,12 @@ fn best_of(islands: &[Island<'_>]) -> Option<usize> {
     (0..islands.len()).min_by(|&a, &b| order(islands[a].score(), islands[b].score()))
 }
 
-fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) -> Progress {
+/// Reports the progress of all islands, and returns it.
+fn report_progress(
+    islands: &[Island<'_>],
+    meter: &Meter<'_>,
+    control: &mut Control<'_>,
+) -> Progress {
     let evaluations: u64 = islands.iter().map(Island::queries).sum();
     let length = best_of(islands).map_or(f64::INFINITY, |k| islands[k].score().1);
     let margin = islands

@@ -4,9 +4,9 @@
 
 use crate::job::Job;
 use crate::layout::Layout;
+use crate::random::SplitMix64;
 use crate::raster::{Candidate, LossMap};
 use crate::refine::{Mover, Scratch};
-use crate::sequence::Sequence;
 use toile_geometry::Vec2;
 
 /// Cells of the loss maps that get a closer look, for every move.
@@ -68,7 +68,7 @@ pub(crate) struct Separator<'a> {
     pub layout: Layout,
     /// Queries made so far.
     pub queries: u64,
-    pub sequence: Sequence,
+    pub sequence: SplitMix64,
     /// Loss that counts as none \[m\].
     pub tolerance: f64,
     weights: Vec<f64>,
@@ -85,7 +85,7 @@ impl<'a> Separator<'a> {
         let mut separator = Self {
             job,
             queries: 0,
-            sequence: Sequence(seed),
+            sequence: SplitMix64(seed),
             tolerance: TOLERANCE * job.safe(),
             weights: Vec::new(),
             least_weights: least_weights(job),

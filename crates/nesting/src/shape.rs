@@ -7,7 +7,7 @@ use toile_geometry::{Polygon, Vec2};
 /// A piece in one orientation.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
-    /// Index of the item, or of the defect after all items.
+    /// Index of the item, or of the flaw after all items.
     pub kind: usize,
     /// Number of its outline, which other items may share.
     pub ring: usize,

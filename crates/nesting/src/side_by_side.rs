@@ -1,9 +1,9 @@
-//! Work on threads, while the caller is told now and then.
+//! Runs work on threads in parallel, and calls back at intervals.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Time between two words to the caller.
+/// Time between two calls back.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// Works on every part on a thread of its own; meanwhile calls `told` now and then.

@@ -1,4 +1,4 @@
-//! Fewer points round an outline, never inside it.
+//! Simplifies an outline to fewer points, never inside it.
 
 use toile_geometry::{Polygon, Vec2, orient2d, point_segment_distance};
 

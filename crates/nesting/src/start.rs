@@ -104,8 +104,8 @@ impl Island<'_> {
 
     /// Whether the layout in hand has more laid than the best.
     fn is_better(&self) -> bool {
-        let left_over = self.separator.layout.left_over(self.separator.job);
-        left_over < self.score().0
+        let missing_area = self.separator.layout.missing_area(self.separator.job);
+        missing_area < self.score().0
     }
 
     /// Loads the best layout with one more piece, overlaps allowed.

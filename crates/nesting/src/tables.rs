@@ -1,4 +1,4 @@
-//! What each pair of shapes may not do: tables of all pairs, as far as they can be held.
+//! No-fit polygons and depth rasters of all pairs of shapes, within limits of memory.
 
 use crate::job::Job;
 use crate::marker::Pose;
@@ -17,7 +17,7 @@ const ROWS: f64 = 64.0;
 /// 128 MB.
 const RASTER_NUMBERS: f64 = 32e6;
 
-/// How coarse loss maps may get.
+/// Limits of the resolution of loss maps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Maps {
     /// Fewest rows.

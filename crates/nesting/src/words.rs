@@ -1,4 +1,4 @@
-//! What the referee found, in words.
+//! The referee's violations phrased for people.
 
 use crate::{Side, Violation};
 
@@ -92,12 +92,12 @@ impl Violation {
                 mm(by.x),
                 mm(by.y)
             ),
-            Self::OnDefect {
-                placement, defect, ..
+            Self::OnFlaw {
+                placement, flaw, ..
             } => format!(
                 "{} lies on flaw {} or too near; move it away",
                 name(*placement),
-                defect + 1
+                flaw + 1
             ),
             Self::Moved { placement } => {
                 format!(

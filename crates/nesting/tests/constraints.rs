@@ -5,9 +5,8 @@ use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_nesting::{
-    Allowed, Control, Defect, Fold, FoldEdge, Item, ItemProblem, Locked, Marker, MatchPoint,
-    Mirror, Nap, NestingError, Phase, Search, Strip, Stripes, Verdict, Violation, judge,
-    make_marker,
+    Allowed, Control, Flaw, Fold, FoldEdge, Item, ItemProblem, Locked, Marker, MatchPoint, Mirror,
+    Nap, NestingError, Phase, Search, Strip, Stripes, Verdict, Violation, judge, make_marker,
 };
 
 const EVALUATIONS: u64 = 300_000;
@@ -277,15 +276,15 @@ fn flaws_are_left_out_but_by_pieces_that_may_hide_them() {
         quantity: 6,
         ..Item::new("pocket", rectangle(0.0, 0.0, 0.2, 0.2))
     };
-    pocket.over_defects = true;
+    pocket.over_flaws = true;
     let items = [sleeves(5), pocket];
     let strip = Strip {
-        defects: vec![
-            Defect {
+        flaws: vec![
+            Flaw {
                 outline: rectangle(0.4, 0.4, 0.05, 0.02),
                 clearance: 0.005,
             },
-            Defect {
+            Flaw {
                 outline: rectangle(0.1, 0.1, 0.01, 0.01),
                 clearance: 0.0,
             },
@@ -299,12 +298,12 @@ fn flaws_are_left_out_but_by_pieces_that_may_hide_them() {
     });
     caught(
         &verdict,
-        |v| matches!(v, Violation::OnDefect { placement: 0, defect: 0, area } if *area > 9e-4),
+        |v| matches!(v, Violation::OnFlaw { placement: 0, flaw: 0, area } if *area > 9e-4),
     );
     let verdict = planted(&items, &strip, &marker, |m| {
         m.placements[5].translation = Vec2::new(0.35, 0.35);
     });
-    let over = |v: &Violation| matches!(v, Violation::OnDefect { placement: 5, .. });
+    let over = |v: &Violation| matches!(v, Violation::OnFlaw { placement: 5, .. });
     assert!(!verdict.violations.iter().any(over), "a pocket may");
 }
 

@@ -1,4 +1,4 @@
-//! Places in words, and the places of parts.
+//! Names of places in words, and the places of parts.
 
 use crate::{EdgeName, Name, Panel, PanelId, PartId, Pattern, Place};
 

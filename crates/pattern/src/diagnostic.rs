@@ -1,4 +1,4 @@
-//! What is wrong with a pattern: what, where, how bad, and what to do.
+//! Diagnostics: a fault of a pattern with its place, severity and remedy.
 
 use crate::{
     CurveId, EdgeId, FabricId, GuideId, LineId, MarkerId, NotchId, OperationId, PanelId, PointId,

@@ -62,7 +62,7 @@ pub struct Piece {
     pub sewn: bool,
 }
 
-/// What an edge of a piece came from.
+/// The origin of an edge of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeOrigin {
     /// The edge of the panel, or what an operation made.
@@ -165,7 +165,7 @@ pub struct DraftSeam {
     pub multi_ply: bool,
 }
 
-/// What a seam of the draft came from.
+/// The origin of a seam of the draft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SeamOrigin {
     /// A seam of the document.
@@ -238,7 +238,7 @@ pub enum Worn {
     Automatic,
 }
 
-/// What a fabric is made of, in SI units.
+/// Properties of a fabric, in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fabric {
     /// The fabric of the document.

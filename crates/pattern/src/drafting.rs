@@ -1,4 +1,4 @@
-//! From an evaluation to a draft: pieces of cloth, and seams between them.
+//! Makes a draft from an evaluation: pieces of cloth, and seams between them.
 
 use crate::evaluate::{Evaluation, SeamValue, Wearer};
 use crate::stage::StageEdge;

@@ -435,7 +435,7 @@ fn an_outline_of_a_hundred_thousand_edges() {
     let count = 100_000;
     let mut ids = pattern.ids;
     let fabric = pattern.fabrics[0].id;
-    let mut drawing = Drawing::new(&mut ids, "coast", fabric);
+    let mut drawing = PanelBuilder::new(&mut ids, "coast", fabric);
     let mut points: Vec<PointId> = Vec::new();
     for k in 0..count {
         let angle = std::f64::consts::TAU * f64::from(k) / f64::from(count);

@@ -8,7 +8,7 @@ use sample::*;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_measure::Measurements;
-use toile_pattern::walk::{Joint, Smoothness, Stays, Walk, WalkedNotch};
+use toile_pattern::walk::{FixedSide, Joint, Smoothness, Walk, WalkedNotch};
 use toile_pattern::*;
 
 fn drafted(pattern: &Pattern) -> Draft {
@@ -54,7 +54,7 @@ fn rectangles_lie_edge_to_edge_and_all_lines_go_on() {
     let walk = walk(&draft, "one side");
     assert_eq!(walk.lengths(), [0.6, 0.6]);
     for along in [0.0, 0.13, 0.6] {
-        let contact = walk.contact(along, Stays::First);
+        let contact = walk.contact(along, FixedSide::First);
         assert_eq!(contact.along, [along, along]);
         assert_eq!(contact.pieces, [0, 1]);
         assert!(near(contact.places[0], v(0.4, along)));
@@ -62,10 +62,10 @@ fn rectangles_lie_edge_to_edge_and_all_lines_go_on() {
         for (x, y) in [(0.0, 0.0), (0.4, 0.0), (0.1, 0.6)] {
             assert!(near(contact.laid.apply(v(x, y)), v(x + 0.4, y)));
         }
-        let other = walk.contact(along, Stays::Second);
+        let other = walk.contact(along, FixedSide::Second);
         assert!(near(other.laid.apply(v(0.3, 0.2)), v(-0.1, 0.2)));
     }
-    assert_eq!(walk.contact(9.0, Stays::First).along[0], 0.6);
+    assert_eq!(walk.contact(9.0, FixedSide::First).along[0], 0.6);
     let joints = walk.joints(0.0);
     for (joint, name) in joints.iter().zip(["bottom", "top"]) {
         let joint = joint.unwrap();
@@ -102,7 +102,7 @@ fn trapezoids_have_a_peak_at_one_end_and_a_dip_at_the_other() {
     assert_eq!(walk.joints(0.01)[1].unwrap().step, 0.0, "taken in by ease");
     // The back is turned until its left side runs as the right side of the front does.
     for along in [0.0, 0.3] {
-        let laid = walk.contact(along, Stays::First).laid;
+        let laid = walk.contact(along, FixedSide::First).laid;
         let turned = laid.axes[0].y.atan2(laid.axes[0].x);
         assert!((turned - (a + b)).abs() < 1e-12);
         assert!((laid.axes[0].perp(&laid.axes[1]) - 1.0).abs() < 1e-12);
@@ -141,7 +141,7 @@ fn arcs_of_one_radius_roll_as_wheels_do() {
     assert!((walk.lengths()[0] - length).abs() < 1e-12);
     for share in [0.0, 0.2, 0.5, 0.9, 1.0] {
         let along = share * length;
-        let contact = walk.contact(along, Stays::First);
+        let contact = walk.contact(along, FixedSide::First);
         let angle = along / radius - half;
         let outward = v(angle.cos(), angle.sin());
         assert!(near(contact.places[0], centres[0] + outward * radius));
@@ -175,9 +175,9 @@ fn a_dart_in_the_seam_is_passed_over_closed() {
     let draft = drafted(&pattern);
     let walk = walk(&draft, "one side");
     assert!((walk.lengths()[0] - 0.56).abs() < 1e-12);
-    let before = walk.contact(0.27, Stays::First);
+    let before = walk.contact(0.27, FixedSide::First);
     assert!(near(before.laid.apply(v(0.0, 0.0)), v(0.4, 0.0)));
-    let after = walk.contact(0.29, Stays::First);
+    let after = walk.contact(0.29, FixedSide::First);
     assert!(near(after.places[0], v(0.4, 0.33)));
     assert!(
         near(after.laid.apply(v(0.0, 0.0)), v(0.4, 0.04)),
@@ -248,13 +248,13 @@ fn a_pair_lies_as_mirror_images_and_a_panel_drawn_alike_is_turned_over() {
         pattern.seams.push(Arc::new(seam));
     }
     let draft = drafted(&pattern);
-    let pair = walk(&draft, "centre").contact(0.2, Stays::First);
+    let pair = walk(&draft, "centre").contact(0.2, FixedSide::First);
     assert_eq!(pair.pieces, [0, 1]);
     assert!(near(pair.places[1], v(-0.4, 0.2)));
     assert!(near(pair.laid.apply(v(0.0, 0.0)), v(0.8, 0.0)));
     assert!(near(pair.laid.apply(v(-0.1, 0.6)), v(0.7, 0.6)));
-    for stays in [Stays::First, Stays::Second] {
-        let turned = walk(&draft, "alike").contact(0.2, stays);
+    for fixed in [FixedSide::First, FixedSide::Second] {
+        let turned = walk(&draft, "alike").contact(0.2, fixed);
         assert!(near(turned.laid.apply(v(0.4, 0.5)), v(0.4, 0.5)));
         assert!(near(turned.laid.apply(v(0.0, 0.1)), v(0.8, 0.1)));
     }
@@ -286,7 +286,7 @@ fn the_other_half_of_a_folded_panel_is_walked_as_the_half_that_is_drawn() {
             "{name}"
         );
     }
-    let contact = walk(&draft, "other half").contact(0.0, Stays::First);
+    let contact = walk(&draft, "other half").contact(0.0, FixedSide::First);
     assert!(near(contact.places[0], v(-0.45, 0.0)));
     assert!(
         contact.laid.apply(v(0.0, 0.3)).x < -0.45,
@@ -316,7 +316,7 @@ fn what_is_gathered_is_spread_evenly_and_leaves_no_step() {
     alter_seam(&mut pattern, 0, |seam| seam.gathered = true);
     let draft = drafted(&pattern);
     let walk = walk(&draft, "one side");
-    assert_eq!(walk.contact(0.2, Stays::First).along, [0.2, 0.1]);
+    assert_eq!(walk.contact(0.2, FixedSide::First).along, [0.2, 0.1]);
     assert_eq!(walk.joints(0.0)[1].unwrap().step, 0.0);
 }
 
@@ -361,7 +361,7 @@ fn a_walk_that_is_begun_again_is_the_same() {
     let again = Walk::again(&draft, seam, &walk.sides());
     assert_eq!(again.lengths(), walk.lengths());
     for along in [0.0, 0.1, 0.4] {
-        let both = [&walk, &again].map(|walk| walk.contact(along, Stays::Second));
+        let both = [&walk, &again].map(|walk| walk.contact(along, FixedSide::Second));
         assert_eq!(both[0], both[1]);
     }
     assert_eq!(again.joints(0.0), walk.joints(0.0));

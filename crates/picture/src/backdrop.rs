@@ -1,4 +1,4 @@
-//! What is behind the surfaces: a vertical gradient, and shadows where the ground is.
+//! The background behind the surfaces: a vertical gradient, and shadows on the ground.
 
 use crate::colour::{Rgb, linear_from_srgb, mix};
 use crate::floor::Floor;

@@ -1,4 +1,4 @@
-//! Cameras: from points in space to places on a picture.
+//! Cameras: the projection of points in space to places on a picture.
 
 use toile_geometry::Vec3;
 
@@ -38,7 +38,7 @@ impl View {
     }
 }
 
-/// How depth shrinks things.
+/// Perspective or parallel projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
     /// Not at all.
@@ -58,7 +58,7 @@ pub struct Camera {
     pub up: Vec3,
     /// Unit vector into the picture.
     pub forward: Vec3,
-    /// What shrinks with distance.
+    /// The projection.
     pub projection: Projection,
     /// Left, right, bottom and top of the seen rectangle: in metres for an orthographic camera,
     /// in tangents of the angle from `forward` for a perspective one.

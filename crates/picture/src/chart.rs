@@ -1,4 +1,4 @@
-//! Charts: points and lines over two axes, linear or logarithmic, with a legend.
+//! Flat charts: points and lines over two axes, linear or logarithmic, with a legend.
 
 use crate::drawing::{Drawing, Mark};
 use crate::text::{Align, text_width};
@@ -7,11 +7,11 @@ use crate::{PictureError, Rgb};
 /// One axis of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What is shown, with its unit in brackets.
+    /// The quantity shown, with its unit in brackets.
     pub label: String,
     /// Whether equal ratios are equal distances.
     pub logarithmic: bool,
-    /// Lowest and highest value shown; nothing for what the points need.
+    /// Lowest and highest value shown; none fits the range to the points.
     pub range: Option<[f64; 2]>,
 }
 
@@ -136,7 +136,7 @@ pub struct Chart {
     pub x: Axis,
     /// The axis up.
     pub y: Axis,
-    /// What is shown, drawn in order.
+    /// The series, drawn in order.
     pub series: Vec<Series>,
     /// Lines of small words below.
     pub notes: Vec<String>,

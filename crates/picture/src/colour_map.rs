@@ -114,7 +114,7 @@ fn along(stops: &[[f64; 3]], place: f64) -> [f64; 3] {
     })
 }
 
-/// What a value's colour is: a range over a map, and a colour of its own for what is over it.
+/// The colours of values: a range over a map, and a separate colour for values above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// The colours.

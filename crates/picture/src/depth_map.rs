@@ -1,4 +1,4 @@
-//! What a far light sees: the nearest surface along parallel rays (Williams 1978).
+//! Depth maps: the nearest surface along parallel rays of a far light (Williams 1978).
 
 use toile_geometry::Vec3;
 

@@ -1,4 +1,5 @@
-//! Flat drawings of lines, filled areas and words, as SVG text or on an image.
+//! Flat drawings of plain lines, filled areas and words, as SVG text or on an image; charts are drawn with
+//! them.
 
 use crate::{Align, Image, PictureError, Rgb, TextStyle};
 use std::fmt::Write;

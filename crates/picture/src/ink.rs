@@ -1,16 +1,16 @@
-//! Coverage of strokes: many overlapping segments laid on an image as one shape.
+//! Overlapping strokes blended as one shape.
 
 use crate::colour::Rgb;
 use crate::image::Image;
 use std::collections::BTreeMap;
 
-/// How much of each pixel is covered, 0..=1, by column within row.
+/// The share of each pixel that is covered, 0..=1, by column within row.
 #[derive(Default)]
 pub(crate) struct Ink {
     rows: BTreeMap<i64, BTreeMap<i64, f64>>,
 }
 
-/// Strokes further out than this are not drawn \[pixel\].
+/// Strokes farther out than this are not drawn \[pixel\].
 const FURTHEST: f64 = 1e5;
 
 impl Ink {

@@ -5,10 +5,10 @@ use crate::colour_map::ColourScale;
 use crate::image::Image;
 use crate::text::{Align, TextStyle, text_width};
 
-/// What the colours of a picture mean.
+/// The meaning of the colours of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
-    /// What is shown, as in "Stretch along the warp".
+    /// The quantity shown, as in "Stretch along the warp".
     pub title: String,
     /// Unit of the values, as in "%"; may be empty.
     pub unit: String,

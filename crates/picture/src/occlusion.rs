@@ -1,5 +1,5 @@
-//! How much of the sky each point sees, averaged over many far lights
-//! (Zhukov, Iones and Kronin 1998; by depth maps as Pharr and Green 2004).
+//! Ambient occlusion: the share of the sky that each point sees, averaged over many far lights (Zhukov, Iones
+//! and Kronin 1998; by depth maps as Pharr and Green 2004).
 
 use crate::depth_map::DepthMap;
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! Flat shapes with names, such as pattern pieces, laid out on paper to one scale.
+//! Flat shapes with names, such as the pieces of a pattern, drawn on one image to one scale.
 
 use crate::PictureError;
 use crate::colour::{Rgb, mix};

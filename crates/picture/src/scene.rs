@@ -1,4 +1,4 @@
-//! What is to be drawn: surfaces with their paint, and nothing about what they are.
+//! The scene to draw: surfaces with their paint.
 
 use crate::PictureError;
 use crate::colour::Rgb;
@@ -59,7 +59,7 @@ impl Surface {
     }
 }
 
-/// Where a surface's colours come from.
+/// The source of a surface's colours.
 #[derive(Clone, Debug)]
 pub enum Paint {
     /// One colour.

@@ -1,4 +1,4 @@
-//! Light on a place: key, fill and rim lamps that stand with the camera, and a sky.
+//! Shading: key, fill and rim lamps that stand with the camera, and a sky.
 
 use crate::camera::Camera;
 use crate::colour::mix;

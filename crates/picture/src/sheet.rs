@@ -1,4 +1,5 @@
-//! Finished pictures: several views of a scene side by side, with captions and a legend.
+//! Finished pictures (drape and fit pictures): several views of a scene side by side, with captions and a
+//! legend.
 
 use crate::backdrop::Backdrop;
 use crate::camera::{Camera, Projection, View};
@@ -22,7 +23,7 @@ pub struct Sheet {
     pub title: String,
     /// Views from left to right, all at one scale.
     pub views: Vec<View>,
-    /// What is behind.
+    /// The background.
     pub backdrop: Backdrop,
 }
 

@@ -1,5 +1,4 @@
-//! Bodies of one's own: mannequin files as the wearer's body, their primitives edited, and figures
-//! brought to proportions.
+//! Bodies of the user's own: mannequin files, edits of their primitives, and figures brought to proportions.
 
 use crate::open::{open_measurements, read_input};
 use crate::tools::open_mannequin;
@@ -8,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_body::{BodyError, Description, Figure, Mannequin, PrimitiveEdit, ProportionBox};
 use toile_interchange::{
-    FileError, FileKind, FormatError, SizeChoice, Wanted, proportion_boxes, read_proportions,
+    ExpectedKind, FileError, FileKind, FormatError, SizeChoice, proportion_boxes, read_proportions,
 };
 use toile_measure::{Measurements, Origin};
 
@@ -68,7 +67,7 @@ pub(crate) fn description_of(project: &Project) -> Description {
         BodyChoice::Shaped { description, .. } => (**description).clone(),
         _ => Description {
             figure: project.figure(),
-            measurements: project.wearer(),
+            measurements: project.body_measurements(),
             primitives: Vec::new(),
             frame: None,
             rigging: Default::default(),
@@ -82,7 +81,7 @@ pub(crate) fn description_of(project: &Project) -> Description {
 /// # Errors
 /// The file cannot be read, or is no such list.
 pub fn open_body_edits(path: &Path) -> Result<Vec<PrimitiveEdit>, SessionError> {
-    serde_json::from_str(&read_input(path, Wanted::SmallJson)?).map_err(|error| SessionError::Format {
+    serde_json::from_str(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
         error: FormatError::new(
             format!("line {}, column {}", error.line(), error.column()),
@@ -120,12 +119,14 @@ pub fn proportions_named(text: &str) -> Result<ProportionBox, SessionError> {
     };
     let table = match &file {
         None => proportion_boxes(),
-        Some(path) => read_proportions(&read_input(path, Wanted::SmallJson)?).map_err(|error| {
-            SessionError::Format {
-                path: path.clone(),
-                error,
-            }
-        })?,
+        Some(path) => {
+            read_proportions(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| {
+                SessionError::Format {
+                    path: path.clone(),
+                    error,
+                }
+            })?
+        }
     };
     let chosen = match (&file, name) {
         (Some(_), "") => table.first(),

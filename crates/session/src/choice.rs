@@ -1,4 +1,4 @@
-//! Whom the garment is made for, and how finely.
+//! The body that a garment is made for, and the quality it is draped with.
 
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toile_body::{Description, Figure};
 use toile_measure::Measurements;
 
-/// Whose body the garment is draped on.
+/// The body that the garment is draped on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum BodyChoice {
     /// As the pattern says: a woman of the pattern's size; an average adult if the pattern has no

@@ -1,10 +1,9 @@
-//! Crossings of cloth with cloth as reports count them, and what is said of them.
+//! Counts crossings of cloth with cloth, and phrases the warning about them.
 
 use toile_drape::SceneRun;
 use toile_drape::collision::Tally;
 
-/// Pairs of cloth triangles that intersect and share no vertex, counted exactly: where a run begins, now
-/// and then on its way, and where it ends.
+/// Pairs of cloth triangles that intersect and share no vertex, counted exactly before, during and after a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct Crossings {
     /// Before the first step.
@@ -18,13 +17,13 @@ pub(crate) struct Crossings {
     every: usize,
 }
 
-/// Counts on the way of a run whose steps are known beforehand, and steps between two counts of one that
-/// goes straight to rest: an exact count may take as long as a step.
+/// Counts during a run whose number of steps is known, and steps between two counts of a run that solves for
+/// rest: an exact count may take as long as a step.
 const COUNTS: f64 = 32.0;
 const STEPS_TO_REST: usize = 8;
 
 impl Crossings {
-    /// Counts where a run begins.
+    /// Counts before the first step.
     pub fn new(run: &SceneRun) -> Self {
         let count = run.crossings();
         Self::resumed(run, [count; 3])
@@ -82,13 +81,13 @@ impl Crossings {
 /// Edges of cloth that crossed a face of cloth, as a report counts them.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub(crate) struct Tangles {
-    /// At the first look.
+    /// At the first detection.
     found: usize,
-    /// Most at one look.
+    /// Most at one detection.
     most: usize,
-    /// At the last look.
+    /// At the last detection.
     left: usize,
-    /// Vertices of outer layers on the inside of inner ones: at the first look, most, at the last.
+    /// Vertices of outer layers on the inside of inner ones: at the first detection, most, at the last.
     astray: [usize; 3],
 }
 

@@ -1,33 +1,33 @@
-//! What is derived from the project, kept while the project does not change.
+//! Caches everything that is computed from the project: draft, mannequin, markers, garment, drape.
 
 use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
-use crate::dressed::{DraftedPart, Dressed, MeshedPart, checked, tell_apart};
 use crate::fabrics::{FabricChoice, unseen_at_rest};
-use crate::kept_markers::KeptMarkers;
-use crate::laying::lay_watched;
 use crate::mannequin_source::MannequinSource;
+use crate::marker_cache::MarkerCache;
+use crate::outfit::{DraftedPart, MeshedPart, Outfit, checked, tell_apart};
 use crate::setup::{self, GarmentJob};
+use crate::watched_search::lay_watched;
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
-use toile_marker::{Garments, Laying};
+use toile_marker::{FinishedMarker, Garments};
 use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer};
 
-/// A mannequin and what it was made from.
+/// A mannequin with its source.
 #[derive(Clone)]
-struct KeptMannequin {
+struct CachedMannequin {
     source: MannequinSource,
     mannequin: Arc<Mannequin>,
     skin: Arc<SurfaceTree>,
 }
 
-/// Whom a pattern is drafted for, and what that follows from: measurements that were not given are
-/// predicted, which takes longer than a small pattern.
+/// The wearer a pattern is drafted for, with the choices that decide it. Cached, because predicting
+/// measurements that were not given takes longer than drafting a small pattern.
 #[derive(Clone)]
 struct DraftedFor {
     size: Option<String>,
@@ -59,7 +59,7 @@ impl DraftedFor {
     }
 }
 
-/// Products of one project.
+/// All values computed from one project; a value that is missing is computed when asked for.
 #[derive(Clone, Default)]
 pub(crate) struct Derived {
     evaluation: Option<Arc<Evaluation>>,
@@ -68,14 +68,14 @@ pub(crate) struct Derived {
     drafted_for: Option<DraftedFor>,
     draft: Option<Arc<Draft>>,
     diagnostics: Option<Arc<Vec<Diagnostic>>>,
-    mannequin: Option<KeptMannequin>,
+    mannequin: Option<CachedMannequin>,
     /// The markers, if they were made.
-    pub layings: Option<Arc<Vec<Laying>>>,
+    pub finished_markers: Option<Arc<Vec<FinishedMarker>>>,
     /// Drafts and pieces of the document's markers.
-    pub markers: KeptMarkers,
+    pub markers: MarkerCache,
     /// The garments worn, drafted.
     parts: Option<Arc<Vec<DraftedPart>>>,
-    dressed: Option<Arc<Dressed>>,
+    outfit: Option<Arc<Outfit>>,
     /// What is worth telling about the garment's mesh, placement and cloth.
     pub assembly_notes: Vec<String>,
     /// The drape, if it was made.
@@ -93,7 +93,8 @@ impl Derived {
         if !same_draft {
             self.diagnostics = None;
             let old = self.draft.take();
-            let makes = self.layings.is_some() || self.dressed.is_some() || self.drape.is_some();
+            let makes =
+                self.finished_markers.is_some() || self.outfit.is_some() || self.drape.is_some();
             if let Some(old) = old.filter(|_| makes && same_choices)
                 && has_same_panels(&before.pattern, &after.pattern)
                 && *self.draft(after) == *old
@@ -107,10 +108,10 @@ impl Derived {
             self.parts = None;
         }
         if !same_parts || before.width != after.width {
-            self.layings = None;
+            self.finished_markers = None;
         }
         if !same_parts || before.quality != after.quality {
-            self.dressed = None;
+            self.outfit = None;
             self.assembly_notes.clear();
             self.drape = None;
         }
@@ -122,10 +123,10 @@ impl Derived {
         self.draft = self.draft.take().or(other.draft);
         self.diagnostics = self.diagnostics.take().or(other.diagnostics);
         self.mannequin = other.mannequin.or(self.mannequin.take());
-        self.layings = self.layings.take().or(other.layings);
+        self.finished_markers = self.finished_markers.take().or(other.finished_markers);
         self.parts = self.parts.take().or(other.parts);
-        if self.dressed.is_none() {
-            self.dressed = other.dressed;
+        if self.outfit.is_none() {
+            self.outfit = other.outfit;
             self.assembly_notes = other.assembly_notes;
         }
         self.drape = self.drape.take().or(other.drape);
@@ -218,16 +219,16 @@ impl Derived {
 
     /// The mannequin of the project's wearer.
     pub fn mannequin(&mut self, project: &Project) -> Result<Arc<Mannequin>, SessionError> {
-        Ok(self.kept_mannequin(project)?.mannequin.clone())
+        Ok(self.cached_mannequin(project)?.mannequin.clone())
     }
 
-    fn kept_mannequin(&mut self, project: &Project) -> Result<&KeptMannequin, SessionError> {
+    fn cached_mannequin(&mut self, project: &Project) -> Result<&CachedMannequin, SessionError> {
         let source = MannequinSource::of(project);
         let kept = match self.mannequin.take() {
             Some(kept) if kept.source == source => kept,
             _ => {
                 let mannequin = source.make().map_err(|error| body_error(project, error))?;
-                KeptMannequin {
+                CachedMannequin {
                     source,
                     skin: Arc::new(SurfaceTree::new(mannequin.skin().clone())),
                     mannequin: Arc::new(mannequin),
@@ -238,13 +239,13 @@ impl Derived {
     }
 
     /// The markers.
-    pub fn layings(
+    pub fn finished_markers(
         &mut self,
         project: &Project,
         watcher: &mut dyn Watcher,
-    ) -> Result<Arc<Vec<Laying>>, SessionError> {
-        if let Some(layings) = &self.layings {
-            return Ok(layings.clone());
+    ) -> Result<Arc<Vec<FinishedMarker>>, SessionError> {
+        if let Some(finished_markers) = &self.finished_markers {
+            return Ok(finished_markers.clone());
         }
         let parts = self.sound_parts(project)?;
         let options = NestOptions {
@@ -259,37 +260,37 @@ impl Derived {
             label: several.then_some(&*part.name),
         });
         let garments: Vec<Garments<'_>> = each.collect();
-        let layings = Arc::new(lay_watched(&garments, &options, watcher)?);
-        self.layings = Some(layings.clone());
-        Ok(layings)
+        let finished_markers = Arc::new(lay_watched(&garments, &options, watcher)?);
+        self.finished_markers = Some(finished_markers.clone());
+        Ok(finished_markers)
     }
 
     /// The meshed and placed pieces of every garment worn.
-    pub fn dressed(&mut self, project: &Project) -> Result<Arc<Dressed>, SessionError> {
-        if let Some(dressed) = &self.dressed {
-            return Ok(dressed.clone());
+    pub fn outfit(&mut self, project: &Project) -> Result<Arc<Outfit>, SessionError> {
+        if let Some(outfit) = &self.outfit {
+            return Ok(outfit.clone());
         }
         let parts = self.sound_parts(project)?;
         let mannequin = self.mannequin(project)?;
-        let (dressed, notes) = assembled(&parts, &mannequin, project.quality.edge_length())?;
+        let (outfit, notes) = assembled(&parts, &mannequin, project.quality.edge_length())?;
         self.assembly_notes = notes;
-        self.assembly_notes.extend(unseen_at_rest(&dressed.draft));
-        Ok(self.dressed.insert(Arc::new(dressed)).clone())
+        self.assembly_notes.extend(unseen_at_rest(&outfit.draft));
+        Ok(self.outfit.insert(Arc::new(outfit)).clone())
     }
 
     /// Whether the pieces are meshed and placed already.
-    pub fn is_dressed(&self) -> bool {
-        self.dressed.is_some()
+    pub fn has_outfit(&self) -> bool {
+        self.outfit.is_some()
     }
 
     /// The garment ready to be sewn and draped.
     pub fn job(&mut self, project: &Project) -> Result<GarmentJob, SessionError> {
-        let dressed = self.dressed(project)?;
-        let skin = self.kept_mannequin(project)?.skin.clone();
+        let outfit = self.outfit(project)?;
+        let skin = self.cached_mannequin(project)?.skin.clone();
         let source = MannequinSource::of(project);
-        let mut job = setup::job(&dressed, (source, skin), project.quality);
+        let mut job = setup::job(&outfit, (source, skin), project.quality);
         // Gathers have as many folds as the mesh they swing in can hold.
-        let gathers = dressed.draft.seams.iter().any(|seam| seam.gathered);
+        let gathers = outfit.draft.seams.iter().any(|seam| seam.gathered);
         let first = project.quality.first_edge_length();
         if let Some(edge_length) = first.filter(|_| !gathers) {
             let (parts, mannequin) = (self.sound_parts(project)?, self.mannequin(project)?);
@@ -338,13 +339,13 @@ fn assembled(
     parts: &[DraftedPart],
     mannequin: &Mannequin,
     edge_length: f64,
-) -> Result<(Dressed, Vec<String>), SessionError> {
+) -> Result<(Outfit, Vec<String>), SessionError> {
     let options = AssemblyOptions { edge_length };
-    let wearer = setup::wearer(mannequin);
+    let body = setup::placement_body(mannequin);
     let mut meshed = Vec::new();
     let mut notes = Vec::new();
     for part in parts {
-        let assembled = assemble(&part.draft, &wearer, &options)?;
+        let assembled = assemble(&part.draft, &body, &options)?;
         let prefix = match parts.len() {
             1 => String::new(),
             _ => format!("{}: ", part.name),
@@ -357,7 +358,7 @@ fn assembled(
             garment: assembled.garment,
         });
     }
-    Ok((Dressed::new(meshed), notes))
+    Ok((Outfit::new(meshed), notes))
 }
 
 /// A body's error, with the file its measurements came from.

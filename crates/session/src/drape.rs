@@ -1,7 +1,7 @@
-//! The drape of a garment as a finished product.
+//! Drapes a garment from its setup to rest, and summarises the result.
 
-use crate::hands::HandledRun;
-use crate::watcher::tell;
+use crate::interactive_run::InteractiveRun;
+use crate::watcher::report_progress;
 use crate::{Draped, Event, GarmentJob, GarmentPart, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_drape::collision::Tally;
@@ -34,7 +34,7 @@ pub(crate) struct Drape {
 
 impl Drape {
     /// A finished run as a product.
-    pub fn of(handled: &mut HandledRun) -> Self {
+    pub fn of(handled: &mut InteractiveRun) -> Self {
         let held = handled.is_held();
         let inputs = handled.applied().to_vec();
         let (job, run) = handled.parts();
@@ -151,11 +151,11 @@ pub(crate) fn drape(
     inputs: &[StampedInput],
     watcher: &mut dyn Watcher,
 ) -> Result<Drape, SessionError> {
-    tell(watcher, "sewing", 0.0, "")?;
+    report_progress(watcher, "sewing", 0.0, "")?;
     for stamped in inputs {
         stamped.input.check(&job)?;
     }
-    let mut run = HandledRun::new(job)?;
+    let mut run = InteractiveRun::new(job)?;
     for stamped in inputs {
         run.give(stamped.input, Some(stamped.step));
     }
@@ -167,7 +167,7 @@ pub(crate) fn drape(
             Stage::Settling => ("draping", format!("net force {:.1e}", progress.residual)),
             Stage::Finished => ("measuring", String::new()),
         };
-        tell(watcher, stage, 0.98 * progress.share, &detail)?;
+        report_progress(watcher, stage, 0.98 * progress.share, &detail)?;
         if run.at_rest() {
             break;
         }

@@ -1,4 +1,4 @@
-//! Why a command was not done.
+//! Why a command failed.
 
 use std::path::PathBuf;
 use toile_interchange::{FileError, FormatError};

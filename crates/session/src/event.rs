@@ -1,7 +1,7 @@
-//! Events: what happened, for whoever asked.
+//! Events: what a command did, for whoever gave it.
 
 use std::path::PathBuf;
-use toile_marker::Nested;
+use toile_marker::MarkerSummary;
 
 /// Something that happened while a command was done.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub enum Event {
         warnings: usize,
     },
     /// The pieces of one fabric were laid.
-    Nested(Nested),
+    Nested(MarkerSummary),
     /// The pieces were meshed and placed.
     Assembled(Assembled),
     /// The garment was draped.

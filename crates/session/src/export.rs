@@ -1,11 +1,11 @@
-//! Everything that was made of a project, as files.
+//! Writes all files of a project.
 
 use crate::derived::Derived;
 use crate::drape::Drape;
-use crate::dressed::DraftedPart;
+use crate::outfit::DraftedPart;
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{Command, Project, SessionError, Watcher, pictures};
 use std::path::Path;
 use toile_interchange::{FormatError, write_glb, write_obj};
@@ -20,7 +20,7 @@ pub(crate) fn files(
     derived: &mut Derived,
     watcher: &mut dyn Watcher,
 ) -> Result<Vec<File>, SessionError> {
-    if derived.layings.is_none() && derived.drape.is_none() {
+    if derived.finished_markers.is_none() && derived.drape.is_none() {
         return Err(SessionError::Nothing {
             action: "export",
             hint: "lay the pieces out or drape the garment first",
@@ -31,27 +31,27 @@ pub(crate) fn files(
     let found = parts.iter().flat_map(|part| part.diagnostics.iter());
     report.add_warnings(found.map(ToString::to_string));
     let mut files = Vec::new();
-    if let Some(layings) = &derived.layings {
-        tell(watcher, "writing", 0.0, "marker")?;
+    if let Some(finished_markers) = &derived.finished_markers {
+        report_progress(watcher, "writing", 0.0, "marker")?;
         let formats = [MarkerFormat::Svg, MarkerFormat::Json];
-        marker_files((&worn_name(&parts), &formats), layings, &mut files)?;
-        report.add_markers(layings);
+        marker_files((&worn_name(&parts), &formats), finished_markers, &mut files)?;
+        report.add_markers(finished_markers);
     }
     if let Some(drape) = derived.drape.clone() {
         garment_files(&drape, &mut files)?;
-        tell(watcher, "writing", 0.2, "pictures")?;
+        report_progress(watcher, "writing", 0.2, "pictures")?;
         let mannequin = derived.mannequin(project)?;
         let title = picture_title(project, &worn_name(&parts));
         let picture = pictures::drape_png(&drape, mannequin.skin(), &title)?;
         files.push(("drape.png".into(), picture));
-        tell(watcher, "writing", 0.6, "pictures")?;
+        report_progress(watcher, "writing", 0.6, "pictures")?;
         let picture = pictures::fit_png(&drape, mannequin.skin(), &title)?;
         files.push(("fit.png".into(), picture));
         report.add_drape(project, &drape);
         report.add_warnings(derived.assembly_notes.iter().cloned());
         report.add_warnings(drape.warnings.iter().cloned());
     }
-    tell(watcher, "writing", 0.95, "report")?;
+    report_progress(watcher, "writing", 0.95, "report")?;
     files.push(("report.json".into(), report.to_json().into_bytes()));
     Ok(files)
 }

@@ -5,7 +5,7 @@ use crate::open::read_input;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_drape::{Compression, LIBRARY, LibraryFabric, Material};
-use toile_interchange::{FabricFile, FormatError, Wanted, read_fabric};
+use toile_interchange::{ExpectedKind, FabricFile, FormatError, read_fabric};
 use toile_pattern::{Draft, Fabric, FabricId, Pattern, Rheology};
 
 /// Width of a roll of a fabric that comes without one [m].
@@ -95,7 +95,7 @@ pub(crate) fn chosen(
 /// # Errors
 /// The file cannot be read.
 pub(crate) fn open_fabric(path: &Path) -> Result<FabricFile, SessionError> {
-    read_fabric(&read_input(path, Wanted::Fabric)?).map_err(|error| SessionError::Format {
+    read_fabric(&read_input(path, ExpectedKind::Fabric)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
         error,
     })

@@ -2,9 +2,9 @@
 //! triangles, on another mesh, or not at all.
 
 use crate::derived::Derived;
-use crate::dressed::{DraftedPart, Dressed, MeshedPart};
 use crate::fabrics::cloth_material;
 use crate::mannequin_source::MannequinSource;
+use crate::outfit::{DraftedPart, MeshedPart, Outfit};
 use crate::rest_change::RestChange;
 use crate::setup::{self, JobOrigin};
 use crate::{GarmentJob, Project, Session, SessionError};
@@ -22,7 +22,7 @@ pub struct GarmentEdit {
 
 /// Why a worn garment cannot go on to the pattern as it is now.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Standstill {
+pub enum CannotFollow {
     /// Panels were added, removed or put in another order.
     #[error("the pattern has other panels now; hang it again")]
     Panels,
@@ -52,7 +52,7 @@ impl Session {
     ///
     /// # Errors
     /// Why it cannot.
-    pub fn garment_edit(&mut self, worn: &GarmentJob) -> Result<GarmentEdit, Standstill> {
+    pub fn garment_edit(&mut self, worn: &GarmentJob) -> Result<GarmentEdit, CannotFollow> {
         let mut edit = self.derived.garment_edit(&self.project, worn)?;
         edit.job.revision = self.revision;
         Ok(edit)
@@ -64,13 +64,13 @@ impl Derived {
         &mut self,
         project: &Project,
         worn: &GarmentJob,
-    ) -> Result<GarmentEdit, Standstill> {
+    ) -> Result<GarmentEdit, CannotFollow> {
         let origin = &*worn.origin;
         if origin.quality != project.quality {
-            return Err(Standstill::Quality);
+            return Err(CannotFollow::Quality);
         }
         if origin.body != MannequinSource::of(project) {
-            return Err(Standstill::Body);
+            return Err(CannotFollow::Body);
         }
         refuse_other_garments(&origin.drafted, &self.parts(project))?;
         let parts = self.sound_parts(project).map_err(cannot_be_made)?;
@@ -91,21 +91,21 @@ impl Derived {
             .zip(parts.iter())
             .map(morphed)
             .collect();
-        let (dressed, meshed, change) = match morphed {
+        let (outfit, meshed, change) = match morphed {
             Some(parts) => (
-                Arc::new(Dressed::new(parts)),
+                Arc::new(Outfit::new(parts)),
                 origin.meshed.clone(),
                 RestChange::Shapes,
             ),
             None => {
-                let dressed = self.dressed(project).map_err(cannot_be_made)?;
-                let meshed = dressed.meshed.clone();
-                (dressed, meshed, RestChange::Mesh)
+                let outfit = self.outfit(project).map_err(cannot_be_made)?;
+                let meshed = outfit.meshed.clone();
+                (outfit, meshed, RestChange::Mesh)
             }
         };
         let skin = worn.setup.colliders.first();
-        let skin = skin.ok_or(Standstill::Body)?.clone();
-        let mut job = setup::job(&dressed, (origin.body.clone(), skin), project.quality);
+        let skin = skin.ok_or(CannotFollow::Body)?.clone();
+        let mut job = setup::job(&outfit, (origin.body.clone(), skin), project.quality);
         // The coarser meshes are behind it.
         let coarse = worn.setup.levels.len().saturating_sub(1);
         let finest = std::mem::take(&mut job.setup.levels);
@@ -135,10 +135,10 @@ fn morphed((old, new): (&MeshedPart, &DraftedPart)) -> Option<MeshedPart> {
     })
 }
 
-fn cannot_be_made(error: SessionError) -> Standstill {
+fn cannot_be_made(error: SessionError) -> CannotFollow {
     match error {
-        SessionError::Faults { .. } => Standstill::Faults,
-        other => Standstill::NotMade(other.to_string()),
+        SessionError::Faults { .. } => CannotFollow::Faults,
+        other => CannotFollow::NotMade(other.to_string()),
     }
 }
 
@@ -149,38 +149,38 @@ fn has_same_cloth(a: &DraftedPart, b: &DraftedPart) -> bool {
 }
 
 /// Refuses garments that are others than those before, or lack a panel that was sewn.
-fn refuse_other_garments(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), Standstill> {
+fn refuse_other_garments(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), CannotFollow> {
     if before.len() != now.len() {
-        return Err(Standstill::Garments);
+        return Err(CannotFollow::Garments);
     }
     for (k, (before, now)) in before.iter().zip(now).enumerate() {
         // The project's own garment, the first, may be saved under another name.
         let is_other = k > 0 && before.source != now.source;
         if is_other || before.layer != now.layer {
-            return Err(Standstill::Garments);
+            return Err(CannotFollow::Garments);
         }
         let mut pieces = sewn(&before.draft);
         if pieces.any(|piece| now.pattern.panel(piece.id.panel).is_none()) {
-            return Err(Standstill::Panels);
+            return Err(CannotFollow::Panels);
         }
     }
     Ok(())
 }
 
 /// Refuses garments whose pieces are others than those before, or cut from other cloth.
-fn refuse_other_pieces(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), Standstill> {
+fn refuse_other_pieces(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), CannotFollow> {
     for (before, now) in before.iter().zip(now) {
         let [old, new] = [before, now].map(|part| sewn(&part.draft).collect::<Vec<_>>());
         let mut pairs = old.iter().zip(&new);
         if old.len() != new.len() || pairs.any(|(a, b)| a.id != b.id) {
-            return Err(Standstill::Panels);
+            return Err(CannotFollow::Panels);
         }
         let material =
             |draft: &Draft, piece: &Piece| draft.fabrics.get(piece.fabric).map(cloth_material);
         let mut pairs = old.iter().zip(&new);
         let other = pairs.find(|(a, b)| material(&before.draft, a) != material(&now.draft, b));
         if let Some((_, piece)) = other {
-            return Err(Standstill::Fabric(piece.name.clone()));
+            return Err(CannotFollow::Fabric(piece.name.clone()));
         }
     }
     Ok(())

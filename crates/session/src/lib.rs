@@ -11,24 +11,23 @@ mod command;
 mod crossings;
 mod derived;
 mod drape;
-mod dressed;
 mod error;
 mod event;
 mod export;
 mod fabrics;
 mod garment_edit;
 mod gesture;
-mod hands;
 mod history;
+mod interactive_run;
 mod journal;
-mod judging;
-mod kept_markers;
-mod laying;
 mod live;
 mod mannequin_source;
+mod marker_cache;
+mod marker_file_check;
 mod markers;
-mod marking;
+mod nest_patterns;
 mod open;
+mod outfit;
 mod perform;
 mod pictures;
 mod piece_facts;
@@ -48,27 +47,28 @@ mod stored_marker;
 mod study;
 mod timing;
 mod tools;
+mod watched_search;
 mod watcher;
 
 pub use bodies::{edit_body, open_body_edits, proportions_named, proportions_of_heads};
 pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::{Command, OtherGarment};
 pub use drape::DrapeResult;
-pub use dressed::GarmentPart;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event};
 pub use fabrics::FabricChoice;
-pub use garment_edit::{GarmentEdit, Standstill};
-pub use hands::{LiveInput, StampedInput};
+pub use garment_edit::{CannotFollow, GarmentEdit};
+pub use interactive_run::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
-pub use judging::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use live::{LiveFrame, LiveRun};
+pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use markers::{FoundMarker, MarkerSearch};
-pub use marking::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
+pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
     Opened, PatternFormat, SAMPLE, SAMPLES, open_marker, open_measurements, open_pattern,
     read_input, read_pattern_text,
 };
+pub use outfit::GarmentPart;
 pub use piece_facts::{
     DartFacts, EdgeFacts, JointFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts,
     seam_facts,
@@ -89,11 +89,12 @@ pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Sca
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::Stage;
 pub use toile_interchange::{
-    Lines, MarkerSettings, Paper, SizeChoice, Tile, Wanted, write_atomically,
+    ExpectedKind, Lines, MarkerSettings, Paper, SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
-    Follow, Found, GivenFlaw, LaidMarker, LaidPiece, MarkerError, MarkerFormat, MarkerState,
-    NestOptions, Nested, PieceOutside, PieceOverlap, Standing, Start, WaitingPiece,
+    DocumentMarker, Found, GivenFlaw, LaidPiece, MarkerError, MarkerFormat, MarkerState,
+    MarkerSummary, NestOptions, PieceOutside, PieceOverlap, SearchProgress, SearchWatcher, Start,
+    WaitingPiece,
 };
 pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
 pub use toile_pattern::Spread;

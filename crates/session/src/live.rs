@@ -1,8 +1,8 @@
-//! A drape that runs on its own thread while somebody watches and takes hold of the cloth.
+//! A drape on its own thread: it publishes frames, and takes dragged vertices and edits of the pattern.
 
 use crate::drape::{Drape, DrapeResult};
 use crate::garment_edit::GarmentEdit;
-use crate::hands::HandledRun;
+use crate::interactive_run::InteractiveRun;
 use crate::rest_change::RestChange;
 use crate::{GarmentJob, LiveInput, SessionError, StampedInput};
 use std::any::Any;
@@ -37,7 +37,7 @@ pub struct LiveFrame {
     pub share: f64,
 }
 
-/// What the thread is told.
+/// Requests to the thread.
 #[derive(Default)]
 struct Orders {
     paused: bool,
@@ -64,8 +64,8 @@ struct Shared {
     finished: AtomicBool,
 }
 
-/// A garment sewn and draped on its own thread, which then waits for what comes: a hand on the cloth, an
-/// edit of the pattern. Only the newest frame is kept. Dropping it stops the thread and waits for it.
+/// A garment sewn and draped on its own thread, which then waits for input: a dragged vertex or an edit of
+/// the pattern. Only the newest frame is available. Dropping it stops the thread and waits for it.
 pub struct LiveRun {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
@@ -75,7 +75,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What is told of a panic, from what it was raised with.
+/// The message for a panic, from the value it was raised with.
 fn fault(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
@@ -228,15 +228,15 @@ impl Drop for LiveRun {
     }
 }
 
-/// What a thread does next.
-enum Turn {
+/// The next task of the thread.
+enum NextTask {
     /// A step.
     Step,
     /// An edit.
     Edit(Box<GarmentEdit>),
-    /// What is told of a garment that has come to rest.
-    Tell,
-    /// Nothing any more.
+    /// Report on a garment that has come to rest.
+    Report,
+    /// Stop.
     End,
 }
 
@@ -252,11 +252,11 @@ impl Shared {
 
     /// Waits while the run is paused, stands still, or is at rest with nothing to be done. Hands the
     /// inputs that came to the run.
-    fn wait_for_turn(&self, run: &mut HandledRun, told: Option<&Told>) -> Turn {
+    fn wait_for_task(&self, run: &mut InteractiveRun, told: Option<&RestReport>) -> NextTask {
         let mut orders = lock(&self.orders);
         loop {
             if orders.stop {
-                return Turn::End;
+                return NextTask::End;
             }
             if !orders.paused {
                 for (input, step) in orders.inputs.drain(..) {
@@ -266,16 +266,16 @@ impl Shared {
                     && let Some(edit) = orders.edit.take()
                 {
                     orders.job = Some(Arc::new(edit.job.clone()));
-                    return Turn::Edit(Box::new(edit));
+                    return NextTask::Edit(Box::new(edit));
                 }
                 match told {
                     _ if !run.at_rest() => {
                         if !(orders.stands && run.takes_edits()) {
-                            return Turn::Step;
+                            return NextTask::Step;
                         }
                     }
                     _ if run.is_held() => {}
-                    None => return Turn::Tell,
+                    None => return NextTask::Report,
                     Some(told) => {
                         *lock(&self.outcome) = told.result.clone().map(Ok);
                         lock(&self.warnings).clone_from(&told.warnings);
@@ -292,7 +292,7 @@ impl Shared {
 
     fn show(
         &self,
-        run: &mut HandledRun,
+        run: &mut InteractiveRun,
         job: &Arc<GarmentJob>,
         progress: Progress,
     ) -> Result<(), DrapeError> {
@@ -312,8 +312,8 @@ impl Shared {
     }
 }
 
-/// What is told of a garment at rest.
-struct Told {
+/// The report on a garment at rest.
+struct RestReport {
     /// Its drape, unless it followed an edit.
     result: Option<DrapeResult>,
     warnings: Vec<String>,
@@ -322,30 +322,30 @@ struct Told {
 /// Runs until it is stopped.
 fn run(shared: &Shared, mut job: Arc<GarmentJob>) -> Result<(), DrapeError> {
     let start = Instant::now();
-    let mut run = HandledRun::new((*job).clone())?;
+    let mut run = InteractiveRun::new((*job).clone())?;
     let mut seconds = start.elapsed().as_secs_f64();
-    let mut told: Option<Told> = None;
+    let mut told: Option<RestReport> = None;
     let mut is_edited = false;
     loop {
-        let turn = shared.wait_for_turn(&mut run, told.as_ref());
+        let turn = shared.wait_for_task(&mut run, told.as_ref());
         let start = Instant::now();
         told = None;
         match turn {
-            Turn::End => return Ok(()),
-            Turn::Tell => {
+            NextTask::End => return Ok(()),
+            NextTask::Report => {
                 let drape = Arc::new(Drape::of(&mut run));
                 seconds += start.elapsed().as_secs_f64();
                 let warnings = drape.warnings.clone();
                 let result = (!is_edited).then_some(DrapeResult { drape, seconds });
-                told = Some(Told { result, warnings });
+                told = Some(RestReport { result, warnings });
             }
-            Turn::Edit(edit) => {
+            NextTask::Edit(edit) => {
                 is_edited |= edit.change != RestChange::Nothing;
                 job = Arc::new(edit.job.clone());
                 let progress = run.edit(edit.job, edit.change)?;
                 shared.show(&mut run, &job, progress)?;
             }
-            Turn::Step => {
+            NextTask::Step => {
                 let progress = run.advance()?;
                 seconds += start.elapsed().as_secs_f64();
                 let mut applied = lock(&shared.applied);

@@ -19,7 +19,7 @@ impl MannequinSource {
     pub fn of(project: &Project) -> Self {
         match &project.body {
             BodyChoice::Shaped { description, .. } => Self::Shaped(description.clone()),
-            _ => Self::Grown(project.figure(), project.wearer()),
+            _ => Self::Grown(project.figure(), project.body_measurements()),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{Command, Event, Session, SessionError, Silent};
 use std::sync::Arc;
-use toile_marker::{Follow, Found, LaidMarker, MarkerPieces, Start};
+use toile_marker::{DocumentMarker, Found, MarkerPieces, SearchWatcher, Start};
 use toile_nesting::Search;
 use toile_pattern::{Marker, MarkerId, plan};
 
@@ -31,9 +31,9 @@ impl MarkerSearch {
     pub fn run(
         &self,
         how: (Start, Search),
-        follow: &mut Follow<'_>,
+        follow: &mut SearchWatcher<'_>,
     ) -> Result<FoundMarker, SessionError> {
-        let laid = LaidMarker::new(self.marker.clone(), self.pieces.clone());
+        let laid = DocumentMarker::new(self.marker.clone(), self.pieces.clone());
         Ok(FoundMarker {
             marker: self.marker.clone(),
             pieces: self.pieces.clone(),
@@ -47,10 +47,10 @@ impl Session {
     ///
     /// # Errors
     /// The marker or its fabric is not there; nothing is cut from it; a piece cannot be cut.
-    pub fn marker(&mut self, id: MarkerId) -> Result<LaidMarker, SessionError> {
+    pub fn marker(&mut self, id: MarkerId) -> Result<DocumentMarker, SessionError> {
         let marker = self.document_marker(id)?;
         let pieces = self.derived.markers.pieces(&self.project, &marker)?;
-        Ok(LaidMarker::new(marker, pieces))
+        Ok(DocumentMarker::new(marker, pieces))
     }
 
     /// A search for a marker of the document, to be run elsewhere and taken over by
@@ -86,7 +86,7 @@ impl Session {
         let edits = plan::place_marker(&self.evaluation(), id, found.found.placements)?;
         let label = "Lay marker".to_owned();
         let mut events = self.execute(Command::Edit { edits, label }, &mut Silent)?;
-        events.push(Event::Nested(found.found.nested));
+        events.push(Event::Nested(found.found.summary));
         Ok(Some(events))
     }
 

@@ -1,10 +1,10 @@
-//! Patterns and measurements from files: the format is seen from the content.
+//! Opens patterns, markers and measurements; the format is recognised from the content.
 
 use crate::SessionError;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
-    FileError, FormatError, MarkerFile, SizeChoice, Wanted, read_garmentcode, read_marker_json,
-    read_pattern, read_sized_measurements,
+    ExpectedKind, FileError, FormatError, MarkerFile, SizeChoice, read_garmentcode,
+    read_marker_json, read_pattern, read_sized_measurements,
 };
 use toile_measure::Measurements;
 use toile_pattern::Pattern;
@@ -64,7 +64,7 @@ pub struct Opened {
 pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
     let text = match sample(path) {
         Some(text) => text.to_owned(),
-        None => read_input(path, Wanted::Pattern)?,
+        None => read_input(path, ExpectedKind::Pattern)?,
     };
     let mut opened = read_pattern_text(&text).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),
@@ -81,9 +81,11 @@ pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
 /// # Errors
 /// The file cannot be read, or is no marker.
 pub fn open_marker(path: &Path) -> Result<MarkerFile, SessionError> {
-    read_marker_json(&read_input(path, Wanted::Marker)?).map_err(|error| SessionError::Format {
-        path: path.to_owned(),
-        error,
+    read_marker_json(&read_input(path, ExpectedKind::Marker)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
     })
 }
 
@@ -91,12 +93,14 @@ pub fn open_marker(path: &Path) -> Result<MarkerFile, SessionError> {
 ///
 /// # Errors
 /// It is missing, may not be read, is plainly of another kind, or is not text in UTF-8.
-pub fn read_input(path: &Path, wanted: Wanted) -> Result<String, SessionError> {
+pub fn read_input(path: &Path, expected: ExpectedKind) -> Result<String, SessionError> {
     let bytes = std::fs::read(path).map_err(|error| FileError::from_io("read", path, &error))?;
-    wanted.check(&bytes).map_err(|error| SessionError::Format {
-        path: PathBuf::from(path),
-        error,
-    })?;
+    expected
+        .check(&bytes)
+        .map_err(|error| SessionError::Format {
+            path: PathBuf::from(path),
+            error,
+        })?;
     let mut text = String::from_utf8(bytes).map_err(|error| {
         let cause = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
         FileError::from_io("read", path, &cause)
@@ -165,7 +169,7 @@ pub fn open_measurements(
     path: &Path,
     choice: SizeChoice,
 ) -> Result<(Measurements, Vec<String>), SessionError> {
-    let text = read_input(path, Wanted::Measurements)?;
+    let text = read_input(path, ExpectedKind::Measurements)?;
     read_sized_measurements(&text, choice).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),
         error,

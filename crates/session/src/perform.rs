@@ -6,7 +6,7 @@ use crate::fabrics::chosen;
 use crate::history::History;
 use crate::journal::MOST_COMMANDS;
 use crate::open::{open_pattern, read_pattern_text};
-use crate::watcher::{Part, tell};
+use crate::watcher::{ProgressShare, report_progress};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, Project, Session, SessionError,
     StampedInput, Watcher, WornGarment, journal_lines,
@@ -99,7 +99,7 @@ impl Session {
     }
 
     fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
-        tell(watcher, "reading", 0.0, &path.display().to_string())?;
+        report_progress(watcher, "reading", 0.0, &path.display().to_string())?;
         let opened = open_pattern(path)?;
         let mut events = self.begin(opened.pattern, Some(path));
         self.saved = self.project.pattern.clone();
@@ -144,7 +144,7 @@ impl Session {
     }
 
     fn save(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
-        tell(watcher, "writing", 0.0, &path.display().to_string())?;
+        report_progress(watcher, "writing", 0.0, &path.display().to_string())?;
         let text = write_pattern(&self.project.pattern).map_err(|error| SessionError::Write {
             file: "the pattern",
             error,
@@ -193,7 +193,7 @@ impl Session {
     }
 
     fn save_body(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
-        tell(watcher, "writing", 0.0, &path.display().to_string())?;
+        report_progress(watcher, "writing", 0.0, &path.display().to_string())?;
         let text =
             write_mannequin(&description_of(&self.project)).map_err(cannot("the mannequin"))?;
         write_atomically(path, text.as_bytes())?;
@@ -279,7 +279,7 @@ impl Session {
     }
 
     fn check(&mut self, watcher: &mut dyn Watcher) -> Outcome {
-        tell(watcher, "checking", 0.0, "")?;
+        report_progress(watcher, "checking", 0.0, "")?;
         let parts = self.derived.parts(&self.project);
         let mut found = [0; 2];
         let mut notes = Vec::new();
@@ -303,26 +303,32 @@ impl Session {
     }
 
     fn nest(&mut self, watcher: &mut dyn Watcher) -> Outcome {
-        let layings = self.derived.layings(&self.project, watcher)?;
+        let finished_markers = self.derived.finished_markers(&self.project, watcher)?;
         let mut events = Vec::new();
-        for laying in layings.iter() {
-            events.push(Event::Nested(laying.summary()));
-            events.extend(laying.marker.unplaced.iter().map(|unplaced| Event::Warned {
-                message: format!(
-                    "piece {:?}: {}",
-                    laying.items[unplaced.item].name, unplaced.reason
-                ),
-            }));
+        for finished in finished_markers.iter() {
+            events.push(Event::Nested(finished.summary()));
+            events.extend(
+                finished
+                    .marker
+                    .unplaced
+                    .iter()
+                    .map(|unplaced| Event::Warned {
+                        message: format!(
+                            "piece {:?}: {}",
+                            finished.items[unplaced.item].name, unplaced.reason
+                        ),
+                    }),
+            );
         }
         Ok(events)
     }
 
     fn assemble(&mut self, watcher: &mut dyn Watcher) -> Outcome {
-        tell(watcher, "making the mannequin", 0.0, "")?;
+        report_progress(watcher, "making the mannequin", 0.0, "")?;
         self.derived.mannequin(&self.project)?;
-        tell(watcher, "meshing", 0.5, "")?;
-        let garment = self.derived.dressed(&self.project)?.garment.clone();
-        tell(watcher, "meshing", 1.0, "")?;
+        report_progress(watcher, "meshing", 0.5, "")?;
+        let garment = self.derived.outfit(&self.project)?.garment.clone();
+        report_progress(watcher, "meshing", 1.0, "")?;
         let mut events = vec![Event::Assembled(Assembled {
             panels: garment.panels.len(),
             vertices: garment.positions.len(),
@@ -336,11 +342,11 @@ impl Session {
     fn drape(&mut self, inputs: &[StampedInput], watcher: &mut dyn Watcher) -> Outcome {
         let mut events = Vec::new();
         let mut from = 0.0;
-        if !self.derived.is_dressed() {
+        if !self.derived.has_outfit() {
             from = 0.05;
-            events = self.assemble(&mut Part::new(watcher, 0.0, from))?;
+            events = self.assemble(&mut ProgressShare::new(watcher, 0.0, from))?;
         }
-        let mut part = Part::new(watcher, from, 1.0);
+        let mut part = ProgressShare::new(watcher, from, 1.0);
         let drape = self.derived.drape(&self.project, inputs, &mut part)?;
         events.extend(drape.events());
         Ok(events)
@@ -364,7 +370,7 @@ impl Session {
         files.push(("timing.json".into(), timing.to_json().into_bytes()));
         write_all_atomically(dir, &files)?;
         // The files are on the disk: the wish to stop comes too late.
-        let _ = tell(watcher, "writing", 1.0, "");
+        let _ = report_progress(watcher, "writing", 1.0, "");
         let mut events = vec![Event::FilesWritten {
             paths: files.iter().map(|(name, _)| dir.join(name)).collect(),
         }];

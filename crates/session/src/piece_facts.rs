@@ -125,7 +125,7 @@ pub struct JointFacts {
     pub step_mm: f64,
 }
 
-/// Every piece of a draft in numbers; pieces without a cut line are left out, as checks tell of them.
+/// Every piece of a draft in numbers; pieces without a cut line are left out, as checks report them.
 pub fn piece_facts((pattern, draft): (&Pattern, &Draft), size: Option<&str>) -> Vec<PieceFacts> {
     let pieces = draft.pieces.iter().enumerate();
     let facts = pieces.filter_map(|(k, piece)| {

@@ -1,7 +1,7 @@
 //! Pieces printed on paper: laid out to save it, in one size or all.
 
 use crate::tools::{check_ending, sound_draft};
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{Project, SessionError, Watcher};
 use std::path::Path;
 use std::sync::Arc;
@@ -105,7 +105,7 @@ pub fn print_pattern(
     let remedy = "prints are written as NAME.pdf or NAME.svg";
     check_ending(to, &[".pdf", ".svg"], remedy)?;
     let (job, printed) = print_job(project, options, watcher)?;
-    tell(watcher, "writing", ARRANGED, "")?;
+    report_progress(watcher, "writing", ARRANGED, "")?;
     let is_svg = to.to_string_lossy().to_lowercase().ends_with(".svg");
     let bytes = match is_svg {
         true => job.svg().map(String::into_bytes),
@@ -132,7 +132,7 @@ pub fn print_job(
     watcher: &mut dyn Watcher,
 ) -> Result<(PrintJob, Printed), SessionError> {
     check_numbers(options)?;
-    tell(watcher, "drafting", 0.0, "")?;
+    report_progress(watcher, "drafting", 0.0, "")?;
     let pattern = &project.pattern;
     let sizes = drafted(project, &options.sizes)?;
     check_pieces(pattern, &options.pieces)?;
@@ -521,7 +521,7 @@ fn searched(
     let mut stopped = false;
     let mut follow = |progress: Progress| {
         let share = (from + part * progress.done.clamp(0.0, 1.0)).min(ARRANGED);
-        if tell(watcher, "arranging", share, "").is_err() {
+        if report_progress(watcher, "arranging", share, "").is_err() {
             stopped = true;
             cancel.store(true, std::sync::atomic::Ordering::Relaxed);
         }

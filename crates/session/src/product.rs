@@ -1,4 +1,4 @@
-//! A draped garment as glTF and OBJ: one part a panel, each with its own place in the pattern.
+//! Writes a draped garment as glTF and OBJ, one group for each panel.
 
 use crate::drape::Drape;
 use std::ops::Range;

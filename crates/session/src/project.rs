@@ -153,7 +153,7 @@ impl Project {
     /// The measurements of the mannequin [m], [rad]: those of the file; else those of the named
     /// size, or of the pattern's base size where no body was chosen; else the figure's averages.
     /// What they leave out is predicted from them.
-    pub fn wearer(&self) -> Measurements {
+    pub fn body_measurements(&self) -> Measurements {
         let size = match &self.body {
             BodyChoice::Measured { measurements, .. } | BodyChoice::Shaped { measurements, .. } => {
                 Some(&**measurements)
@@ -174,7 +174,7 @@ impl Project {
             .size
             .as_deref()
             .and_then(|name| pattern.size_named(name));
-        named.map_or_else(|| (&self.wearer()).into(), Wearer::from)
+        named.map_or_else(|| (&self.body_measurements()).into(), Wearer::from)
     }
 
     /// Whom the pattern is drafted for: the named size; else the body that was chosen; else the
@@ -187,7 +187,7 @@ impl Project {
             .and_then(|name| pattern.size_named(name));
         named.map_or_else(
             || Wearer {
-                measurements: self.wearer(),
+                measurements: self.body_measurements(),
                 size: match self.body {
                     BodyChoice::OfPattern => pattern.base().map(|size| size.id),
                     _ => None,

@@ -4,9 +4,9 @@ use crate::Project;
 use crate::choice::figure_name;
 use crate::crossings::Tangles;
 use crate::drape::Drape;
-use crate::dressed::DraftedPart;
+use crate::outfit::DraftedPart;
 use serde::Serialize;
-use toile_marker::Laying;
+use toile_marker::FinishedMarker;
 use toile_pattern::{Draft, DraftSpan};
 
 /// How a garment comes to rest, in words.
@@ -222,7 +222,7 @@ impl Report {
             size: project.size_name().map(str::to_owned),
             fabric: fabric_names(project, parts),
             body: figure_name(project.figure()),
-            body_height_m: project.wearer().get("height"),
+            body_height_m: project.body_measurements().get("height"),
             area_m2: 1e-4 * pieces.iter().map(|p| p.area_cm2).sum::<f64>(),
             pieces,
             seams,
@@ -233,19 +233,19 @@ impl Report {
     }
 
     /// Adds the markers.
-    pub fn add_markers(&mut self, layings: &[Laying]) {
-        for laying in layings {
+    pub fn add_markers(&mut self, finished_markers: &[FinishedMarker]) {
+        for finished in finished_markers {
             self.markers.push(MarkerReport {
-                fabric: laying.fabric.clone(),
-                pieces: laying.marker.placements.len(),
-                unplaced: laying.marker.unplaced.len(),
-                width_m: laying.strip.width,
-                length_m: laying.marker.length,
-                cut_area_m2: laying.cut_area(),
-                efficiency: laying.marker.efficiency,
-                utilisation: laying.marker.utilisation,
-                sound: laying.verdict.is_sound(),
-                penetration_max_m: laying.verdict.deepest,
+                fabric: finished.fabric.clone(),
+                pieces: finished.marker.placements.len(),
+                unplaced: finished.marker.unplaced.len(),
+                width_m: finished.strip.width,
+                length_m: finished.marker.length,
+                cut_area_m2: finished.cut_area(),
+                efficiency: finished.marker.efficiency,
+                utilisation: finished.marker.utilisation,
+                sound: finished.verdict.is_sound(),
+                penetration_max_m: finished.verdict.deepest,
             });
         }
     }

@@ -6,7 +6,7 @@ use crate::open::read_input;
 use crate::scene_builder::Builder;
 use crate::scene_checkpoint::{CheckpointTimes, RunOptions, SavedRun};
 use crate::timing::Timing;
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{SessionError, Watcher};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use toile_drape::{Kind, Layers, Object, ObjectId, Scene, SceneRun, Surface, World};
 use toile_interchange::{
-    FormatError, ObjGroup, ObjMesh, Wanted, read_scene, write_all_atomically, write_obj,
+    ExpectedKind, FormatError, ObjGroup, ObjMesh, read_scene, write_all_atomically, write_obj,
 };
 
 /// What running a scene made.
@@ -44,7 +44,7 @@ pub fn run_scene(
     let mut timing = Timing::default();
     timing.restart();
     let start = Instant::now();
-    let text = read_input(path, Wanted::Scene)?;
+    let text = read_input(path, ExpectedKind::Scene)?;
     let wrong = |error| SessionError::Format {
         path: path.to_owned(),
         error,
@@ -101,7 +101,7 @@ pub fn run_scene(
             };
             saved.write(folder)?;
         }
-        tell(
+        report_progress(
             watcher,
             "simulating",
             run.share(),

@@ -5,7 +5,7 @@ use crate::choice::figure_named;
 use crate::derived::Derived;
 use crate::fabrics::open_fabric;
 use crate::open::read_input;
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
 use std::path::Path;
 use toile_drape::{
@@ -14,7 +14,7 @@ use toile_drape::{
 };
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{
-    EndFile, FormatError, MaterialFile, ObjectFile, SceneFile, Wanted, read_obj,
+    EndFile, ExpectedKind, FormatError, MaterialFile, ObjectFile, SceneFile, read_obj,
 };
 /// Turns a scene file into a scene.
 pub(crate) struct Builder<'a> {
@@ -233,7 +233,7 @@ impl Builder<'_> {
 
     fn obj(&self, name: &str) -> Result<TriangleMesh, SessionError> {
         let path = self.base.join(name);
-        let text = read_input(&path, Wanted::Mesh)?;
+        let text = read_input(&path, ExpectedKind::Mesh)?;
         let mesh =
             read_obj(text.as_bytes()).map_err(|error| SessionError::Format { path, error })?;
         Ok(mesh.into_triangle_mesh())
@@ -283,7 +283,7 @@ impl Builder<'_> {
         let mut run = GarmentRun::new(setup)?;
         while run.progress().stage == Stage::Sewing {
             let progress = run.advance()?;
-            tell(
+            report_progress(
                 watcher,
                 "sewing",
                 0.0,

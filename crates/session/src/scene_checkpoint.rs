@@ -1,4 +1,4 @@
-//! The file by which an interrupted run of a scene goes on.
+//! The checkpoint file from which an interrupted run of a scene is resumed.
 
 use crate::SessionError;
 use serde::{Deserialize, Serialize};

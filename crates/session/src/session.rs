@@ -4,7 +4,7 @@ use crate::derived::Derived;
 use crate::history::History;
 use crate::journal::Journal;
 use crate::timing::Timing;
-use crate::watcher::Part;
+use crate::watcher::ProgressShare;
 use crate::{Command, DrapeResult, Draped, Event, GarmentJob, Project, SessionError, Watcher};
 use std::path::Path;
 use std::sync::Arc;
@@ -176,7 +176,7 @@ impl Session {
         let mut events = Vec::new();
         for command in commands {
             let next = done + command.weight();
-            let mut part = Part::new(watcher, done / total, next / total);
+            let mut part = ProgressShare::new(watcher, done / total, next / total);
             events.extend(self.execute(command.clone(), &mut part)?);
             done = next;
         }

@@ -1,21 +1,23 @@
-//! What a drape is set up from: draft, fabrics and mannequin. The coarser mesh of a fine quality is added in
-//! `derived.rs`.
+//! The setup of a drape, made from draft, fabrics and mannequin. `derived.rs` adds the coarser mesh of a fine
+//! quality.
 
 use crate::Quality;
-use crate::dressed::{DraftedPart, Dressed, GarmentPart, MeshedPart};
 use crate::fabrics::cloth_material;
 use crate::mannequin_source::MannequinSource;
+use crate::outfit::{DraftedPart, GarmentPart, MeshedPart, Outfit};
 use std::sync::Arc;
-use toile_assembly::{Garment, Levels, Limb, Wearer};
+use toile_assembly::{Garment, Levels, Limb, PlacementBody};
 use toile_body::{Mannequin, Part};
-use toile_drape::{Cloth, ContactSettings, GarmentLevel, GarmentSetup, RestSettings, SewSettings};
+use toile_drape::{
+    Cloth, ContactSettings, GarmentLevel, GarmentSetup, Material, RestSettings, SewSettings,
+};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_pattern::{BodyPart, Draft, PieceId};
 
 /// Acceleration of gravity [m/s2].
 pub(crate) const GRAVITY: f64 = 9.81;
 
-/// A garment ready to be sewn and draped, and what is needed to map the result back to panels.
+/// A garment ready to be sewn and draped, with the map from the result back to panels.
 #[derive(Clone)]
 pub struct GarmentJob {
     /// The session's revision it was made from.
@@ -56,11 +58,11 @@ pub struct JobPanel {
 
 /// Builds the drape of a garment that was meshed and placed.
 pub(crate) fn job(
-    dressed: &Dressed,
+    outfit: &Outfit,
     (body, skin): (MannequinSource, Arc<SurfaceTree>),
     quality: Quality,
 ) -> GarmentJob {
-    let (draft, garment) = (&*dressed.draft, dressed.garment.clone());
+    let (draft, garment) = (&*outfit.draft, outfit.garment.clone());
     let panels = garment
         .panels
         .iter()
@@ -74,7 +76,7 @@ pub(crate) fn job(
         })
         .collect();
     let setup = GarmentSetup {
-        levels: vec![level(dressed)],
+        levels: vec![level(outfit)],
         counted: counted(draft, &garment, 2.0 * quality.edge_length()),
         colliders: vec![skin],
         contact: ContactSettings {
@@ -94,12 +96,12 @@ pub(crate) fn job(
         setup,
         garment,
         panels: Arc::new(panels),
-        parts: dressed.parts.clone(),
+        parts: outfit.parts.clone(),
         origin: Arc::new(JobOrigin {
             body,
             quality,
-            drafted: dressed.meshed.iter().map(|m| m.part.clone()).collect(),
-            meshed: dressed.meshed.clone(),
+            drafted: outfit.meshed.iter().map(|m| m.part.clone()).collect(),
+            meshed: outfit.meshed.clone(),
         }),
     }
 }
@@ -108,17 +110,17 @@ pub(crate) fn job(
 /// body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside it.
 const CLOTH_OFFSET: f64 = 2e-3;
 
-pub(crate) fn level(dressed: &Dressed) -> GarmentLevel {
-    let garment = &dressed.garment;
-    let first = dressed.parts.first().map(|part| part.layer);
+pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
+    let garment = &outfit.garment;
+    let first = outfit.parts.first().map(|part| part.layer);
     let mut layer = Vec::new();
-    if dressed.parts.iter().any(|part| Some(part.layer) != first) {
-        for part in dressed.parts.iter() {
+    if outfit.parts.iter().any(|part| Some(part.layer) != first) {
+        for part in outfit.parts.iter() {
             layer.resize(part.vertices.end, part.layer);
         }
     }
     GarmentLevel {
-        cloth: cloth(&dressed.draft, garment),
+        cloth: cloth(&outfit.draft, garment),
         stitches: garment.stitches.iter().map(|s| s.vertices).collect(),
         layer,
     }
@@ -130,12 +132,16 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
     let mut rest = vec![[Vec2::zeros(); 3]; garment.triangles.len()];
     let mut material_of = vec![0; garment.triangles.len()];
     let mut panel_of = vec![0; garment.triangles.len()];
+    // A fabric that no panel is cut from must not act: contact and sewing go by the materials listed.
+    let mut fabrics: Vec<usize> = garment.panels.iter().map(|panel| panel.fabric).collect();
+    fabrics.sort_unstable();
+    fabrics.dedup();
     for (index, panel) in garment.panels.iter().enumerate() {
         let (sine, cosine) = panel.grain.sin_cos();
         let turned = |p: Vec2| Vec2::new(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
         for t in panel.triangles.clone() {
             rest[t] = garment.triangles[t].map(|v| turned(garment.flat[v as usize]));
-            material_of[t] = panel.fabric as u16;
+            material_of[t] = fabrics.partition_point(|&fabric| fabric < panel.fabric) as u16;
             panel_of[t] = index as u32;
         }
     }
@@ -145,7 +151,14 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
         rest,
         material: material_of,
         panel: panel_of,
-        materials: draft.fabrics.iter().map(cloth_material).collect(),
+        materials: (fabrics.into_iter())
+            .map(|fabric| {
+                draft
+                    .fabrics
+                    .get(fabric)
+                    .map_or_else(Material::default, cloth_material)
+            })
+            .collect(),
     }
 }
 
@@ -186,10 +199,10 @@ fn body_part(part: Part) -> BodyPart {
     }
 }
 
-/// What placement needs to know of a mannequin.
-pub(crate) fn wearer(mannequin: &Mannequin) -> Wearer<'_> {
+/// A mannequin as the placement of panels takes it.
+pub(crate) fn placement_body(mannequin: &Mannequin) -> PlacementBody<'_> {
     let levels = mannequin.levels();
-    Wearer {
+    PlacementBody {
         skin: mannequin.skin_tree(),
         limbs: mannequin
             .parts()

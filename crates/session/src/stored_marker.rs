@@ -1,10 +1,10 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
 use crate::export::File;
-use crate::laying::watched;
 use crate::markers::there_are;
+use crate::watched_search::watched;
 use crate::{
-    Command, MarkerFormat, Nested, PatternFormat, Session, SessionError, Silent, Watcher,
+    Command, MarkerFormat, MarkerSummary, PatternFormat, Session, SessionError, Silent, Watcher,
     open_pattern,
 };
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub fn nest_marker(
     path: &Path,
     job: &MarkerJob,
     (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<(Nested, Vec<PathBuf>), SessionError> {
+) -> Result<(MarkerSummary, Vec<PathBuf>), SessionError> {
     let opened = open_pattern(path)?;
     let pattern = &opened.pattern;
     let id = pattern.marker_named(&job.name).map(|marker| marker.id);
@@ -56,7 +56,7 @@ pub fn nest_marker(
     if let Some(how) = job.search {
         let search = session.marker_search(id)?;
         let found = watched(watcher, |follow| search.run(how, follow))?;
-        notes.clone_from(&found.found.nested.notes);
+        notes.clone_from(&found.found.summary.notes);
         if session.adopt_marker(found)?.is_none() {
             let what = "the marker changed while it was searched for; search again";
             return Err(SessionError::Conflict(what.to_owned()));
@@ -65,15 +65,15 @@ pub fn nest_marker(
         session.execute(save, &mut Silent)?;
         paths.push(path);
     }
-    let (mut nested, files) = written(&mut session, id, &job.formats)?;
+    let (mut summary, files) = written(&mut session, id, &job.formats)?;
     for note in notes {
-        if !nested.notes.contains(&note) {
-            nested.notes.push(note);
+        if !summary.notes.contains(&note) {
+            summary.notes.push(note);
         }
     }
     write_all_atomically(folder, &files)?;
     paths.extend(files.iter().map(|(name, _)| folder.join(name)));
-    Ok((nested, paths))
+    Ok((summary, paths))
 }
 
 /// A marker as it lies, in a few numbers and as files.
@@ -81,16 +81,16 @@ fn written(
     session: &mut Session,
     id: MarkerId,
     formats: &[MarkerFormat],
-) -> Result<(Nested, Vec<File>), SessionError> {
+) -> Result<(MarkerSummary, Vec<File>), SessionError> {
     let laid = session.marker(id)?;
     let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
-    let layings = [laid.laying()];
+    let finished_markers = [laid.finished()];
     let mut files = Vec::new();
-    let lost = marker_files((&name, formats), &layings, &mut files)?;
-    let mut nested = layings[0].summary();
-    nested.notes.extend(layings[0].faults());
-    nested.notes.extend(lost.into_iter().flatten());
-    Ok((nested, files))
+    let lost = marker_files((&name, formats), &finished_markers, &mut files)?;
+    let mut summary = finished_markers[0].summary();
+    summary.notes.extend(finished_markers[0].faults());
+    summary.notes.extend(lost.into_iter().flatten());
+    Ok((summary, files))
 }
 
 /// Storing writes the whole file anew: what this program does not know would be lost.

@@ -1,14 +1,14 @@
 //! What each rule of the trade costs: the same garments laid with and without it, with the same
 //! number of evaluations.
 
-use crate::laying::lay_watched;
-use crate::marking::drafts_of;
-use crate::watcher::Part;
+use crate::nest_patterns::drafts_of;
+use crate::watched_search::lay_watched;
+use crate::watcher::ProgressShare;
 use crate::{Budget, GivenFlaw, Nap, NestOptions, SessionError, Spread, Watcher};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_interchange::{ANY_NAME, Metres, PieceSettings};
-use toile_marker::{Garments, Laying};
+use toile_marker::{FinishedMarker, Garments};
 use toile_nesting::Fold;
 use toile_pattern::Pattern;
 
@@ -80,7 +80,7 @@ fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
         }),
         rule("three flaws of 50 mm, 5 mm kept from them", move |o| {
             for (name, [length, width]) in &fabrics {
-                o.defects.extend([1.0, 2.0, 3.0].map(|k| GivenFlaw {
+                o.flaws.extend([1.0, 2.0, 3.0].map(|k| GivenFlaw {
                     fabric: Some(name.clone()),
                     place: [length * k / 4.0, width * k / 4.0, 0.06, 0.06],
                 }));
@@ -143,13 +143,13 @@ pub fn study_rules(
             let mut own = options.clone();
             change(&mut own);
             own.seed = options.seed.wrapping_add(seed);
-            for laying in lay_watched(&garments, &own, watcher)? {
-                found.add(&laying);
+            for finished in lay_watched(&garments, &own, watcher)? {
+                found.add(&finished);
             }
         }
         Ok::<_, SessionError>(found.mean(seeds as f64))
     };
-    let base = try_rule(&|_| {}, &mut Part::new(watcher, 0.0, 0.06))?;
+    let base = try_rule(&|_| {}, &mut ProgressShare::new(watcher, 0.0, 0.06))?;
     let area = base.area;
     // Pieces that lie nowhere take no fabric: then there is nothing to compare.
     let efficiency = |found: &Found| match found.unplaced {
@@ -170,7 +170,7 @@ pub fn study_rules(
     let count = rules.len() as f64;
     for (k, (words, change)) in rules.iter().enumerate() {
         let share = |k: f64| 0.06 + 0.94 * k / count;
-        let mut part = Part::new(watcher, share(k as f64), share(k as f64 + 1.0));
+        let mut part = ProgressShare::new(watcher, share(k as f64), share(k as f64 + 1.0));
         match try_rule(change, &mut part) {
             Ok(found) => rows.push(row(words, &found)),
             Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
@@ -202,19 +202,19 @@ struct Found {
 }
 
 impl Found {
-    fn add(&mut self, laying: &Laying) {
-        let nested = laying.summary();
-        let layers = match laying.strip.fold {
+    fn add(&mut self, finished: &FinishedMarker) {
+        let summary = finished.summary();
+        let layers = match finished.strip.fold {
             Fold::Open => 1.0,
             Fold::Lower | Fold::Both => 2.0,
         };
-        self.fabric += nested.length;
-        self.area += laying.cut_area();
-        let own = self.fabrics.entry(nested.fabric).or_default();
-        own[0] = own[0].max(nested.length);
-        own[1] = own[1].max(nested.width * layers);
-        self.fabric_area += nested.length * nested.width * layers;
-        self.unplaced += nested.unplaced;
+        self.fabric += summary.length;
+        self.area += finished.cut_area();
+        let own = self.fabrics.entry(summary.fabric).or_default();
+        own[0] = own[0].max(summary.length);
+        own[1] = own[1].max(summary.width * layers);
+        self.fabric_area += summary.length * summary.width * layers;
+        self.unplaced += summary.unplaced;
     }
 
     fn mean(self, seeds: f64) -> Self {

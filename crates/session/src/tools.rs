@@ -8,12 +8,12 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
-    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, ProportionBox, Scaling,
-    Scan, ScanLandmarks, Skeleton,
+    BodyError, Conflict, Description, Deviation, Figure, Fit, Mannequin, Motion, ProportionBox,
+    Scaling, Scan, ScanLandmarks, Skeleton,
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    FileError, FormatError, ObjGroup, ObjMesh, Wanted, read_bvh, read_mannequin, read_obj,
+    ExpectedKind, FileError, FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj,
     read_x3d, write_atomically, write_body_glb, write_garmentcode, write_mannequin,
     write_measurements, write_obj, write_pattern,
 };
@@ -146,7 +146,7 @@ pub fn mesh_panels(
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyReport {
     /// What was asked for, then what was predicted.
-    pub rows: Vec<Gap>,
+    pub rows: Vec<Deviation>,
     /// What was asked for and no tape takes from a standing body.
     pub untaken: Vec<String>,
     /// What was asked for and contradicts itself.
@@ -199,7 +199,7 @@ impl Moment {
         }
         let path = Path::new(&self.motion);
         let ending = path.extension().map(|end| end.to_ascii_lowercase());
-        let text = read_input(path, Wanted::Motion)?;
+        let text = read_input(path, ExpectedKind::Motion)?;
         let read = match ending.as_ref().and_then(|end| end.to_str()) {
             Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d(&text, skeleton),
             _ => read_bvh(&text, skeleton).map(|motion| (motion, Vec::new())),
@@ -228,13 +228,13 @@ fn open_scan(mesh: &Path, landmarks: Option<&Path>) -> Result<Scan, SessionError
         error,
     };
     let bytes = std::fs::read(mesh).map_err(|error| FileError::from_io("read", mesh, &error))?;
-    Wanted::Mesh
+    ExpectedKind::Mesh
         .check(&bytes)
         .map_err(|error| at(mesh, error))?;
     let read = read_obj(&bytes).map_err(|error| at(mesh, error))?;
     let given = match landmarks {
         None => ScanLandmarks::default(),
-        Some(path) => serde_json::from_str(&read_input(path, Wanted::SmallJson)?).map_err(|error| {
+        Some(path) => serde_json::from_str(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| {
             let remedy = "give heights such as \"waist\": 1.05 and points such as \"nape\": [0, 1.4, -0.05] in metres";
             at(path, FormatError::new("the landmarks", error.to_string(), remedy))
         })?,
@@ -293,9 +293,11 @@ pub fn fit_mesh(
 /// # Errors
 /// The file cannot be read.
 pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
-    read_mannequin(&read_input(path, Wanted::Mannequin)?).map_err(|error| SessionError::Format {
-        path: path.to_owned(),
-        error,
+    read_mannequin(&read_input(path, ExpectedKind::Mannequin)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
     })
 }
 
@@ -374,7 +376,9 @@ pub fn make_body(
         )));
     }
     let mannequin = match source {
-        BodySource::Wearer(project) => Mannequin::new(&project.wearer(), project.figure())?,
+        BodySource::Wearer(project) => {
+            Mannequin::new(&project.body_measurements(), project.figure())?
+        }
         BodySource::Described(description) => Mannequin::from_description(description)?,
     };
     let motion = moment.map(|m| m.motion_for(&mannequin)).transpose()?;

@@ -1,25 +1,25 @@
-//! How the outside follows long work and stops it.
+//! Progress reports of long work, and the request to stop it.
 
 use crate::SessionError;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Follows long work; may stop it.
+/// Receives progress reports of long work, and may stop it.
 pub trait Watcher {
-    /// Told again and again: the stage, its share of the work done in 0..=1 (it never falls within
+    /// Called repeatedly with the stage, the share of the work done in 0..=1 (it never falls within
     /// a command), and a detail. `Break` cancels: the command fails with
     /// [`SessionError::Cancelled`] and leaves everything as it was.
     fn progress(&mut self, stage: &str, share: f64, detail: &str) -> ControlFlow<()>;
 
-    /// Set from anywhere when the work is to stop, if there is such a flag: work that is not told
-    /// on looks at it.
+    /// A flag that any thread may set to stop the work, if there is one; work polls it where it reports no
+    /// progress.
     fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
         None
     }
 }
 
-/// A watcher that watches nothing.
+/// A watcher that ignores all reports and never stops the work.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
@@ -35,15 +35,15 @@ impl<F: FnMut(&str, f64, &str) -> ControlFlow<()>> Watcher for F {
     }
 }
 
-/// Maps the share of a part of the work into the share of the whole, which never falls.
-pub(crate) struct Part<'a> {
+/// Maps the progress of one part of the work to a share of the whole, which never falls.
+pub(crate) struct ProgressShare<'a> {
     whole: &'a mut dyn Watcher,
     from: f64,
     to: f64,
     reached: f64,
 }
 
-impl<'a> Part<'a> {
+impl<'a> ProgressShare<'a> {
     /// The part from one share of the whole to another.
     pub fn new(whole: &'a mut dyn Watcher, from: f64, to: f64) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl<'a> Part<'a> {
     }
 }
 
-impl Watcher for Part<'_> {
+impl Watcher for ProgressShare<'_> {
     fn progress(&mut self, stage: &str, share: f64, detail: &str) -> ControlFlow<()> {
         let share = self.from + (self.to - self.from) * share.clamp(0.0, 1.0);
         self.reached = self.reached.max(share);
@@ -67,8 +67,8 @@ impl Watcher for Part<'_> {
     }
 }
 
-/// Tells the watcher, and turns its wish to stop into an error.
-pub(crate) fn tell(
+/// Reports progress to the watcher; a request to stop becomes [`SessionError::Cancelled`].
+pub(crate) fn report_progress(
     watcher: &mut dyn Watcher,
     stage: &str,
     share: f64,

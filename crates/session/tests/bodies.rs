@@ -50,7 +50,7 @@ fn a_mannequin_file_is_worn_edited_and_undone() {
     run(&mut session, wear).unwrap();
     assert_eq!(session.project().figure(), Figure::Man);
     assert!(session.project().body.words().contains("own.json"));
-    let waist = |s: &Session| s.project().wearer().get("waist").unwrap();
+    let waist = |s: &Session| s.project().body_measurements().get("waist").unwrap();
     let before = waist(&session);
     assert_eq!(saved(&mut session, folder.path()), grown);
     // Several edits are one step; the body then stands by no file.
@@ -95,7 +95,7 @@ fn the_garment_is_made_on_the_edited_body() {
     run(&mut session, weigh(2, 1.3)).unwrap();
     let project = session.project().clone();
     assert!(matches!(project.body, BodyChoice::Shaped { .. }));
-    assert!(project.wearer().get("height").is_some());
+    assert!(project.body_measurements().get("height").is_some());
     // What is written in the journal makes the same body again.
     let lines = toile_session::journal_lines(&session.journal()).unwrap();
     let mut again = Session::new();

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use support::{BAND, band};
 use toile_body::Figure;
-use toile_pattern::{Edit, Entity, Point, PointId, PointRule, SizeId, plan};
+use toile_pattern::{Edit, Entity, Fabric, Pattern, Point, PointId, PointRule, SizeId, plan};
 use toile_session::{
     BodyChoice, Command, Event, Project, Quality, Session, SessionError, Silent, journal_lines,
     read_journal,
@@ -135,6 +135,23 @@ fn what_was_made_stays_while_the_draft_is_the_same() {
 }
 
 #[test]
+fn a_fabric_that_nothing_is_cut_from_does_not_act() {
+    let (mut session, _folder) = opened();
+    let materials = |session: &mut Session| {
+        let setup = session.garment_setup().unwrap().setup;
+        setup.levels.last().unwrap().cloth.materials.clone()
+    };
+    let before = materials(&mut session);
+    let mut pattern = Pattern::clone(&session.project().pattern);
+    let mut felt = Fabric::poplin(pattern.ids.take());
+    (felt.name, felt.thickness) = ("felt".into(), 0.03);
+    let put = Edit::Put(Entity::Fabric(Arc::new(felt)));
+    run(&mut session, edit(vec![put])).unwrap();
+    assert_eq!(session.project().pattern.fabrics.len(), 2);
+    assert_eq!(materials(&mut session), before);
+}
+
+#[test]
 fn a_new_pattern_is_empty_and_saved_only_when_it_was_changed() {
     let (mut session, _folder) = opened();
     let name = "A skirt".to_owned();
@@ -226,7 +243,11 @@ fn bodies_and_sizes_decide_the_measurements() {
     let (mut session, folder) = opened();
     let waist = |session: &Session| {
         let project = session.project();
-        [project.wearer(), project.drafted_to().measurements].map(|t| t.get("waist").unwrap())
+        [
+            project.body_measurements(),
+            project.drafted_to().measurements,
+        ]
+        .map(|t| t.get("waist").unwrap())
     };
     assert_eq!(session.project().figure(), Figure::Woman);
     assert_eq!(waist(&session), [0.84, 0.84]);

@@ -98,9 +98,9 @@ fn a_marker_tells_of_them_once_each_in_its_notes() {
         ..NestOptions::default()
     };
     let place = (folder.path(), &mut Silent as _);
-    let (nested, _) = nest_patterns(&[path], &options, place).unwrap();
-    let notes = nested[0].notes.iter().map(|note| &**note);
-    assert_eq!(told(notes), [1, 1], "{:?}", nested[0].notes);
+    let (summary, _) = nest_patterns(&[path], &options, place).unwrap();
+    let notes = summary[0].notes.iter().map(|note| &**note);
+    assert_eq!(told(notes), [1, 1], "{:?}", summary[0].notes);
 }
 
 #[test]

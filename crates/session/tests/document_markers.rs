@@ -12,8 +12,9 @@ use toile_pattern::{
     Spread, plan,
 };
 use toile_session::{
-    Budget, Command, Event, Follow, MarkerFormat, MarkerJob, MarkerState, NestOptions, SAMPLE,
-    Search, Session, SessionError, Silent, Standing, Start, nest_marker, nest_patterns,
+    Budget, Command, Event, MarkerFormat, MarkerJob, MarkerState, NestOptions, SAMPLE, Search,
+    SearchProgress, SearchWatcher, Session, SessionError, Silent, Start, nest_marker,
+    nest_patterns,
 };
 
 const EVALUATIONS: u64 = 150_000;
@@ -58,8 +59,8 @@ fn marked(session: &mut Session) -> MarkerId {
 
 fn lay(session: &mut Session, id: MarkerId, how: (Start, Search)) -> Vec<Event> {
     let job = session.marker_search(id).unwrap();
-    let mut follow = Follow {
-        told: &mut |_| true,
+    let mut follow = SearchWatcher {
+        report: &mut |_| true,
         stop: Arc::default(),
     };
     let found = job.run(how, &mut follow).unwrap();
@@ -131,8 +132,8 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
     let start = state(&mut session, id);
     assert_eq!((start.laid, start.waiting), (0, 12));
     let run = |start: Start, session: &mut Session| {
-        let mut follow = Follow {
-            told: &mut |_| true,
+        let mut follow = SearchWatcher {
+            report: &mut |_| true,
             stop: Arc::default(),
         };
         let job = session.marker_search(id).unwrap();
@@ -143,7 +144,7 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
     let events = lay(&mut session, id, (Start::Anew, search(1)));
     assert_eq!(session.can_undo(), Some("Lay marker"));
     let told = events.iter().find_map(|event| match event {
-        Event::Nested(nested) => Some(nested.clone()),
+        Event::Nested(summary) => Some(summary.clone()),
         _ => None,
     });
     let told = told.unwrap();
@@ -158,9 +159,13 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
         (told.length, told.efficiency)
     );
     // The referee of all rules, on what is stored.
-    let laying = session.marker(id).unwrap().laying();
-    assert!(laying.verdict.is_sound(), "{:?}", laying.verdict.violations);
-    assert!(laying.verdict.overlaps.is_empty());
+    let finished = session.marker(id).unwrap().finished();
+    assert!(
+        finished.verdict.is_sound(),
+        "{:?}",
+        finished.verdict.violations
+    );
+    assert!(finished.verdict.overlaps.is_empty());
     let laid = text(&session);
     // Saved and reopened.
     let path = folder.path().join("shirt.toile.json");
@@ -187,7 +192,7 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
             .any(|pair| pair.contains(&front) && pair.contains(&back)),
         "{pairs:?}"
     );
-    assert!(!session.marker(id).unwrap().laying().verdict.is_sound());
+    assert!(!session.marker(id).unwrap().finished().verdict.is_sound());
     undo(&mut session);
     assert_eq!(text(&session), laid);
     assert_eq!(state(&mut session, id), found);
@@ -196,7 +201,7 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
     edit(&mut session, locked);
     lay(&mut session, id, (Start::Anew, search(5)));
     assert_eq!(place(&session, front), to);
-    assert!(session.marker(id).unwrap().laying().verdict.is_sound());
+    assert!(session.marker(id).unwrap().finished().verdict.is_sound());
     let kept = placements(&session, id);
     assert!(kept.iter().find(|laid| laid.piece == front).unwrap().locked);
     let as_it_lies = state(&mut session, id);
@@ -246,8 +251,8 @@ fn pieces_keep_their_places_while_fifty_points_move_and_overlaps_are_listed() {
     fresh.execute(restore, &mut Silent).unwrap();
     assert_eq!(state(&mut fresh, id), found);
     let words = |session: &mut Session| {
-        let laying = session.marker(id).unwrap().laying();
-        laying
+        let finished = session.marker(id).unwrap().finished();
+        finished
             .verdict
             .overlaps
             .iter()
@@ -281,9 +286,9 @@ fn a_document_s_marker_is_as_good_as_one_of_the_command_line() {
         };
         let folder = tempfile::tempdir().unwrap();
         let place = (folder.path(), &mut Silent as _);
-        let (nested, _) = nest_patterns(std::slice::from_ref(&path), &options, place).unwrap();
-        assert_eq!((nested.len(), nested[0].pieces), (1, 12));
-        means[0] += nested[0].efficiency / 5.0;
+        let (summary, _) = nest_patterns(std::slice::from_ref(&path), &options, place).unwrap();
+        assert_eq!((summary.len(), summary[0].pieces), (1, 12));
+        means[0] += summary[0].efficiency / 5.0;
         lay(&mut session, id, (Start::Anew, search(seed)));
         means[1] += state(&mut session, id).efficiency / 5.0;
     }
@@ -309,9 +314,9 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();
     edit(&mut session, edits);
     let job = session.marker_search(id).unwrap();
-    let mut told: Vec<Standing> = Vec::new();
-    let mut follow = Follow {
-        told: &mut |standing| {
+    let mut told: Vec<SearchProgress> = Vec::new();
+    let mut follow = SearchWatcher {
+        report: &mut |standing| {
             told.push(*standing);
             true
         },
@@ -319,8 +324,8 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     };
     let on_thread = std::thread::scope(|scope| {
         let run = scope.spawn(|| {
-            let mut follow = Follow {
-                told: &mut |_| true,
+            let mut follow = SearchWatcher {
+                report: &mut |_| true,
                 stop: Arc::default(),
             };
             job.run((Start::Anew, search(1)), &mut follow).unwrap()
@@ -334,9 +339,9 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     assert!((last.cost.unwrap() - 20.0 * length).abs() < 1e-9);
     let lengths: Vec<f64> = told.iter().filter_map(|standing| standing.length).collect();
     assert!(lengths.is_sorted_by(|a, b| a >= b), "{lengths:?}");
-    let nested = &found.found.nested;
-    assert!(nested.length <= length + 1e-9 && nested.efficiency >= efficiency - 1e-9);
-    assert_eq!(nested.currency, "EUR");
+    let summary = &found.found.summary;
+    assert!(summary.length <= length + 1e-9 && summary.efficiency >= efficiency - 1e-9);
+    assert_eq!(summary.currency, "EUR");
     assert_eq!(
         state(&mut session, id).waiting,
         12,
@@ -355,8 +360,8 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     assert_eq!(session.journal().len(), 7);
     // Stopped before anything was found.
     let job = session.marker_search(id).unwrap();
-    let mut follow = Follow {
-        told: &mut |_| false,
+    let mut follow = SearchWatcher {
+        report: &mut |_| false,
         stop: Arc::new(AtomicBool::new(true)),
     };
     let stopped = job.run((Start::Anew, search(1)), &mut follow);
@@ -388,7 +393,7 @@ fn on_folded_fabric_pairs_are_laid_once_and_halves_on_the_fold() {
     );
     assert!(twins > 0);
     lay(&mut session, id, (Start::Anew, search(1)));
-    assert!(session.marker(id).unwrap().laying().verdict.is_sound());
+    assert!(session.marker(id).unwrap().finished().verdict.is_sound());
     assert!(session.marker(id).unwrap().suspended().is_empty());
     // Of no fabric at all.
     session
@@ -418,13 +423,13 @@ fn a_marker_of_a_file_is_stored_there_and_written() {
         formats: vec![MarkerFormat::Svg, MarkerFormat::Json],
     };
     let out = folder.path().join("out");
-    let (nested, paths) = nest_marker(&path, &job, (&out, &mut Silent)).unwrap();
-    assert!(nested.sound && nested.unplaced == 0, "{nested:?}");
+    let (summary, paths) = nest_marker(&path, &job, (&out, &mut Silent)).unwrap();
+    assert!(summary.sound && summary.unplaced == 0, "{summary:?}");
     assert_eq!(paths.len(), 3);
     lay(&mut session, id, (Start::Anew, search(1)));
     let mut again = opened(path.to_str().unwrap());
     assert_eq!(text(&again), text(&session), "the same as from the window");
-    assert_eq!(state(&mut again, id).length, nested.length);
+    assert_eq!(state(&mut again, id).length, summary.length);
     let written = std::fs::read_to_string(&path).unwrap();
     let marker = std::fs::read(out.join("marker.json")).unwrap();
     // As it is stored.

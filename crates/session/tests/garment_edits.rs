@@ -10,8 +10,8 @@ use toile_drape::{GarmentRun, Stage};
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::{Edit, Entity, Panel, plan};
 use toile_session::{
-    Command, GarmentEdit, GarmentJob, LiveFrame, LiveInput, LiveRun, OtherGarment, Quality,
-    RestChange, Session, Silent, Standstill,
+    CannotFollow, Command, GarmentEdit, GarmentJob, LiveFrame, LiveInput, LiveRun, OtherGarment,
+    Quality, RestChange, Session, Silent,
 };
 
 /// A session with the band in it, meshed coarsely.
@@ -364,21 +364,21 @@ fn what_cannot_be_followed_is_told_and_the_garment_goes_on_later() {
     let quality = Quality::Fit;
     assert_eq!(
         why(Command::SetQuality { quality }),
-        Some(Standstill::Quality)
+        Some(CannotFollow::Quality)
     );
     let size = Some("L".to_owned());
-    assert_eq!(why(Command::SetSize { size }), Some(Standstill::Body));
+    assert_eq!(why(Command::SetSize { size }), Some(CannotFollow::Body));
     let fabric = Some("jersey".to_owned());
     let other = why(Command::SetFabric { fabric });
-    assert_eq!(other, Some(Standstill::Fabric("front".into())));
+    assert_eq!(other, Some(CannotFollow::Fabric("front".into())));
     let others = vec![OtherGarment { path, layer: 2 }];
     let several = why(Command::SetLayers { layer: 1, others });
-    assert_eq!(several, Some(Standstill::Garments));
+    assert_eq!(several, Some(CannotFollow::Garments));
     let pattern = session.project().pattern.clone();
     let front = pattern.panel_named("front").unwrap().id;
     let edits = plan::remove_parts(&session.evaluation(), &[front.into()]).unwrap();
     edit(&mut session, edits);
-    assert_eq!(session.garment_edit(&job).err(), Some(Standstill::Panels));
+    assert_eq!(session.garment_edit(&job).err(), Some(CannotFollow::Panels));
     session.execute(Command::Undo, &mut Silent).unwrap();
 
     // A fault: the garment is sewn, then stands, and goes on when the fault is mended.
@@ -386,7 +386,7 @@ fn what_cannot_be_followed_is_told_and_the_garment_goes_on_later() {
     live.stand_still();
     move_point(&mut session, "d", Vec2::new(0.0, -0.16));
     let fault = session.garment_edit(&job).err().unwrap();
-    assert_eq!(fault, Standstill::Faults);
+    assert_eq!(fault, CannotFollow::Faults);
     let sewn = seen(&live, |frame| frame.takes_edits);
     std::thread::sleep(Duration::from_millis(50));
     assert_eq!(sewn.stage, Stage::Swinging);

@@ -8,7 +8,7 @@ use markers::{pattern, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, GivenFlaw, MarkerFormat, Nap, NestOptions, Nested, SessionError, Silent, Spread,
+    Budget, GivenFlaw, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent, Spread,
     judge_marker_file, nest_instance, nest_patterns,
 };
 
@@ -22,7 +22,7 @@ fn options() -> NestOptions {
 
 struct Made {
     folder: tempfile::TempDir,
-    nested: Vec<Nested>,
+    summary: Vec<MarkerSummary>,
 }
 
 impl Made {
@@ -39,8 +39,8 @@ fn nest(names: &[&str], options: &NestOptions) -> Result<Made, SessionError> {
     let folder = tempfile::tempdir().unwrap();
     let patterns: Vec<PathBuf> = names.iter().map(|name| pattern(name)).collect();
     let place = (folder.path(), &mut Silent as _);
-    let (nested, _) = nest_patterns(&patterns, options, place)?;
-    Ok(Made { folder, nested })
+    let (summary, _) = nest_patterns(&patterns, options, place)?;
+    Ok(Made { folder, summary })
 }
 
 fn refused(names: &[&str], options: &NestOptions) -> String {
@@ -49,7 +49,7 @@ fn refused(names: &[&str], options: &NestOptions) -> String {
             assert!(error.is_bad_input(), "{error}");
             error.to_string()
         }
-        Ok(made) => panic!("laid: {:?}", made.nested),
+        Ok(made) => panic!("laid: {:?}", made.summary),
     }
 }
 
@@ -79,7 +79,7 @@ fn fabric_at_hand_is_shared_by_the_plies() {
             ..own
         };
         let made = nest(&["t-shirt"], &own).unwrap();
-        assert!(made.nested[0].yardage <= 4.0 + 1e-9, "{:?}", made.nested);
+        assert!(made.summary[0].yardage <= 4.0 + 1e-9, "{:?}", made.summary);
     }
 }
 
@@ -87,14 +87,14 @@ fn fabric_at_hand_is_shared_by_the_plies() {
 fn flaws_are_measured_on_the_open_fabric() {
     let mut options = options();
     options.spread = Some(Spread::Folded);
-    options.defects = vec![GivenFlaw::at([0.2, 1.2, 0.05, 0.05])];
+    options.flaws = vec![GivenFlaw::at([0.2, 1.2, 0.05, 0.05])];
     let made = nest(&["t-shirt"], &options).unwrap();
-    let flaw = &made.marker("marker.json").fabric.defects[0].outline;
+    let flaw = &made.marker("marker.json").fabric.flaws[0].outline;
     let low = flaw.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     assert!((low - 0.4).abs() < 1e-9, "{flaw:?}");
     assert!(faults(&made, "marker.json").is_empty());
     options.spread = None;
-    options.defects = vec![GivenFlaw::at([0.0, 2.0, 0.05, 0.05])];
+    options.flaws = vec![GivenFlaw::at([0.0, 2.0, 0.05, 0.05])];
     let words = refused(&["t-shirt"], &options);
     assert!(
         words.contains("flaw 1 of fabric \"jersey\" reaches"),
@@ -112,7 +112,7 @@ fn what_the_entry_of_a_fabric_leaves_open_is_that_of_all() {
     let made = nest(&["t-shirt"], &options).unwrap();
     let fabric = made.marker("marker.json").fabric;
     assert_eq!((fabric.gap, fabric.selvedge), (0.003, 0.02));
-    assert!(made.nested[0].cost.is_some());
+    assert!(made.summary[0].cost.is_some());
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn a_sound_marker_gone_on_from_never_gets_longer() {
             ..options()
         };
         let after = nest(&["trousers"], &more).unwrap();
-        assert!(after.nested[0].length <= good.nested[0].length + 1e-9);
+        assert!(after.summary[0].length <= good.summary[0].length + 1e-9);
     }
 }
 
@@ -195,7 +195,7 @@ fn our_own_markers_are_sound_to_the_check() {
     };
     let over = NestOptions {
         settings: settings(r#""pieces": { "*": { "over_flaws": true } }"#),
-        defects: vec![GivenFlaw::at([0.2, 0.4, 0.1, 0.1])],
+        flaws: vec![GivenFlaw::at([0.2, 0.4, 0.1, 0.1])],
         ..options()
     };
     let print = NestOptions {
@@ -235,7 +235,7 @@ fn piece_gaps_and_the_measure_of_a_changed_marker_are_judged_anew() {
     }
     std::fs::write(made.path("wide.json"), write_marker_json(&file).unwrap()).unwrap();
     let judged = judge_marker_file(&made.path("wide.json"), None).unwrap();
-    assert!(judged.nested.efficiency < 0.95);
+    assert!(judged.summary.efficiency < 0.95);
     let gap = |f: &String| f.contains("need 500.00 mm");
     assert!(judged.faults.iter().any(gap), "{:?}", judged.faults);
 }
@@ -292,7 +292,7 @@ fn what_lies_on_the_next_roll_is_not_missing() {
     let mut options = options();
     options.rolls = vec![(0.8, Some(0.8)), (5.0, None)];
     let made = nest(&["t-shirt"], &options).unwrap();
-    assert_eq!(made.nested.len(), 2);
+    assert_eq!(made.summary.len(), 2);
     for name in ["marker.json", "marker-2.json"] {
         assert_eq!(made.marker(name).unplaced, []);
     }
@@ -356,22 +356,22 @@ fn a_flaw_lies_on_one_fabric_and_one_roll() {
            "pieces": { "sleeve": { "fabric": "lining" } }"#,
     );
     let flaw = GivenFlaw::at([0.2, 1.45, 0.03, 0.03]);
-    options.defects = vec![flaw.clone()];
+    options.flaws = vec![flaw.clone()];
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("several: jersey, lining"), "{words}");
     let on = |fabric: &str| GivenFlaw {
         fabric: Some(fabric.to_owned()),
         ..flaw.clone()
     };
-    options.defects = vec![on("lining")];
+    options.flaws = vec![on("lining")];
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("flaw 1 of fabric \"lining\""), "{words}");
-    options.defects = vec![on("denim")];
+    options.flaws = vec![on("denim")];
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("jersey, lining"), "{words}");
-    options.defects = vec![on("jersey")];
+    options.flaws = vec![on("jersey")];
     let made = nest(&["t-shirt"], &options).unwrap();
-    let flaws = |name: &str| made.marker(name).fabric.defects.len();
+    let flaws = |name: &str| made.marker(name).fabric.flaws.len();
     assert_eq!((flaws("marker.json"), flaws("marker-2.json")), (1, 0));
     options.rolls = vec![(2.0, None), (3.0, None)];
     let words = refused(&["t-shirt"], &options);
@@ -385,6 +385,6 @@ fn what_an_instance_cannot_hold_is_told() {
     options.nap = Some(Nap::PerBundle);
     let made = nest(&["t-shirt"], &options).unwrap();
     let told = "marker-instance.json does not hold: gaps, the nap of each garment";
-    let notes = &made.nested[0].notes;
+    let notes = &made.summary[0].notes;
     assert!(notes.iter().any(|note| note == told), "{notes:?}");
 }

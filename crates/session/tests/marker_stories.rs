@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, Nap, NestOptions, Nested, SessionError, Silent, Watcher,
+    Budget, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent, Watcher,
     judge_marker_file, nest_patterns,
 };
 
@@ -33,7 +33,7 @@ fn nest(
     names: &[&str],
     options: &NestOptions,
     (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<Vec<Nested>, SessionError> {
+) -> Result<Vec<MarkerSummary>, SessionError> {
     let patterns: Vec<PathBuf> = names.iter().map(|name| pattern(name)).collect();
     nest_patterns(&patterns, options, (folder, watcher)).map(|made| made.0)
 }
@@ -71,11 +71,11 @@ fn stopping_on_the_second_fabric_keeps_the_first() {
         ..two_fabrics()
     };
     let mut watcher = Impatient(Arc::default());
-    let nested = nest(&["t-shirt"], &keeping, (folder.path(), &mut watcher)).unwrap();
+    let summary = nest(&["t-shirt"], &keeping, (folder.path(), &mut watcher)).unwrap();
     assert!(watcher.0.load(Ordering::Relaxed));
-    let found: Vec<_> = nested.iter().map(|n| (n.pieces, n.sound)).collect();
+    let found: Vec<_> = summary.iter().map(|n| (n.pieces, n.sound)).collect();
     assert_eq!(found, [(2, true), (2, true)]);
-    for one in &nested {
+    for one in &summary {
         let early = |note: &String| note.starts_with("stopped early");
         assert!(one.notes.iter().any(early), "{:?}", one.notes);
     }
@@ -95,8 +95,8 @@ fn copies_on_rolls_keep_the_numbers_of_the_fabric() {
         sizes: vec![("M".into(), 2)],
         ..options()
     };
-    let nested = nest(&["trousers"], &rolled, (folder.path(), &mut Silent)).unwrap();
-    assert_eq!(nested.len(), 2);
+    let summary = nest(&["trousers"], &rolled, (folder.path(), &mut Silent)).unwrap();
+    assert_eq!(summary.len(), 2);
     let files = ["marker.json", "marker-2.json"].map(|name| marker(folder.path(), name));
     let mut names: BTreeMap<usize, String> = BTreeMap::new();
     let mut seen = BTreeSet::new();

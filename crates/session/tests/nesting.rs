@@ -8,7 +8,7 @@ use markers::{pattern, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, MarkerSettings, read_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, NestOptions, Nested, SessionError, Silent, Spread, nest_patterns,
+    Budget, MarkerFormat, MarkerSummary, NestOptions, SessionError, Silent, Spread, nest_patterns,
 };
 
 fn options() -> NestOptions {
@@ -20,7 +20,7 @@ fn options() -> NestOptions {
 
 struct Made {
     folder: tempfile::TempDir,
-    nested: Vec<Nested>,
+    summary: Vec<MarkerSummary>,
     files: Vec<PathBuf>,
 }
 
@@ -37,11 +37,11 @@ impl Made {
 fn nest(name: &str, options: &NestOptions) -> Result<Made, SessionError> {
     let folder = tempfile::tempdir().unwrap();
     let place = (folder.path(), &mut Silent as _);
-    let (nested, files) = nest_patterns(&[pattern(name)], options, place)?;
-    assert!(nested.iter().all(|n| n.sound));
+    let (summary, files) = nest_patterns(&[pattern(name)], options, place)?;
+    assert!(summary.iter().all(|n| n.sound));
     Ok(Made {
         folder,
-        nested,
+        summary,
         files,
     })
 }
@@ -52,7 +52,7 @@ fn refused(name: &str, options: &NestOptions) -> String {
             assert!(error.is_bad_input(), "{error}");
             error.to_string()
         }
-        Ok(made) => panic!("laid: {:?}", made.nested),
+        Ok(made) => panic!("laid: {:?}", made.summary),
     }
 }
 
@@ -93,7 +93,7 @@ fn on_folded_fabric_halves_lie_on_the_fold_and_pairs_are_cut_at_once() {
     // Unless it is not to lie there.
     options.settings = settings(r#""pieces": { "front": { "on_fold": false } }"#);
     let made = nest("t-shirt", &options).unwrap();
-    let note = &made.nested[0].notes[0];
+    let note = &made.summary[0].notes[0];
     assert!(note.starts_with("front: two plies"), "{note}");
 }
 
@@ -103,7 +103,7 @@ fn face_to_face_pairs_lie_either_way_and_single_pieces_are_refused() {
     options.spread = Some(Spread::FaceToFace);
     options.price_per_metre = Some(8.0);
     let made = nest("trousers", &options).unwrap();
-    let one = &made.nested[0];
+    let one = &made.summary[0];
     assert_eq!((one.pieces, one.plies), (5, 2));
     assert!((one.yardage - 2.0 * one.length).abs() < 1e-12);
     assert!((one.cost.unwrap() - 8.0 * one.yardage).abs() < 1e-12);
@@ -136,12 +136,12 @@ fn every_fabric_has_its_own_marker_yardage_and_cost() {
     options.sizes = vec![("S".into(), 1), ("M".into(), 2)];
     let made = nest("trousers", &options).unwrap();
     let found: Vec<_> = made
-        .nested
+        .summary
         .iter()
         .map(|n| (n.fabric.as_str(), n.pieces))
         .collect();
     assert_eq!(found, [("twill", 15), ("interfacing", 9)]);
-    for (one, price) in made.nested.iter().zip([10.0, 3.0]) {
+    for (one, price) in made.summary.iter().zip([10.0, 3.0]) {
         assert!((one.cost.unwrap() - price * one.length).abs() < 1e-12);
         assert_eq!(one.currency, "EUR");
     }
@@ -167,20 +167,20 @@ fn rolls_are_filled_in_turn_and_what_fits_none_is_named() {
     );
     let made = nest("trousers", &options).unwrap();
     let rolls: Vec<_> = made
-        .nested
+        .summary
         .iter()
         .map(|n| n.roll.as_deref().unwrap())
         .collect();
     assert_eq!(rolls, ["remnant", "bolt"]);
-    let laid: usize = made.nested.iter().map(|n| n.pieces).sum();
-    assert_eq!(laid + made.nested[1].missing.len(), 5);
-    assert!((made.nested[0].cost.unwrap() - 2.0 * made.nested[0].length).abs() < 1e-12);
+    let laid: usize = made.summary.iter().map(|n| n.pieces).sum();
+    assert_eq!(laid + made.summary[1].missing.len(), 5);
+    assert!((made.summary[0].cost.unwrap() - 2.0 * made.summary[0].length).abs() < 1e-12);
     assert_eq!(made.marker("marker.json").roll.as_deref(), Some("remnant"));
     // On the command line.
     options.settings = MarkerSettings::default();
     options.rolls = vec![(1.2, Some(0.3)), (1.1, Some(0.8))];
     let made = nest("trousers", &options).unwrap();
-    let missing = &made.nested.last().unwrap().missing;
+    let missing = &made.summary.last().unwrap().missing;
     let left =
         |[_, why]: &[String; 2]| why.contains("roll 1: it is") && why.contains("roll 2: no room");
     assert!(missing.iter().any(left), "{missing:?}");

@@ -1,16 +1,16 @@
-//! What a dialog comes to.
+//! The outcome of a dialog.
 
 use super::ToileApp;
 use crate::theme::Palette;
 use egui::{Button, RichText, Ui};
 
-/// What a dialog came to.
+/// The outcome of a dialog.
 pub enum Answer {
-    /// It stays.
+    /// It stays open.
     Stay,
-    /// It is left.
+    /// It is closed.
     Leave,
-    /// It is left, and this is done.
+    /// It is closed, and this is performed.
     Do(Box<dyn FnOnce(&mut ToileApp)>),
 }
 

@@ -2,9 +2,9 @@
 
 use super::ToileApp;
 use super::notice::Notice;
-use crate::canvas::boards::Boards;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
+use crate::canvas::table_layout::TableLayout;
 use crate::tools::Planning;
 use std::path::Path;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ impl ToileApp {
     /// laid side by side.
     fn as_laid(&self, mut fragment: Fragment) -> Fragment {
         for sheet in &mut fragment.sheets {
-            let place = self.view.boards.sheet(sheet.id);
+            let place = self.view.table_layout.sheet(sheet.id);
             Arc::make_mut(sheet).on_table = place.into();
         }
         fragment
@@ -62,11 +62,11 @@ impl ToileApp {
     /// Adds an empty sheet beside what is there, level with the one that is drawn on, and draws on it from
     /// now on. All sheets are then laid where they are seen.
     pub(crate) fn new_sheet(&mut self) {
-        let bounds = self.view.boards.bounds(&self.whole_scene());
+        let bounds = self.view.table_layout.bounds(&self.whole_scene());
         let place = bounds.map_or_else(Vec2::zeros, |bounds| {
             Vec2::new(bounds.max.x + SHEETS_APART, self.view.sheet_origin().y)
         });
-        let laid = self.view.boards.laid_apart(self.base.pattern());
+        let laid = self.view.table_layout.laid_apart(self.base.pattern());
         let planned = plan::move_sheets(&self.base, &laid).and_then(|mut edits| {
             let (added, sheet) = plan::add_sheet(&self.base, None, place.into())?;
             edits.extend(added);
@@ -203,11 +203,11 @@ impl ToileApp {
         let scene = self.whole_scene();
         let mut trial = Planning::of(&self.base);
         trial.make(there.edits.clone())?;
-        let (mut with, mut boards) = (scene.clone(), self.view.boards.clone());
+        let (mut with, mut table_layout) = (scene.clone(), self.view.table_layout.clone());
         with.update(trial.evaluation(), &Arc::default(), scene.octave());
-        boards.follow(trial.evaluation().pattern());
-        let copies = on_table((&with, &boards), |id| there.parts.contains(&id));
-        let others = on_table((&scene, &self.view.boards), |_| true);
+        table_layout.follow(trial.evaluation().pattern());
+        let copies = on_table((&with, &table_layout), |id| there.parts.contains(&id));
+        let others = on_table((&scene, &self.view.table_layout), |_| true);
         let is_free = |copy: &Bounds2| !others.iter().any(|other| touch(copy, other));
         if copies.iter().all(is_free) {
             return Ok(there);
@@ -223,7 +223,7 @@ impl ToileApp {
             // Beside the panels as they are seen, with their mirrored halves.
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
                 let scene = self.whole_scene();
-                let bounds = on_table((&scene, &self.view.boards), |id| parts.contains(&id));
+                let bounds = on_table((&scene, &self.view.table_layout), |id| parts.contains(&id));
                 let bounds = bounds.into_iter().reduce(|a, b| a.union(&b));
                 let aside = bounds.map_or(0.0, |bounds| self.free_aside(&scene, &bounds));
                 let target = PasteTarget {
@@ -239,7 +239,7 @@ impl ToileApp {
 
     /// How far to the right of its place something of these bounds lies on nothing else [m].
     fn free_aside(&self, scene: &Scene, bounds: &Bounds2) -> f64 {
-        let mut panels = on_table((scene, &self.view.boards), |_| true);
+        let mut panels = on_table((scene, &self.view.table_layout), |_| true);
         panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         let mut aside = bounds.size().x + BESIDE;
         for panel in panels {
@@ -269,7 +269,7 @@ impl ToileApp {
             .iter()
             .any(|edit| matches!(edit, Edit::Put(Entity::Sheet(_))));
         let laid = match brings_sheets {
-            true => self.view.boards.laid_apart(self.base.pattern()),
+            true => self.view.table_layout.laid_apart(self.base.pattern()),
             false => Vec::new(),
         };
         let edits = plan::move_sheets(&self.base, &laid).map(|mut edits| {
@@ -285,7 +285,7 @@ impl ToileApp {
         let selection = select_pasted(self.base.pattern(), &pasted.parts);
         self.view.select(selection);
         if brings_sheets {
-            let copies = on_table((&self.view.scene, &self.view.boards), |id| {
+            let copies = on_table((&self.view.scene, &self.view.table_layout), |id| {
                 pasted.parts.contains(&id)
             });
             let room = copies.into_iter().reduce(|a, b| a.union(&b));
@@ -310,7 +310,7 @@ impl ToileApp {
             }
         };
         let evaluation = Evaluation::new(&other.pattern, other.drafted_to());
-        let right = self.view.boards.bounds(&self.whole_scene());
+        let right = self.view.table_layout.bounds(&self.whole_scene());
         let offset = right.map_or(Vec2::zeros(), |bounds| {
             Vec2::new(bounds.max.x + 0.1, bounds.min.y)
         });
@@ -360,20 +360,23 @@ impl ToileApp {
 
 /// Least rectangles on the table [m] round panels of which they or their sheets are asked for, and
 /// round sheets with no panels.
-fn on_table((scene, boards): (&Scene, &Boards), wanted: impl Fn(PartId) -> bool) -> Vec<Bounds2> {
+fn on_table(
+    (scene, table_layout): (&Scene, &TableLayout),
+    wanted: impl Fn(PartId) -> bool,
+) -> Vec<Bounds2> {
     let moved = |bounds: Bounds2, place: Vec2| Bounds2 {
         min: bounds.min + place,
         max: bounds.max + place,
     };
     let panels = scene.panels.iter();
     let panels = panels.filter(|panel| wanted(panel.id.into()) || wanted(panel.sheet.into()));
-    let panels = panels.map(|panel| moved(*panel.bounds(), boards.panel(panel.id)));
+    let panels = panels.map(|panel| moved(*panel.bounds(), table_layout.panel(panel.id)));
     let sheets = scene.sheets.iter();
     let bare = sheets.filter(|sheet| sheet.is_bare && wanted(sheet.id.into()));
     let bare = bare.map(|sheet| {
         let bounds = sheet.bounds();
         let bounds = bounds.unwrap_or_else(|| Bounds2::of([Vec2::zeros()]));
-        moved(bounds, boards.sheet(sheet.id))
+        moved(bounds, table_layout.sheet(sheet.id))
     });
     panels.chain(bare).collect()
 }

@@ -115,15 +115,15 @@ impl ToileApp {
     /// Whether what a command shows or hides is on show.
     fn is_on(&self, name: &str) -> bool {
         match name {
-            "Rulers" => self.shows.rulers,
-            "Show guides" => self.shows.guides,
+            "Rulers" => self.panes.rulers,
+            "Show guides" => self.panes.guides,
             "Isolate" => !self.view.isolated.is_empty(),
             "All sizes" => self.view.grading.is_some(),
-            "Tables" => self.shows.tables,
-            "Findings" => self.shows.findings,
-            "Garment view" => self.shows.garment,
-            "Allowance" => self.shows.allowances,
-            "Show marker" => self.shows.marker,
+            "Tables" => self.panes.tables,
+            "Findings" => self.panes.findings,
+            "Garment view" => self.panes.garment,
+            "Allowance" => self.panes.allowances,
+            "Show marker" => self.panes.marker,
             _ => false,
         }
     }
@@ -262,7 +262,7 @@ impl ToileApp {
     fn status_words(&self, palette: &Palette) -> (String, Color32) {
         if !self.notice.text.is_empty() {
             let colour = match self.notice.tone {
-                Tone::News => palette.ink,
+                Tone::WorkEvent => palette.ink,
                 Tone::Warning => palette.warning,
                 Tone::Fault => palette.fault,
             };

@@ -253,7 +253,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(SHIFT, Key::R),
         "Show or hide the rulers",
         always,
-        |app| app.shows.rulers = !app.shows.rulers,
+        |app| app.panes.rulers = !app.panes.rulers,
     ),
     command(
         Menu::View,
@@ -293,7 +293,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(PLAIN, Key::F8),
         "Show or hide measurements, variables, sizes and the history",
         always,
-        |app| app.shows.tables = !app.shows.tables,
+        |app| app.panes.tables = !app.panes.tables,
     ),
     command(
         Menu::View,
@@ -301,7 +301,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(PLAIN, Key::F9),
         "List what is found wrong with the pattern",
         always,
-        |app| app.shows.findings = !app.shows.findings,
+        |app| app.panes.findings = !app.panes.findings,
     ),
     command(
         Menu::View,
@@ -309,7 +309,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(PLAIN, Key::F7),
         "Show or hide the garment on the mannequin",
         always,
-        |app| app.shows.garment = !app.shows.garment,
+        |app| app.panes.garment = !app.panes.garment,
     ),
     command(
         Menu::View,
@@ -317,7 +317,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(SHIFT, Key::A),
         "Show or hide the lines to cut along",
         always,
-        |app| app.shows.allowances = !app.shows.allowances,
+        |app| app.panes.allowances = !app.panes.allowances,
     ),
     command(
         Menu::View,

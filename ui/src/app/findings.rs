@@ -1,4 +1,4 @@
-//! What is found wrong with the pattern, and where.
+//! The list of faults of the pattern, with their places.
 
 use super::ToileApp;
 use super::notice::Notice;
@@ -33,10 +33,10 @@ impl ToileApp {
                 palette.fault,
             ),
         };
-        let button = Button::new(RichText::new(words).color(colour)).selected(self.shows.findings);
+        let button = Button::new(RichText::new(words).color(colour)).selected(self.panes.findings);
         let tip = "List what is found wrong with the pattern";
         if ui.add(button).on_hover_text(tip).clicked() {
-            self.shows.findings = !self.shows.findings;
+            self.panes.findings = !self.panes.findings;
         }
     }
 

@@ -1,8 +1,8 @@
 //! The window: what it holds, and one frame of it.
 
-mod act;
 mod answer;
 mod arrange;
+mod background_work;
 mod bars;
 pub mod command;
 pub mod command_table;
@@ -11,18 +11,18 @@ mod document_commands;
 mod file_choice;
 mod files;
 mod findings;
-mod garment_side;
+mod garment_pane;
 mod job;
-mod making;
-mod marker_side;
+mod marker_pane;
 mod notice;
 mod pacing;
 mod palette;
+pub mod panes;
+mod perform;
 mod preferences;
 mod print_choice;
 mod printing;
 mod sewing;
-pub mod shows;
 mod tool_commands;
 mod welcome;
 
@@ -33,16 +33,16 @@ use crate::tools::Event as ToolEvent;
 use crate::views::garment::GarmentView;
 use crate::views::marker::MarkerView;
 use crate::views::pattern::PatternView;
+use background_work::{BackgroundWork, WorkEvent};
 use command_table::KeysTaken;
 use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::{Panel, Ui};
-use making::{Making, News};
-use marker_side::{SearchChoice, Searching};
+use marker_pane::{SearchChoice, Searching};
 use notice::Notice;
+use panes::{Panes, Tables};
 use preferences::Preferences;
 use printing::Printing;
-use shows::{Shows, Tables};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -68,7 +68,7 @@ pub struct ToileApp {
     pub(crate) marker_view: MarkerView,
     pub(crate) searching: Option<Searching>,
     pub(crate) search_choice: SearchChoice,
-    pub(crate) making: Making,
+    pub(crate) background_work: BackgroundWork,
     pub(crate) printing: Option<Printing>,
     /// What was copied last, if the clipboard still holds it.
     pub(crate) copied: Option<Fragment>,
@@ -79,7 +79,7 @@ pub struct ToileApp {
     pub(crate) menu_is_open: bool,
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
-    pub(crate) shows: Shows,
+    pub(crate) panes: Panes,
     /// Why the file that was asked for is not open.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
@@ -124,7 +124,7 @@ impl ToileApp {
             marker_view: MarkerView::default(),
             searching: None,
             search_choice: SearchChoice::default(),
-            making: Making::default(),
+            background_work: BackgroundWork::default(),
             printing: None,
             copied: None,
             wants_clipboard: false,
@@ -133,7 +133,7 @@ impl ToileApp {
             menu_is_open: false,
             tables: Tables::default(),
             typed: TypedTexts::default(),
-            shows: preferences.shows,
+            panes: preferences.panes,
             refusal: None,
             closes: false,
             wants_theme: false,
@@ -232,7 +232,7 @@ impl ToileApp {
     pub fn execute(&mut self, command: Command) -> bool {
         match self.session.execute(command, &mut Silent) {
             Ok(events) => {
-                self.hear(&events);
+                self.handle_events(&events);
                 true
             }
             Err(error) => {
@@ -243,7 +243,8 @@ impl ToileApp {
         }
     }
 
-    pub(crate) fn hear(&mut self, events: &[Event]) {
+    /// Applies events of the session to the window: notices, views, the garment.
+    pub(crate) fn handle_events(&mut self, events: &[Event]) {
         let opened = events.contains(&Event::PatternOpened);
         if !events.is_empty() {
             self.notice = Notice::default();
@@ -253,7 +254,7 @@ impl ToileApp {
             self.refusal = None;
             self.view.opened(&self.base.pattern().clone());
             self.tables.forget_typed();
-            self.making.clear();
+            self.background_work.clear();
             self.stage.clear_garment();
             if let Some(path) = self.session.project().source.clone() {
                 self.preferences.opened(&path);
@@ -349,16 +350,16 @@ impl ToileApp {
     }
 
     fn take_news(&mut self) {
-        for news in self.making.news(&mut self.session) {
+        for news in self.background_work.news(&mut self.session) {
             match news {
-                News::Body => {
+                WorkEvent::Body => {
                     if let Ok(mannequin) = self.session.mannequin() {
                         self.stage.set_body(mannequin.skin());
                     }
                 }
-                News::Begun(job) => self.stage.set_frame(first_frame(&job)),
-                News::Frame(frame) => self.stage.set_frame(frame),
-                News::Finished(events) => {
+                WorkEvent::Begun(job) => self.stage.set_frame(first_frame(&job)),
+                WorkEvent::Frame(frame) => self.stage.set_frame(frame),
+                WorkEvent::Finished(events) => {
                     let warned = events.into_iter().filter_map(|event| match event {
                         Event::Warned { message } => Some(message),
                         _ => None,
@@ -369,8 +370,8 @@ impl ToileApp {
                         false => Notice::warning(warned.join("; ")),
                     };
                 }
-                News::Warned(words) => self.notice = Notice::warning(words.join("; ")),
-                News::Failed(words) => self.notice = Notice::fault(words),
+                WorkEvent::Warned(words) => self.notice = Notice::warning(words.join("; ")),
+                WorkEvent::Failed(words) => self.notice = Notice::fault(words),
             }
         }
     }
@@ -421,11 +422,11 @@ impl ToileApp {
             self.preferences.change_theme(&context);
         }
         self.parts(ui);
-        self.preferences.set_shows(self.shows);
+        self.preferences.set_shows(self.panes);
         self.preferences.note_window(&context);
         self.show_dialog(&context);
         self.guard_closing(&context);
-        if self.making.is_busy() || self.printing.is_some() || self.searching.is_some() {
+        if self.background_work.is_busy() || self.printing.is_some() || self.searching.is_some() {
             context.request_repaint_after(FRAME);
         }
     }
@@ -442,7 +443,7 @@ impl ToileApp {
             .frame(frame)
             .resizable(false)
             .show(ui, |ui| self.status(ui));
-        if self.shows.findings {
+        if self.panes.findings {
             Panel::bottom("findings")
                 .frame(frame)
                 .default_size(130.0)
@@ -455,14 +456,14 @@ impl ToileApp {
                 .show(ui, |ui| self.welcome(ui));
             return;
         }
-        if self.shows.tables {
+        if self.panes.tables {
             Panel::bottom("tables")
                 .frame(frame)
                 .default_size(220.0)
                 .resizable(true)
                 .show(ui, |ui| self.show_tables(ui));
         }
-        if self.shows.marker {
+        if self.panes.marker {
             let height = ui.available_height();
             Panel::bottom("marker")
                 .frame(frame)
@@ -476,7 +477,7 @@ impl ToileApp {
             .resizable(false)
             .exact_size(bars::TOOLS)
             .show(ui, |ui| self.tool_bar(ui));
-        if self.shows.garment {
+        if self.panes.garment {
             let width = ui.available_width();
             Panel::right("garment")
                 .frame(egui::Frame::new())
@@ -503,16 +504,16 @@ impl ToileApp {
         };
         let before = seen(self);
         let base = self.base.clone();
-        self.view.allowances = self.shows.allowances;
-        self.view.rulers = self.shows.rulers;
-        self.view.guides = self.shows.guides;
+        self.view.allowances = self.panes.allowances;
+        self.view.rulers = self.panes.rulers;
+        self.view.guides = self.panes.guides;
         self.view.is_covered = self.dialog.is_some() || self.menu_is_open;
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);
         }
         // A guide that is dragged out is seen from then on.
-        self.shows.guides = self.view.guides;
+        self.panes.guides = self.view.guides;
         if std::mem::take(&mut self.view.asks_guide_place) {
             self.ask_guide_place(ui);
         }

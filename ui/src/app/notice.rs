@@ -5,7 +5,7 @@
 pub enum Tone {
     /// Good to know.
     #[default]
-    News,
+    WorkEvent,
     /// Probably not as meant.
     Warning,
     /// It was not done, and why.
@@ -29,13 +29,13 @@ impl Notice {
 
     /// Whether it only tells something.
     pub fn is_news(&self) -> bool {
-        self.tone == Tone::News
+        self.tone == Tone::WorkEvent
     }
 
     /// Good to know.
     pub fn news(text: impl Into<String>) -> Self {
         Self {
-            tone: Tone::News,
+            tone: Tone::WorkEvent,
             text: text.into(),
         }
     }

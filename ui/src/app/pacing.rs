@@ -1,7 +1,5 @@
-//! Input in the order it was given, however slow the frames are. Within one frame the toolkit moves
-//! the focus after it has told the old field what was typed: of `84`, Tab, `92` that all come while
-//! a frame is drawn, the `9` would join the `84`. So a frame gets no more than a hand does between
-//! two looks: what comes after a key or a click that may move the focus waits for a later frame.
+//! Delays input that follows a change of focus to the next frame, because egui delivers text before it moves
+//! the focus: of `84`, Tab, `92` that all come in one frame, the `9` would otherwise join the `84`.
 
 use super::command_table::is_function;
 use egui::{Context, Event, Key, Plugin, RawInput};

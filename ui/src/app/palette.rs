@@ -5,7 +5,7 @@ use super::answer::Answer;
 use super::command::{UiCommand, shortcut_words};
 use super::command_table::commands;
 use super::dialogs::Dialog;
-use super::shows::Tab;
+use super::panes::Tab;
 use crate::canvas::selection::{Item, Selection};
 use crate::theme::Palette;
 use crate::tools::Tool;
@@ -103,7 +103,7 @@ impl ToileApp {
     }
 
     fn show_table(&mut self, tab: Tab) {
-        self.shows.tables = true;
+        self.panes.tables = true;
         self.tables.tab = tab;
     }
 
@@ -126,7 +126,7 @@ impl ToileApp {
             _ => None,
         };
         let shown = shown.unwrap_or(item);
-        self.shows.guides |= matches!(shown, Item::Guide(_));
+        self.panes.guides |= matches!(shown, Item::Guide(_));
         let is_hidden =
             |panel| !self.view.isolated.is_empty() && !self.view.isolated.contains(&panel);
         if shown.panel().is_some_and(is_hidden) {

@@ -1,8 +1,7 @@
-//! What the window keeps from one time to the next: recent files, the theme, its layout, the
-//! paper, its size.
+//! Settings that the window remembers: recent files, theme, layout, paper, size.
 
 use super::Beginning;
-use super::shows::Shows;
+use super::panes::Panes;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_session::Paper;
@@ -26,7 +25,8 @@ pub struct Preferences {
     /// Whether colours are dark; nothing follows the system.
     pub dark: Option<bool>,
     /// What of the window is on show.
-    pub shows: Shows,
+    #[serde(rename = "shows")]
+    pub panes: Panes,
     /// Name of the paper that was printed on last.
     pub paper: Option<String>,
     /// Width and height of the window while it was last not as large as the screen [logical pixels].
@@ -85,9 +85,9 @@ impl Preferences {
     }
 
     /// Notes what of the window is on show.
-    pub fn set_shows(&mut self, shows: Shows) {
-        if self.shows != shows {
-            self.shows = shows;
+    pub fn set_shows(&mut self, panes: Panes) {
+        if self.panes != panes {
+            self.panes = panes;
             self.write();
         }
     }

@@ -1,4 +1,4 @@
-//! What is done to seams that are selected.
+//! Commands on selected seams.
 
 use super::ToileApp;
 use crate::canvas::selection::{Item, Selection};

@@ -1,4 +1,4 @@
-//! What is seen while no pattern is open: how to begin.
+//! The window without a pattern: how to begin.
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};

@@ -1,4 +1,4 @@
-//! How the table is seen: from its plane to the screen and back. View state: not in the document.
+//! The camera of the table: maps its plane to the screen and back. View state: not in the document.
 
 use egui::{Pos2, Rect, Vec2 as ScreenVector};
 use toile_geometry::{Bounds2, Vec2};
@@ -46,17 +46,17 @@ impl TableCamera {
 
     /// The table point that is seen there.
     pub fn table(&self, view: Rect, point: ScreenPoint) -> TablePoint {
-        TablePoint(self.centre + self.way(point.0 - view.center()))
+        TablePoint(self.centre + self.table_vector(point.0 - view.center()))
     }
 
-    /// A way on the screen as a way on the table [m].
-    pub fn way(&self, on_screen: ScreenVector) -> Vec2 {
+    /// A vector on the screen as a vector on the table [m].
+    pub fn table_vector(&self, on_screen: ScreenVector) -> Vec2 {
         Vec2::new(f64::from(on_screen.x), -f64::from(on_screen.y)) / self.scale
     }
 
     /// Moves the table along with the pointer.
     pub fn pan(&mut self, on_screen: ScreenVector) {
-        self.centre -= self.way(on_screen);
+        self.centre -= self.table_vector(on_screen);
     }
 
     /// Enlarges by a factor; the table point under `fixed` stays there.

@@ -1,4 +1,4 @@
-//! All sizes over each other, as drafted.
+//! All sizes drawn over each other, as drafted.
 
 use egui::Color32;
 use toile_geometry::Vec2;

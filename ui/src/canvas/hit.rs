@@ -1,10 +1,10 @@
-//! What is at a place of the table, the most wanted first: handle, point, notch or name of a sheet,
-//! edge, inner line, curve, panel.
+//! Finds the parts at a place of the table, the likeliest first: handle, point, notch or name of a sheet,
+//! edge, inner line, curve, panel. Guides are put into the order later, before panels.
 
-use super::boards::Boards;
 use super::scene::{PanelScene, PointRole, Scene};
 use super::selection::{Item, Selection};
 use super::sheet_tag::{self, tagged};
+use super::table_layout::TableLayout;
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::{PanelId, PointId, SheetId};
 
@@ -43,17 +43,17 @@ pub struct ShownPoint<'s> {
 /// while something of their sheet is selected.
 pub fn shown_points<'s>(
     scene: &'s Scene,
-    boards: &Boards,
+    table_layout: &TableLayout,
     open: &[SheetId],
 ) -> Vec<ShownPoint<'s>> {
     let mut shown = Vec::new();
     for sheet in &scene.sheets {
         let is_open = sheet.is_bare || open.contains(&sheet.id);
-        let origin = boards.sheet(sheet.id);
+        let origin = table_layout.sheet(sheet.id);
         let apart: Vec<&PanelScene> = scene
             .panels
             .iter()
-            .filter(|panel| panel.sheet == sheet.id && boards.is_apart(panel))
+            .filter(|panel| panel.sheet == sheet.id && table_layout.is_apart(panel))
             .collect();
         for point in &sheet.points {
             if is_open || (point.role == PointRole::Corner && !point.is_left) {
@@ -70,7 +70,7 @@ pub fn shown_points<'s>(
                     shown.push(ShownPoint {
                         point,
                         sheet: sheet.id,
-                        origin: boards.panel(panel.id),
+                        origin: table_layout.panel(panel.id),
                     });
                 }
             }
@@ -103,14 +103,14 @@ pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
 
 /// What is at a place of the table [m], seen with so many pixels a metre; the most wanted first.
 pub fn hits(
-    (scene, boards): (&Scene, &Boards),
+    (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],
     at: Vec2,
     scale: f64,
 ) -> Vec<Hit> {
     let mut ranked: Vec<(u8, Hit)> = Vec::new();
     let [point_reach, line_reach] = [POINT_REACH, LINE_REACH].map(|reach| reach / scale);
-    for shown in shown_points(scene, boards, open) {
+    for shown in shown_points(scene, table_layout, open) {
         let away = (at - shown.origin - shown.point.at).norm();
         if away <= point_reach {
             let rank = match shown.point.role {
@@ -131,7 +131,7 @@ pub fn hits(
         }
     }
     for sheet in tagged(scene, open) {
-        let origin = boards.sheet(sheet.id);
+        let origin = table_layout.sheet(sheet.id);
         if let Some(away) = sheet_tag::distance(sheet, origin, at, scale) {
             let hit = Hit {
                 item: Item::Sheet(sheet.id),
@@ -144,10 +144,16 @@ pub fn hits(
         }
     }
     for panel in &scene.panels {
-        panel_hits(panel, boards.panel(panel.id), at, line_reach, &mut ranked);
+        panel_hits(
+            panel,
+            table_layout.panel(panel.id),
+            at,
+            line_reach,
+            &mut ranked,
+        );
     }
     for sheet in &scene.sheets {
-        let origin = boards.sheet(sheet.id);
+        let origin = table_layout.sheet(sheet.id);
         for curve in &sheet.curves {
             let hit = nearest(&curve.line, at - origin);
             if let Some((place, away)) = hit.filter(|(_, away)| *away <= line_reach) {
@@ -240,7 +246,7 @@ fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
 
 /// Everything of a panel or sheet that lies inside a rectangle of the table [m].
 pub fn inside_box(
-    (scene, boards): (&Scene, &Boards),
+    (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],
     [from, to]: [Vec2; 2],
 ) -> Vec<Item> {
@@ -250,7 +256,7 @@ pub fn inside_box(
         .panels
         .iter()
         .filter(|panel| {
-            let origin = boards.panel(panel.id);
+            let origin = table_layout.panel(panel.id);
             within(panel.bounds().min + origin) && within(panel.bounds().max + origin)
         })
         .map(|panel| panel.id)
@@ -258,7 +264,7 @@ pub fn inside_box(
     if !panels.is_empty() {
         return panels.into_iter().map(Item::Panel).collect();
     }
-    let points: Vec<PointId> = shown_points(scene, boards, open)
+    let points: Vec<PointId> = shown_points(scene, table_layout, open)
         .into_iter()
         .filter(|shown| within(shown.point.at + shown.origin))
         .map(|shown| shown.point.id)

@@ -1,4 +1,4 @@
-//! Where there is room inside a panel for its name and grainline.
+//! Finds room inside a panel for its name and grainline.
 
 use toile_geometry::{Bounds2, Vec2, point_segment_distance};
 
@@ -26,7 +26,7 @@ pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
 /// than distance.
 const ROOM_OVER_DISTANCE: f64 = 5.0;
 
-/// The place with most room round it, of a grid over the bounds, rather near their middle; that
+/// The place with the most room round it, of a grid over the bounds, rather near their middle; that
 /// middle if none is inside.
 pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     let size = bounds.max - bounds.min;

@@ -1,7 +1,6 @@
-//! The canvas: how a pattern is seen on the table, what is at a place of it, what a place means.
+//! The canvas: the drawing of the pattern on the table, the parts at a place, snapping.
 
 mod allowance;
-pub mod boards;
 pub mod camera;
 pub mod drawn_guide;
 pub mod fill;
@@ -12,9 +11,9 @@ mod inside;
 mod names;
 pub mod paint;
 mod paint_guides;
+mod paint_overlay;
 mod paint_seams;
 mod paint_sheet_tag;
-mod paint_walk;
 mod panel_shape;
 pub mod placed;
 pub mod rulers;
@@ -23,6 +22,7 @@ pub mod seams;
 pub mod selection;
 pub mod sheet_tag;
 pub mod snap;
+pub mod table_layout;
 pub mod walked;
 
 pub use panel_shape::along;

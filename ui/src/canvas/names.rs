@@ -94,7 +94,7 @@ impl Picture<'_> {
             Rect::from_center_size(seen(shown), mark)
         }));
         taken.extend(tagged(self.scene, self.open).map(|sheet| {
-            let origin = self.seen(self.boards.sheet(sheet.id), Default::default());
+            let origin = self.seen(self.table_layout.sheet(sheet.id), Default::default());
             ground(sheet).translate(origin.to_vec2())
         }));
         for sheet in &self.scene.sheets {
@@ -117,9 +117,10 @@ impl Picture<'_> {
 
     /// The lines of a sheet and of the panels that lie on it.
     fn lines_by(&self, sheet: &SheetScene) -> Vec<Vec<Pos2>> {
-        let origin = self.boards.sheet(sheet.id);
+        let origin = self.table_layout.sheet(sheet.id);
         let curves = sheet.curves.iter().map(|curve| &curve.line[..]);
-        let on_it = |panel: &&PanelScene| panel.sheet == sheet.id && !self.boards.is_apart(panel);
+        let on_it =
+            |panel: &&PanelScene| panel.sheet == sheet.id && !self.table_layout.is_apart(panel);
         let panels = self.scene.panels.iter().filter(on_it);
         let of_panels = panels.flat_map(|panel| {
             let shape = &panel.shape;

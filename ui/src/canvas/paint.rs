@@ -1,6 +1,5 @@
 //! Paints the pattern on its table.
 
-use super::boards::Boards;
 use super::camera::{TableCamera, TablePoint};
 use super::drawn_guide::{DrawnGuide, GuideLabel};
 use super::fill::Fill;
@@ -10,6 +9,7 @@ use super::rulers::{self, RULER};
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
 use super::selection::{Item, Selection};
 use super::sheet_tag::tagged;
+use super::table_layout::TableLayout;
 use crate::theme::{self, Palette};
 use crate::tools::Overlay;
 use egui::epaint::Vertex;
@@ -41,7 +41,7 @@ pub struct Picture<'a> {
     /// How the table is seen.
     pub camera: TableCamera,
     /// Where sheets and panels lie.
-    pub boards: &'a Boards,
+    pub table_layout: &'a TableLayout,
     /// The pattern.
     pub scene: &'a Scene,
     /// What is selected.
@@ -99,7 +99,7 @@ impl Picture<'_> {
         for sheet in tagged(self.scene, self.open) {
             self.sheet_tag(sheet);
         }
-        let points = shown_points(self.scene, self.boards, self.open);
+        let points = shown_points(self.scene, self.table_layout, self.open);
         for shown in &points {
             self.point(shown);
         }
@@ -189,7 +189,7 @@ impl Picture<'_> {
     }
 
     fn cloth(&self, panel: &PanelScene) {
-        let origin = self.boards.panel(panel.id);
+        let origin = self.table_layout.panel(panel.id);
         let shadow = Color32::from_black_alpha(16);
         let shape = &panel.shape;
         for fill in [&shape.mirrored_fill, &shape.fill] {
@@ -217,7 +217,7 @@ impl Picture<'_> {
     /// Curves that no panel follows where it lies, as pencil lines; faint those that steps of its panel
     /// led away from, while its sheet is open.
     fn curves(&self, sheet: &SheetScene) {
-        let origin = self.boards.sheet(sheet.id);
+        let origin = self.table_layout.sheet(sheet.id);
         let is_open = self.open.contains(&sheet.id);
         let is_left = |end: &Vec2| {
             let mut left = sheet.points.iter().filter(|point| point.is_left);
@@ -239,7 +239,7 @@ impl Picture<'_> {
     }
 
     fn marks(&self, panel: &PanelScene) {
-        let origin = self.boards.panel(panel.id);
+        let origin = self.table_layout.panel(panel.id);
         if self.allowances {
             let pencil = Stroke::new(1.0, self.palette.pencil);
             for ring in self.scene.cut_lines.of(panel.id) {
@@ -311,7 +311,7 @@ impl Picture<'_> {
     }
 
     fn outline(&self, panel: &PanelScene) {
-        let origin = self.boards.panel(panel.id);
+        let origin = self.table_layout.panel(panel.id);
         let draw = |this: Item, line: &[Vec2]| {
             let stroke = match () {
                 () if self.selection.contains(this) => Stroke::new(3.0, self.palette.accent),
@@ -345,7 +345,7 @@ impl Picture<'_> {
     /// The panel's name, and under it how it is cut where there is room for both: inside, in a gap of the
     /// grainline; else the name alone, under the panel if it has no room inside.
     fn caption(&self, panel: &PanelScene) {
-        let origin = self.boards.panel(panel.id);
+        let origin = self.table_layout.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
             self.painter
                 .layout_no_wrap(text.to_owned(), theme::font(size), colour)
@@ -392,7 +392,7 @@ impl Picture<'_> {
             if !sheet.is_bare && !self.open.contains(&sheet.id) {
                 continue;
             }
-            let origin = self.boards.sheet(sheet.id);
+            let origin = self.table_layout.sheet(sheet.id);
             for pair in sheet.curves.iter().flat_map(|curve| &curve.handles) {
                 let ends = pair.map(|id| sheet.points.iter().find(|point| point.id == id));
                 if let [Some(from), Some(to)] = ends {
@@ -445,7 +445,7 @@ impl Picture<'_> {
         let accent = self.palette.accent;
         match mark {
             Overlay::Line(sheet, line) => {
-                let line = self.line(self.boards.sheet(*sheet), line);
+                let line = self.line(self.table_layout.sheet(*sheet), line);
                 let stroke = Stroke::new(1.4, accent);
                 self.painter
                     .extend(Shape::dashed_line(&line, stroke, 5.0, 4.0));
@@ -454,17 +454,17 @@ impl Picture<'_> {
                 let shape = self.scene.panel_scene(*panel);
                 let edge = shape.and_then(|panel| panel.shape.edge_shape(*edge));
                 for line in edge.iter().flat_map(|edge| &edge.lines) {
-                    let line = self.line(self.boards.panel(*panel), line);
+                    let line = self.line(self.table_layout.panel(*panel), line);
                     self.painter.line(line, Stroke::new(3.4, accent));
                 }
             }
             Overlay::Dot(sheet, at) => {
-                let at = self.seen(self.boards.sheet(*sheet), *at);
+                let at = self.seen(self.table_layout.sheet(*sheet), *at);
                 let stroke = Stroke::new(1.6, accent);
                 self.painter.circle(at, 4.5, self.palette.field, stroke);
             }
             Overlay::Words(sheet, at, words) if !words.is_empty() => {
-                let at = self.seen(self.boards.sheet(*sheet), *at);
+                let at = self.seen(self.table_layout.sheet(*sheet), *at);
                 self.tag(at + vec2(12.0, 20.0), words);
             }
             Overlay::Words(..) | Overlay::Label(..) => {}

@@ -33,7 +33,7 @@ impl Picture<'_> {
             let Some(panel) = self.scene.panel_scene(stretch.panel) else {
                 continue;
             };
-            let origin = self.boards.panel(panel.id);
+            let origin = self.table_layout.panel(panel.id);
             let inset = panel.shape.cloth_side * SEAM_INSET / self.camera.scale;
             let line = self.line(origin, &beside(&stretch.line, inset));
             let colour = theme::seam(seam.number);
@@ -59,7 +59,7 @@ impl Picture<'_> {
                 continue;
             };
             let inward = Vec2::new(-way.y, way.x) * panel.shape.cloth_side;
-            let origin = self.boards.panel(panel.id);
+            let origin = self.table_layout.panel(panel.id);
             let middle = self.seen(origin, at + inward * (NUMBER_INSET / scale));
             self.painter
                 .circle_filled(middle, 8.5, theme::seam(seam.number));
@@ -84,7 +84,7 @@ impl Picture<'_> {
             true => self.palette.warning,
             false => self.palette.accent,
         };
-        let seen = |(panel, at): SeamEnd| self.seen(self.boards.panel(panel), at);
+        let seen = |(panel, at): SeamEnd| self.seen(self.table_layout.panel(panel), at);
         for k in [0, 1] {
             let line = [seen(first[k]), seen(second[k])];
             let stroke = Stroke::new(1.4, colour);
@@ -113,7 +113,7 @@ impl Picture<'_> {
 
     /// Outlines of a panel in all sizes.
     pub(super) fn graded(&self, panel: &PanelScene, grading: &Grading) {
-        let origin = self.boards.panel(panel.id);
+        let origin = self.table_layout.panel(panel.id);
         for (k, size) in grading.sizes.iter().enumerate() {
             let stroke = Stroke::new(1.1, grading.colour(k));
             let own = size.panels.iter().filter(|(id, _)| *id == panel.id);

@@ -11,7 +11,7 @@ use toile_geometry::Vec2;
 impl Picture<'_> {
     /// Paints the tag of a sheet.
     pub(super) fn sheet_tag(&self, sheet: &SheetScene) {
-        let origin = self.seen(self.boards.sheet(sheet.id), Vec2::zeros());
+        let origin = self.seen(self.table_layout.sheet(sheet.id), Vec2::zeros());
         let lit = self.is_lit(Item::Sheet(sheet.id));
         let (fill, ink) = match lit {
             true => (self.palette.accent, self.palette.on_accent),

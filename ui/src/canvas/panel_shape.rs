@@ -1,4 +1,4 @@
-//! How a panel is drawn: polylines and fills made once from its stage, in the panel's plane.
+//! The shape of a panel as drawn: polylines and fills made once from its stage, in the panel's plane.
 
 use super::fill::{Fill, fill};
 use super::inside::{chord, roomiest};

@@ -1,4 +1,4 @@
-//! A place that a point could have, and how a point there is constructed.
+//! A candidate place for a point, with its construction.
 
 use super::scene::{CurveScene, SheetScene};
 use toile_geometry::Vec2;
@@ -8,12 +8,12 @@ use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 /// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
 const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
 
-/// How a point at a place comes about.
+/// The construction of a point at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spec {
-    /// It is there.
+    /// An existing point.
     Point(PointId),
-    /// It is constructed.
+    /// A new point by a rule.
     New(PointRule),
     /// At a distance [m] and angle [rad] from the place given before.
     FromLast {

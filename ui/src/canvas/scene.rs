@@ -1,5 +1,5 @@
-//! What the canvas draws of a pattern. Parts are kept by the values they were made from: after an
-//! edit only those are made anew whose value changed.
+//! The scene of a pattern as the canvas draws it. Its parts are cached by the values they were made from: an
+//! edit remakes only those whose value changed.
 
 use super::allowance::CutLines;
 use super::panel_shape::PanelShape;

@@ -1,5 +1,5 @@
-//! A seam that is walked, measured and flattened once as long as its draft stays the same: it is drawn
-//! anew in every frame and at every place of the walk.
+//! Geometry of a walked seam, cached while its draft is the same: it is drawn in every frame and at every
+//! place of the walk.
 
 use super::fill::{Fill, fill};
 use std::cell::{Cell, RefCell};
@@ -12,7 +12,7 @@ use toile_pattern::{Draft, DraftSeam, Piece, SeamId, SeamOrigin};
 /// Curves are drawn this near to their course [m].
 const FLATNESS: f64 = 1e-4;
 
-/// What is drawn of a seam that is walked.
+/// The geometry of a seam that is walked.
 #[derive(Debug)]
 pub struct WalkedSeam {
     /// Both sides, measured.
@@ -32,7 +32,7 @@ pub struct WalkedSeam {
 pub struct WalkedPiece {
     /// Its outline and its holes.
     pub rings: Vec<Vec<Vec2>>,
-    /// What they enclose.
+    /// The area they enclose.
     pub fill: Fill,
 }
 

@@ -1,4 +1,4 @@
-//! The eye that goes round the garment.
+//! The camera that orbits the garment.
 
 use toile_geometry::Vec3;
 

@@ -119,7 +119,7 @@ impl StageRenderer {
         triangles: &[&CornerBuffer],
         lines: &CornerBuffer,
     ) -> egui::TextureId {
-        self.look(orbit, size);
+        self.view_uniforms(orbit, size);
         let target = match self.target.take() {
             Some(target) if target.size == size => target,
             old => self.make_target(size, old),
@@ -149,7 +149,8 @@ impl StageRenderer {
         id
     }
 
-    fn look(&self, orbit: &Orbit, size: [u32; 2]) {
+    /// Writes the uniforms of the view: the projection and the directions of the lamps.
+    fn view_uniforms(&self, orbit: &Orbit, size: [u32; 2]) {
         let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
         let [right, up] = orbit.axes();
         let back = (orbit.eye() - orbit.target).normalize();

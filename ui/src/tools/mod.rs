@@ -20,12 +20,12 @@ pub use planning::Planning;
 pub use select::SelectState;
 pub use walk::WalkState;
 
-use crate::canvas::boards::Boards;
 use crate::canvas::fill::Fill;
 use crate::canvas::hit::Hit;
 use crate::canvas::placed::Placed;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
+use crate::canvas::table_layout::TableLayout;
 use slots::{SlotState, SlotTool};
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeId, Edit, Evaluation, PanelId, SheetId};
@@ -39,19 +39,19 @@ pub struct Pointer {
     pub sheet: SheetId,
     /// Its place on that sheet [m].
     pub at: Vec2,
-    /// Parts there, the most wanted first.
+    /// Parts there, the likeliest first.
     pub hits: Vec<Hit>,
     /// Places a point could have there, the best first; never empty.
     pub snaps: Vec<Placed>,
     /// Width of a pixel [m].
     pub pixel: f64,
     /// Keys that are held.
-    pub held: Held,
+    pub modifiers: ToolModifiers,
 }
 
-/// Keys that change what a tool does while they are held.
+/// Modifier keys that change the behaviour of a tool while they are held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Held {
+pub struct ToolModifiers {
     /// Keeps level, upright or at 15 degrees; adds to the selection.
     pub shift: bool,
     /// Turns snapping off.
@@ -62,7 +62,7 @@ impl Pointer {
     /// The best place, or any other that was asked for by its number; anywhere while snapping is
     /// off.
     pub fn placed(&self, number: usize) -> Placed {
-        match self.held.command {
+        match self.modifiers.command {
             true => Placed::free(self.sheet, self.at),
             false => self.snaps[number % self.snaps.len()].clone(),
         }
@@ -100,12 +100,12 @@ pub enum Event {
     /// The next number, the next snap, or the other side.
     Tab,
     /// On or back along what the tool walks.
-    Go(Going),
+    Go(LineStep),
 }
 
-/// Where a key leads along a line.
+/// A step along a line, by a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Going {
+pub enum LineStep {
     /// A step back.
     Back,
     /// A step on.
@@ -124,7 +124,7 @@ pub struct Reading<'a> {
     /// How it is seen.
     pub scene: &'a Scene,
     /// Where it lies on the table.
-    pub boards: &'a Boards,
+    pub table_layout: &'a TableLayout,
     /// What is selected.
     pub selection: &'a Selection,
     /// The sheet that is drawn on where the pointer does not say which.
@@ -171,9 +171,9 @@ pub enum Tone {
     Fault,
 }
 
-/// What is shown of edits that are not made yet.
+/// A change of the preview: edits that are shown but not yet made.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Shown {
+pub enum PreviewChange {
     /// As before.
     #[default]
     Same,
@@ -183,11 +183,11 @@ pub enum Shown {
     Edits(Vec<Edit>),
 }
 
-/// What comes of an event.
+/// The outcome of an event.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// What is shown.
-    pub shown: Shown,
+    pub shown: PreviewChange,
     /// Edits to make as one step of the history, and its name.
     pub commit: Option<(Vec<Edit>, String)>,
     /// What is shown is made a step of the history of this name.

@@ -151,7 +151,11 @@ pub static MEASURE: SlotTool = SlotTool {
 fn direction(answers: &[Answer], pointer: &Pointer) -> f64 {
     let about = places(answers).first().map_or_else(Vec2::zeros, |p| p.at);
     let way = pointer.at - about;
-    let step = if pointer.held.shift { 15.0 } else { 1.0_f64 };
+    let step = if pointer.modifiers.shift {
+        15.0
+    } else {
+        1.0_f64
+    };
     let step = step.to_radians();
     (way.y.atan2(way.x) / step).round() * step
 }

@@ -1,9 +1,9 @@
 //! Selects by click and by box; drags points and whole panels; divides an edge by a double click.
 
-use super::{Event, Outcome, Overlay, Planning, Pointer, Reading, Shown, chosen};
-use crate::canvas::boards::Boards;
+use super::{Event, Outcome, Overlay, Planning, Pointer, PreviewChange, Reading, chosen};
 use crate::canvas::hit::Hit;
 use crate::canvas::selection::{Item, Selection};
+use crate::canvas::table_layout::TableLayout;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::plan::{self, FormulaChange};
@@ -48,7 +48,7 @@ pub(super) fn step(
     match event {
         Event::Click(pointer) => {
             let item = clicked(pointer, reading.selection);
-            let select = chosen(reading.selection, item, pointer.held.shift);
+            let select = chosen(reading.selection, item, pointer.modifiers.shift);
             (idle, selecting(select))
         }
         Event::DoubleClick(pointer) => (idle, double_click(pointer, reading)),
@@ -78,7 +78,7 @@ fn selecting(select: Selection) -> Outcome {
 
 fn nothing_shown() -> Outcome {
     Outcome {
-        shown: Shown::Nothing,
+        shown: PreviewChange::Nothing,
         ..Outcome::default()
     }
 }
@@ -125,13 +125,13 @@ fn drag(
     let mut outcome = Outcome::default();
     let (dragged, change) = match state {
         SelectState::Boxing(..) => {
-            let state = SelectState::Boxing([from.table, to.table], to.held.shift);
+            let state = SelectState::Boxing([from.table, to.table], to.modifiers.shift);
             return (state, outcome);
         }
         SelectState::Dragging(dragged, change) => (dragged.clone(), *change),
         SelectState::Idle => match from.hit() {
             None => {
-                let state = SelectState::Boxing([from.table, to.table], to.held.shift);
+                let state = SelectState::Boxing([from.table, to.table], to.modifiers.shift);
                 return (state, outcome);
             }
             Some(hit) => {
@@ -142,7 +142,7 @@ fn drag(
         },
     };
     match moved((&dragged, change), from, to, reading) {
-        Ok(edits) => outcome.shown = Shown::Edits(edits),
+        Ok(edits) => outcome.shown = PreviewChange::Edits(edits),
         Err(error) => outcome.refusal = Some(error.to_string()),
     }
     (SelectState::Dragging(dragged, change), outcome)
@@ -203,7 +203,7 @@ fn moved(
     reading: &Reading<'_>,
 ) -> Result<Vec<Edit>, EditError> {
     let mut way = to.table - from.table;
-    if to.held.shift {
+    if to.modifiers.shift {
         way = straight(way);
     }
     match dragged {
@@ -217,7 +217,7 @@ fn moved(
                 .filter_map(|point| Some((*point, reading.evaluation.point(*point)? + way)))
                 .collect();
             let is_alone = goals.len() == 1;
-            if let ([(handle, to)], false) = (&goals[..], to.held.command) {
+            if let ([(handle, to)], false) = (&goals[..], to.modifiers.command) {
                 let opposite = turned_along(*handle, *to, reading);
                 goals.extend(opposite);
             }
@@ -238,7 +238,9 @@ fn moved(
             });
             Ok(moved.collect())
         }
-        Dragged::Sheets(sheets) => move_sheets(reading.evaluation, reading.boards, sheets, way),
+        Dragged::Sheets(sheets) => {
+            move_sheets(reading.evaluation, reading.table_layout, sheets, way)
+        }
         Dragged::Fixed(words) => Err(EditError::Impossible {
             message: "it cannot be dragged".into(),
             hint: words.clone(),
@@ -292,13 +294,13 @@ fn moved_by(
 /// A sheet is not there, or lies on a panel.
 pub fn move_sheets(
     evaluation: &Evaluation,
-    boards: &Boards,
+    table_layout: &TableLayout,
     sheets: &[SheetId],
     way: Vec2,
 ) -> Result<Vec<Edit>, EditError> {
-    let mut places = boards.laid_apart(evaluation.pattern());
+    let mut places = table_layout.laid_apart(evaluation.pattern());
     places.retain(|(id, _)| !sheets.contains(id));
-    let moved = sheets.iter().map(|id| (*id, boards.sheet(*id) + way));
+    let moved = sheets.iter().map(|id| (*id, table_layout.sheet(*id) + way));
     places.extend(moved.map(|(id, place)| (id, place.into())));
     plan::move_sheets(evaluation, &places)
 }

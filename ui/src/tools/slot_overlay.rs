@@ -1,4 +1,4 @@
-//! What a tool of slots draws over the pattern, and what it says.
+//! The overlay and the hints of a tool of slots.
 
 use super::slots::{
     Answer, ChainEdge, Fields, SlotKind, SlotState, SlotTool, answer, fields, slot,

@@ -3,7 +3,7 @@
 
 use super::refusal::no_edge;
 use super::toward::{to_side, turned};
-use super::{Event, Outcome, Pointer, Reading, Shown};
+use super::{Event, Outcome, Pointer, PreviewChange, Reading};
 use super::{along, number};
 use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::selection::{Item, Selection};
@@ -420,7 +420,7 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
     if numbers == [None, None] {
         let pointer = pointer.ok_or("point at a place, or type numbers")?;
         let free = pointer.placed(state.snap);
-        let level = pointer.held.shift && fields != Fields::None;
+        let level = pointer.modifiers.shift && fields != Fields::None;
         return Ok(match last.filter(|_| level) {
             Some(last) => turned(last, pointer, free),
             None => free,
@@ -538,7 +538,7 @@ fn accept(
         let name = state.name(kind);
         state.answers.push(Answer::Places(places, closes, name));
     } else {
-        let adds = state.pointer.as_ref().is_some_and(|at| at.held.shift);
+        let adds = state.pointer.as_ref().is_some_and(|at| at.modifiers.shift);
         match answer(kind, state, reading) {
             Ok(Answer::Chain(chain)) if adds && !by_key => {
                 state.chain = chain;
@@ -578,19 +578,19 @@ fn accept(
 }
 
 /// What the tool would do if it were given this now.
-fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Shown {
+fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> PreviewChange {
     let kind = slot(tool, state).kind;
     let is_last = state.answers.len() + 1 == tool.slots.len();
     if !is_last || matches!(kind, SlotKind::Places) {
-        return Shown::Nothing;
+        return PreviewChange::Nothing;
     }
     let Ok(answer) = answer(kind, state, reading) else {
-        return Shown::Nothing;
+        return PreviewChange::Nothing;
     };
     let mut answers = state.answers.clone();
     answers.push(answer);
     match (tool.plan)(&answers, reading) {
-        Ok(plan) => Shown::Edits(plan.edits),
-        Err(_) => Shown::Nothing,
+        Ok(plan) => PreviewChange::Edits(plan.edits),
+        Err(_) => PreviewChange::Nothing,
     }
 }

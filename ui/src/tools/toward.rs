@@ -1,4 +1,4 @@
-//! Places that are meant by where the pointer lies: straight from the last, to one of its sides.
+//! Places given by a distance and the pointer's direction.
 
 use super::{Pointer, Reading, along};
 use crate::canvas::placed::{Placed, Spec, rounded};
@@ -17,7 +17,7 @@ pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     let angle = (way.y.atan2(way.x) / step).round() * step;
     let unit = Vec2::new(angle.cos(), angle.sin());
     let far = way.dot(&unit);
-    let far = match pointer.held.command {
+    let far = match pointer.modifiers.command {
         true => far,
         false => rounded(far, 0.001),
     };

@@ -2,7 +2,7 @@
 //! pointer, keys or a typed distance. It changes no document.
 
 use super::number;
-use super::{Event, Going, Outcome, Overlay, Pointer, Reading, Tone};
+use super::{Event, LineStep, Outcome, Overlay, Pointer, Reading, Tone};
 use crate::canvas::fill::Fill;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
@@ -10,7 +10,7 @@ use crate::canvas::walked::WalkedSeam;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2, closest_on_segment};
 use toile_pattern::plan::Affine;
-use toile_pattern::walk::{Contact, Joint, Smoothness, Stays, Walk, WalkedNotch};
+use toile_pattern::walk::{Contact, FixedSide, Joint, Smoothness, Walk, WalkedNotch};
 use toile_pattern::{
     DisplayUnit, Draft, DraftSeam, EdgeId, Evaluation, PanelId, Pattern, Piece, SEAM_TOLERANCE,
     SeamId, Want,
@@ -32,7 +32,7 @@ const AT_END: f64 = 1e-3;
 pub struct WalkState {
     /// Arc length of the first side where the pieces touch [m].
     along: f64,
-    stays: Stays,
+    fixed: FixedSide,
     typed: String,
 }
 
@@ -86,7 +86,7 @@ impl<'r> Seen<'r> {
     /// From the plane of a piece to the table. The other piece of a pair is seen as the panel is
     /// drawn, of which it is the mirror image.
     fn on_table(&self, piece: &Piece) -> Affine {
-        let moved = Affine::translation(self.reading.boards.panel(piece.id.panel));
+        let moved = Affine::translation(self.reading.table_layout.panel(piece.id.panel));
         let panel = self.pattern.panel(piece.id.panel);
         let is_mirrored = panel.is_some_and(|p| p.cut.mirrored) && piece.id.copy % 2 == 1;
         match is_mirrored {
@@ -101,14 +101,14 @@ impl<'r> Seen<'r> {
 
     /// Places where the pieces touch, from those of the piece that stays to the table; and from those
     /// of the piece that is laid against it.
-    fn maps(&self, contact: &Contact, stays: Stays) -> Option<[Affine; 2]> {
-        let base = self.on_table(self.piece(contact, stays.sides()[0])?);
+    fn maps(&self, contact: &Contact, fixed: FixedSide) -> Option<[Affine; 2]> {
+        let base = self.on_table(self.piece(contact, fixed.sides()[0])?);
         Some([base, base.after(&contact.laid)])
     }
 
     /// The arc length of the first side that a pointer leads to, and how far it is from there [m].
-    fn led(&self, at: &Pointer, stays: Stays) -> Option<(f64, f64)> {
-        let side = stays.sides()[0];
+    fn led(&self, at: &Pointer, fixed: FixedSide) -> Option<(f64, f64)> {
+        let side = fixed.sides()[0];
         let mut best: Option<(f64, f64)> = None;
         let mut done: Vec<usize> = Vec::new();
         for (k, _) in self.walk.lines(side) {
@@ -120,7 +120,7 @@ impl<'r> Seen<'r> {
             let map = self.on_table(piece);
             let own = map.source(at.table);
             let along = self.walk.nearest(side, k, own)?;
-            let contact = self.walk.contact(along, stays);
+            let contact = self.walk.contact(along, fixed);
             let away = (map.apply(contact.places[side]) - at.table).norm();
             if best.is_none_or(|(_, least)| away < least) {
                 best = Some((along, away));
@@ -134,11 +134,11 @@ impl<'r> Seen<'r> {
 /// ends of the selected seam [m].
 pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     let seen = Seen::new(reading)?;
-    let sides = state.stays.sides();
+    let sides = state.fixed.sides();
     let mut places: Vec<Vec2> = Vec::new();
     for along in [0.0, seen.walk.lengths()[0]] {
-        let contact = seen.walk.contact(along, state.stays);
-        let maps = seen.maps(&contact, state.stays)?;
+        let contact = seen.walk.contact(along, state.fixed);
+        let maps = seen.maps(&contact, state.fixed)?;
         for (side, map) in sides.into_iter().zip(maps) {
             let piece = seen.kept.pieces.get(&contact.pieces[side])?;
             let outline = piece.rings.iter().take(1).flatten();
@@ -189,14 +189,14 @@ pub(super) fn step(
     let whole = seen.walk.lengths()[0];
     match event {
         Event::Hover(pointer) if !state.is_typing() => {
-            let near = seen.led(pointer, state.stays);
+            let near = seen.led(pointer, state.fixed);
             if let Some((along, _)) = near.filter(|(_, away)| *away <= REACH * pointer.pixel) {
                 next.along = along;
             }
         }
         Event::Click(pointer) | Event::DoubleClick(pointer) | Event::Drag(_, pointer) => {
             next.typed.clear();
-            if let Some((along, _)) = seen.led(pointer, state.stays) {
+            if let Some((along, _)) = seen.led(pointer, state.fixed) {
                 next.along = along;
             }
         }
@@ -220,14 +220,14 @@ pub(super) fn step(
         },
         Event::Escape if state.is_typing() => next.typed.clear(),
         Event::Escape => outcome.done = true,
-        Event::Tab => next.stays = state.stays.other(),
+        Event::Tab => next.fixed = state.fixed.other(),
         Event::Go(way) => {
             next.typed.clear();
             next.along = match way {
-                Going::Back => state.along.min(whole) - STEP,
-                Going::On => state.along + STEP,
-                Going::ToStart => 0.0,
-                Going::ToEnd => whole,
+                LineStep::Back => state.along.min(whole) - STEP,
+                LineStep::On => state.along + STEP,
+                LineStep::ToStart => 0.0,
+                LineStep::ToEnd => whole,
             };
         }
         Event::Hover(_) | Event::Enter | Event::Leave | Event::Drop => {}
@@ -270,18 +270,18 @@ pub(super) fn overlay(state: &WalkState, reading: &Reading<'_>) -> Vec<Overlay> 
     let told = along(state, reading);
     let contact = seen
         .walk
-        .contact(told.clone().unwrap_or(state.along), state.stays);
-    let Some(maps) = seen.maps(&contact, state.stays) else {
+        .contact(told.clone().unwrap_or(state.along), state.fixed);
+    let Some(maps) = seen.maps(&contact, state.fixed) else {
         return Vec::new();
     };
     let mut marks = Vec::new();
-    ghost(&seen, (&contact, state.stays), &maps, &mut marks);
+    ghost(&seen, (&contact, state.fixed), &maps, &mut marks);
     let joints = seen.walk.joints(seen.ease);
     for joint in joints.iter().flatten() {
-        mark_joint(&seen, joint, (&contact, state.stays), &maps, &mut marks);
+        mark_joint(&seen, joint, (&contact, state.fixed), &maps, &mut marks);
     }
-    mark_notches(&seen, (&contact, state.stays), &maps, &mut marks);
-    let [base, _] = state.stays.sides();
+    mark_notches(&seen, (&contact, state.fixed), &maps, &mut marks);
+    let [base, _] = state.fixed.sides();
     let at = maps[0].apply(contact.places[base]);
     marks.push(Overlay::Touch(at));
     let mut words = contact_words(&seen, &contact);
@@ -322,11 +322,11 @@ fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
 /// The piece that is laid against the one that stays.
 fn ghost(
     seen: &Seen<'_>,
-    (contact, stays): (&Contact, Stays),
+    (contact, fixed): (&Contact, FixedSide),
     [stays_at, laid]: &[Affine; 2],
     marks: &mut Vec<Overlay>,
 ) {
-    let [base, moved] = stays.sides();
+    let [base, moved] = fixed.sides();
     let Some(piece) = seen.piece(contact, moved) else {
         return;
     };
@@ -412,11 +412,11 @@ pub fn crossing_lines(
 fn mark_joint(
     seen: &Seen<'_>,
     joint: &Joint,
-    (contact, stays): (&Contact, Stays),
+    (contact, fixed): (&Contact, FixedSide),
     maps: &[Affine; 2],
     marks: &mut Vec<Overlay>,
 ) {
-    let [base, moved] = stays.sides();
+    let [base, moved] = fixed.sides();
     let Some(piece) = seen.draft.pieces.get(joint.pieces[base]) else {
         return;
     };
@@ -440,11 +440,11 @@ fn mark_joint(
 /// Where notches of the piece that stays lie; those that do not meet their partner are told.
 fn mark_notches(
     seen: &Seen<'_>,
-    (contact, stays): (&Contact, Stays),
+    (contact, fixed): (&Contact, FixedSide),
     maps: &[Affine; 2],
     marks: &mut Vec<Overlay>,
 ) {
-    let sides = stays.sides();
+    let sides = fixed.sides();
     for notch in &seen.kept.notches {
         if notch.piece != contact.pieces[notch.side] {
             continue;
@@ -502,11 +502,11 @@ pub(super) fn hint(state: &WalkState, reading: &Reading<'_>) -> String {
             "Seam {name} cannot be walked: mend its sides first; Esc puts the tool down"
         );
     };
-    let contact = seen.walk.contact(state.along, state.stays);
-    let stays = seen.piece(&contact, state.stays.sides()[0]);
-    let stays = stays.map_or("", |piece| &piece.name);
+    let contact = seen.walk.contact(state.along, state.fixed);
+    let fixed = seen.piece(&contact, state.fixed.sides()[0]);
+    let fixed = fixed.map_or("", |piece| &piece.name);
     format!(
-        "{stays} stays: point or drag along its seam, or type a distance; arrow keys 1 cm, Home and \
+        "{fixed} stays: point or drag along its seam, or type a distance; arrow keys 1 cm, Home and \
          End; Tab: the other piece stays; Esc ends"
     )
 }

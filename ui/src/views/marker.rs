@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use toile_cut::StrokeKind;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{MarkerId, OrderedPiece};
-use toile_session::{LaidMarker, MarkerState, Pose};
+use toile_session::{DocumentMarker, MarkerState, Pose};
 
 /// Room between pieces that wait beside the fabric [m].
 const GAP: f64 = 0.03;
@@ -102,7 +102,7 @@ impl MarkerView {
     }
 
     /// Follows a marker as it lies now. Pieces that lie as before are not drawn anew.
-    pub fn follow(&mut self, laid: &LaidMarker) {
+    pub fn follow(&mut self, laid: &DocumentMarker) {
         self.fault.clear();
         self.state = laid.state();
         let mut old: HashMap<OrderedPiece, PieceScene> = std::mem::take(&mut self.pieces)

@@ -1,4 +1,4 @@
-//! Views: draw what the session holds, and turn what is done in them into events.
+//! Views: each draws a part of the session and turns input into events.
 
 pub mod garment;
 pub mod marker;

@@ -5,7 +5,6 @@ mod guides;
 mod input;
 mod revealed;
 
-use crate::canvas::boards::Boards;
 use crate::canvas::camera::{ScreenPoint, TableCamera};
 use crate::canvas::grading::Grading;
 use crate::canvas::hit::{Hit, hits, inside_box, open_sheets, shown_points};
@@ -14,8 +13,9 @@ use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::sheet_tag::tagged;
 use crate::canvas::snap::snaps;
+use crate::canvas::table_layout::TableLayout;
 use crate::theme::{GRAB, Palette};
-use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool, walk};
+use crate::tools::{Event, Outcome, Overlay, Pointer, Reading, State, Tool, ToolModifiers, walk};
 use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -34,14 +34,14 @@ pub struct PatternView {
     /// How the table is seen.
     pub camera: TableCamera,
     /// Where sheets and panels lie.
-    pub boards: Boards,
+    pub table_layout: TableLayout,
     /// What is drawn.
     pub scene: Scene,
     /// The same as before the gesture that is shown: what the pointer finds must not move away
     /// under it.
     base: Scene,
     /// Where sheets and panels lay then.
-    base_boards: Boards,
+    base_table_layout: TableLayout,
     /// What is selected.
     pub selection: Selection,
     /// What is under the pointer.
@@ -78,7 +78,7 @@ pub struct PatternView {
     pub canvas: Option<Response>,
     pressed: Option<Pointer>,
     /// Where the pointer was told to be last, and what was held.
-    told: Option<(Pos2, Held)>,
+    told: Option<(Pos2, ToolModifiers)>,
     /// Whether keys went to another widget in the last frame.
     was_typed_into: bool,
     wants_fit: bool,
@@ -94,10 +94,10 @@ impl Default for PatternView {
     fn default() -> Self {
         Self {
             camera: TableCamera::default(),
-            boards: Boards::default(),
+            table_layout: TableLayout::default(),
             scene: Scene::default(),
             base: Scene::default(),
-            base_boards: Boards::default(),
+            base_table_layout: TableLayout::default(),
             selection: Selection::default(),
             hover: None,
             under: Vec::new(),
@@ -134,14 +134,14 @@ impl PatternView {
 
     /// Lays out a pattern that was just opened, and shows all of it.
     pub fn opened(&mut self, pattern: &Pattern) {
-        self.boards.open(pattern, &self.scene);
-        self.base_boards = self.boards.clone();
+        self.table_layout.open(pattern, &self.scene);
+        self.base_table_layout = self.table_layout.clone();
         self.selection = Selection::default();
         self.isolated.clear();
         self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
         self.take(Tool::Select);
         // On an empty table there is nothing to fit: it is seen as at first.
-        match self.boards.bounds(&self.scene) {
+        match self.table_layout.bounds(&self.scene) {
             Some(_) => self.fit(),
             None => {
                 self.camera = TableCamera::default();
@@ -188,10 +188,10 @@ impl PatternView {
         if !self.isolated.is_empty() {
             self.scene.isolate(&self.isolated);
         }
-        self.boards.follow(pattern);
+        self.table_layout.follow(pattern);
         if !previews {
             self.base = self.scene.clone();
-            self.base_boards = self.boards.clone();
+            self.base_table_layout = self.table_layout.clone();
         }
         self.selection.follow(pattern);
         if self.sheet.is_none_or(|id| pattern.sheet(id).is_none()) {
@@ -227,12 +227,12 @@ impl PatternView {
     /// Gives an event to the tool in hand.
     pub fn step(&mut self, event: &Event, evaluation: &Evaluation) -> Outcome {
         let open = self.open();
-        let (scene, boards) = (&self.base, &self.boards);
-        let inside = |corners| inside_box((scene, boards), &open, corners);
+        let (scene, table_layout) = (&self.base, &self.table_layout);
+        let inside = |corners| inside_box((scene, table_layout), &open, corners);
         let reading = Reading {
             evaluation,
             scene,
-            boards: &self.base_boards,
+            table_layout: &self.base_table_layout,
             selection: &self.selection,
             sheet: self.sheet,
             inside: &inside,
@@ -247,7 +247,7 @@ impl PatternView {
         Reading {
             evaluation,
             scene: &self.scene,
-            boards: &self.boards,
+            table_layout: &self.table_layout,
             selection: &self.selection,
             sheet: self.sheet,
             inside: &|_| Vec::new(),
@@ -282,7 +282,7 @@ impl PatternView {
         let resized = self.fitted.is_some_and(|size| size != view.size());
         if (self.wants_fit || resized)
             && view.width() > 50.0
-            && let Some(bounds) = self.boards.bounds(&self.scene)
+            && let Some(bounds) = self.table_layout.bounds(&self.scene)
         {
             self.camera.fit(view, &bounds);
             self.wants_fit = false;
@@ -381,14 +381,19 @@ impl PatternView {
         }
     }
 
-    fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
-        self.pointer(self.camera.table(view, ScreenPoint(at)).0, held)
+    fn pointer_at(&self, view: Rect, at: Pos2, modifiers: ToolModifiers) -> Pointer {
+        self.pointer(self.camera.table(view, ScreenPoint(at)).0, modifiers)
     }
 
     /// What a pointer at a place of the table [m] finds there.
-    pub fn pointer(&self, table: Vec2, held: Held) -> Pointer {
+    pub fn pointer(&self, table: Vec2, modifiers: ToolModifiers) -> Pointer {
         let open = self.open();
-        let mut found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
+        let mut found = hits(
+            (&self.base, &self.table_layout),
+            &open,
+            table,
+            self.camera.scale,
+        );
         self.add_guide_hit(&mut found, table);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
@@ -404,7 +409,7 @@ impl PatternView {
             .or(found.first().map(|hit| hit.sheet))
             .or(self.sheet)
             .unwrap_or(SheetId(0));
-        let at = table - self.boards.sheet(sheet);
+        let at = table - self.table_layout.sheet(sheet);
         Pointer {
             table,
             sheet,
@@ -417,7 +422,7 @@ impl PatternView {
             ),
             hits: found,
             pixel: 1.0 / self.camera.scale,
-            held,
+            modifiers,
         }
     }
 
@@ -443,7 +448,7 @@ impl PatternView {
             painter: ui.painter_at(view),
             view,
             camera: self.camera,
-            boards: &self.boards,
+            table_layout: &self.table_layout,
             scene: &self.scene,
             selection: &self.selection,
             hover,
@@ -464,7 +469,7 @@ impl PatternView {
     /// The table place of the origin of the sheet that is drawn on [m].
     pub fn sheet_origin(&self) -> Vec2 {
         self.sheet
-            .map_or_else(Vec2::zeros, |sheet| self.boards.sheet(sheet))
+            .map_or_else(Vec2::zeros, |sheet| self.table_layout.sheet(sheet))
     }
 
     /// Where a place of a sheet is seen.
@@ -479,7 +484,7 @@ impl PatternView {
         let open = self.open();
         let mut parts = Vec::new();
         for panel in &self.scene.panels {
-            let origin = self.boards.panel(panel.id);
+            let origin = self.table_layout.panel(panel.id);
             let mut part = |item, at: Vec2| parts.push((panel.sheet, item, origin + at));
             part(Item::Panel(panel.id), panel.shape.middle);
             for edge in &panel.shape.edges {
@@ -508,7 +513,7 @@ impl PatternView {
             }
         }
         for sheet in &self.scene.sheets {
-            let origin = self.boards.sheet(sheet.id);
+            let origin = self.table_layout.sheet(sheet.id);
             for curve in sheet.curves.iter().filter(|curve| !curve.is_traced) {
                 if let Some((middle, _)) = crate::canvas::along(&curve.line, 0.5) {
                     parts.push((sheet.id, Item::Curve(curve.id), origin + middle));
@@ -516,10 +521,10 @@ impl PatternView {
             }
         }
         for sheet in tagged(&self.scene, &open) {
-            let origin = self.boards.sheet(sheet.id);
+            let origin = self.table_layout.sheet(sheet.id);
             parts.push((sheet.id, Item::Sheet(sheet.id), origin));
         }
-        for shown in shown_points(&self.scene, &self.boards, &open) {
+        for shown in shown_points(&self.scene, &self.table_layout, &open) {
             let at = shown.origin + shown.point.at;
             parts.push((shown.sheet, Item::Point(shown.point.id), at));
         }

@@ -140,7 +140,7 @@ impl Reader {
             .max_by(|a, b| away(a).total_cmp(&away(b)))
             .unwrap();
         let view = self.drafter.window.state().view();
-        view.screen(self.view(), view.boards.panel(panel.id), at)
+        view.screen(self.view(), view.table_layout.panel(panel.id), at)
     }
 
     /// Points by coordinates.

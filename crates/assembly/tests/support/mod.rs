@@ -3,7 +3,7 @@
 
 pub mod edits;
 
-use toile_assembly::{Levels, Limb, Wearer};
+use toile_assembly::{Levels, Limb, PlacementBody};
 use toile_geometry::{Curve, SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_pattern::{
     BodyPart, Corner, Draft, DraftSeam, DraftSpan, EdgeId, EdgeOrigin, Facing, PanelId, Piece,
@@ -438,8 +438,8 @@ impl Doll {
         }
     }
 
-    pub fn wearer(&self) -> Wearer<'_> {
-        Wearer {
+    pub fn body(&self) -> PlacementBody<'_> {
+        PlacementBody {
             skin: &self.tree,
             limbs: self.limbs.clone(),
             levels: Levels {

@@ -1,4 +1,4 @@
-//! Edges in any order as closed loops.
+//! Orders edges that come in any order into closed loops.
 
 /// An edge of a loop: its index in the file, and whether it is walked backwards.
 pub(super) type LoopEdge = (usize, bool);

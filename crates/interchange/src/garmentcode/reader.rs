@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2, Vec3};
 use toile_pattern::{
-    CurveRule, Drawing, Edge, EdgeId, Fabric, FabricId, LineKind, NAME_LENGTH, Pattern, PointId,
-    PointRule, Rheology, Seam, SeamId, Span, WornRule,
+    CurveRule, Edge, EdgeId, Fabric, FabricId, LineKind, NAME_LENGTH, PanelBuilder, Pattern,
+    PointId, PointRule, Rheology, Seam, SeamId, Span, WornRule,
 };
 
 /// A seam whose sides differ by more than this ratio is gathered on purpose.
@@ -16,12 +16,12 @@ const GATHER_RATIO: f64 = 1.05;
 /// cosine of the angle between them being less than this.
 const TWIST_COSINE: f64 = -0.7;
 
-/// What came out of a file.
+/// The result of reading a file.
 #[derive(Clone, Debug)]
 pub struct GarmentCodeReading {
     /// The pattern.
     pub pattern: Pattern,
-    /// What was left out or assumed, with its place in the file.
+    /// Notes on parts that were left out or assumed, with their places in the file.
     pub notes: Vec<FormatError>,
 }
 
@@ -108,7 +108,7 @@ impl Builder {
             ));
         }
         let mut ids = self.pattern.ids;
-        let mut drawing = Drawing::new(&mut ids, &name, fabric);
+        let mut drawing = PanelBuilder::new(&mut ids, &name, fabric);
         let translation = source.place.translation.vector;
         drawing.panel.worn = WornRule::Placed {
             translation: translation.into(),
@@ -152,7 +152,7 @@ impl Builder {
 
     fn add_edge(
         &mut self,
-        drawing: &mut Drawing<'_>,
+        drawing: &mut PanelBuilder<'_>,
         source: &SpecPanel,
         (index, backwards): (usize, bool),
         corners: &mut BTreeMap<usize, PointId>,

@@ -18,7 +18,7 @@ const MOST_ROUNDS: usize = 32;
 pub struct GarmentCodeWriting {
     /// The JSON text.
     pub text: String,
-    /// What the format cannot hold, with the piece or seam it was left out of.
+    /// Notes on parts that the format cannot hold, with the piece or seam they were left out of.
     pub lost: Vec<FormatError>,
 }
 

@@ -1,5 +1,5 @@
-//! JSON that keeps what a hand-written file needs: the place of every value, the order of fields,
-//! numbers as they were written, and a refusal of fields given twice.
+//! JSON for files written by hand: it records the place of every value, the order of fields and numbers as
+//! they were written, and refuses fields given twice.
 
 use crate::FormatError;
 use std::collections::BTreeSet;

@@ -62,7 +62,7 @@ const NUMBERS: &[FieldsOfKind<'_>] = &[
     (1, &["rad"]),
 ];
 
-/// What a number measures.
+/// The quantity that a number measures.
 #[derive(Clone, Copy)]
 pub enum Measure {
     Length,
@@ -70,7 +70,7 @@ pub enum Measure {
     Plain,
 }
 
-/// What is known while reading.
+/// State of the reader.
 pub struct Reader<'a> {
     pub notes: Vec<Diagnostic>,
     unit: DisplayUnit,

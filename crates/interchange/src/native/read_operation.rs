@@ -11,7 +11,7 @@ use toile_pattern::{
 
 type Read = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<OperationKind, FormatError>;
 
-/// What operations are called in files, and how each is read.
+/// Names of operations in files, with the reader of each.
 const KINDS: [(&str, Read); 8] = [
     ("dart", dart),
     ("diamond", diamond),

@@ -1,4 +1,4 @@
-//! Values that all versions of the format write alike: measurements, fabrics.
+//! Measurements and fabrics, written alike in all versions of the format.
 
 use super::item::Item;
 use super::json::Value;

@@ -1,4 +1,4 @@
-//! Words of the format that are fixed.
+//! Fixed keywords of the pattern format.
 
 use super::item::FieldsOfKind;
 use toile_pattern::{

@@ -81,7 +81,7 @@ pub fn counts(numbers: impl IntoIterator<Item = u32>) -> Value {
     list(numbers.into_iter().map(count))
 }
 
-/// What a number measures.
+/// The quantity that a number measures.
 #[derive(Clone, Copy)]
 pub enum Measure {
     Length,
@@ -89,7 +89,7 @@ pub enum Measure {
     Plain,
 }
 
-/// What is known while writing.
+/// State of the writer.
 pub struct Writer<'a> {
     pub pattern: &'a Pattern,
     unit: DisplayUnit,

@@ -1,6 +1,6 @@
-//! How a piece looks on paper.
+//! Draws a piece on paper: its lines in the style of their kind and size, its words.
 
-use super::mark::{Look, Mark, Shape};
+use super::mark::{LineStyle, Mark, Shape};
 use super::{Lines, Paper, PrintJob, PrintPiece};
 use crate::pdf::{Align, Ink};
 use toile_cut::{Drawing, StrokeKind, Words};
@@ -28,8 +28,8 @@ const SIZES: [(Ink, f64); 8] = [
     ([0.8, 0.35, 0.55], 0.024),
 ];
 
-/// How the lines of a kind look in a size.
-pub(crate) fn look(job: &PrintJob, kind: StrokeKind, layer: usize) -> Look {
+/// The style of the lines of a kind in a size.
+pub(crate) fn style(job: &PrintJob, kind: StrokeKind, layer: usize) -> LineStyle {
     let several = job.layers.len() > 1;
     let (ink, dash) = match several {
         true => SIZES[layer % SIZES.len()],
@@ -49,7 +49,7 @@ pub(crate) fn look(job: &PrintJob, kind: StrokeKind, layer: usize) -> Look {
         Paper::Projector => PROJECTED.max(width),
         _ => width,
     };
-    Look { ink, width, dash }
+    LineStyle { ink, width, dash }
 }
 
 /// Whether lines of a kind are printed.
@@ -79,12 +79,12 @@ pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
                 continue;
             }
             let layer = (!shared).then_some(*layer);
-            let look = look(job, stroke.kind, layer.unwrap_or(0));
+            let style = style(job, stroke.kind, layer.unwrap_or(0));
             let on_fold = stroke.kind == StrokeKind::Fold;
             if let ([from, to], true, true) = (&stroke.points[..], on_fold, own) {
                 marks.extend(fold_words([*from, *to], drawing.fill.as_ref()));
             }
-            marks.push(Mark::line(layer, (stroke.points, stroke.closed), look));
+            marks.push(Mark::line(layer, (stroke.points, stroke.closed), style));
         }
         marks.extend(drawing.words.into_iter().map(words_mark));
     }
@@ -105,7 +105,7 @@ fn words_mark(words: Words) -> Mark {
     }
 }
 
-/// What is written along the fold, inside the piece.
+/// The words along the fold, inside the piece.
 fn fold_words([from, to]: [Vec2; 2], fill: Option<&toile_geometry::Polygon>) -> Option<Mark> {
     let way = (to - from).try_normalize(0.0)?;
     let middle = (from + to) * 0.5;

@@ -1,11 +1,11 @@
-//! What is put on paper: lines and words, each on a layer.
+//! Marks on paper: lines and words, each on a layer.
 
 use crate::pdf::{Align, Ink};
 use toile_geometry::{Bounds2, Vec2};
 
 /// Ink, width and dashes of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Look {
+pub(crate) struct LineStyle {
     pub ink: Ink,
     /// \[m\]
     pub width: f64,
@@ -19,7 +19,7 @@ pub(crate) enum Shape {
     Line {
         points: Vec<Vec2>,
         closed: bool,
-        look: Look,
+        style: LineStyle,
     },
     Text {
         text: String,
@@ -51,13 +51,17 @@ pub(crate) struct Page {
 }
 
 impl Mark {
-    pub fn line(layer: Option<usize>, (points, closed): (Vec<Vec2>, bool), look: Look) -> Self {
+    pub fn line(
+        layer: Option<usize>,
+        (points, closed): (Vec<Vec2>, bool),
+        style: LineStyle,
+    ) -> Self {
         Self {
             layer,
             shape: Shape::Line {
                 points,
                 closed,
-                look,
+                style,
             },
         }
     }

@@ -15,7 +15,7 @@ pub use title::TitleBlock;
 
 use crate::FormatError;
 use crate::pdf::Align;
-use mark::{Look, Mark, Page, Shape};
+use mark::{LineStyle, Mark, Page, Shape};
 use paper::{clipped, crosses, tiles};
 use std::sync::Arc;
 use toile_cut::CutPiece;
@@ -25,9 +25,9 @@ use toile_nesting::Pose;
 /// Which lines of a piece are printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lines {
-    /// Those to cut along.
+    /// The cut lines.
     Cut,
-    /// Those to sew along.
+    /// The seam lines.
     Sew,
     /// Both.
     #[default]
@@ -67,7 +67,7 @@ pub struct PrintJob {
     pub layers: Vec<PrintLayer>,
     /// The pieces.
     pub pieces: Vec<PrintPiece>,
-    /// What is said of it all.
+    /// The title block.
     pub title: TitleBlock,
     /// Lower left corner of the title block \[m\].
     pub title_at: Vec2,
@@ -77,7 +77,7 @@ pub struct PrintJob {
 const CROSS: f64 = 0.004;
 const GREY: [f32; 3] = [0.55, 0.55, 0.55];
 /// Lines of frames and crosses.
-const JOIN: Look = Look {
+const JOIN: LineStyle = LineStyle {
     ink: GREY,
     width: 0.000_15,
     dash: 0.0,
@@ -206,7 +206,7 @@ impl PrintJob {
     }
 }
 
-/// What a sheet shows of a mark.
+/// The part of a mark inside the window of a sheet.
 fn on_page(mark: &Mark, tile: &Tile) -> Vec<Mark> {
     let moved = |points: &[Vec2]| points.iter().map(|p| p + tile.shift).collect::<Vec<_>>();
     let with = |shape: Shape| Mark {
@@ -217,7 +217,7 @@ fn on_page(mark: &Mark, tile: &Tile) -> Vec<Mark> {
         Shape::Line {
             points,
             closed,
-            look,
+            style,
         } => {
             let inside = points.iter().all(|&p| tile.window.contains(p));
             let (parts, closed) = match inside {
@@ -228,7 +228,7 @@ fn on_page(mark: &Mark, tile: &Tile) -> Vec<Mark> {
                 with(Shape::Line {
                     points: moved(part),
                     closed,
-                    look: *look,
+                    style: *style,
                 })
             };
             parts.iter().map(line).collect()

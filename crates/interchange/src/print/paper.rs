@@ -1,15 +1,15 @@
-//! Paper, and how a drawing larger than a sheet is divided over several.
+//! Paper, and the division of a drawing over several sheets.
 
 use toile_geometry::{Bounds2, Vec2};
 
 /// White that printers leave at every side \[m\].
 const MARGIN: f64 = 0.010;
-/// How far a sheet shows what the next one shows too \[m\].
+/// Width of the overlap of neighbouring sheets \[m\].
 pub(crate) const OVERLAP: f64 = 0.010;
 /// White round a drawing on one page \[m\].
 const BORDER: f64 = 0.010;
 
-/// What is printed on.
+/// The paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Paper {
     /// Sheets of 210 x 297 mm.
@@ -34,7 +34,7 @@ impl Paper {
         Self::Projector,
     ];
 
-    /// What it is called.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",
@@ -55,7 +55,7 @@ impl Paper {
         }
     }
 
-    /// What a sheet shows of the drawing \[m\].
+    /// The window of the drawing on a sheet \[m\].
     pub fn window(self) -> Option<Vec2> {
         Some(self.sheet()? - Vec2::repeat(2.0 * MARGIN))
     }
@@ -76,7 +76,7 @@ impl Paper {
 pub struct Tile {
     /// Row from above, from 1; column from the left, from 1.
     pub place: [u32; 2],
-    /// What it shows of the drawing \[m\].
+    /// Its window of the drawing \[m\].
     pub window: Bounds2,
     /// Size of the sheet \[m\].
     pub sheet: Vec2,

@@ -38,8 +38,8 @@ fn write_mark(sheet: &mut PdfPage, mark: &Mark) {
         Shape::Line {
             points,
             closed,
-            look,
-        } => sheet.stroke(points, *closed, (look.width, look.dash, look.ink)),
+            style,
+        } => sheet.stroke(points, *closed, (style.width, style.dash, style.ink)),
         Shape::Text {
             text,
             at,

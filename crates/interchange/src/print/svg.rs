@@ -105,13 +105,13 @@ fn write_mark(text: &mut String, page: &Page, mark: &Mark) {
         Shape::Line {
             points,
             closed,
-            look,
+            style,
         } => {
-            let dash = match look.dash > 0.0 {
+            let dash = match style.dash > 0.0 {
                 true => format!(
                     " stroke-dasharray=\"{} {}\"",
-                    number(look.dash * 1e3),
-                    number(look.dash * 0.5e3)
+                    number(style.dash * 1e3),
+                    number(style.dash * 0.5e3)
                 ),
                 false => String::new(),
             };
@@ -119,8 +119,8 @@ fn write_mark(text: &mut String, page: &Page, mark: &Mark) {
                 text,
                 "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dash}/>",
                 path(points, *closed),
-                colour(look.ink),
-                number(look.width * 1e3)
+                colour(style.ink),
+                number(style.width * 1e3)
             );
         }
         Shape::Text {

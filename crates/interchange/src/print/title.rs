@@ -1,7 +1,7 @@
 //! The title block: what is printed, how lines look, how sheets lie, and a box to measure.
 
-use super::draw::{BLACK, look};
-use super::mark::{Look, Mark};
+use super::draw::{BLACK, style};
+use super::mark::{LineStyle, Mark};
 use super::paper::Tile;
 use super::{Lines, PrintJob};
 use crate::marker_label::lines_within;
@@ -9,12 +9,12 @@ use crate::pdf::{Align, fitted};
 use toile_cut::StrokeKind;
 use toile_geometry::{Bounds2, Vec2};
 
-/// What is said of a print.
+/// The texts of a title block.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TitleBlock {
     /// Name of the pattern.
     pub name: String,
-    /// What else is to be known, a line each.
+    /// Further lines.
     pub facts: Vec<String>,
 }
 
@@ -31,7 +31,7 @@ const MOST_LINES: usize = 10;
 /// Column right of the test box, for the map of sheets \[m\].
 const MAP: f64 = WIDTH - TEST_BOX[0] - 4.0 * INSET;
 
-const THIN: Look = Look {
+const THIN: LineStyle = LineStyle {
     ink: BLACK,
     width: 0.0002,
     dash: 0.0,
@@ -116,7 +116,7 @@ fn legend(job: &PrintJob, at: Vec2) -> Vec<Mark> {
             Vec2::new(at.x, y + 0.3 * LETTERS),
             Vec2::new(at.x + 0.02, y + 0.3 * LETTERS),
         ];
-        marks.push(Mark::line(None, (line, false), look(job, kind, layer)));
+        marks.push(Mark::line(None, (line, false), style(job, kind, layer)));
         let words = fitted(&words, LETTERS, LEGEND - 0.022);
         let place = Vec2::new(at.x + 0.022, y);
         marks.push(Mark::text(&words, (place, Align::Left), (LETTERS, BLACK)));

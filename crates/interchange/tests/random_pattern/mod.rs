@@ -221,7 +221,7 @@ fn fabric(dice: &mut Dice, id: FabricId, k: usize) -> Fabric {
 fn panel(dice: &mut Dice, ids: &mut Ids, k: usize, pattern: &Pattern) -> (Arc<Sheet>, Arc<Panel>) {
     let name = ["panel0", "panel 1", "panel.2", "Größe"][k];
     let fabric = pattern.fabrics[dice.below(pattern.fabrics.len())].id;
-    let mut drawing = Drawing::new(ids, name, fabric);
+    let mut drawing = PanelBuilder::new(ids, name, fabric);
     let corners = dice.below(9);
     let mut points: Vec<PointId> = Vec::new();
     for j in 0..corners + 4 {
@@ -233,7 +233,7 @@ fn panel(dice: &mut Dice, ids: &mut Ids, k: usize, pattern: &Pattern) -> (Arc<Sh
             drawing.edge(format!("c{j}"), [points[j - 1], points[j]], rule);
         }
     }
-    let line = |dice: &mut Dice, drawing: &mut Drawing<'_>, name: &str, ends: usize| {
+    let line = |dice: &mut Dice, drawing: &mut PanelBuilder<'_>, name: &str, ends: usize| {
         let mut edges = Vec::new();
         for j in 0..ends {
             let mut at = [j, (j + 1) % ends].map(|k| points[k % points.len()]);
@@ -391,7 +391,7 @@ fn worn(dice: &mut Dice) -> WornRule {
     }
 }
 
-fn details(dice: &mut Dice, drawing: &mut Drawing<'_>, points: &[PointId]) {
+fn details(dice: &mut Dice, drawing: &mut PanelBuilder<'_>, points: &[PointId]) {
     let any = |dice: &mut Dice| points[dice.below(points.len())];
     let lines = drawing.panel.lines.clone();
     let lines: Vec<&Line> = lines.iter().filter(|line| !line.edges.is_empty()).collect();

@@ -30,7 +30,7 @@ pub struct Section {
     measure: fn(&mut dyn Watcher) -> Result<Content, LabError>,
 }
 
-/// What a section found.
+/// The results of a section.
 #[derive(Default)]
 struct Content {
     /// Tables, as Markdown.

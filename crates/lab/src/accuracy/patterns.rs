@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use toile_session::{
-    Budget, NestOptions, Nested, SAMPLES, SessionError, Watcher, mesh_panels, nest_patterns,
+    Budget, MarkerSummary, NestOptions, SAMPLES, SessionError, Watcher, mesh_panels, nest_patterns,
 };
 
 /// Edge length of the meshes [m].
@@ -126,8 +126,8 @@ pub(super) fn markers(watcher: &mut dyn Watcher) -> Result<Content, LabError> {
 }
 
 /// The markers of one job; each of the patterns that ship is cut from one fabric.
-fn marker_row(name: &str, nested: &[Nested], clock: &Clock) -> Vec<String> {
-    let joined = |tell: &dyn Fn(&Nested) -> String| {
+fn marker_row(name: &str, nested: &[MarkerSummary], clock: &Clock) -> Vec<String> {
+    let joined = |tell: &dyn Fn(&MarkerSummary) -> String| {
         let each: Vec<String> = nested.iter().map(tell).collect();
         each.join(", ")
     };

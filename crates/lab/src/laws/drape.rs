@@ -1,7 +1,7 @@
 //! The drape test of Cusick (1968; ISO 9073-9, BS 5058).
 
 use crate::check::{Cases, Expected};
-use crate::outline::{fold_count, shadow};
+use crate::shadow::{fold_count, shadow};
 use crate::{LabError, Tolerance, disc};
 use toile_drape::fabrics::{LIBRARY, LibraryFabric};
 use toile_drape::{
@@ -13,7 +13,7 @@ use toile_geometry::{Vec3, total_area};
 const SPECIMEN: f64 = 0.15;
 const DISC: f64 = 0.09;
 
-/// What a drape test gives.
+/// The result of a drape test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drape {
     /// Drape coefficient: the share of the free ring's area that its shadow still covers.

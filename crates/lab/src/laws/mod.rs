@@ -25,7 +25,7 @@ use toile_session::Watcher;
 pub struct Law {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it says.
+    /// Its statement.
     pub title: &'static str,
     /// Every tolerance of its checks; each allows a relative error of 3 % at the most.
     pub tolerances: &'static [Tolerance],

@@ -35,7 +35,7 @@ impl GuideRun {
         }
     }
 
-    /// What such a guide is called.
+    /// Its name.
     pub fn words(self) -> &'static str {
         match self {
             Self::Horizontal => "horizontal guide",

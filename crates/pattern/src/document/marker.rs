@@ -27,7 +27,7 @@ pub struct Marker {
     pub cloth: MarkerCloth,
     /// How many garments of which sizes are cut.
     pub order: Vec<OrderedSize>,
-    /// What lies where. Pieces of the order that are not here wait to be laid.
+    /// The placements. Pieces of the order that are not here wait to be laid.
     pub placements: Vec<PiecePlacement>,
 }
 
@@ -56,7 +56,7 @@ pub struct MarkerCloth {
     pub plies: u32,
     /// Price of a metre of length.
     pub price_per_metre: Option<f64>,
-    /// What the price is in, as in EUR.
+    /// Currency of the price, as in EUR.
     pub currency: String,
     /// Print that repeats.
     pub print: Option<Print>,
@@ -167,7 +167,7 @@ pub struct PiecePlacement {
     pub locked: bool,
 }
 
-/// What no marker may have, and where.
+/// A fault that no marker may have, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MarkerFault {
     /// The field of the file.

@@ -1,17 +1,17 @@
 //! The document: what is edited, saved and undone.
 
-mod drawing;
+mod builder;
 mod guide;
-mod history;
+mod lineage;
 mod marker;
 mod operation;
 mod panel;
 mod seam;
 mod sheet;
 
-pub use drawing::Drawing;
+pub use builder::PanelBuilder;
 pub use guide::{Guide, GuideRun};
-pub(crate) use history::History;
+pub(crate) use lineage::StageLineage;
 pub use marker::{
     Flaw, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, NapRule, OrderedPiece, OrderedSize,
     PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,

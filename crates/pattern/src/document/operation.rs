@@ -1,4 +1,4 @@
-//! Operations: kept steps of a panel.
+//! Operations: steps that alter a panel (dart, fold, pleat, split), stored in order.
 
 use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId};
 use serde::{Deserialize, Serialize};
@@ -10,11 +10,11 @@ pub struct Operation {
     pub id: OperationId,
     /// Name to show.
     pub name: String,
-    /// What is done.
+    /// Its kind.
     pub kind: OperationKind,
 }
 
-/// What an operation does.
+/// The kinds of operations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum OperationKind {
     /// A dart taken out of a line, which is drawn with the dart's mouth in it.

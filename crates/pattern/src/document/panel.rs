@@ -21,7 +21,7 @@ pub struct Panel {
     pub lines: Vec<Line>,
     /// Its notches.
     pub notches: Vec<Notch>,
-    /// What is done to it, in order.
+    /// Its operations, in order.
     pub operations: Vec<Arc<Operation>>,
     /// Direction of the warp [rad], from +x counter-clockwise.
     pub grain: Number,
@@ -60,7 +60,7 @@ pub struct Line {
     pub id: LineId,
     /// Name to show, unique among the panel's lines.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: LineKind,
     /// The operation that inserts it; nothing for a line of the panel as drawn.
     pub by: Option<OperationId>,
@@ -68,7 +68,7 @@ pub struct Line {
     pub edges: Vec<Edge>,
 }
 
-/// What a line of a panel is.
+/// The kinds of lines of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LineKind {

@@ -1,4 +1,4 @@
-//! Seams: what turns flat panels into a garment.
+//! Seams: which edges of panels are sewn to which.
 
 use crate::{LineName, Mark, Number, PanelId, SeamId};
 use serde::{Deserialize, Serialize};

@@ -56,7 +56,7 @@ pub enum Entity {
     Guide(Arc<Guide>),
 }
 
-/// What a pattern has besides its parts.
+/// The properties of a pattern besides its parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Head {
     /// Name to show.

@@ -1,4 +1,4 @@
-//! What parts refer to.
+//! References: the parts that each part refers to.
 
 use super::Entity;
 use crate::{

@@ -1,4 +1,4 @@
-//! The value of a node, whatever it is.
+//! Computes the value of one node, of any kind.
 
 use super::node::{Definition, Node, Value};
 use super::numbers::Computation;

@@ -1,4 +1,4 @@
-//! How curves run, and the stretches of them that panels follow.
+//! Computes curves, and the spans of them that panels follow.
 
 use super::node::{Definition, Node};
 use super::numbers::{Computation, Want};

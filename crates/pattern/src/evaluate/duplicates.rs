@@ -1,4 +1,4 @@
-//! Ids and names that are taken twice.
+//! Diagnostics for ids and names that are used twice.
 
 use crate::{Code, Diagnostic, Pattern, Place, Severity};
 use std::collections::HashSet;

@@ -1,4 +1,4 @@
-//! Markers that name lost parts: what they have of them waits.
+//! Diagnostics for markers that refer to removed parts.
 
 use crate::{Code, Diagnostic, Marker, PartId, Pattern, Place};
 use std::collections::BTreeMap;

@@ -50,7 +50,7 @@ pub struct Evaluation {
     revision: u64,
 }
 
-/// What an update did.
+/// The changes of an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Update {
     /// Nodes that were computed.
@@ -74,7 +74,7 @@ impl Evaluation {
         &self.pattern
     }
 
-    /// Whom it was last evaluated for.
+    /// The wearer it was last evaluated for.
     pub fn wearer(&self) -> &Wearer {
         &self.wearer
     }

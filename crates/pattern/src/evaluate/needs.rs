@@ -1,10 +1,10 @@
-//! What the definition of a node needs.
+//! Dependencies: the nodes that the definition of a node needs.
 
 use super::node::{Definition, Node};
 use crate::formula::{Names, Use};
 use crate::{
-    CornerName, Edge, History, Line, Mark, Name, Number, OperationId, Panel, PanelId,
-    PartReference, Pattern, PointId, PointRule, Source, WornRule,
+    CornerName, Edge, Line, Mark, Name, Number, OperationId, Panel, PanelId, PartReference,
+    Pattern, PointId, PointRule, Source, StageLineage, WornRule,
 };
 
 /// Nodes a definition needs, and panels whose lines say which.
@@ -19,7 +19,7 @@ pub(crate) struct Needs<'d> {
 }
 
 impl<'d> Needs<'d> {
-    /// What a definition needs in a pattern.
+    /// The nodes that a definition needs in a pattern.
     pub fn of(definition: &Definition, pattern: &'d Pattern, names: &'d Names) -> Self {
         let mut needs = Self {
             pattern,
@@ -136,32 +136,32 @@ impl<'d> Needs<'d> {
 
     /// What notches need that are placed when that many operations are done.
     fn notches(&mut self, panel: &Panel, step: usize) {
-        let history = self.history(panel);
+        let lineage = self.stage_lineage(panel);
         for notch in &panel.notches {
             let first = self
                 .pattern
-                .first_step(panel, &history, &notch.at)
+                .first_step(panel, &lineage, &notch.at)
                 .unwrap_or(0);
-            if first.max(history.base) == history.base + step {
+            if first.max(lineage.base) == lineage.base + step {
                 self.mark(panel, &notch.at, Some(step));
             }
         }
     }
 
     /// The stages a panel comes from, which follow from the panels it is a side of.
-    fn history(&mut self, panel: &Panel) -> History {
+    fn stage_lineage(&mut self, panel: &Panel) -> StageLineage {
         let parents = self.pattern.lineage(panel).into_iter().skip(1);
         self.panels.extend(parents.map(|parent| parent.id));
         if let Source::Side { of, .. } = panel.source {
             self.panels.push(of);
         }
-        self.pattern.history(panel)
+        self.pattern.stage_lineage(panel)
     }
 
     /// The number of a mark, and the stage it is placed on, if that comes before so many of the
     /// panel's operations are done.
     fn mark(&mut self, panel: &Panel, mark: &Mark, before: Option<usize>) {
-        let history = self.history(panel);
+        let lineage = self.stage_lineage(panel);
         self.numbers(match mark {
             Mark::Notch(id) => {
                 let notch = self.pattern.notch_of(panel, *id);
@@ -169,11 +169,11 @@ impl<'d> Needs<'d> {
             }
             own => own.number(),
         });
-        let first = self.pattern.first_step(panel, &history, mark);
-        let before = before.map_or(usize::MAX, |step| history.base + step);
+        let first = self.pattern.first_step(panel, &lineage, mark);
+        let before = before.map_or(usize::MAX, |step| lineage.base + step);
         let stage = first
             .filter(|&step| step < before)
-            .and_then(|step| history.stage(step));
+            .and_then(|step| lineage.stage(step));
         self.nodes
             .extend(stage.map(|(panel, after)| Node::Stage(panel, after)));
     }

@@ -28,7 +28,7 @@ pub enum Node {
     Seam(SeamId),
 }
 
-/// What a node is computed from.
+/// The definition from which a node is computed.
 #[derive(Clone)]
 pub(crate) enum Definition {
     /// The document has no such part.

@@ -16,7 +16,7 @@ const LONGEST: f64 = 1000.0;
 /// No plain number of a pattern is as large as this.
 const LARGEST: f64 = 1e6;
 
-/// What a number must be.
+/// The kind of value that a number must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {
     /// A length [m].
@@ -235,7 +235,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// What defines a node.
+    /// The definition of a node.
     pub fn definition(&self, node: Node) -> Option<&Definition> {
         self.evaluation.state(node).map(|state| &state.definition)
     }
@@ -282,7 +282,7 @@ fn missing(node: Node) -> Failure {
     )
 }
 
-/// What formulas look up while a node is computed.
+/// The values that formulas look up while a node is computed.
 struct Reading<'c, 'e>(&'c Computation<'e>);
 
 impl Reading<'_, '_> {

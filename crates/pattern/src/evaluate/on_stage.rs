@@ -2,7 +2,7 @@
 
 use super::node::Node;
 use super::numbers::{Computation, Want};
-use super::panels::{Drawing, has_made};
+use super::panels::{PanelEvaluation, has_made};
 use crate::{
     Code, Diagnostic, LineKind, LineName, Mark, OperationId, Pattern, Place, Point, SheetId, Stage,
 };
@@ -32,33 +32,33 @@ pub(super) fn point(
     };
     let stage = c.stage(Node::Stage(panel.id, after)).cloned();
     let stage = c.reported(stage, &place, &what)?;
-    let mut drawing = Drawing::new(c, panel);
-    let value = drawing.mark(at, &place, &what)?;
-    let history = &drawing.history;
-    let pattern = &drawing.c.evaluation.pattern;
-    let own = history.base + after.and_then(|by| panel.step_of(by)).unwrap_or(0);
-    let step = pattern.first_step(panel, history, at);
+    let mut evaluated = PanelEvaluation::new(c, panel);
+    let value = evaluated.mark(at, &place, &what)?;
+    let lineage = &evaluated.lineage;
+    let pattern = &evaluated.c.evaluation.pattern;
+    let own = lineage.base + after.and_then(|by| panel.step_of(by)).unwrap_or(0);
+    let step = pattern.first_step(panel, lineage, at);
     let Some(step) = step.filter(|step| *step <= own) else {
         let what = format!("{what}: a corner it is placed by is made after the stage of its sheet");
-        drawing.gone(&place, &what, "the corner");
+        evaluated.gone(&place, &what, "the corner");
         return None;
     };
-    if !has_made(&stage, (pattern, panel, history), at) {
+    if !has_made(&stage, (pattern, panel, lineage), at) {
         // Why it could not be made is told there.
-        let index = &drawing.c.evaluation.index;
-        drawing.c.cause = index.get(&Node::Stage(panel.id, after)).copied()?;
+        let index = &evaluated.c.evaluation.index;
+        evaluated.c.cause = index.get(&Node::Stage(panel.id, after)).copied()?;
         return None;
     }
     let spot = match at {
         Mark::Corner(_) => stage.spot(line, value),
-        _ => drawing.past(step, &place)?.spot(line, value),
+        _ => evaluated.past(step, &place)?.spot(line, value),
     };
     match spot {
         Ok(spot) => match stage.at_spot(line, spot) {
             Some((found, _)) => return Some(found),
-            None => drawing.gone(&place, &what, "its place on the line"),
+            None => evaluated.gone(&place, &what, "its place on the line"),
         },
-        Err(error) => drawing.no_place(error, &place, &what),
+        Err(error) => evaluated.no_place(error, &place, &what),
     }
     None
 }
@@ -82,7 +82,7 @@ impl Pattern {
     }
 }
 
-impl Drawing<'_, '_, '_> {
+impl PanelEvaluation<'_, '_, '_> {
     /// A stage with the lines that an operation inserts; nothing if its sheet lies elsewhere.
     pub(super) fn insert(
         &mut self,

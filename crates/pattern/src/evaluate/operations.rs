@@ -2,7 +2,7 @@
 
 use super::node::Node;
 use super::numbers::{Computation, Want};
-use super::panels::Drawing;
+use super::panels::PanelEvaluation;
 use crate::stage::{
     DartApex, DartError, DartMouth, FoldError, PlaceError, cut_dart, cut_diamond, unfold,
 };
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// A stage of a panel; nothing if its outline or the stage before it cannot be drawn.
 pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Option<Arc<Stage>> {
     if step == 0 {
-        return Drawing::new(c, panel).drawn().map(Arc::new);
+        return PanelEvaluation::new(c, panel).drawn().map(Arc::new);
     }
     let before = step.checked_sub(2).map(|k| panel.operations[k].id);
     let stage = c.stage(Node::Stage(panel.id, before)).cloned();
@@ -20,8 +20,8 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
     let place = Place::Operation(panel.id, operation.id);
     let stage = c.reported(stage, &place, "")?;
     // An operation that cannot be done is left out, with an error.
-    let mut drawing = Drawing::new(c, panel);
-    let done = drawing.done(&stage, (step, operation));
+    let mut evaluated = PanelEvaluation::new(c, panel);
+    let done = evaluated.done(&stage, (step, operation));
     let mut stage = done.map_or(stage, |mut done| {
         if !matches!(operation.kind, OperationKind::Split { .. }) {
             done.sides.clear();
@@ -29,14 +29,14 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
         done.done.push(operation.id);
         Arc::new(done)
     });
-    let notches = drawing.notches(&stage, step);
+    let notches = evaluated.notches(&stage, step);
     if !notches.is_empty() {
         Arc::make_mut(&mut stage).notches.extend(notches);
     }
     Some(stage)
 }
 
-impl Drawing<'_, '_, '_> {
+impl PanelEvaluation<'_, '_, '_> {
     /// A stage after an operation; nothing if it cannot be done.
     fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
         let place = Place::Operation(self.panel.id, operation.id);

@@ -4,39 +4,39 @@ use super::node::Node;
 use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
-    Code, Corner, Diagnostic, Edge, History, Line, LineKind, LineName, Mark, Name, Notch,
-    OperationId, Panel, PanelId, Pattern, Place, Role, Side, Source, Stage,
+    Code, Corner, Diagnostic, Edge, Line, LineKind, LineName, Mark, Name, Notch, OperationId,
+    Panel, PanelId, Pattern, Place, Role, Side, Source, Stage, StageLineage,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
 /// Draws a panel's stages.
-pub(super) struct Drawing<'c, 'e, 'p> {
+pub(super) struct PanelEvaluation<'c, 'e, 'p> {
     pub c: &'c mut Computation<'e>,
     pub panel: &'p Panel,
     /// The stages the panel comes from.
-    pub history: History,
+    pub lineage: StageLineage,
 }
 
-impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
+impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
     pub fn new(c: &'c mut Computation<'e>, panel: &'p Panel) -> Self {
-        let history = c.evaluation.pattern.history(panel);
-        Self { c, panel, history }
+        let lineage = c.evaluation.pattern.stage_lineage(panel);
+        Self { c, panel, lineage }
     }
 
     fn first_step(&self, mark: &Mark) -> Option<usize> {
         let pattern = &self.c.evaluation.pattern;
-        pattern.first_step(self.panel, &self.history, mark)
+        pattern.first_step(self.panel, &self.lineage, mark)
     }
 
     fn has_made(&self, stage: &Stage, mark: &Mark) -> bool {
         let pattern = &self.c.evaluation.pattern;
-        has_made(stage, (pattern, self.panel, &self.history), mark)
+        has_made(stage, (pattern, self.panel, &self.lineage), mark)
     }
 
     /// A stage the panel comes from.
     pub(super) fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
-        let (panel, after) = self.history.stage(step)?;
+        let (panel, after) = self.lineage.stage(step)?;
         let stage = self.c.stage(Node::Stage(panel, after)).cloned();
         self.c.reported(stage, place, "")
     }
@@ -167,7 +167,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         let mut found = Vec::new();
         for notch in &panel.notches {
             let first = self.first_step(&notch.at).unwrap_or(0);
-            if first.max(self.history.base) == self.history.base + step
+            if first.max(self.lineage.base) == self.lineage.base + step
                 && self.has_made(stage, &notch.at)
             {
                 found.extend(self.notch(stage, (notch, first)));
@@ -264,7 +264,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
     ) -> Option<Result<Spot, PlaceError>> {
         let value = self.mark(mark, place, what)?;
         let first = self.first_step(mark).unwrap_or(0);
-        if first >= self.history.base + step {
+        if first >= self.lineage.base + step {
             self.c.diagnostics.push(Diagnostic::error(
                 Code::MissingReference,
                 place.clone(),
@@ -339,7 +339,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         let mark = self.mark(&notch.at, &place, &what)?;
         let line = Name::Drawn(notch.line);
         // What the panel is a side of places it where it is cut from that.
-        let found = match first < self.history.base {
+        let found = match first < self.lineage.base {
             true => self.past(first, &place)?.spot(line, mark),
             false => stage.spot(line, mark),
         };
@@ -361,7 +361,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         };
         let Some((point, along)) = stage.at_spot(line, spot) else {
             // An edge without a length is told as that.
-            if first < self.history.base {
+            if first < self.lineage.base {
                 self.no_place(PlaceError::Beyond, &place, &what);
             }
             return None;
@@ -383,7 +383,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
 /// could not be done, which is told there.
 pub(super) fn has_made(
     stage: &Stage,
-    (pattern, panel, history): (&Pattern, &Panel, &History),
+    (pattern, panel, lineage): (&Pattern, &Panel, &StageLineage),
     mark: &Mark,
 ) -> bool {
     let at = match mark {
@@ -393,6 +393,6 @@ pub(super) fn has_made(
     let corners = at.map_or_else(Vec::new, Mark::corners);
     let makers = corners.iter().filter_map(|corner| corner.maker());
     makers
-        .filter(|by| history.step_of(*by).is_some())
+        .filter(|by| lineage.step_of(*by).is_some())
         .all(|by| stage.done.contains(&by))
 }

@@ -1,4 +1,4 @@
-//! Where points lie.
+//! Computes the places of points.
 
 use super::node::Node;
 use super::numbers::{Computation, Want, bounded_place};

@@ -2,7 +2,7 @@
 
 use super::node::Node;
 use super::numbers::Want;
-use super::panels::Drawing;
+use super::panels::PanelEvaluation;
 use crate::stage::{
     CutError, MOST_CUTS, PivotError, Pivoting, Pleating, SplitError, SpreadAlong, SpreadError,
     Spreading, pivot_dart, pleat, split, spread,
@@ -12,7 +12,7 @@ use crate::{
     PleatKind, PleatLine, SpreadCut, Stage,
 };
 
-impl Drawing<'_, '_, '_> {
+impl PanelEvaluation<'_, '_, '_> {
     /// A stage after a pivot; nothing if that cannot be done.
     pub fn pivot(
         &mut self,
@@ -295,8 +295,8 @@ impl Drawing<'_, '_, '_> {
         (step, operation): (usize, OperationId),
         (place, what): (&Place, &str),
     ) -> bool {
-        match self.history.step_of(operation) {
-            Some(own) if own < self.history.base + step => stage.done.contains(&operation),
+        match self.lineage.step_of(operation) {
+            Some(own) if own < self.lineage.base + step => stage.done.contains(&operation),
             Some(_) => {
                 self.refused(
                     Code::MissingReference,

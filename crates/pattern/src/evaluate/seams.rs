@@ -171,16 +171,16 @@ fn stretch(
 ) -> Option<Result<Stretch, PlaceError>> {
     let evaluation = c.evaluation;
     let pattern = &evaluation.pattern;
-    let history = pattern.history(panel);
+    let lineage = pattern.stage_lineage(panel);
     let mut places = Vec::with_capacity(2);
     for (mark, value) in [&span.from, &span.to].into_iter().zip(marks) {
-        let step = pattern.first_step(panel, &history, mark);
-        let Some((of, after)) = step.and_then(|step| history.stage(step)) else {
+        let step = pattern.first_step(panel, &lineage, mark);
+        let Some((of, after)) = step.and_then(|step| lineage.stage(step)) else {
             return Some(Err(PlaceError::NoLine));
         };
         let first = c.stage(Node::Stage(of, after)).cloned();
         let first = c.reported(first, &Place::Seam(seam.id), "")?;
-        if !has_made(&first, (pattern, panel, &history), mark) {
+        if !has_made(&first, (pattern, panel, &lineage), mark) {
             return None;
         }
         match finished.placed(&first, span.line, value) {

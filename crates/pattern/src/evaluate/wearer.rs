@@ -1,10 +1,10 @@
-//! Whom a pattern is drafted for.
+//! The wearer that a pattern is drafted for: measurements, and the size if it is one of the pattern's.
 
 use crate::{Size, SizeId};
 use std::sync::Arc;
 use toile_measure::Measurements;
 
-/// Whom a pattern is drafted for.
+/// The wearer that a pattern is drafted for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wearer {
     /// Their measurements [m], [rad].

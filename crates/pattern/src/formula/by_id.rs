@@ -1,4 +1,4 @@
-//! Parts written by their ids, as journals do, which outlive names.
+//! Notation of parts by id, in journals: ids outlive names.
 
 use crate::{CornerName, Name, PartReference, Role};
 

@@ -1,5 +1,4 @@
-//! How a formula writes the parts it measures: by names, and by `?` and an id where a part is lost
-//! or its name leads to another.
+//! Notation of parts in formulas: by name, or `?id` where the part is lost or its name leads to another.
 
 use super::cursor::Cursor;
 use super::{FormulaError, quoted};
@@ -8,7 +7,7 @@ use std::fmt;
 
 const HINT: &str = "write panel.name, for example front.armhole";
 
-/// What a function measures.
+/// The argument that a function measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Point,
@@ -25,7 +24,7 @@ pub(crate) enum Word {
     Id(u32),
 }
 
-/// What has points, edges and curves.
+/// The owner of points, edges and curves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Owner {
     /// A panel and the sheet it is traced from, else a sheet.

@@ -1,4 +1,4 @@
-//! Parts on their way into a sheet, with ids and names that stay unique among themselves.
+//! New points and curves for a sheet, with unique ids and names.
 
 use super::impossible;
 use super::lookup::sheet;
@@ -15,7 +15,7 @@ pub(super) struct Additions {
     pub sheet: Sheet,
     /// Gives ids that are free.
     pub ids: Ids,
-    /// What adds the parts.
+    /// The edits that add the parts.
     pub edits: Vec<Edit>,
 }
 

@@ -205,10 +205,10 @@ fn on_first_stage(
 ) -> Option<f64> {
     let pattern = evaluation.pattern();
     let panel = pattern.panel(edge.panel)?;
-    let history = pattern.history(panel);
+    let lineage = pattern.stage_lineage(panel);
     let corner = edge.ends[end];
-    let first = pattern.first_step(panel, &history, &Mark::Corner(corner))?;
-    let (of, after) = history.stage(first)?;
+    let first = pattern.first_step(panel, &lineage, &Mark::Corner(corner))?;
+    let (of, after) = lineage.stage(first)?;
     let stage = evaluation.stage(of, after)?;
     let line = Name::Drawn(edge.line);
     let corner = Placed::Mark(MarkValue::Corner(corner));

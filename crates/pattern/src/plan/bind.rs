@@ -1,6 +1,6 @@
-//! Formulas that speak of names nothing had, when something has them.
+//! Binds names in formulas to parts once these exist.
 
-use super::number_place::Slot;
+use super::number_address::Slot;
 use super::numbers::numbers_of;
 use crate::{Edit, Entity, Evaluation, Formula, Names, Number, PartReference, Token};
 

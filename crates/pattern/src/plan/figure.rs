@@ -1,4 +1,4 @@
-//! Whole figures on a sheet: rectangles and polygons, as panels too if that is wished.
+//! Draws rectangles and polygons on a sheet, with panels of them on request.
 
 use super::additions::Additions;
 use super::chain::Chain;

@@ -1,9 +1,9 @@
-//! Moves a point that formulas place: what becomes of the formulas is chosen.
+//! Moves a point that formulas place; the caller chooses how the formulas change.
 
 use super::impossible;
 use super::lookup::{after, place};
 use super::moving::{added, move_point};
-use super::number_place::Slot;
+use super::number_address::Slot;
 use super::numbers::{number_at, numbers_of};
 use crate::formula::Token;
 use crate::{Edit, EditError, Entity, Evaluation, Number, PointId, Variable, VariableId};

@@ -1,7 +1,7 @@
 //! Fragments: parts of a pattern as data, to be pasted into the same pattern or another.
 
 use super::impossible;
-use super::number_place::NumberPlace;
+use super::number_address::NumberAddress;
 use super::numbers::numbers_of;
 use crate::{
     EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, PointRule, Seam,
@@ -61,7 +61,7 @@ pub struct Outside {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutsideValue {
     /// Where it stands in the fragment.
-    pub place: NumberPlace,
+    pub place: NumberAddress,
     /// Its value [m], [rad] or plain; nothing if it had none.
     pub value: Option<f64>,
     /// Its power of a length.
@@ -305,7 +305,7 @@ fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
                 continue;
             }
             let (value, power) = match entry.place {
-                NumberPlace::Variable(id) => match evaluation.variable(id) {
+                NumberAddress::Variable(id) => match evaluation.variable(id) {
                     Some((value, power)) => (Some(value), power),
                     None => (None, 0),
                 },

@@ -1,4 +1,4 @@
-//! From a place near a panel to a mark on one of its lines.
+//! Finds the mark on a line of a panel nearest to a place.
 
 use super::chain::ON_CURVE;
 use super::construct::add_point;

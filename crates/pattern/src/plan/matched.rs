@@ -1,4 +1,4 @@
-//! What lies opposite on a seam: matched notches, and the mirror twin of an edge that is sewn.
+//! Finds the opposite places on a seam: matched notches, and the mirror twin of an edge that is sewn.
 
 use super::lookup::{self, after};
 use super::notch::add_notch;

@@ -1,4 +1,4 @@
-//! Planners: from a wish to the edits that grant it.
+//! Planners: each turns a request into edits.
 
 mod additions;
 mod align;
@@ -21,7 +21,7 @@ mod matched;
 mod moving;
 mod names;
 mod notch;
-mod number_place;
+mod number_address;
 mod numbers;
 mod on_panel;
 mod on_stage;
@@ -57,7 +57,7 @@ pub use marks::{NearMark, nearest_mark};
 pub use matched::{Opposite, PanelNotch, add_matched_notches, is_upside_down, opposites, twin};
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
-pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, SpanEnd};
+pub use number_address::{MarkNumber, NumberAddress, OperationNumber, PointNumber, SpanEnd};
 pub use numbers::{
     NumberEntry, adjust_number, clear_number, number_at, numbers_of, set_number, set_number_in_size,
 };

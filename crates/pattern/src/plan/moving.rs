@@ -43,10 +43,10 @@ fn at(evaluation: &Evaluation, point: PointId) -> Result<Vec2, EditError> {
     place.ok_or_else(|| impossible("the point cannot be drawn", "mend its formulas first"))
 }
 
-fn way(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2, EditError> {
-    let way = at(evaluation, tip)? - at(evaluation, base)?;
-    if way.norm() > 1e-12 {
-        return Ok(way);
+fn direction(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2, EditError> {
+    let direction = at(evaluation, tip)? - at(evaluation, base)?;
+    if direction.norm() > 1e-12 {
+        return Ok(direction);
     }
     Err(impossible(
         "the two points it is constructed from are in the same place",
@@ -92,13 +92,13 @@ pub(super) fn moved(
             along,
             aside,
         } => {
-            let way = way(evaluation, [*base, *tip])?;
-            let left = Vec2::new(-way.y, way.x);
-            let square = way.norm_squared();
+            let direction = direction(evaluation, [*base, *tip])?;
+            let left = Vec2::new(-direction.y, direction.x);
+            let square = direction.norm_squared();
             PointRule::Between {
                 base: *base,
                 tip: *tip,
-                along: added(along, shift.dot(&way) / square),
+                along: added(along, shift.dot(&direction) / square),
                 aside: added(aside, shift.dot(&left) / square),
             }
         }
@@ -107,7 +107,7 @@ pub(super) fn moved(
             tip,
             distance,
         } => {
-            let unit = way(evaluation, [*base, *tip])?.normalize();
+            let unit = direction(evaluation, [*base, *tip])?.normalize();
             PointRule::Toward {
                 base: *base,
                 tip: *tip,
@@ -214,9 +214,9 @@ fn moved_mark(
             distance: added(number, shift),
         },
         _ => {
-            let way = stage.stretch(line, [corner(0), corner(1)], |edge| edge.half == 0);
-            let way = way.map_err(|_| lost())?;
-            let length = stage.stretch_length(0, &way).max(1e-12);
+            let span = stage.stretch(line, [corner(0), corner(1)], |edge| edge.half == 0);
+            let span = span.map_err(|_| lost())?;
+            let length = stage.stretch_length(0, &span).max(1e-12);
             let now = evaluation.number(number, Want::Plain).ok_or_else(lost)?;
             let share = (now + shift / length).clamp(0.0, 1.0);
             Mark::Between {

@@ -1,9 +1,11 @@
-//! Reads and sets the numbers of parts, each by its place.
+//! Reads and sets the numbers of parts, each by its address.
 
 use super::impossible;
 use super::lookup::{after, refuse_faults};
 use super::moving::added;
-use super::number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, Slot, SpanEnd};
+use super::number_address::{
+    MarkNumber, NumberAddress, OperationNumber, PointNumber, Slot, SpanEnd,
+};
 use super::seam::SeamSide;
 use crate::{
     Code, Edit, EditError, Evaluation, Number, OperationId, OperationKind, PartId, Pattern, Place,
@@ -14,7 +16,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberEntry {
     /// Where it stands.
-    pub place: NumberPlace,
+    pub place: NumberAddress,
     /// What it is called beside its field.
     pub label: &'static str,
     /// What it must be.
@@ -26,7 +28,7 @@ pub struct NumberEntry {
 /// The numbers of a part, in the order they are shown; none if it has none or is not there.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     let pattern = evaluation.pattern();
-    let entry = |place: NumberPlace| {
+    let entry = |place: NumberAddress| {
         let mut entity = place.entity(pattern)?;
         let number = match place.slot(&mut entity)? {
             Slot::Always(number) => Some(number.clone()),
@@ -46,7 +48,7 @@ pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
 }
 
 /// The number at a place; nothing if it is not there or left out.
-pub fn number_at(pattern: &Pattern, place: &NumberPlace) -> Option<Number> {
+pub fn number_at(pattern: &Pattern, place: &NumberAddress) -> Option<Number> {
     let mut entity = place.entity(pattern)?;
     match place.slot(&mut entity)? {
         Slot::Always(number) => Some(number.clone()),
@@ -60,7 +62,7 @@ pub fn number_at(pattern: &Pattern, place: &NumberPlace) -> Option<Number> {
 /// The place is not there; the number has no value there, the wrong dimension, or needs itself.
 pub fn set_number(
     evaluation: &Evaluation,
-    place: &NumberPlace,
+    place: &NumberAddress,
     number: Number,
 ) -> Result<Vec<Edit>, EditError> {
     let mut entity = entity(evaluation, place)?;
@@ -80,12 +82,12 @@ pub fn set_number(
 /// The place is not there or has no number; the number has no value now; the new one has none.
 pub fn adjust_number(
     evaluation: &Evaluation,
-    place: &NumberPlace,
+    place: &NumberAddress,
     to: f64,
 ) -> Result<Vec<Edit>, EditError> {
     let number = number_at(evaluation.pattern(), place).ok_or_else(|| missing(place))?;
     let now = match place {
-        NumberPlace::Variable(id) => evaluation.variable(*id).map(|found| found.0),
+        NumberAddress::Variable(id) => evaluation.variable(*id).map(|found| found.0),
         _ => evaluation.number(&number, place.want()),
     };
     let now = now.ok_or_else(|| {
@@ -104,7 +106,7 @@ pub fn adjust_number(
 /// The size or the place is not there, or has no number; the value is not finite.
 pub fn set_number_in_size(
     evaluation: &Evaluation,
-    place: &NumberPlace,
+    place: &NumberAddress,
     (size, value): (SizeId, Option<f64>),
 ) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
@@ -137,7 +139,10 @@ pub fn set_number_in_size(
 ///
 /// # Errors
 /// The place is not there, or its number cannot be left out.
-pub fn clear_number(evaluation: &Evaluation, place: &NumberPlace) -> Result<Vec<Edit>, EditError> {
+pub fn clear_number(
+    evaluation: &Evaluation,
+    place: &NumberAddress,
+) -> Result<Vec<Edit>, EditError> {
     let mut entity = entity(evaluation, place)?;
     match place.slot(&mut entity).ok_or_else(|| missing(place))? {
         Slot::Optional(old) => *old = None,
@@ -151,12 +156,12 @@ pub fn clear_number(evaluation: &Evaluation, place: &NumberPlace) -> Result<Vec<
     Ok(vec![Edit::Put(entity)])
 }
 
-fn entity(evaluation: &Evaluation, place: &NumberPlace) -> Result<crate::Entity, EditError> {
+fn entity(evaluation: &Evaluation, place: &NumberAddress) -> Result<crate::Entity, EditError> {
     let entity = place.entity(evaluation.pattern());
     entity.ok_or_else(|| missing(place))
 }
 
-fn missing(place: &NumberPlace) -> EditError {
+fn missing(place: &NumberAddress) -> EditError {
     EditError::Missing(format!("the {} of {}", place.label(), place.part()))
 }
 
@@ -165,7 +170,7 @@ fn missing(place: &NumberPlace) -> EditError {
 pub(super) fn refuse_valueless(
     evaluation: &Evaluation,
     edits: &[Edit],
-    place: &NumberPlace,
+    place: &NumberAddress,
 ) -> Result<(), EditError> {
     let after = after(evaluation, edits)?;
     let old = evaluation.diagnostics();
@@ -174,7 +179,7 @@ pub(super) fn refuse_valueless(
     if let Some(found) = cycles.next() {
         return Err(impossible(found.message, found.hint));
     }
-    if let NumberPlace::Variable(id) = place {
+    if let NumberAddress::Variable(id) = place {
         return refuse_faults(evaluation, &after, &[Place::Variable(*id)]);
     }
     let Some(number) = number_at(after.pattern(), place) else {
@@ -208,14 +213,14 @@ fn cut_numbers(pattern: &Pattern, id: OperationId, marks: [MarkNumber; 2]) -> Ve
 }
 
 /// Places at which a part may have a number.
-fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
+fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberAddress> {
     let marks = [MarkNumber::Distance, MarkNumber::Share];
     let owner = |own: &dyn Fn(&crate::Panel) -> bool| {
         let found = pattern.panels.iter().find(|panel| own(panel));
         found.map(|panel| panel.id)
     };
     match part {
-        PartId::Variable(id) => vec![NumberPlace::Variable(id)],
+        PartId::Variable(id) => vec![NumberAddress::Variable(id)],
         PartId::Point(id) => [
             PointNumber::X,
             PointNumber::Y,
@@ -225,22 +230,22 @@ fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
             PointNumber::Aside,
             PointNumber::Share,
         ]
-        .map(|number| NumberPlace::Point(id, number))
+        .map(|number| NumberAddress::Point(id, number))
         .to_vec(),
-        PartId::Curve(id) => vec![NumberPlace::Bulge(id), NumberPlace::ToLength(id)],
+        PartId::Curve(id) => vec![NumberAddress::Bulge(id), NumberAddress::ToLength(id)],
         PartId::Panel(id) => vec![
-            NumberPlace::Grain(id),
-            NumberPlace::Allowance(id),
-            NumberPlace::Level(id),
+            NumberAddress::Grain(id),
+            NumberAddress::Allowance(id),
+            NumberAddress::Level(id),
         ],
         PartId::Edge(id) => {
             let panel = owner(&|panel| panel.edge(id).is_some());
-            let place = panel.map(|panel| NumberPlace::EdgeAllowance(panel, id));
+            let place = panel.map(|panel| NumberAddress::EdgeAllowance(panel, id));
             place.into_iter().collect()
         }
         PartId::Notch(id) => {
             let panel = owner(&|panel| panel.notches.iter().any(|notch| notch.id == id));
-            let places = panel.map(|panel| marks.map(|m| NumberPlace::Notch(panel, id, m)));
+            let places = panel.map(|panel| marks.map(|m| NumberAddress::Notch(panel, id, m)));
             places.into_iter().flatten().collect()
         }
         PartId::Operation(id) => {
@@ -259,18 +264,18 @@ fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
             numbers.extend(cut_numbers(pattern, id, marks));
             let places = |panel| {
                 let numbers = numbers.into_iter();
-                numbers.map(move |number| NumberPlace::Operation(panel, id, number))
+                numbers.map(move |number| NumberAddress::Operation(panel, id, number))
             };
             panel.map(places).into_iter().flatten().collect()
         }
         PartId::Seam(id) => {
-            let mut places = vec![NumberPlace::Ease(id)];
+            let mut places = vec![NumberAddress::Ease(id)];
             let seam = pattern.seam(id);
             for side in [SeamSide::First, SeamSide::Second] {
                 let count = seam.map_or(0, |seam| seam.sides[side.index()].len());
                 for k in 0..count {
                     for end in [SpanEnd::From, SpanEnd::To] {
-                        let place = |mark| NumberPlace::Span(id, side, k, end, mark);
+                        let place = |mark| NumberAddress::Span(id, side, k, end, mark);
                         places.extend(marks.map(place));
                     }
                 }

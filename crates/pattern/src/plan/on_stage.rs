@@ -160,8 +160,8 @@ pub(super) fn place_of(
     let stage = evaluation.last_stage(panel)?;
     let value = mark_value(evaluation, panel, mark)?;
     let pattern = evaluation.pattern();
-    let history = pattern.history(panel);
-    let (of, after) = history.stage(pattern.first_step(panel, &history, mark)?)?;
+    let lineage = pattern.stage_lineage(panel);
+    let (of, after) = lineage.stage(pattern.first_step(panel, &lineage, mark)?)?;
     let first = evaluation.stage(of, after)?;
     let spot = match mark {
         Mark::Corner(_) => stage.spot(line, value),

@@ -4,7 +4,7 @@ use super::fragment::{Fragment, Outside, copy, copy_all, references};
 use super::impossible;
 use super::lookup::{after, finite, sheet};
 use super::names::{curve_owner, free_name, letter_name, panel_owner, sheet_owner};
-use super::number_place::{NumberPlace, Slot};
+use super::number_address::{NumberAddress, Slot};
 use super::remap::Remap;
 use super::transform::move_points;
 use crate::{
@@ -36,7 +36,7 @@ pub struct Pasted {
     pub parts: Vec<PartId>,
     /// Numbers that speak of parts that are not here: they are values now, or wait for a number of
     /// their own if they had no value.
-    pub loosened: Vec<NumberPlace>,
+    pub loosened: Vec<NumberAddress>,
     /// Names of sizes that are not here: values of their own that numbers had for them are gone.
     pub lost_sizes: Vec<String>,
 }
@@ -183,7 +183,7 @@ impl Pasting {
             self.result.loosened.push(outside.place);
             if let Some(value) = outside.value {
                 *number = match outside.place {
-                    NumberPlace::Variable(_) if outside.power == 1 => length(value),
+                    NumberAddress::Variable(_) if outside.power == 1 => length(value),
                     _ => Number::Value(value),
                 };
                 own.apply(&[Edit::Put(entity)])?;
@@ -328,7 +328,7 @@ impl Pasting {
     /// The result, its places by the new ids.
     fn finished(mut self, fragment: &Fragment) -> Pasted {
         let places = fragment.values.iter().map(|value| value.place);
-        let loose: Vec<NumberPlace> = places
+        let loose: Vec<NumberAddress> = places
             .filter(|place| self.result.loosened.contains(place))
             .map(|place| place.remapped(&self.remap))
             .collect();

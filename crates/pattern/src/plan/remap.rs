@@ -1,4 +1,4 @@
-//! Gives parts other ids, wherever they refer to each other.
+//! Replaces ids in copied parts and in all references among them.
 
 use crate::{
     Apex, CornerName, CurveRule, Entity, Mark, Name, Number, OperationKind, Panel, PartId,

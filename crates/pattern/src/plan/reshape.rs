@@ -59,7 +59,7 @@ fn freer_part(
     (dart, line, mouth): (OperationId, LineName, &Mark),
 ) -> Option<Turned> {
     let pattern = evaluation.pattern();
-    let history = pattern.history(panel);
+    let lineage = pattern.stage_lineage(panel);
     let operations = &panel.operations;
     let folds = operations.iter().enumerate().filter_map(|(k, operation)| {
         let OperationKind::Fold { ends, .. } = &operation.kind else {
@@ -84,8 +84,8 @@ fn freer_part(
     };
     let placed = |mark: &Mark| {
         let value = mark_value(evaluation, panel, mark)?;
-        let step = pattern.first_step(panel, &history, mark)?;
-        let (of, after) = history.stage(step)?;
+        let step = pattern.first_step(panel, &lineage, mark)?;
+        let (of, after) = lineage.stage(step)?;
         let first = evaluation.stage(of, after)?;
         stage.placed(first, line, value).ok()
     };

@@ -1,4 +1,4 @@
-//! The points that a selection of parts is drawn by.
+//! The points that define the shape of a selection of parts.
 
 use crate::{Evaluation, OperationKind, Panel, PartId, Pattern, PointId};
 use std::collections::BTreeSet;

@@ -3,7 +3,7 @@
 use super::bind::bound;
 use super::lookup::after;
 use super::names::{free_name, wished};
-use super::number_place::NumberPlace;
+use super::number_address::NumberAddress;
 use super::rename::variable_name;
 use super::{impossible, numbers, remove};
 use crate::{
@@ -101,7 +101,7 @@ pub fn add_variable(
     let id: VariableId = ids.take();
     let variable = Arc::new(Variable { id, name, number });
     let mut edits = vec![Edit::Put(Entity::Variable(variable))];
-    numbers::refuse_valueless(evaluation, &edits, &NumberPlace::Variable(id))?;
+    numbers::refuse_valueless(evaluation, &edits, &NumberAddress::Variable(id))?;
     edits.extend(bound(&after(evaluation, &edits)?));
     Ok((edits, id))
 }

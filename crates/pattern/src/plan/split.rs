@@ -236,15 +236,15 @@ impl Mover<'_> {
     fn length(&self, panel: PanelId, span: &Span) -> Option<f64> {
         let pattern = self.evaluation.pattern();
         let owner = pattern.panel(panel)?;
-        let history = pattern.history(owner);
+        let lineage = pattern.stage_lineage(owner);
         let stage = match panel == self.panel.id {
             true => self.evaluation.stage(panel, Some(self.split.operation))?,
             false => self.evaluation.stage(panel, None)?,
         };
         let place = |mark: &Mark| {
             let value = mark_value(self.evaluation, owner, mark)?;
-            let step = pattern.first_step(owner, &history, mark)?;
-            let (of, after) = history.stage(step)?;
+            let step = pattern.first_step(owner, &lineage, mark)?;
+            let (of, after) = lineage.stage(step)?;
             let first: &Stage = self.evaluation.stage(of, after)?;
             stage.placed(first, span.line, value).ok()
         };

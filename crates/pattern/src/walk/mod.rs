@@ -46,7 +46,7 @@ struct Run {
     start: f64,
 }
 
-/// Where both sides of a seam touch.
+/// A place where both sides of a seam touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Arc length from the start of each side [m].
@@ -60,9 +60,9 @@ pub struct Contact {
     pub laid: Affine,
 }
 
-/// The side of a seam whose piece stays while the other is laid against it.
+/// The side of a seam whose piece is fixed while the other is laid against it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Stays {
+pub enum FixedSide {
     /// The first.
     #[default]
     First,
@@ -70,8 +70,8 @@ pub enum Stays {
     Second,
 }
 
-impl Stays {
-    /// The number of the side that stays, and of that which moves.
+impl FixedSide {
+    /// The number of the fixed side, and of the side that moves.
     pub fn sides(self) -> [usize; 2] {
         match self {
             Self::First => [0, 1],
@@ -131,7 +131,7 @@ impl<'d> Walk<'d> {
 
     /// Where both sides touch at an arc length of the first [m], clamped to it. The second has its
     /// place in proportion to its length, so that ease is spread evenly, as seams are sewn.
-    pub fn contact(&self, along: f64, stays: Stays) -> Contact {
+    pub fn contact(&self, along: f64, fixed: FixedSide) -> Contact {
         let [first, second] = self.lengths();
         let along = along.clamp(0.0, first);
         let along = [along, along / first * second];
@@ -142,7 +142,7 @@ impl<'d> Walk<'d> {
         // one that is moved is turned over.
         let left = [0, 1].map(|k| self.cloth_is_left(at[k].0));
         let turned_over = left[0] == left[1];
-        let [base, moved] = stays.sides();
+        let [base, moved] = fixed.sides();
         let laid = laying(
             [
                 (places[base], directions[base]),

@@ -1,4 +1,4 @@
-//! Notches along a seam, and whether they meet when it is sewn.
+//! Notches along a seam, and their distances when it is sewn.
 
 use super::{Run, Walk, WalkedSide};
 use crate::NotchId;

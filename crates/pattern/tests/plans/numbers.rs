@@ -6,7 +6,7 @@ use super::sample::{
 };
 use super::*;
 use toile_pattern::plan::{
-    MarkNumber, NumberPlace, OperationNumber, PointNumber, SeamSide, SpanEnd,
+    MarkNumber, NumberAddress, OperationNumber, PointNumber, SeamSide, SpanEnd,
 };
 
 fn read(pattern: &Pattern, text: &str, want: Want) -> Number {
@@ -308,7 +308,7 @@ fn every_number_is_listed_read_and_set() {
 fn a_number_moves_what_it_should_in_every_size() {
     let pattern = sample();
     let p1 = point(&pattern, "front", "p1");
-    let place = NumberPlace::Point(p1, PointNumber::X);
+    let place = NumberAddress::Point(p1, PointNumber::X);
     // Of which factor the unit is meant to be nobody can know.
     let number = read(&pattern, "bust / 2 + 2 * 3", Want::Length);
     let told = refusal(plan::set_number(&evaluated(&pattern), &place, number));
@@ -333,13 +333,13 @@ fn numbers_without_a_value_are_refused() {
     let p0 = point(&pattern, "front", "p0");
     let id = put_variable(&mut pattern, "v", formula("2cm"));
     let panel = pattern.panels[0].id;
-    let x = NumberPlace::Point(p0, PointNumber::X);
-    let variable = NumberPlace::Variable(id);
+    let x = NumberAddress::Point(p0, PointNumber::X);
+    let variable = NumberAddress::Variable(id);
     let of_text =
         |text: &str| Number::Formula(Formula::parse(text, &Names::new(&pattern)).unwrap());
     let evaluation = evaluated(&pattern);
-    let gone = NumberPlace::Operation(panel, OperationId(9999), OperationNumber::Intake);
-    let mark = NumberPlace::Span(
+    let gone = NumberAddress::Operation(panel, OperationId(9999), OperationNumber::Intake);
+    let mark = NumberAddress::Span(
         pattern.seams[0].id,
         SeamSide::First,
         7,
@@ -358,7 +358,7 @@ fn numbers_without_a_value_are_refused() {
         (variable, of_text("v + 1cm"), "needs itself"),
         (variable, of_text("bus"), "there is no variable"),
         (x, f64::NAN.into(), "not finite"),
-        (NumberPlace::Grain(panel), of_text("2cm"), "give an angle"),
+        (NumberAddress::Grain(panel), of_text("2cm"), "give an angle"),
         (
             gone,
             0.1.into(),
@@ -366,7 +366,7 @@ fn numbers_without_a_value_are_refused() {
         ),
         (mark, 0.1.into(), "is not there"),
         (
-            NumberPlace::Point(p0, PointNumber::Share),
+            NumberAddress::Point(p0, PointNumber::Share),
             0.1.into(),
             "the share of the way of point",
         ),
@@ -391,7 +391,7 @@ fn formulas_are_adjusted_and_sizes_have_values_of_their_own() {
         plan::add_size(&evaluated(&sample()), None, Measurements::adult_woman()).unwrap();
     let pattern = done(&sample(), &edits);
     let p1 = point(&pattern, "front", "p1");
-    let place = NumberPlace::Point(p1, PointNumber::X);
+    let place = NumberAddress::Point(p1, PointNumber::X);
     let edits = plan::set_number(&evaluated(&pattern), &place, formula("bust / 2")).unwrap();
     let pattern = done(&pattern, &edits);
     let half = |body: &Measurements| body.get("bust").unwrap() / 2.0;
@@ -420,7 +420,7 @@ fn formulas_are_adjusted_and_sizes_have_values_of_their_own() {
     let edits = plan::adjust_number(&evaluated(&back), &place, wanted - 0.02).unwrap();
     assert_eq!(done(&back, &edits), pattern);
     let evaluation = evaluated(&pattern);
-    let lost = NumberPlace::Variable(VariableId(9999));
+    let lost = NumberAddress::Variable(VariableId(9999));
     for (found, says) in [
         (
             plan::adjust_number(&evaluation, &place, f64::NAN),

@@ -24,7 +24,7 @@ pub fn rectangle(
     fabric: FabricId,
     [width, height]: [f64; 2],
 ) -> (Arc<Sheet>, Arc<Panel>) {
-    let mut drawing = Drawing::new(ids, name, fabric);
+    let mut drawing = PanelBuilder::new(ids, name, fabric);
     let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
     let mut k = 0;
     let points = corners.map(|(x, y)| {

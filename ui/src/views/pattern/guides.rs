@@ -9,7 +9,7 @@ use crate::canvas::placed::{Spec, grid_step, rounded};
 use crate::canvas::rulers::RULER;
 use crate::canvas::selection::{Item, Selection};
 use crate::theme::GRAB;
-use crate::tools::{Held, Outcome, Tool, number};
+use crate::tools::{Outcome, Tool, ToolModifiers, number};
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Ui};
 use egui::{WidgetInfo, pos2};
 use toile_geometry::Vec2;
@@ -38,7 +38,7 @@ impl PatternView {
 
     /// The guides that are seen, as a sheet has them.
     pub(super) fn guides_on(&self, sheet: SheetId) -> Vec<Guide> {
-        crate::canvas::guides::on_sheet(self.seen_guides(), self.boards.sheet(sheet))
+        crate::canvas::guides::on_sheet(self.seen_guides(), self.table_layout.sheet(sheet))
     }
 
     /// Adds the guide at a place of the table [m] to what was found there: behind points and lines,
@@ -52,7 +52,7 @@ impl PatternView {
         };
         let sheet = found.first().map(|hit| hit.sheet).or(self.sheet);
         let sheet = sheet.unwrap_or(SheetId(0));
-        let origin = self.boards.sheet(sheet);
+        let origin = self.table_layout.sheet(sheet);
         let hit = Hit {
             item: Item::Guide(guide.id),
             sheet,
@@ -119,21 +119,21 @@ impl PatternView {
         }
         let drag = self.guide.clone()?;
         ui.ctx().set_cursor_icon(cursor(drag.runs));
-        let (at, held, is_down, is_left) = ui.input_mut(|input| {
-            let held = Held {
+        let (at, modifiers, is_down, is_left) = ui.input_mut(|input| {
+            let modifiers = ToolModifiers {
                 shift: false,
                 command: input.modifiers.command,
             };
             let is_left = input.consume_key(Modifiers::NONE, Key::Escape);
             let at = input.pointer.interact_pos();
-            (at, held, input.pointer.primary_down(), is_left)
+            (at, modifiers, input.pointer.primary_down(), is_left)
         });
         if is_left {
             self.guide = None;
             return None;
         }
         let pointer = at.unwrap_or(drag.pointer);
-        let place = self.guide_place(view, (pointer, drag.runs), held);
+        let place = self.guide_place(view, (pointer, drag.runs), modifiers);
         let drag = GuideDrag {
             pointer,
             place,
@@ -145,7 +145,7 @@ impl PatternView {
         let table = self.camera.table(view, ScreenPoint(pointer)).0;
         self.pointer = self
             .sheet
-            .map(|sheet| (sheet, table - self.boards.sheet(sheet)));
+            .map(|sheet| (sheet, table - self.table_layout.sheet(sheet)));
         if is_down {
             self.guide = Some(drag);
             return None;
@@ -209,7 +209,11 @@ impl PatternView {
 
     /// The guide that a click there would mean.
     fn guide_under(&self, view: Rect, at: Pos2) -> Option<Guide> {
-        match self.pointer_at(view, at, Held::default()).hit()?.item {
+        match self
+            .pointer_at(view, at, ToolModifiers::default())
+            .hit()?
+            .item
+        {
             Item::Guide(id) => self.seen_guides().find(|guide| guide.id == id).copied(),
             _ => None,
         }
@@ -221,7 +225,7 @@ impl PatternView {
         &self,
         view: Rect,
         (at, runs): (Pos2, GuideRun),
-        held: Held,
+        modifiers: ToolModifiers,
     ) -> Option<(f64, String)> {
         let is_back = match runs {
             GuideRun::Horizontal => at.y < view.top() + RULER,
@@ -232,10 +236,10 @@ impl PatternView {
         }
         let axis = runs.axis();
         let table = self.camera.table(view, ScreenPoint(at)).0;
-        if held.command {
+        if modifiers.command {
             return Some((table[axis], String::new()));
         }
-        let pointer = self.pointer(table, held);
+        let pointer = self.pointer(table, modifiers);
         let point = pointer.hits.iter().find_map(|hit| match hit.item {
             Item::Point(id) => Some((hit.origin + hit.at, self.base.point(id)?.1.name.clone())),
             _ => None,
@@ -246,7 +250,7 @@ impl PatternView {
                 .iter()
                 .filter(|placed| is_a_place(&placed.spec));
             let first = placed.next()?;
-            let at = self.boards.sheet(first.sheet) + first.at;
+            let at = self.table_layout.sheet(first.sheet) + first.at;
             Some((at, first.words.clone()))
         };
         if let Some((place, words)) = point.or_else(placed) {
@@ -303,7 +307,7 @@ impl PatternView {
     /// The edits that have the document say where sheets are seen: a guide lies beside them, so they
     /// must be seen there when it is opened again.
     fn kept_places(&self, evaluation: &Evaluation) -> Result<Vec<Edit>, EditError> {
-        let apart = self.boards.laid_apart(evaluation.pattern());
+        let apart = self.table_layout.laid_apart(evaluation.pattern());
         plan::move_sheets(evaluation, &apart)
     }
 

@@ -5,7 +5,7 @@ use crate::canvas::camera::ScreenPoint;
 use crate::canvas::selection::Item;
 use crate::tools::number::begins_typing;
 use crate::tools::slots::NAME_SIGN;
-use crate::tools::{Event, Going, Held, Tool};
+use crate::tools::{Event, LineStep, Tool, ToolModifiers};
 use egui::{CursorIcon, EventFilter, Key, PointerButton, Response, Ui};
 
 impl PatternView {
@@ -42,7 +42,7 @@ impl PatternView {
     /// What was done since the last frame.
     pub(super) fn events(&mut self, ui: &Ui, response: &Response, panning: bool) -> Vec<Event> {
         let mut events = Vec::new();
-        let held = ui.input(|input| Held {
+        let modifiers = ui.input(|input| ToolModifiers {
             shift: input.modifiers.shift,
             command: input.modifiers.command,
         });
@@ -53,7 +53,7 @@ impl PatternView {
             && !panning
             && let Some(from) = ui.input(|input| input.pointer.press_origin())
         {
-            self.pressed = Some(self.pointer_at(view, from, held));
+            self.pressed = Some(self.pointer_at(view, from, modifiers));
         }
         if response.clicked() || response.drag_started() {
             response.request_focus();
@@ -62,19 +62,19 @@ impl PatternView {
             (Some(from), Some(to)) => {
                 let from = from.clone();
                 let place = to;
-                let to = self.pointer_at(view, to, held);
+                let to = self.pointer_at(view, to, modifiers);
                 self.pointer = Some((to.sheet, to.at));
-                if self.told.replace((place, held)) != Some((place, held)) {
+                if self.told.replace((place, modifiers)) != Some((place, modifiers)) {
                     events.push(Event::Drag(from, to));
                 }
             }
             _ => match hovered {
                 Some(at) => {
-                    let pointer = self.pointer_at(view, at, held);
+                    let pointer = self.pointer_at(view, at, modifiers);
                     self.hover = pointer.hit();
                     self.under = pointer.hits.iter().map(|hit| hit.item).collect();
                     self.pointer = Some((pointer.sheet, pointer.at));
-                    if self.told.replace((at, held)) != Some((at, held)) {
+                    if self.told.replace((at, modifiers)) != Some((at, modifiers)) {
                         events.push(Event::Hover(pointer));
                     }
                 }
@@ -93,7 +93,7 @@ impl PatternView {
             && !panning
             && response.clicked()
         {
-            let pointer = self.pointer_at(view, at, held);
+            let pointer = self.pointer_at(view, at, modifiers);
             events.push(match response.double_clicked() {
                 true => Event::DoubleClick(pointer),
                 false => Event::Click(pointer),
@@ -199,12 +199,12 @@ impl PatternView {
 }
 
 /// Where a key leads along a seam that is walked.
-fn going(key: Key) -> Option<Going> {
+fn going(key: Key) -> Option<LineStep> {
     Some(match key {
-        Key::ArrowLeft | Key::ArrowDown => Going::Back,
-        Key::ArrowRight | Key::ArrowUp => Going::On,
-        Key::Home => Going::ToStart,
-        Key::End => Going::ToEnd,
+        Key::ArrowLeft | Key::ArrowDown => LineStep::Back,
+        Key::ArrowRight | Key::ArrowUp => LineStep::On,
+        Key::Home => LineStep::ToStart,
+        Key::End => LineStep::ToEnd,
         _ => return None,
     })
 }

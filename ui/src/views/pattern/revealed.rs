@@ -1,11 +1,11 @@
-//! Brings into view what is asked for and lies outside it.
+//! Scrolls the view to a part that was asked for.
 
 use super::PatternView;
 use crate::canvas::selection::Item;
 use egui::Rect;
 use toile_geometry::{Bounds2, Vec2};
 
-/// What is to be seen when the view is next drawn.
+/// The part or area to scroll to when the view is next drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Revealed {
     /// A part.

@@ -35,7 +35,7 @@ pub fn read_version_1(
     Ok(Migration::new(&old, names).run(&|number, want| evaluation.number(number, want)))
 }
 
-/// What is known of an edge of version 1.
+/// An edge of version 1 and its counterpart in the document.
 #[derive(Clone, Copy)]
 struct EdgePlace {
     panel: PanelId,

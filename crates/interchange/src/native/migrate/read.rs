@@ -22,7 +22,7 @@ pub fn read(root: &Item<'_>, notes: &mut Vec<Diagnostic>) -> Result<Pattern, For
     Ok(pattern)
 }
 
-/// What is known while reading.
+/// State of the reader.
 pub struct Reader {
     pub notes: Vec<Diagnostic>,
     pub unit: DisplayUnit,

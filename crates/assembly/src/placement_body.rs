@@ -1,0 +1,44 @@
+//! The body as placement takes it: surface, axes of its parts, levels.
+
+use toile_geometry::{SurfaceTree, Vec3};
+use toile_pattern::BodyPart;
+
+/// The body a garment is placed on. The body's own crate is not known here: the session fills
+/// this in from a mannequin or from any closed mesh.
+pub struct PlacementBody<'a> {
+    /// The closed skin, outward.
+    pub skin: &'a SurfaceTree,
+    /// Axes of the body's parts, all six in the order of [`BodyPart`].
+    pub limbs: Vec<Limb>,
+    /// Heights above the floor [m].
+    pub levels: Levels,
+}
+
+/// The axis of one body part.
+#[derive(Clone, Debug)]
+pub struct Limb {
+    /// Which part.
+    pub part: BodyPart,
+    /// Points from the root outward: trunk from the crotch up to the neck, head from the neck up,
+    /// arm from the shoulder joint to the wrist, leg from the hip joint to the ankle [m].
+    pub axis: Vec<Vec3>,
+}
+
+/// Heights above the floor at which garments hang [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Crown of the head.
+    pub crown: f64,
+    /// Base of the neck at the side, where a collar or shoulder seam starts.
+    pub neck: f64,
+    /// Outer end of the shoulder.
+    pub shoulder: f64,
+    /// Fullest chest or bust.
+    pub chest: f64,
+    /// Natural waist.
+    pub waist: f64,
+    /// Fullest hip.
+    pub hip: f64,
+    /// Crotch.
+    pub crotch: f64,
+}

@@ -1,0 +1,126 @@
+//! Measurements asked for beside those taken from the finished skin.
+
+use crate::Mannequin;
+use crate::conflict::Conflict;
+use crate::girths::Girth;
+use crate::measured::TapedSkin;
+use crate::tape::Skinned;
+use toile_measure::{Origin, UnitKind, definition};
+
+/// One measurement as asked for or predicted, and as taken from the skin by our own tape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// The measurement's name.
+    pub name: &'static str,
+    /// Asked for or predicted [m] or [rad].
+    pub asked: f64,
+    /// Taken from the skin [m] or [rad].
+    pub got: f64,
+    /// Whether somebody asked for it or it was predicted from the others.
+    pub origin: Origin,
+}
+
+impl Deviation {
+    /// Value taken from the skin minus value asked for [m] or [rad].
+    pub fn deviation(&self) -> f64 {
+        self.got - self.asked
+    }
+
+    /// Whether it is a girth by a closed tape.
+    pub fn is_girth(&self) -> bool {
+        Girth::ALL.iter().any(|girth| girth.name() == self.name)
+    }
+
+    /// Whether it is an angle.
+    pub fn is_angle(&self) -> bool {
+        definition(self.name).is_some_and(|known| known.kind == UnitKind::Angle)
+    }
+}
+
+/// Largest deviation of a length [m] over stature before it is reported: a millimetre of an adult.
+const NAMED: f64 = 5.7e-4;
+
+impl Mannequin {
+    /// Calls a function with the tape on the finished skin.
+    pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&TapedSkin) -> T) -> T {
+        let skinned = Skinned::finished(self.skin(), &self.template_body.skin.parts);
+        use_it(&TapedSkin::new(
+            &skinned,
+            (&self.template_body.marks, self.template_body.skin.armpit),
+            (&self.levels, &self.warp),
+            &self.crotch,
+        ))
+    }
+
+    /// A measurement by its name in the catalogue, taken from the finished skin [m] or [rad]; none
+    /// if the tape does not know it.
+    pub fn taken(&self, name: &str) -> Option<f64> {
+        let name = definition(name).map_or(name, |known| known.name);
+        self.with_tape(|tape| tape.value(name))
+    }
+
+    /// Every measurement the body was made from, as asked or predicted and as the finished skin
+    /// has it: first what was asked for. Girths are the convex hull of a section: level round
+    /// trunk and legs, across arms and neck. Lengths over the body lie tight on it.
+    pub fn measure(&self) -> Vec<Deviation> {
+        self.with_tape(|tape| {
+            let mut rows = Vec::new();
+            for origin in [Origin::Asked, Origin::Predicted] {
+                for (name, measured) in self.request.table.iter() {
+                    let (Some(known), true) = (definition(name), measured.origin == origin) else {
+                        continue;
+                    };
+                    if let Some(got) = tape.value(known.name) {
+                        rows.push(Deviation {
+                            name: known.name,
+                            asked: measured.value,
+                            got,
+                            origin,
+                        });
+                    }
+                }
+            }
+            rows
+        })
+    }
+
+    /// What was asked for and the tape does not know.
+    pub fn untaken(&self) -> Vec<String> {
+        let known: Vec<&str> = self.measure().iter().map(|gap| gap.name).collect();
+        self.request
+            .table
+            .iter()
+            .filter(|(name, m)| m.origin == Origin::Asked && !known.contains(name))
+            .map(|(name, _)| name.to_owned())
+            .collect()
+    }
+
+    /// What was asked for and contradicts itself: broken rules of any body, and asked
+    /// measurements the solved body misses by more than a millimetre on an adult.
+    pub fn conflicts(&self) -> Vec<Conflict> {
+        let mut found = self.request.conflicts.clone();
+        let height = self.request.get("height");
+        for row in self.measure() {
+            let beyond = match row.is_angle() {
+                true => row.deviation().abs() > 0.02,
+                false => row.deviation().abs() > NAMED * height,
+            };
+            let mut named = false;
+            for conflict in &mut found {
+                if row.origin == Origin::Asked && conflict.names.contains(&row.name) {
+                    conflict.gap = conflict.gap.max(row.deviation().abs());
+                    named = true;
+                }
+            }
+            if row.origin == Origin::Asked && beyond && !named {
+                found.push(Conflict {
+                    names: vec![row.name],
+                    gap: row.deviation().abs(),
+                    why: "the body that meets the others best does not have it: measure it anew, \
+                          or those beside it",
+                });
+            }
+        }
+        found
+    }
+}

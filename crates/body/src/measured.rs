@@ -1,0 +1,413 @@
+//! Takes each measurement, by name, from a skin.
+
+use crate::Part;
+use crate::bands::Near;
+use crate::girths::Girth;
+use crate::levels::{Level, Levels, upright};
+use crate::tape::{
+    Skinned, along, breadth_at, extent, fall, half_length, hanging, outermost, stretched,
+};
+use crate::template_marks::TemplateMarks;
+use crate::warp::{Follow, Warp};
+use std::cell::{OnceCell, RefCell};
+use std::f64::consts::FRAC_PI_2;
+use std::rc::Rc;
+use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
+
+/// A skin with the levels, marks and caches that the tape needs to measure it.
+pub(crate) struct TapedSkin<'a> {
+    pub(crate) skinned: &'a Skinned<'a>,
+    pub(crate) marks: &'a TemplateMarks,
+    pub(crate) levels: &'a Levels,
+    pub(crate) warp: &'a Warp,
+    /// Vertices in the middle of the crotch.
+    pub(crate) crotch: &'a [u32],
+    /// Cache of hulls.
+    pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
+    /// Cache of lengths.
+    known: RefCell<Vec<(String, Option<f64>)>>,
+    around: OnceCell<Option<Around>>,
+    bust: OnceCell<Option<Vec3>>,
+    through_neck: OnceCell<Vec<[Vec3; 2]>>,
+    /// Vertex in the left armpit.
+    pub(crate) armpit: u32,
+}
+
+/// The tight way in the middle from the waist in front round the crotch to the waist behind.
+struct Around {
+    /// Its length [m].
+    length: f64,
+    /// Hull of the section under the waist: height, depth [m].
+    hull: Vec<Vec2>,
+    /// Depth of its front end [m].
+    front: f64,
+}
+
+impl Around {
+    /// The part before a depth [m].
+    fn before(&self, depth: f64) -> f64 {
+        part_of(&self.hull, 1.0, depth) - (self.front - depth)
+    }
+}
+
+/// Halvings of a range: to a billionth of it.
+const HALVINGS: usize = 30;
+
+/// The part of a hull on one side of a place of its second axis, without the chord [m].
+fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
+    let moved: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.x, p.y - place)).collect();
+    half_length(&moved, side)
+}
+
+const TORSO: &[Part] = &[Part::Trunk, Part::Head];
+
+impl<'a> TapedSkin<'a> {
+    /// The tape on a skin of a cast template.
+    pub(crate) fn new(
+        skinned: &'a Skinned<'a>,
+        (marks, armpit): (&'a TemplateMarks, u32),
+        (levels, warp): (&'a Levels, &'a Warp),
+        crotch: &'a [u32],
+    ) -> Self {
+        Self {
+            skinned,
+            marks,
+            levels,
+            warp,
+            crotch,
+            hulls: Default::default(),
+            known: Default::default(),
+            around: OnceCell::new(),
+            bust: OnceCell::new(),
+            through_neck: OnceCell::new(),
+            armpit,
+        }
+    }
+
+    /// The end of the left shoulder [m].
+    pub(crate) fn tip(&self) -> Vec3 {
+        self.marks.tip_on.on(self.skinned)
+    }
+
+    /// The left side of the neck [m].
+    pub(crate) fn neck_side(&self) -> Vec3 {
+        self.marks.neck_side_on.on(self.skinned)
+    }
+
+    /// Height of a landmark on the skin [m].
+    pub(crate) fn height(&self, level: Level) -> f64 {
+        match level {
+            Level::Tip => self.tip().y,
+            Level::NeckSide => self.neck_side().y,
+            Level::Armpit => self.skinned.at(self.armpit).y,
+            Level::Crotch => {
+                let heights = self.crotch.iter().map(|&v| self.skinned.at(v).y);
+                heights.fold(f64::INFINITY, f64::min)
+            }
+            _ => self.levels.at(level),
+        }
+    }
+
+    /// The hull of a girth's section.
+    pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
+        if let Some(known) = &self.hulls.borrow()[girth as usize] {
+            return known.clone();
+        }
+        let hull: Rc<[Vec2]> = self.taken_hull(girth).into();
+        self.hulls.borrow_mut()[girth as usize] = Some(hull.clone());
+        hull
+    }
+
+    fn taken_hull(&self, girth: Girth) -> Vec<Vec2> {
+        let (part, plane) = girth.plane(self.marks, self.levels, self.warp);
+        self.skinned
+            .hull(part, plane, Some(girth.near(self.marks, plane, self.warp)))
+    }
+
+    /// A girth [m].
+    pub(crate) fn girth(&self, girth: Girth) -> f64 {
+        closed_length(&self.hull(girth))
+    }
+
+    /// The point of the bust on the left [m].
+    pub(crate) fn bust_point(&self) -> Option<Vec3> {
+        *self.bust.get_or_init(|| self.taken_bust_point())
+    }
+
+    fn taken_bust_point(&self) -> Option<Vec3> {
+        let y = self.levels.at(Level::Bust);
+        let level = [Vec3::y() * y, Vec3::y()];
+        let x = self.warp.apply(self.marks.bust_point, Follow::default()).x;
+        let section = self
+            .skinned
+            .section(&[Part::Trunk], level, self.around(y))
+            .into_iter()
+            .map(|s| s.map(|p| Vec2::new(p.x, p.z)))
+            .collect::<Vec<_>>();
+        let on = outermost(&section, x)?;
+        Some(Vec3::new(on.x, y, on.y))
+    }
+
+    /// Where triangles that cross a height [m] lie.
+    fn around(&self, height: f64) -> Option<Near> {
+        Some(self.warp.near(height, 0.08))
+    }
+
+    /// Heights of the template where triangles between two heights [m] lie.
+    fn between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
+        match (self.around(low)?, self.around(high)?) {
+            (Near::Level([from, _]), Near::Level([_, to])) => Some([from, to]),
+            _ => None,
+        }
+    }
+
+    /// The upright section through a point, parallel to z and a direction, between two heights.
+    fn upright(
+        &self,
+        parts: &[Part],
+        [through, sideways]: [Vec3; 2],
+        [low, high]: [f64; 2],
+    ) -> Vec<[Vec3; 2]> {
+        let normal = Vec3::z().cross(&sideways).normalize();
+        let places = [through.x, through.x + sideways.x];
+        let near = self
+            .between(low, high)
+            .map(|heights| Near::side(places, self.warp.sideways(), heights));
+        self.skinned.section(parts, [through, normal], near)
+    }
+
+    fn bust_line(&self) -> Option<f64> {
+        let (neck, bust) = (self.neck_side(), self.bust_point()?);
+        let way = bust - neck;
+        let down = Vec3::new(way.x, way.y, 0.0);
+        let stretch = down.norm() / down.y.abs().max(1e-9);
+        let section = self.upright(TORSO, [neck, down], [bust.y, neck.y]);
+        // Along the plane's own falling line, not along the upright.
+        let scaled: Vec<[Vec2; 2]> = section
+            .iter()
+            .map(|s| s.map(|p| Vec2::new(p.y * stretch, p.z)))
+            .collect();
+        let at = |p: Vec3| Vec2::new(p.y * stretch, p.z);
+        Some(stretched(&scaled, at(bust), at(neck)))
+    }
+
+    fn below_bust(&self, to: Level) -> Option<f64> {
+        let bust = self.bust_point()?;
+        let floor = self.levels.at(to);
+        let section = self.upright(&[Part::Trunk], [bust, Vec3::y()], [floor, bust.y]);
+        fall(&section, bust, floor, Vec3::z())
+    }
+
+    /// The way along the skin from the bust point straight down to the level under the bust [m].
+    fn under_bust(&self) -> Option<f64> {
+        let bust = self.bust_point()?;
+        let floor = self.levels.at(Level::Underbust);
+        let section = self.upright(&[Part::Trunk], [bust, Vec3::y()], [floor, bust.y]);
+        Some(along(&section, [floor, bust.y]))
+    }
+
+    fn outside_leg(&self) -> Option<f64> {
+        let waist = self.levels.at(Level::Waist);
+        let hips = self.levels.at(Level::Hips);
+        let level = [Vec3::y() * waist, Vec3::y()];
+        let side = self
+            .skinned
+            .section(&[Part::Trunk], level, self.around(waist))
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| a.x.total_cmp(&b.x))?;
+        let section = self.skinned.section(
+            &[Part::Trunk, Part::LeftLeg],
+            [side, Vec3::z()],
+            self.between(hips, waist).map(Near::Level),
+        );
+        Some(fall(&section, side, hips, Vec3::x())? + hips)
+    }
+
+    fn across_shoulders(&self) -> f64 {
+        let tip = self.tip();
+        let level = [tip, Vec3::y()];
+        let section = self.skinned.section(TORSO, level, self.around(tip.y));
+        let flat: Vec<[Vec2; 2]> = section
+            .iter()
+            .flat_map(|s| {
+                let left = s.map(|p| Vec2::new(p.x, -p.z));
+                [left, left.map(|p| Vec2::new(-p.x, p.y))]
+            })
+            .collect();
+        let end = |x: f64| Vec2::new(x, -tip.z);
+        stretched(&flat, end(-tip.x), end(tip.x))
+    }
+
+    /// The way round the crotch from waist to waist.
+    fn crotch_lengths(&self) -> Option<&Around> {
+        self.around.get_or_init(|| self.taken_crotch()).as_ref()
+    }
+
+    fn taken_crotch(&self) -> Option<Around> {
+        let waist = self.levels.at(Level::Waist);
+        let parts = &[Part::Trunk, Part::LeftLeg];
+        // Just beside the middle, where the plane meets whole triangles.
+        let section = self.upright(
+            parts,
+            [Vec3::x() * 1e-6, Vec3::y()],
+            [self.levels.at(Level::Crotch), waist],
+        );
+        let flat = |side: f64| -> Vec<[Vec2; 2]> {
+            let turned = |p: Vec3| Vec2::new(p.y, side * p.z);
+            section.iter().map(|s| s.map(turned)).collect()
+        };
+        let ends = [1.0, -1.0].map(|side| outermost(&flat(side), waist));
+        let [Some(front), Some(back)] = ends else {
+            return None;
+        };
+        let mut points: Vec<Vec2> = section
+            .iter()
+            .flatten()
+            .filter(|p| p.y <= waist)
+            .map(|p| Vec2::new(p.z, p.y))
+            .collect();
+        points.push(Vec2::new(front.y, waist));
+        points.push(Vec2::new(-back.y, waist));
+        let hull = convex_hull(&points);
+        // The way without the edge at the waist, along the depth before which it lies.
+        let turned: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.y, p.x)).collect();
+        Some(Around {
+            length: closed_length(&hull) - (front.y + back.y),
+            hull: turned,
+            front: front.y,
+        })
+    }
+
+    /// Depth of the middle of the crotch at which the part before it has a length [m].
+    pub(crate) fn fork_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
+        let around = self.crotch_lengths()?;
+        let (mut low, mut high) = (low, high);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match around.before(middle) > before {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        Some(0.5 * (low + high))
+    }
+
+    /// The part of a girth before its sides or behind them [m].
+    fn part(&self, girth: Girth, side: f64) -> f64 {
+        part_of(&self.hull(girth), side, self.warp.side_of(girth))
+    }
+
+    /// Depth of the sides of a girth at which its part on one side has a length [m].
+    pub(crate) fn sides_of(&self, girth: Girth, side: f64, length: f64, limit: f64) -> f64 {
+        let hull = self.hull(girth);
+        let (mut low, mut high) = (-limit, limit);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let longer = part_of(&hull, side, middle) > length;
+            match longer == (side > 0.0) {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        0.5 * (low + high)
+    }
+
+    /// The tight way from the side of the neck straight down to the level of the waist, in front or
+    /// behind [m].
+    fn to_waist(&self, outward: Vec3) -> Option<f64> {
+        let (neck, waist) = (self.neck_side(), self.levels.at(Level::Waist));
+        let section = self
+            .through_neck
+            .get_or_init(|| self.upright(TORSO, [neck, Vec3::y()], [waist, neck.y]));
+        hanging(section, neck, waist, outward)
+    }
+
+    /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.
+    pub(crate) fn value(&self, name: &str) -> Option<f64> {
+        let known = |row: &&(String, Option<f64>)| row.0 == name;
+        if let Some(row) = self.known.borrow().iter().find(known) {
+            return row.1;
+        }
+        let found = self.taken_value(name);
+        self.known.borrow_mut().push((name.to_owned(), found));
+        found
+    }
+
+    fn taken_value(&self, name: &str) -> Option<f64> {
+        if let Some(girth) = Girth::ALL.into_iter().find(|girth| girth.name() == name) {
+            return Some(self.girth(girth));
+        }
+        if let Some((_, upper, lower)) = upright().find(|row| row.0 == name) {
+            let lower = lower.map_or(0.0, |level| self.height(level));
+            return Some(self.height(upper) - lower);
+        }
+        let part = |girth: Girth, side: f64| self.part(girth, side);
+        let wide = |girth: Girth, axis: usize| extent(&self.hull(girth))[axis];
+        let (tip, neck) = (self.tip(), self.neck_side());
+        let [arm, along] = self.warp.arm_plane(0.0);
+        let on_arm = |d: f64| (self.warp.arm_plane(d)[0] - arm).dot(&along);
+        let from_tip = (tip - arm).dot(&along);
+        Some(match name {
+            "shoulder_w" => 2.0 * tip.x,
+            "neck_w" => 2.0 * neck.x,
+            "shoulder_incl" => (neck.y - tip.y).atan2(tip.x - neck.x),
+            "shoulder_length" => (tip - neck).norm(),
+            "shoulder_to_shoulder" => self.across_shoulders(),
+            "arm_length" => on_arm(self.marks.wrist) - from_tip,
+            "shoulder_to_elbow" => on_arm(self.marks.elbow) - from_tip,
+            "elbow_to_wrist" => on_arm(self.marks.wrist) - on_arm(self.marks.elbow),
+            "arm_pose_angle" => (-along.y).atan2(along.x),
+            "front_width" => part(Girth::Bust, 1.0),
+            "back_width" => part(Girth::Bust, -1.0),
+            "high_bust_front" => part(Girth::HighBust, 1.0),
+            "waist_back_width" => part(Girth::Waist, -1.0),
+            "hip_back_width" => part(Girth::Hips, -1.0),
+            "chest_breadth" => self.between_folds()?,
+            "chest_depth" => wide(Girth::Bust, 1),
+            "waist_breadth" => wide(Girth::Waist, 0),
+            "waist_depth" => wide(Girth::Waist, 1),
+            "hip_breadth" => wide(Girth::Hips, 0),
+            "hip_depth" => wide(Girth::Hips, 1),
+            "head_breadth" => wide(Girth::Head, 0),
+            "head_depth" => wide(Girth::Head, 1),
+            "bust_points" => 2.0 * self.bust_point()?.x,
+            "bum_points" => 2.0 * self.hindmost()?.x,
+            "bust_line" => self.bust_line()?,
+            "bust_to_underbust" => self.under_bust()?,
+            "waist_over_bust_line" => self.bust_line()? + self.below_bust(Level::Waist)?,
+            "hps_to_waist_front" => self.to_waist(Vec3::z())?,
+            "hps_to_waist_back" => self.to_waist(-Vec3::z())?,
+            "outside_leg" => self.outside_leg()?,
+            "hip_inclination" => {
+                let wider = 0.5 * (wide(Girth::Hips, 0) - wide(Girth::Waist, 0));
+                let fall = self.levels.at(Level::Waist) - self.levels.at(Level::Hips);
+                FRAC_PI_2 - fall.atan2(wider)
+            }
+            "crotch_length" => self.crotch_lengths()?.length,
+            "crotch_length_front" => self.crotch_lengths()?.before(self.warp.fork_depth()),
+            _ => return None,
+        })
+    }
+
+    /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie [m]:
+    /// before the muscles that run on into arm and back.
+    pub(crate) fn between_folds(&self) -> Option<f64> {
+        let fold = self.skinned.at(self.marks.fold);
+        breadth_at(&self.hull(Girth::Bust), fold.z)
+    }
+
+    /// The hindmost point of the left buttock [m].
+    fn hindmost(&self) -> Option<Vec3> {
+        let y = self.levels.at(Level::Hips);
+        self.skinned
+            .section(
+                &[Part::Trunk, Part::LeftLeg],
+                [Vec3::y() * y, Vec3::y()],
+                self.around(y),
+            )
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.z.total_cmp(&b.z).then(b.x.total_cmp(&a.x)))
+    }
+}

@@ -1,0 +1,291 @@
+//! Levels and landmarks of a template, found on its skin.
+
+use crate::rings::TemplateSkin;
+use crate::tape::{OnEdge, Skinned, extent, girth, ridge};
+use crate::template::Template;
+use crate::{BodyError, Part};
+use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
+
+/// Three points of a plane of a template [m].
+pub(crate) type Plane = [Vec3; 3];
+
+/// Levels [m], distances from the shoulder joint along the arm [m] and places of a template.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TemplateMarks {
+    /// Top of the head.
+    pub(crate) crown: f64,
+    pub(crate) armpit: f64,
+    pub(crate) crotch: f64,
+    pub(crate) bust: f64,
+    /// The point of the bust, left.
+    pub(crate) bust_point: Vec3,
+    /// Rise of the body's middle over the crotch, before and behind it, at even depths from
+    /// [`TemplateMarks::fork_at`] on [m].
+    pub(crate) fork: [f64; FORK],
+    /// Depth of the first of them [m].
+    pub(crate) fork_at: f64,
+    /// Where the neck meets the shoulder, left.
+    pub(crate) neck_side: Vec3,
+    /// The same on the skin.
+    pub(crate) neck_side_on: OnEdge,
+    /// Outer end of the shoulder, left.
+    pub(crate) tip: Vec3,
+    /// The same on the skin.
+    pub(crate) tip_on: OnEdge,
+    /// Vertex of the skin at the front fold of the left armpit.
+    pub(crate) fold: u32,
+    /// Depth of the middle of the trunk [m].
+    pub(crate) depth: f64,
+    /// Sections of the trunk from crotch to bust: height, half the breadth, depth before and behind
+    /// the middle [m].
+    pub(crate) sections: [[f64; 4]; SECTIONS],
+    /// Plane of the neck's girth, square to its axis.
+    pub(crate) neck: Plane,
+    /// Plane of the head's girth.
+    pub(crate) head: Plane,
+    /// Plane of the heel's girth, over heel and instep.
+    pub(crate) heel: Plane,
+    pub(crate) lower_thigh: f64,
+    pub(crate) knee: f64,
+    pub(crate) calf: f64,
+    pub(crate) ankle: f64,
+    pub(crate) upper_arm: f64,
+    pub(crate) elbow: f64,
+    pub(crate) forearm: f64,
+    pub(crate) wrist: f64,
+}
+
+/// Places of the crotch's line that are kept.
+pub(crate) const FORK: usize = 21;
+
+/// Distance of these places, and the largest rise that is kept, over stature.
+pub(crate) const FORK_STEP: f64 = 0.01;
+const FORK_RISE: f64 = 0.045;
+
+/// Sections of the trunk that are kept.
+pub(crate) const SECTIONS: usize = 9;
+
+/// Distance of the end of the shoulder beyond the shoulder joint, over stature.
+const TIP: f64 = 0.003;
+
+/// Share of the way from the neck's base to the skull's that lies below any chin.
+const BELOW_CHIN: f64 = 0.4;
+
+/// Distance of the underbust below the bust, over stature.
+pub(crate) const UNDERBUST: f64 = 0.042;
+/// Between which heights the calf is looked for, over the knee's.
+pub(crate) const CALF: [f64; 2] = [0.55, 0.9];
+
+impl TemplateMarks {
+    pub(crate) fn of(template: &Template, skin: &TemplateSkin) -> Result<Self, BodyError> {
+        let h = template.height;
+        let skinned = Skinned::finished(&skin.mesh, &skin.parts);
+        let level = |part: Part, y: f64| girth(&skinned, part, [Vec3::y() * y, Vec3::y()], None);
+        let crotch = crotch(skin);
+        let j = template.joints;
+        let bust = extreme([j.shoulder[1] - 0.10 * h, j.shoulder[1] - 0.045 * h], |y| {
+            level(Part::Trunk, y)
+        });
+        let [x, y, z] = j.shoulder;
+        let part = "shoulder";
+        let open = BodyError::Open { part, x, y, z };
+        // A head may be large against the shoulders: on a frame of its own it begins lower.
+        let top = match template.armpit {
+            Some(_) => j.neck[1] + BELOW_CHIN * (j.head[1] - j.neck[1]),
+            None => j.head[1] - 0.02 * h,
+        };
+        let window = [bust, top];
+        let tip_on = ridge(&skin.mesh, x + TIP * h, window).ok_or(open.clone())?;
+        let tip = tip_on.at(&skin.mesh.positions);
+        let neck_side_on = neck_side(&skin.mesh, tip, window).ok_or(open)?;
+        let [shoulder, elbow, wrist] = [j.shoulder, j.elbow, j.wrist].map(Vec3::from);
+        let along = (wrist - shoulder).normalize();
+        let [elbow, wrist] = [elbow, wrist].map(|p| (p - shoulder).dot(&along));
+        let arm = |d: f64| girth(&skinned, Part::LeftArm, [shoulder + along * d, along], None);
+        let (knee, leg) = (j.knee[1], |y: f64| level(Part::LeftLeg, y));
+        let calf = extreme(CALF.map(|share| share * knee), leg);
+        let neck = neck_plane(template);
+        let brow = extreme([h - 0.075 * h, h - 0.03 * h], |y| level(Part::Head, y));
+        let depth = depth(skin, [crotch + 0.05 * h, bust]);
+        let (fork_at, fork) = fork(skin, crotch, h);
+        let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
+        Ok(Self {
+            crown,
+            armpit: skin.mesh.positions[skin.armpit as usize].y,
+            crotch,
+            bust,
+            bust_point: bust_point(skin, bust, tip.x),
+            fork,
+            fork_at,
+            neck_side: neck_side_on.at(&skin.mesh.positions),
+            neck_side_on,
+            tip,
+            tip_on,
+            fold: skin.fold,
+            depth,
+            sections: sections(skin, [crotch + 0.03 * h, bust], depth),
+            neck,
+            head: [
+                Vec3::y() * brow,
+                Vec3::y() * brow + Vec3::z(),
+                Vec3::y() * brow + Vec3::x(),
+            ],
+            heel: heel_plane(template, &skinned),
+            lower_thigh: knee + 0.15 * (crotch - knee),
+            knee,
+            calf,
+            ankle: extreme([j.ankle[1] + 0.005 * h, 0.6 * calf], |y| -leg(y)),
+            upper_arm: extreme([0.45 * elbow, 0.75 * elbow], arm),
+            elbow,
+            forearm: extreme([elbow, elbow + 0.4 * (wrist - elbow)], arm),
+            wrist,
+        })
+    }
+}
+
+/// Mean depth of the middle of the trunk between two heights [m].
+fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
+    let middle = |y: f64| {
+        let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
+        middle_depth(&horizontal_section(&skin.mesh, trunk, y))
+    };
+    (0..=4)
+        .map(|k| 0.2 * middle(low + (high - low) * 0.25 * f64::from(k)))
+        .sum()
+}
+
+/// How far out a point of the bust lies, over the end of the shoulder's distance.
+const BUST_POINT: [f64; 2] = [0.45, 0.6];
+
+/// The point of the bust at a height on the left [m]: the foremost one, but on a flat chest no
+/// nearer to the middle than the points of others.
+fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
+    let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
+    let section = horizontal_section(&skin.mesh, trunk, y);
+    let foremost = section.iter().max_by(|a, b| a.y.total_cmp(&b.y));
+    let [least, most] = BUST_POINT.map(|share| share * shoulder);
+    let x = foremost.map_or(least, |p| p.x.abs()).clamp(least, most);
+    let near = section
+        .iter()
+        .filter(|p| p.y > 0.0)
+        .min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
+    Vec3::new(x, y, near.map_or(0.0, |p| p.y))
+}
+
+/// How much higher than the crotch the body's middle is before and behind it [m], and the depth
+/// of the first place [m].
+fn fork(skin: &TemplateSkin, crotch: f64, height: f64) -> (f64, [f64; FORK]) {
+    let most = FORK_RISE * height;
+    let is_middle = |v: u32| skin.mirror[v as usize] == v;
+    let mut line: Vec<[Vec3; 2]> = Vec::new();
+    for t in &skin.mesh.triangles {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            if is_middle(a) && is_middle(b) && a < b {
+                line.push([a, b].map(|v| skin.mesh.positions[v as usize]));
+            }
+        }
+    }
+    let lowest = line.iter().flatten().min_by(|a, b| a.y.total_cmp(&b.y));
+    let step = FORK_STEP * height;
+    let first = lowest.map_or(0.0, |p| p.z) - 0.5 * (FORK - 1) as f64 * step;
+    let rise = |z: f64| {
+        line.iter()
+            .filter(|[a, b]| (a.z - z) * (b.z - z) <= 0.0 && a.z != b.z)
+            .map(|[a, b]| a.y + (b.y - a.y) * (z - a.z) / (b.z - a.z) - crotch)
+            .fold(most, f64::min)
+            .max(0.0)
+    };
+    let rises = std::array::from_fn(|k| rise(first + k as f64 * step));
+    (first, rises)
+}
+
+/// Extents of the trunk at even heights about a depth [m].
+fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]; SECTIONS] {
+    std::array::from_fn(|k| {
+        let y = low + (high - low) * k as f64 / (SECTIONS - 1) as f64;
+        let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
+        let points = horizontal_section(&skin.mesh, trunk, y);
+        let largest = |value: &dyn Fn(&Vec2) -> f64| points.iter().map(value).fold(0.02, f64::max);
+        let half = largest(&|p| p.x.abs());
+        let [front, back] = [largest(&|p| p.y - depth), largest(&|p| depth - p.y)];
+        [y, half, front, back]
+    })
+}
+
+/// The plane through the middle of the neck, half as steep as its axis is square.
+fn neck_plane(template: &Template) -> Plane {
+    let (neck, head) = (
+        Vec3::from(template.joints.neck),
+        Vec3::from(template.joints.head),
+    );
+    let middle = neck + (head - neck) * 0.42;
+    // The neck's rings turn from the shoulders' slope to level ones: half the tilt stays in it.
+    let axis = (head - neck).normalize() + Vec3::y();
+    let across = Vec3::x().cross(&axis).normalize();
+    [middle, middle - across, middle + Vec3::x()]
+}
+
+/// The plane through the lower end of the heel and over the instep.
+fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
+    let ankle = Vec3::from(template.joints.ankle);
+    let low = Vec3::new(ankle.x, 0.012, ankle.z);
+    // The heel's hindmost point at a finger's breadth over the floor.
+    let hull = skinned.hull(Part::LeftLeg, [Vec3::y() * low.y, Vec3::y()], None);
+    let [_, length] = extent(&hull);
+    let back = hull.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let heel = Vec3::new(ankle.x, low.y, back + 0.06 * length);
+    let instep = Vec3::new(ankle.x, ankle.y + 0.01, ankle.z + 0.30 * length);
+    [heel, instep, heel + Vec3::x()]
+}
+
+/// Height of the lowest point in the middle [m].
+fn crotch(skin: &TemplateSkin) -> f64 {
+    (0..skin.mesh.positions.len())
+        .filter(|&v| skin.mirror[v] as usize == v)
+        .map(|v| skin.mesh.positions[v].y)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Middle between the foremost and the hindmost point of a section [m].
+pub(crate) fn middle_depth(section: &[Vec2]) -> f64 {
+    let low = section.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let high = section
+        .iter()
+        .map(|p| p.y)
+        .fold(f64::NEG_INFINITY, f64::max);
+    0.5 * (low + high)
+}
+
+/// The level in a range at which a value is largest, to 2 mm.
+fn extreme([low, high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
+    let count = ((high - low) / 0.002).ceil() as usize;
+    let mut best = [f64::NEG_INFINITY, low];
+    for k in 0..=count {
+        let y = low + (high - low) * k as f64 / count as f64;
+        let v = value(y);
+        if v > best[0] {
+            best = [v, y];
+        }
+    }
+    best[1]
+}
+
+/// Where the shoulder becomes the steep side of the neck: walking inward along the ridge from the
+/// middle of the shoulder, the first place where it rises by more than 35 degrees over 6 mm.
+fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<OnEdge> {
+    let height = |x: f64| Some(ridge(mesh, x, window)?.at(&mesh.positions).y);
+    let step = 0.002;
+    let steep = 35f64.to_radians().tan() * 3.0 * step;
+    for k in 0.. {
+        let x = 0.75 * tip.x - step * f64::from(k);
+        if x < 0.03 {
+            return None;
+        }
+        let here = ridge(mesh, x, window)?;
+        if height(x - 3.0 * step)? - here.at(&mesh.positions).y > steep {
+            return Some(here);
+        }
+    }
+    None
+}

@@ -1,0 +1,170 @@
+//! Checks a marker file as it stands, also after somebody edited it.
+
+use crate::MarkerSummary;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_4, PI};
+use toile_cut::CutPiece;
+use toile_geometry::{Polygon, Vec2, total_area};
+use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece};
+use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Violation, judge};
+
+/// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap
+/// by so much [m].
+const ROUNDING: f64 = 3e-6;
+
+/// Most that a grain may lie off the warp on fabric with a nap [rad]: what lies farther off does
+/// not run along it.
+const MOST_TILT: f64 = FRAC_PI_4;
+
+/// The result of a check of a marker file.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// The marker in a few numbers.
+    pub summary: MarkerSummary,
+    /// Faults in words; empty if the marker can be cut.
+    pub faults: Vec<String>,
+    /// The marker as a drawing, with the regions where pieces overlap.
+    pub drawing: MarkerDrawing,
+}
+
+/// Judges a marker by its own outlines: overlaps, gaps, margins, nap of each garment, print, flaws.
+/// What only the pattern knows (tilt allowed, folds, pairs, locks) is not judged.
+pub fn judge_file(file: &MarkerFile) -> Judged {
+    let items = items_of(file);
+    let mut marker = file.marker();
+    marker.unplaced.clear();
+    for (k, placement) in marker.placements.iter_mut().enumerate() {
+        (placement.item, placement.copy) = (k, 0);
+    }
+    let strip = file.strip();
+    let verdict = judge(&items, &strip, &marker);
+    marker.measure(&items, &strip);
+    let name = |k: usize| {
+        file.pieces
+            .get(k)
+            .map_or_else(String::new, |p| format!("\"{}\" {}", p.name, p.copy))
+    };
+    let faults: Vec<String> = verdict
+        .violations
+        .iter()
+        .filter(|v| !within_rounding(v))
+        .map(|v| v.in_words(&name))
+        .collect();
+    let overlaps: Vec<Polygon> = verdict
+        .overlaps
+        .iter()
+        .filter(|o| total_area(&o.1) > ROUNDING * ROUNDING)
+        .flat_map(|o| o.1.iter().cloned())
+        .collect();
+    let summary = MarkerSummary {
+        fabric: file.name.clone(),
+        roll: file.roll.clone(),
+        pieces: file.pieces.len(),
+        unplaced: file.unplaced.len(),
+        length: verdict.length,
+        width: strip.width,
+        plies: file.plies,
+        yardage: verdict.length * f64::from(file.plies),
+        efficiency: marker.efficiency,
+        utilisation: marker.utilisation,
+        sound: faults.is_empty(),
+        ..MarkerSummary::default()
+    };
+    Judged {
+        summary,
+        faults,
+        drawing: drawing_of(file, (items, overlaps), &marker),
+    }
+}
+
+/// Every piece as an item of its own, back in its own plane.
+fn items_of(file: &MarkerFile) -> Vec<Item> {
+    let has_nap = file.strip().nap != Nap::None;
+    let item = |piece: &toile_interchange::MarkerFilePiece| {
+        let pose = toile_nesting::Pose {
+            grain: piece.grain.to_radians(),
+            turn: piece.turn.to_radians(),
+            mirrored: piece.face_down,
+            translation: Vec2::new(piece.at[0], piece.at[1]),
+        };
+        let [x, y] = pose.axes();
+        let back = |p: &[f64; 2]| {
+            let from = Vec2::new(p[0], p[1]) - pose.translation;
+            Vec2::new(from.dot(&x), from.dot(&y))
+        };
+        let outline = Polygon::new(piece.outline.iter().map(back).collect());
+        let half_turns = (pose.turn / PI).round() * PI;
+        let most = match has_nap {
+            true => MOST_TILT,
+            false => PI,
+        };
+        Item {
+            grain: pose.grain,
+            allowed: Allowed {
+                tilt: (pose.turn - half_turns).abs().min(most),
+                mirror: Mirror::Free,
+                ..Allowed::turned(vec![0.0, PI])
+            },
+            gap: piece.gap,
+            bundles: vec![piece.garment],
+            over_flaws: piece.over_flaws,
+            match_point: piece.on_print.map(|p| p.match_point()),
+            ..Item::new(piece.name.clone(), outline)
+        }
+    };
+    file.pieces.iter().map(item).collect()
+}
+
+fn drawing_of(
+    file: &MarkerFile,
+    (items, overlaps): (Vec<Item>, Vec<Polygon>),
+    judged: &Marker,
+) -> MarkerDrawing {
+    let marker = file.marker();
+    let mut kinds: BTreeMap<usize, usize> = BTreeMap::new();
+    let pieces = items.into_iter().zip(&marker.placements);
+    MarkerDrawing {
+        title: file.name.clone(),
+        strip: file.strip(),
+        length: judged.length,
+        efficiency: judged.efficiency,
+        pieces: pieces
+            .map(|(item, placement)| {
+                let count = kinds.len();
+                MarkerPiece {
+                    name: item.name.clone(),
+                    item: *kinds.entry(placement.item).or_insert(count),
+                    pose: placement.pose(&item),
+                    piece: CutPiece::of_outline(&item.name, &item.outline, item.grain).into(),
+                }
+            })
+            .collect(),
+        unplaced: file
+            .unplaced
+            .iter()
+            .map(|u| [u.name.clone(), u.reason.clone()])
+            .collect(),
+        overlaps,
+        facts: MarkerFacts {
+            roll: file.roll.clone(),
+            plies: file.plies,
+            face_to_face: file.face_to_face,
+            utilisation: judged.utilisation,
+            ..MarkerFacts::default()
+        },
+    }
+}
+
+/// Whether a violation may come of the rounding of the file.
+fn within_rounding(violation: &Violation) -> bool {
+    match violation {
+        Violation::Overlap { depth, .. } => *depth < ROUNDING,
+        Violation::Gap {
+            distance, needed, ..
+        } => needed - distance < ROUNDING,
+        Violation::Outside { by, .. } => *by < ROUNDING,
+        Violation::Length { stated, found } => (stated - found).abs() < ROUNDING,
+        Violation::OffPrint { by, .. } => by.amax() < ROUNDING,
+        _ => false,
+    }
+}

@@ -1,0 +1,156 @@
+//! The stages of a panel, including those of the panel it was split from.
+
+use super::{OperationKind, Panel, Pattern, Source};
+use crate::{Mark, Notch, NotchId, Operation, OperationId, PanelId, PartId, SheetId};
+use std::sync::Arc;
+
+/// The stages that lead to a panel, in the order they are made.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StageLineage {
+    /// Each with the operation that makes it.
+    stages: Vec<(PanelId, Option<OperationId>, Option<OperationId>)>,
+    /// Which of them is the panel before its own operations.
+    pub base: usize,
+}
+
+impl StageLineage {
+    /// Panel and operation of a stage.
+    pub fn stage(&self, step: usize) -> Option<(PanelId, Option<OperationId>)> {
+        self.stages.get(step).map(|stage| (stage.0, stage.1))
+    }
+
+    /// The step an operation makes.
+    pub fn step_of(&self, operation: OperationId) -> Option<usize> {
+        self.stages
+            .iter()
+            .position(|stage| stage.2 == Some(operation))
+    }
+}
+
+impl Pattern {
+    /// The panel, the one it is a side of, and so on.
+    pub fn lineage<'p>(&'p self, panel: &'p Panel) -> Vec<&'p Panel> {
+        let mut found = vec![panel];
+        let mut at = panel;
+        while let Source::Side { of, .. } = at.source {
+            match self.panel(of) {
+                // A panel that is its own side is told as a cycle.
+                Some(parent) if !found.iter().any(|known| known.id == parent.id) => {
+                    found.push(parent);
+                    at = parent;
+                }
+                _ => break,
+            }
+        }
+        found
+    }
+
+    /// The sheet a panel is drawn on: that of the panel it is a side of.
+    pub fn sheet_of(&self, panel: &Panel) -> Option<SheetId> {
+        self.lineage(panel).last().and_then(|root| root.sheet())
+    }
+
+    /// A notch of a panel or of one it is a side of.
+    pub fn notch_of<'p>(&'p self, panel: &'p Panel, id: NotchId) -> Option<&'p Notch> {
+        self.lineage(panel)
+            .into_iter()
+            .find_map(|own| own.notch(id))
+    }
+
+    /// The panel that an edge, line, notch or operation belongs to: the panel itself, or one it is a
+    /// side of; nothing if it is of none of them.
+    pub fn owner_of(&self, panel: PanelId, part: PartId) -> Option<&Panel> {
+        let has = |own: &Panel| match part {
+            PartId::Edge(id) => own.edge(id).is_some(),
+            PartId::Line(id) => own.line(id).is_some(),
+            PartId::Notch(id) => own.notch(id).is_some(),
+            PartId::Operation(id) => own.step_of(id).is_some(),
+            _ => false,
+        };
+        let lineage = self.lineage(self.panel(panel)?);
+        lineage.into_iter().find(|own| has(own))
+    }
+
+    /// Whether other panels, its sides, are cut in place of a panel.
+    pub fn is_replaced(&self, panel: &Panel) -> bool {
+        let is_side =
+            |other: &Arc<Panel>| matches!(other.source, Source::Side { of, .. } if of == panel.id);
+        panel.is_split() && self.panels.iter().any(is_side)
+    }
+
+    /// An operation of a panel or of one it is a side of.
+    pub fn operation_of<'p>(
+        &'p self,
+        panel: &'p Panel,
+        id: OperationId,
+    ) -> Option<&'p Arc<Operation>> {
+        let lineage = self.lineage(panel).into_iter();
+        let mut all = lineage.flat_map(|own| &own.operations);
+        all.find(|operation| operation.id == id)
+    }
+
+    pub(crate) fn stage_lineage(&self, panel: &Panel) -> StageLineage {
+        let mut found = StageLineage::default();
+        let mut lineage = self.lineage(panel).into_iter().rev().peekable();
+        while let Some(own) = lineage.next() {
+            let split = match own.source {
+                Source::Side { split, .. } => Some(split),
+                Source::Traced(_) => None,
+            };
+            found.base = found.stages.len();
+            found.stages.push((own.id, None, split));
+            let until = lineage.peek().and_then(|side| match side.source {
+                Source::Side { split, .. } => Some(split),
+                Source::Traced(_) => None,
+            });
+            for operation in &own.operations {
+                if Some(operation.id) == until {
+                    break;
+                }
+                let id = Some(operation.id);
+                found.stages.push((own.id, id, id));
+            }
+        }
+        found
+    }
+
+    /// Which step of a panel's history is the first that has every corner a mark is placed by;
+    /// nothing if no operation makes one of them.
+    pub(crate) fn first_step(
+        &self,
+        panel: &Panel,
+        lineage: &StageLineage,
+        mark: &Mark,
+    ) -> Option<usize> {
+        let at = match mark {
+            Mark::Notch(id) => &self.notch_of(panel, *id)?.at,
+            own => own,
+        };
+        let makers = at.corners().into_iter().filter_map(|corner| corner.maker());
+        makers
+            .map(|by| lineage.step_of(by))
+            .try_fold(0, |first, step| Some(first.max(step?)))
+    }
+}
+
+impl Panel {
+    /// Whether operations moved parts of it from where they were drawn.
+    pub fn is_altered(&self) -> bool {
+        let mut kinds = self.operations.iter().map(|operation| &operation.kind);
+        let moves = |kind: &OperationKind| {
+            matches!(
+                kind,
+                OperationKind::Pivot { .. }
+                    | OperationKind::Spread { .. }
+                    | OperationKind::Pleat { .. }
+            )
+        };
+        kinds.any(moves)
+    }
+
+    /// Whether it is split into other panels, which are cut in its place.
+    pub fn is_split(&self) -> bool {
+        let mut kinds = self.operations.iter().map(|operation| &operation.kind);
+        kinds.any(|kind| matches!(kind, OperationKind::Split { .. }))
+    }
+}

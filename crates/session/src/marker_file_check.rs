@@ -1,0 +1,51 @@
+//! Checks a `marker.json` as it stands, also after somebody edited it.
+
+use crate::SessionError;
+use crate::export::cannot;
+use crate::open::open_marker;
+use std::path::{Path, PathBuf};
+use toile_interchange::{read_text, write_all_atomically, write_marker_svg};
+use toile_marker::{MarkerSummary, judge_file};
+
+/// The result of a check of a marker file.
+#[derive(Clone, Debug)]
+pub struct JudgedMarker {
+    /// The main numbers of the marker.
+    pub summary: MarkerSummary,
+    /// Faults in words; empty if the marker can be cut.
+    pub faults: Vec<String>,
+    /// The drawing with overlaps in red, if a folder was given.
+    pub files: Vec<PathBuf>,
+}
+
+/// Whether a text is a marker.
+pub fn is_marker_file(path: &Path) -> bool {
+    let marked = |text: &str| {
+        let head = text.get(..400.min(text.len())).unwrap_or(text);
+        head.contains("\"toile-marker\"")
+    };
+    read_text(path).is_ok_and(|text| marked(&text))
+}
+
+/// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap of each garment, print,
+/// flaws. Rules that only
+/// the pattern knows (tilt allowed, folds, pairs, locks) are not judged. With a folder, writes
+/// `marker-judged.svg`, where overlaps are red.
+///
+/// # Errors
+/// The file cannot be read or is no marker; the drawing cannot be written.
+pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMarker, SessionError> {
+    let judged = judge_file(&open_marker(path)?);
+    let mut files = Vec::new();
+    if let Some(folder) = folder {
+        let svg = write_marker_svg(&judged.drawing).map_err(cannot("marker-judged.svg"))?;
+        let written = [("marker-judged.svg".to_owned(), svg.into_bytes())];
+        write_all_atomically(folder, &written)?;
+        files.push(folder.join("marker-judged.svg"));
+    }
+    Ok(JudgedMarker {
+        summary: judged.summary,
+        faults: judged.faults,
+        files,
+    })
+}

@@ -1,0 +1,223 @@
+//! Markers of several patterns and sizes laid together, and solutions of published nesting instances.
+
+use crate::export::{cannot, file_name};
+use crate::open::read_input;
+use crate::tools::{project_of, sound_draft};
+use crate::watched_search::lay_watched;
+use crate::watcher::report_progress;
+use crate::{MarkerSummary, NestOptions, SessionError, Watcher};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use toile_interchange::{
+    ExpectedKind, MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
+    write_all_atomically, write_jagua,
+};
+use toile_marker::{Garments, MarkerError, marker_files};
+use toile_nesting::{Budget, Control, Progress, judge, make_marker};
+use toile_pattern::{Draft, Pattern};
+
+/// A pattern drafted in a size, and how often it is cut.
+pub(crate) struct Drafted {
+    pattern: Arc<Pattern>,
+    draft: Draft,
+    count: u32,
+    label: Option<String>,
+}
+
+impl Drafted {
+    /// The garments to cut.
+    pub fn garments(&self) -> Garments<'_> {
+        Garments {
+            pattern: &self.pattern,
+            draft: &self.draft,
+            count: self.count,
+            label: self.label.as_deref(),
+        }
+    }
+}
+
+/// The drafts of all patterns in all sizes, and what they are called.
+pub(crate) fn drafts_of(
+    patterns: &[PathBuf],
+    options: &NestOptions,
+) -> Result<(Vec<Drafted>, Vec<String>), SessionError> {
+    let mut drafts = Vec::new();
+    let mut names = Vec::new();
+    let mut known: Vec<String> = Vec::new();
+    for path in patterns {
+        let sizes: Vec<(Option<&str>, u32)> = match options.sizes.is_empty() {
+            true => vec![(None, 1)],
+            false => options
+                .sizes
+                .iter()
+                .map(|(s, n)| (Some(s.as_str()), *n))
+                .collect(),
+        };
+        let several = options.sizes.len() > 1;
+        let mut own_name: Option<String> = None;
+        for (size, count) in sizes {
+            let (project, _) = project_of(path, size)?;
+            let draft = sound_draft(&project)?;
+            let name = own_name.get_or_insert_with(|| another(&project.pattern.name, &known));
+            names.push(match (size, several || count > 1) {
+                (Some(size), true) => format!("{name} {count} x {size}"),
+                _ => name.clone(),
+            });
+            known.push(name.clone());
+            drafts.push(Drafted {
+                pattern: project.pattern.clone(),
+                draft,
+                count,
+                label: label_of(
+                    (patterns.len() > 1).then_some(name.as_str()),
+                    size.filter(|_| several),
+                ),
+            });
+        }
+    }
+    Ok((drafts, names))
+}
+
+/// A name that is not known yet: of several patterns of one name the second is number 2.
+fn another(name: &str, known: &[String]) -> String {
+    let mut number = 1;
+    let mut own = name.to_owned();
+    while known.contains(&own) {
+        number += 1;
+        own = format!("{name} ({number})");
+    }
+    own
+}
+
+/// What tells pieces of one pattern and size from those of others, if there are several.
+fn label_of(pattern: Option<&str>, size: Option<&str>) -> Option<String> {
+    let parts: Vec<&str> = pattern.into_iter().chain(size).collect();
+    (!parts.is_empty()).then(|| parts.join(" "))
+}
+
+/// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
+/// each marker and the files written.
+///
+/// # Errors
+/// A pattern cannot be read or laid, or a file cannot be written.
+pub fn nest_patterns(
+    patterns: &[PathBuf],
+    options: &NestOptions,
+    (folder, watcher): (&Path, &mut dyn Watcher),
+) -> Result<(Vec<MarkerSummary>, Vec<PathBuf>), SessionError> {
+    let (drafts, names) = drafts_of(patterns, options)?;
+    let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
+    let finished_markers = lay_watched(&garments, options, watcher)?;
+    let mut files = Vec::new();
+    let lost = marker_files(
+        (&names.join(" + "), &options.formats),
+        &finished_markers,
+        &mut files,
+    )?;
+    write_all_atomically(folder, &files)?;
+    let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
+    let mut summary: Vec<MarkerSummary> = finished_markers.iter().map(|l| l.summary()).collect();
+    for (summary, lost) in summary.iter_mut().zip(lost) {
+        summary.notes.extend(lost);
+    }
+    Ok((summary, paths))
+}
+
+/// Reads a file of marker settings.
+///
+/// # Errors
+/// The file cannot be read, or is not what it should be.
+pub fn open_marker_settings(path: &Path) -> Result<MarkerSettings, SessionError> {
+    read_marker_settings(&read_input(path, ExpectedKind::MarkerSettings)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
+    })
+}
+
+/// Whether a file is a nesting instance rather than a pattern.
+pub fn is_nesting_instance(path: &Path) -> bool {
+    read_text(path).is_ok_and(|text| is_jagua_instance(&text))
+}
+
+/// Lays the items of an instance and writes the solution in the instance's own format, as
+/// `NAME.json`. Returns a summary, the density of the strip (0..=1), notes and the file written.
+///
+/// # Errors
+/// The instance cannot be read or laid, an option does not apply (all but budget, seed, threads and
+/// tilt), or the file cannot be written.
+pub fn nest_instance(
+    path: &Path,
+    options: &NestOptions,
+    (folder, watcher): (&Path, &mut dyn Watcher),
+) -> Result<(MarkerSummary, Vec<String>, PathBuf), SessionError> {
+    let started = std::time::Instant::now();
+    let mut instance = read_jagua(&read_text(path)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })?;
+    let plain = NestOptions {
+        tilt: options.tilt,
+        keep_best: options.keep_best,
+        budget: options.budget,
+        seed: options.seed,
+        islands: options.islands,
+        threads: options.threads,
+        ..NestOptions::default()
+    };
+    if *options != plain {
+        return Err(SessionError::Conflict(format!(
+            "{}: an instance has its own strip and items; give only --time, --evaluations, --seed, --islands, --threads, --tilt and --out",
+            path.display()
+        )));
+    }
+    for item in &mut instance.items {
+        item.allowed.tilt = options.tilt.unwrap_or(0.0);
+    }
+    let cancel = watcher.stop_flag().unwrap_or_default();
+    let scale = instance.scale;
+    let mut follow = |progress: Progress| {
+        let detail = match progress.length.is_finite() {
+            true => format!("length {:.1}", progress.length / scale),
+            false => "making ready".to_owned(),
+        };
+        if report_progress(watcher, "laying out", progress.done, &detail).is_err() {
+            cancel.store(true, Ordering::Relaxed);
+        }
+    };
+    let mut control = Control {
+        progress: &mut follow,
+        cancel: &cancel,
+    };
+    let (items, strip) = (&instance.items, &instance.strip);
+    let made = make_marker(items, strip, options.search(), &mut control);
+    // Lengths of an instance are said as its own numbers of millimetres.
+    let marker = made.map_err(|error| MarkerError::from(error.scaled(1e-3 / scale)))?;
+    if cancel.load(Ordering::Relaxed) && !options.keep_best {
+        return Err(SessionError::Cancelled);
+    }
+    let verdict = judge(items, strip, &marker);
+    let seconds = match options.budget {
+        Budget::Seconds(_) => Some(started.elapsed().as_secs_f64()),
+        Budget::Evaluations(_) => None,
+    };
+    let text = write_jagua(&instance, &marker, seconds).map_err(cannot("the solution"))?;
+    let name = file_name(&instance.name);
+    let file = (format!("{name}.json"), text.into_bytes());
+    write_all_atomically(folder, std::slice::from_ref(&file))?;
+    let summary = MarkerSummary {
+        fabric: instance.name.clone(),
+        pieces: marker.placements.len(),
+        unplaced: marker.unplaced.len(),
+        length: marker.length / scale,
+        width: strip.width / scale,
+        yardage: marker.length / scale,
+        efficiency: marker.efficiency,
+        utilisation: marker.utilisation,
+        sound: verdict.is_sound(),
+        ..MarkerSummary::default()
+    };
+    Ok((summary, instance.notes, folder.join(file.0)))
+}

@@ -1,0 +1,171 @@
+//! The pane with the garment on the mannequin.
+
+use super::ToileApp;
+use super::background_work::{GarmentStatus, Moment};
+use crate::theme::{self, Palette};
+use egui::{
+    Align, Button, ComboBox, Label, Layout, Panel, Rect, RichText, Ui, UiBuilder, pos2, vec2,
+};
+use toile_session::{Command, Quality, Stage};
+
+/// Height of the strip over the view [pixels].
+const STRIP: f32 = 38.0;
+
+impl ToileApp {
+    pub(crate) fn garment_side(&mut self, ui: &mut Ui) {
+        self.follow_body();
+        Panel::top("drape")
+            .frame(theme::bar(ui.ctx()))
+            .resizable(false)
+            .exact_size(STRIP)
+            .show(ui, |ui| self.drape_strip(ui));
+        let view = ui.available_rect_before_wrap();
+        let empty = match self.background_work.is_making_body() {
+            true => "Making the mannequin\u{2026}",
+            false => "No mannequin yet",
+        };
+        let is_old = matches!(self.background_work.status(), GarmentStatus::OutOfDate(_));
+        self.stage.set_out_of_date(is_old);
+        self.stage.show(ui, empty);
+        self.drape_progress(ui, view);
+    }
+
+    /// Has another mannequin made when the wearer is another.
+    fn follow_body(&mut self) {
+        let compared = self.body_of.as_ref().map(|(_, revision)| *revision);
+        if compared == Some(self.revision) || self.session.is_previewing() {
+            return;
+        }
+        let project = self.session.project();
+        let same = self.body_of.as_ref().is_some_and(|(of, _)| {
+            of.figure() == project.figure() && of.body_measurements() == project.body_measurements()
+        });
+        self.body_of = Some((project.clone(), self.revision));
+        if !same {
+            self.background_work.start_body(&self.session);
+        }
+    }
+
+    pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
+        ui.horizontal_centered(|ui| {
+            let palette = Palette::of(ui.ctx());
+            let name = match self.background_work.hangs() {
+                true => "Hang again",
+                false => "Drape",
+            };
+            if let Some(command) = super::command_table::named(name) {
+                let words = RichText::new(command.name).color(palette.on_accent);
+                let button = Button::new(words).fill(palette.accent);
+                self.command_widget(ui, command, button, None);
+            }
+            if let Some(command) = super::command_table::named("Pause") {
+                let button = Button::new(command.name).selected(self.background_work.is_paused());
+                self.command_widget(ui, command, button, None);
+            }
+            self.command_button(ui, "Stop");
+            self.quality_choice(ui);
+        });
+    }
+
+    fn quality_choice(&mut self, ui: &mut Ui) {
+        let before = self.session.project().quality;
+        let mut chosen = before;
+        let label = ui.label("Cloth").id;
+        let response = ComboBox::from_id_salt("quality")
+            .selected_text(quality_words(before))
+            .width(80.0)
+            .show_ui(ui, |ui| {
+                for quality in [Quality::Preview, Quality::Fit, Quality::Final] {
+                    ui.selectable_value(&mut chosen, quality, quality_words(quality));
+                }
+            })
+            .response;
+        let response = response.labelled_by(label);
+        response.on_hover_text("How finely the cloth is meshed and how long it settles");
+        if chosen != before {
+            self.execute(Command::SetQuality { quality: chosen });
+        }
+    }
+
+    /// What the drape is doing, over the lower end of the 3D view.
+    pub(crate) fn drape_progress(&self, ui: &mut Ui, view: Rect) {
+        let share = self
+            .background_work
+            .moment()
+            .map_or(0.0, |moment| moment.share as f32);
+        let palette = Palette::of(ui.ctx());
+        let words = self.drape_words();
+        if words.is_empty() {
+            return;
+        }
+        let bar = Rect::from_min_max(pos2(view.left(), view.bottom() - 4.0), view.max);
+        if self.background_work.is_draping() {
+            ui.painter().rect_filled(bar, 0.0, palette.rule);
+            let done = Rect::from_min_size(bar.min, vec2(bar.width() * share, bar.height()));
+            ui.painter().rect_filled(done, 0.0, palette.accent);
+        }
+        let line = Rect::from_min_max(
+            pos2(view.left() + 12.0, view.bottom() - 80.0),
+            pos2(view.right() - 12.0, view.bottom() - 12.0),
+        );
+        let (colour, is_old) = match self.background_work.status() {
+            GarmentStatus::OutOfDate(_) => (palette.warning, true),
+            _ => (palette.ink_soft, false),
+        };
+        let layout = Layout::bottom_up(Align::Min);
+        ui.scope_builder(UiBuilder::new().max_rect(line).layout(layout), |ui| {
+            let label = Label::new(RichText::new(words).color(colour));
+            // Why it is out of date takes the lines it needs.
+            ui.add(match is_old {
+                true => label.wrap(),
+                false => label.truncate(),
+            });
+        });
+    }
+
+    fn drape_words(&self) -> String {
+        let moment = self.background_work.moment();
+        let state = moment.map_or_else(String::new, |moment| moment_words(&moment));
+        let rests = moment.is_some_and(|moment| moment.stage == Stage::Finished);
+        match self.background_work.status() {
+            GarmentStatus::Nothing => String::new(),
+            GarmentStatus::Preparing => {
+                "Cutting the cloth into triangles and placing it\u{2026}".into()
+            }
+            GarmentStatus::Moving if rests => "Moving: taking over the change".into(),
+            GarmentStatus::Moving => format!("Moving: {state}"),
+            GarmentStatus::Held => format!("Paused: {state}"),
+            GarmentStatus::Stopped => format!("Stopped: {state}"),
+            GarmentStatus::AtRest => state,
+            GarmentStatus::OutOfDate(why) => format!("Out of date: {why}"),
+        }
+    }
+}
+
+fn quality_words(quality: Quality) -> &'static str {
+    match quality {
+        Quality::Preview => "coarse",
+        Quality::Fit => "medium",
+        Quality::Final => "fine",
+    }
+}
+
+fn moment_words(moment: &Moment) -> String {
+    let step = moment.step;
+    match moment.stage {
+        Stage::Sewing => {
+            let gap = moment.gap * 1000.0;
+            format!("sewing, step {step}, seams up to {gap:.1} mm apart")
+        }
+        Stage::Swinging => "swinging under its own weight".to_owned(),
+        Stage::Settling => {
+            let force = match moment.residual {
+                unknown if unknown.is_infinite() => return format!("settling, step {step}"),
+                many if many >= 1.0 => format!("{many:.0} times the weight"),
+                few => format!("{:.2} % of the weight", few * 100.0),
+            };
+            format!("settling, step {step}, net force {force}")
+        }
+        Stage::Finished => format!("At rest after {step} steps"),
+    }
+}

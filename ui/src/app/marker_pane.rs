@@ -1,0 +1,469 @@
+//! The pane with the marker: its order and fabric, the search for a short one, and the edits made in its
+//! view.
+
+use super::ToileApp;
+use super::job::Job;
+use super::notice::Notice;
+use crate::fields::Entered;
+use crate::theme::Palette;
+use crate::tools::number;
+use crate::views::marker::{MarkerAction, MarkerView};
+use egui::{ComboBox, DragValue, RichText, Ui};
+use toile_pattern::plan;
+use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, PiecePlacement, SizeId, Want};
+use toile_session::{FoundMarker, Search, SearchWatcher, SessionError, Start, Watcher};
+
+/// Width of the field of its name [pixels].
+const NAME_WIDTH: f32 = 110.0;
+/// Seconds a search may take.
+const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];
+
+/// A search that goes on.
+pub struct Searching {
+    job: Job<FoundMarker>,
+}
+
+/// How a search is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchChoice {
+    seconds: f64,
+}
+
+impl Default for SearchChoice {
+    fn default() -> Self {
+        Self {
+            seconds: SECONDS[1],
+        }
+    }
+}
+
+impl ToileApp {
+    /// Shows or hides the marker; the first one is made where there is none.
+    pub(crate) fn toggle_marker(&mut self) {
+        self.panes.marker = !self.panes.marker;
+        if self.panes.marker && self.base.pattern().markers.is_empty() && self.has_panels() {
+            self.new_marker();
+        }
+        self.marker_view.fit();
+        self.follow_marker();
+    }
+
+    /// Makes a marker of the fabric that most panels are cut from, and shows it.
+    pub(crate) fn new_marker(&mut self) {
+        let pattern = self.base.pattern();
+        let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
+        let has_marker = |id| pattern.markers.iter().any(|m| m.cloth.fabric == id);
+        let fabrics = pattern.fabrics.iter().map(|fabric| fabric.id);
+        // The fabric without a marker that most panels are cut from.
+        let Some(fabric) = fabrics.max_by_key(|id| (!has_marker(*id), count(*id))) else {
+            return self.say_fault("the pattern has no fabric: draw a panel first".into());
+        };
+        let planned = plan::add_marker(&self.base, None, fabric);
+        let id = planned.as_ref().ok().map(|(_, id)| *id);
+        if self.edit(planned.map(|(edits, _)| edits), "Add marker") {
+            self.marker_view.chosen = id;
+            self.marker_view.fit();
+            self.panes.marker = true;
+            self.follow_marker();
+        }
+    }
+
+    pub(crate) fn has_marker(&self) -> bool {
+        self.marker_id().is_some()
+    }
+
+    fn marker_id(&self) -> Option<MarkerId> {
+        let markers = &self.session.project().pattern.markers;
+        let chosen = self.marker_view.chosen;
+        let found = markers.iter().find(|marker| Some(marker.id) == chosen);
+        found.or(markers.first()).map(|marker| marker.id)
+    }
+
+    /// Brings the view up to date with the document, also while pieces are dragged.
+    pub(crate) fn follow_marker(&mut self) {
+        if !self.panes.marker {
+            return;
+        }
+        let Some(id) = self.marker_id() else {
+            return self
+                .marker_view
+                .clear("There is no marker: make a new one".into());
+        };
+        self.marker_view.chosen = Some(id);
+        match self.session.marker(id) {
+            Ok(laid) => self.marker_view.follow(&laid),
+            Err(error) => self.marker_view.clear(error.to_string()),
+        }
+    }
+
+    /// The marker's bars and its view.
+    pub(crate) fn marker_side(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| self.marker_bar(ui));
+        ui.horizontal_wrapped(|ui| self.search_bar(ui));
+        for action in self.marker_view.show(ui) {
+            self.do_marker(action);
+        }
+    }
+
+    fn marker_bar(&mut self, ui: &mut Ui) {
+        let pattern = self.base.pattern().clone();
+        let Some(marker) = self.marker_id().and_then(|id| pattern.marker(id).cloned()) else {
+            self.command_button(ui, "New marker");
+            return;
+        };
+        let mut chosen = marker.id;
+        let label = ui.label("Marker").id;
+        ComboBox::from_id_salt("marker")
+            .selected_text(&marker.name)
+            .show_ui(ui, |ui| {
+                for known in &pattern.markers {
+                    ui.selectable_value(&mut chosen, known.id, &known.name);
+                }
+            })
+            .response
+            .labelled_by(label);
+        if chosen != marker.id {
+            self.marker_view.chosen = Some(chosen);
+            self.marker_view.fit();
+            self.follow_marker();
+        }
+        let label = ui.label("called").id;
+        let size = egui::vec2(NAME_WIDTH, ui.spacing().interact_size.y);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let id = egui::Id::unique(("marker name", marker.id));
+        let entered = ui.allocate_ui_with_layout(size, layout, |ui| {
+            let nothing = |_: &str| Ok(String::new());
+            self.typed.field(ui, (id, label), &marker.name, nothing)
+        });
+        if let Entered::Text(text) = entered.inner {
+            let planned = plan::rename(&self.base, marker.id.into(), &text);
+            self.enter(planned, "Rename marker", (id, text));
+        }
+        self.command_button(ui, "New marker");
+        self.command_button(ui, "Remove marker");
+        ui.separator();
+        self.order_fields(ui, &marker);
+        ui.separator();
+        self.cloth_fields(ui, &marker);
+    }
+
+    /// How many garments of each size.
+    fn order_fields(&mut self, ui: &mut Ui, marker: &Marker) {
+        let pattern = self.base.pattern().clone();
+        let sizes: Vec<(Option<SizeId>, &str)> = match pattern.sizes.is_empty() {
+            true => vec![(None, "Garments")],
+            false => pattern
+                .sizes
+                .iter()
+                .map(|size| (Some(size.id), &*size.name))
+                .collect(),
+        };
+        for (size, name) in sizes {
+            let before = marker.quantity(size);
+            let mut quantity = before;
+            let label = ui.label(name).id;
+            let field = DragValue::new(&mut quantity)
+                .range(0..=toile_pattern::MOST_GARMENTS)
+                .speed(0.05)
+                .update_while_editing(false);
+            ui.add(field)
+                .on_hover_text("Garments of this size on the marker")
+                .labelled_by(label);
+            if quantity != before {
+                let mut order = marker.order.clone();
+                order.retain(|ordered| ordered.size != size);
+                if quantity > 0 {
+                    order.push(OrderedSize { size, quantity });
+                }
+                let place = |ordered: &OrderedSize| {
+                    let mut all = pattern.sizes.iter();
+                    all.position(|known| Some(known.id) == ordered.size)
+                };
+                order.sort_by_key(place);
+                let planned = plan::set_marker_order(&self.base, marker.id, order);
+                self.edit(planned, "Set order");
+                self.marker_view.fit();
+            }
+        }
+    }
+
+    fn cloth_fields(&mut self, ui: &mut Ui, marker: &Marker) {
+        let pattern = self.base.pattern().clone();
+        let own = pattern
+            .fabric(marker.cloth.fabric)
+            .map_or(1.5, |fabric| fabric.width);
+        let unit = pattern.unit;
+        let metres = unit.metres();
+        let mut cloth = marker.cloth.clone();
+        let mut width = cloth.width.unwrap_or(own) / metres;
+        let before = width;
+        let label = ui.label("Width").id;
+        let field = DragValue::new(&mut width)
+            .range(0.01 / metres..=20.0 / metres)
+            .suffix(format!(" {}", unit.sign()))
+            .update_while_editing(false);
+        ui.add(field).labelled_by(label);
+        if width != before {
+            cloth.width = Some(width * metres);
+        }
+        let label = ui.label("Plies").id;
+        let field = DragValue::new(&mut cloth.plies)
+            .range(1..=500)
+            .speed(0.05)
+            .update_while_editing(false);
+        ui.add(field).labelled_by(label);
+        let mut price = cloth.price_per_metre.unwrap_or(0.0);
+        let label = ui.label("Price per m").id;
+        let field = DragValue::new(&mut price)
+            .range(0.0..=10_000.0)
+            .speed(0.1)
+            .max_decimals(2)
+            .update_while_editing(false);
+        ui.add(field).labelled_by(label);
+        cloth.price_per_metre = (price > 0.0).then_some(price);
+        if cloth != marker.cloth {
+            let planned = plan::set_marker_cloth(&self.base, marker.id, cloth);
+            self.edit(planned, "Set fabric of marker");
+        }
+    }
+
+    fn search_bar(&mut self, ui: &mut Ui) {
+        self.command_button(ui, "Search marker");
+        self.command_button(ui, "Stop search");
+        let label = ui.label("for").id;
+        let chosen = &mut self.search_choice.seconds;
+        ComboBox::from_id_salt("search seconds")
+            .selected_text(format!("{chosen:.0} s"))
+            .width(64.0)
+            .show_ui(ui, |ui| {
+                for seconds in SECONDS {
+                    ui.selectable_value(chosen, seconds, format!("{seconds:.0} s"));
+                }
+            })
+            .response
+            .labelled_by(label);
+        ui.separator();
+        for name in ["Turn piece", "Turn over", "Lock piece", "Take off"] {
+            self.command_button(ui, name);
+        }
+        ui.separator();
+        let palette = Palette::of(ui.ctx());
+        match &self.searching {
+            Some(searching) => {
+                let progress = searching.job.progress();
+                let bar = egui::ProgressBar::new(progress.share as f32).desired_width(120.0);
+                ui.add(bar);
+                ui.label(progress.detail);
+            }
+            None => {
+                let (words, is_wrong) = self.marker_words();
+                let colour = if is_wrong { palette.fault } else { palette.ink };
+                ui.label(RichText::new(words).color(colour));
+            }
+        }
+    }
+
+    /// What the marker comes to, and whether it cannot be cut as it lies.
+    fn marker_words(&self) -> (String, bool) {
+        let state = &self.marker_view.state;
+        if state.laid + state.waiting == 0 {
+            return (String::new(), false);
+        }
+        let unit = self.base.pattern().unit;
+        let mut words = format!(
+            "{} long, {:.1} % used",
+            number::show(state.length, Want::Length, unit),
+            100.0 * state.efficiency
+        );
+        if let Some(cost) = state.cost {
+            let marker = self
+                .marker_id()
+                .and_then(|id| self.base.pattern().marker(id));
+            let currency = marker.map_or("", |marker| &*marker.cloth.currency);
+            words = format!("{words}, {cost:.2} {currency}");
+        }
+        if state.waiting > 0 {
+            words = format!(
+                "{words}; {} of {} wait",
+                state.waiting,
+                state.laid + state.waiting
+            );
+        }
+        if let Some(overlap) = state.overlaps.first() {
+            let pattern = self.base.pattern();
+            words = format!(
+                "{words}; {} overlaps, the first of {}: {:.1} cm2 are cut twice",
+                state.overlaps.len(),
+                pattern.piece_words(overlap.pieces[0]),
+                1e4 * overlap.region.iter().map(|part| part.area()).sum::<f64>()
+            );
+        }
+        if let Some(outside) = state.outside.first() {
+            words = format!(
+                "{words}; {} {:.1} mm off the fabric",
+                self.base.pattern().piece_words(outside.piece),
+                1e3 * outside.by
+            );
+        }
+        let is_wrong = !(state.overlaps.is_empty() && state.outside.is_empty());
+        (words, is_wrong)
+    }
+
+    fn do_marker(&mut self, action: MarkerAction) {
+        let Some(id) = self.marker_id() else { return };
+        let selected = self.marker_view.selection.clone();
+        match action {
+            MarkerAction::Drag(pieces, way) => {
+                // From where they were before the drag.
+                match plan::move_pieces(&self.base, (id, &pieces), way.into()) {
+                    Ok(edits) => self.preview(&edits),
+                    Err(error) => self.say_fault(error.to_string()),
+                }
+                self.follow_marker();
+            }
+            MarkerAction::Drop => self.commit("Move pieces"),
+            MarkerAction::Leave => {
+                self.session.cancel();
+                self.refresh();
+                self.follow_marker();
+            }
+            MarkerAction::Lay(piece, at) => {
+                let laid = PiecePlacement {
+                    piece,
+                    at: at.into(),
+                    turn: 0.0,
+                    flipped: false,
+                    locked: false,
+                };
+                self.marker_edit(plan::place_pieces(&self.base, id, &[laid]), "Lay piece");
+            }
+            MarkerAction::Turn(centre, angle) => {
+                let planned =
+                    plan::turn_pieces(&self.base, (id, &selected), (angle, centre.into()));
+                self.marker_edit(planned, "Turn pieces");
+            }
+            MarkerAction::Flip(line) => {
+                let planned = plan::flip_pieces(&self.base, (id, &selected), line);
+                self.marker_edit(planned, "Turn pieces over");
+            }
+            MarkerAction::Lock => {
+                let marker = self.base.pattern().marker(id);
+                let all_locked = selected.iter().all(|piece| {
+                    let laid = marker.and_then(|marker| marker.placement(*piece));
+                    laid.is_some_and(|laid| laid.locked)
+                });
+                let planned = plan::lock_pieces(&self.base, (id, &selected), !all_locked);
+                let label = if all_locked {
+                    "Unlock pieces"
+                } else {
+                    "Lock pieces"
+                };
+                self.marker_edit(planned, label);
+            }
+            MarkerAction::TakeOff => {
+                let planned = plan::take_off_pieces(&self.base, id, &selected);
+                self.marker_edit(planned, "Take pieces off");
+            }
+        }
+    }
+
+    fn marker_edit(&mut self, planned: Result<Vec<Edit>, EditError>, label: &str) {
+        if !self.marker_view.selection.is_empty() || label == "Lay piece" {
+            self.edit(planned, label);
+            self.follow_marker();
+        }
+    }
+
+    /// Does what is asked of the selected pieces by a command.
+    pub(crate) fn on_pieces(&mut self, action: fn(&MarkerView) -> Option<MarkerAction>) {
+        if let Some(action) = action(&self.marker_view) {
+            self.do_marker(action);
+        }
+    }
+
+    pub(crate) fn has_pieces(&self) -> bool {
+        self.panes.marker && !self.marker_view.selection.is_empty()
+    }
+
+    pub(crate) fn remove_marker(&mut self) {
+        if let Some(id) = self.marker_id() {
+            let planned = plan::remove_marker(&self.base, id);
+            self.edit(planned, "Remove marker");
+            self.marker_view.chosen = None;
+            self.follow_marker();
+        }
+    }
+
+    /// Lays the pieces in little length, on a thread of its own.
+    pub(crate) fn search_marker(&mut self) {
+        let Some(id) = self.marker_id() else { return };
+        let search = match self.session.marker_search(id) {
+            Ok(search) => search,
+            Err(error) => return self.say_fault(error.to_string()),
+        };
+        let how = (Start::Anew, Search::seconds(self.search_choice.seconds));
+        let unit = self.base.pattern().unit;
+        self.panes.marker = true;
+        self.searching = Some(Searching {
+            job: Job::start(move |follower| {
+                let stop = follower.stop_flag().ok_or(SessionError::Cancelled)?;
+                let mut report = |progress: &toile_session::SearchProgress| {
+                    let mut words = match progress.length {
+                        Some(length) => {
+                            format!("{} of fabric", number::show(length, Want::Length, unit))
+                        }
+                        None => progress.words(),
+                    };
+                    if let Some(efficiency) = progress.efficiency {
+                        words = format!("{words}, {:.1} %", 100.0 * efficiency);
+                    }
+                    if let Some(cost) = progress.cost {
+                        words = format!("{words}, {cost:.2}");
+                    }
+                    follower
+                        .progress("searching", progress.done, &words)
+                        .is_continue()
+                };
+                let mut follow = SearchWatcher {
+                    report: &mut report,
+                    stop,
+                };
+                search.run(how, &mut follow)
+            }),
+        });
+    }
+
+    pub(crate) fn is_searching(&self) -> bool {
+        self.searching.is_some()
+    }
+
+    /// Ends the search with the best marker so far.
+    pub(crate) fn stop_search(&mut self) {
+        if let Some(searching) = &self.searching {
+            searching.job.cancel();
+        }
+    }
+
+    /// Takes over what a search found.
+    pub(super) fn follow_search(&mut self) {
+        let result = self.searching.as_ref().and_then(|s| s.job.result());
+        let Some(result) = result else { return };
+        self.searching = None;
+        match result.map(|found| self.session.adopt_marker(found)) {
+            Ok(Ok(Some(events))) => {
+                self.handle_events(&events);
+                self.marker_view.fit();
+                self.follow_marker();
+                let (words, _) = self.marker_words();
+                self.notice = Notice::news(words);
+            }
+            Ok(Ok(None)) => {
+                self.notice = Notice::warning(
+                    "the pattern changed while the marker was searched for: search again",
+                );
+            }
+            Ok(Err(error)) => self.notice = Notice::fault(error.to_string()),
+            Err(words) => self.notice = Notice::fault(words),
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Which panes of the window and which overlays of the pattern are visible.
+
+use serde::{Deserialize, Serialize};
+use toile_pattern::VariableId;
+
+/// Visibility of the parts of the window that can be hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Panes {
+    /// The 3D view.
+    pub garment: bool,
+    /// The marker.
+    pub marker: bool,
+    /// Measurements, variables, sizes, history.
+    pub tables: bool,
+    /// The list of faults.
+    pub findings: bool,
+    /// Lines to cut along.
+    pub allowances: bool,
+    /// Rulers.
+    pub rulers: bool,
+    /// Guides.
+    pub guides: bool,
+}
+
+impl Default for Panes {
+    fn default() -> Self {
+        Self {
+            garment: true,
+            marker: false,
+            tables: false,
+            findings: false,
+            allowances: true,
+            rulers: true,
+            guides: true,
+        }
+    }
+}
+
+/// Which table is on show, and what is typed into it.
+#[derive(Default)]
+pub struct Tables {
+    pub tab: Tab,
+    pub new_variable: String,
+    pub new_measurement: String,
+    /// A variable was added and is to be seen.
+    pub added: bool,
+    /// A measurement whose first value is to be typed next.
+    pub entered_measurement: Option<String>,
+    /// A variable whose number is to be typed next.
+    pub entered_variable: Option<VariableId>,
+}
+
+impl Tables {
+    /// Leaves what is typed: another document is opened.
+    pub fn forget_typed(&mut self) {
+        *self = Self {
+            tab: self.tab,
+            ..Self::default()
+        };
+    }
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub enum Tab {
+    #[default]
+    Measurements,
+    Variables,
+    History,
+}

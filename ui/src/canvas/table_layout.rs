@@ -1,0 +1,181 @@
+//! The layout of the table: places of sheets and panels. A sheet lies where the document says; sheets that
+//! all lie at one place, as in files without places, are laid side by side.
+
+use super::scene::{PanelScene, Scene, SheetScene};
+use std::collections::BTreeMap;
+use toile_geometry::{Bounds2, Vec2};
+use toile_pattern::{PanelId, Pattern, SheetId};
+
+/// Room between sheets [m]: enough for seam numbers and names beside narrow panels.
+const GAP: f64 = 0.06;
+/// Half the width of what is shown of an empty sheet [m].
+const ROOM: f64 = 0.3;
+/// Width of the whole over its height that rows are broken for: about that of the view.
+const ASPECT: f64 = 1.15;
+
+/// Table places of the origins of sheets and panels.
+#[derive(Clone, Debug, Default)]
+pub struct TableLayout {
+    /// Sheets that were moved so that none covers another: the place the document gave, and the shift
+    /// from there [m]. It stays while a pattern is edited, so that nothing jumps, until the document
+    /// gives another place.
+    shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
+    sheets: BTreeMap<SheetId, Vec2>,
+    panels: BTreeMap<PanelId, Vec2>,
+}
+
+impl TableLayout {
+    /// Lays the sheets of a pattern that was just opened.
+    pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
+        self.shifted.clear();
+        // Sheets on panels lie where these do.
+        let mut free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
+        let first = free.clone().next().map(|sheet| sheet.on_table);
+        let is_one = free.clone().count() < 2;
+        let at_one_place = free.all(|sheet| Some(sheet.on_table) == first);
+        if !is_one && at_one_place {
+            let boxes: Vec<(SheetId, Bounds2)> = scene
+                .sheets
+                .iter()
+                .filter(|sheet| sheet.on.is_none())
+                .filter_map(|sheet| Some((sheet.id, bounds(sheet, scene)?)))
+                .collect();
+            let place = first.unwrap_or_default();
+            let moved = rows(&boxes).into_iter();
+            self.shifted = moved.map(|(id, by)| (id, (place, by))).collect();
+        }
+        self.follow(pattern);
+    }
+
+    /// Follows a change of the pattern.
+    pub fn follow(&mut self, pattern: &Pattern) {
+        let sheets = pattern.sheets.iter();
+        self.sheets = sheets
+            .map(|sheet| {
+                let moved = self.shifted.get(&sheet.id);
+                let moved = moved.filter(|(from, _)| *from == sheet.on_table);
+                let by = moved.map_or_else(Vec2::zeros, |(_, by)| *by);
+                (sheet.id, Vec2::from(sheet.on_table) + by)
+            })
+            .collect();
+        let panels = pattern.panels.iter();
+        self.panels = panels
+            .filter_map(|panel| {
+                let sheet = self.sheets.get(&pattern.sheet_of(panel)?)?;
+                let own = panel.on_table.map_or_else(Vec2::zeros, Vec2::from);
+                Some((panel.id, sheet + own))
+            })
+            .collect();
+        for sheet in &pattern.sheets {
+            let panel = sheet.on.and_then(|(panel, _)| self.panels.get(&panel));
+            if let Some(place) = panel {
+                self.sheets.insert(sheet.id, *place);
+            }
+        }
+    }
+
+    /// The table place of a sheet's origin [m].
+    pub fn sheet(&self, id: SheetId) -> Vec2 {
+        self.sheets.get(&id).copied().unwrap_or_default()
+    }
+
+    /// Sheets that are seen elsewhere than where the document has them, with the places [m] they are
+    /// seen at. As soon as the document says where one of several sheets lies it has to say it of all.
+    pub fn laid_apart(&self, pattern: &Pattern) -> Vec<(SheetId, [f64; 2])> {
+        let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
+        let seen = free.map(|sheet| (sheet, <[f64; 2]>::from(self.sheet(sheet.id))));
+        let apart = seen.filter(|(sheet, place)| *place != sheet.on_table);
+        apart.map(|(sheet, place)| (sheet.id, place)).collect()
+    }
+
+    /// The table place of a panel's origin [m].
+    pub fn panel(&self, id: PanelId) -> Vec2 {
+        self.panels.get(&id).copied().unwrap_or_default()
+    }
+
+    /// Whether a panel lies apart from its sheet.
+    pub fn is_apart(&self, panel: &PanelScene) -> bool {
+        self.panel(panel.id) != self.sheet(panel.sheet)
+    }
+
+    /// Least rectangle round everything on the table [m].
+    pub fn bounds(&self, scene: &Scene) -> Option<Bounds2> {
+        let moved = |bounds: &Bounds2, by: Vec2| Bounds2 {
+            min: bounds.min + by,
+            max: bounds.max + by,
+        };
+        let sheets = scene
+            .sheets
+            .iter()
+            .filter(|sheet| sheet.on.is_none())
+            .filter_map(|sheet| {
+                // Of several sheets an empty one is seen, with room to draw on.
+                let room = Vec2::new(ROOM, ROOM);
+                let is_seen = scene.sheets.len() > 1;
+                let room = is_seen.then(|| Bounds2::of([-room, room]));
+                Some(moved(&sheet.bounds().or(room)?, self.sheet(sheet.id)))
+            });
+        let panels = scene.panels.iter();
+        sheets
+            .chain(panels.map(|panel| moved(panel.bounds(), self.panel(panel.id))))
+            .reduce(|a, b| a.union(&b))
+    }
+}
+
+/// Least rectangle round a sheet and its panels [m].
+fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
+    let panels = scene.panels.iter().filter(|panel| panel.sheet == sheet.id);
+    let drawn = panels
+        .map(PanelScene::bounds)
+        .copied()
+        .reduce(|a, b| a.union(&b));
+    // Construction far outside the panel would push its neighbours away for nothing.
+    drawn.or_else(|| sheet.bounds())
+}
+
+/// Puts boxes in rows, in order.
+fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
+    let sizes: Vec<Vec2> = boxes
+        .iter()
+        .map(|(_, bounds)| bounds.max - bounds.min + Vec2::new(GAP, GAP))
+        .collect();
+    let width = best_width(&sizes);
+    let mut places = BTreeMap::new();
+    let mut pen = Vec2::zeros();
+    let mut row = 0.0_f64;
+    for ((id, bounds), size) in boxes.iter().zip(&sizes) {
+        if pen.x > 0.0 && pen.x + size.x > width {
+            pen = Vec2::new(0.0, pen.y - row);
+            row = 0.0;
+        }
+        places.insert(*id, pen - Vec2::new(bounds.min.x, bounds.max.y));
+        pen.x += size.x;
+        row = row.max(size.y);
+    }
+    places
+}
+/// The row width whose rows come nearest to the wanted aspect: every sum of neighbours is tried.
+fn best_width(sizes: &[Vec2]) -> f64 {
+    let widest = sizes.iter().map(|s| s.x).fold(0.0, f64::max);
+    let total: f64 = sizes.iter().map(|s| s.x).sum();
+    let steps = 24;
+    (0..=steps)
+        .map(|k| widest + (total - widest) * f64::from(k) / f64::from(steps))
+        .min_by(|a, b| misfit(sizes, *a).total_cmp(&misfit(sizes, *b)))
+        .unwrap_or(widest)
+}
+
+/// How small the whole is seen in a view of the wanted aspect [m].
+fn misfit(sizes: &[Vec2], width: f64) -> f64 {
+    let (mut x, mut row, mut used, mut height) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
+    for size in sizes {
+        if x > 0.0 && x + size.x > width + 1e-12 {
+            height += row;
+            (x, row) = (0.0, 0.0);
+        }
+        x += size.x;
+        used = used.max(x);
+        row = row.max(size.y);
+    }
+    (used / ASPECT).max(height + row)
+}

@@ -1,0 +1,137 @@
+//! The inspector for several selected parts: numbers they have in common are set for all at once.
+
+use crate::app::ToileApp;
+use crate::canvas::selection::Item;
+use crate::fields::Entered;
+use crate::theme::Palette;
+use crate::tools::{Planning, number};
+use egui::{RichText, Ui};
+use toile_pattern::plan::{self, NumberEntry};
+use toile_pattern::{EdgeId, EditError, PanelId, Want};
+
+impl ToileApp {
+    pub(crate) fn inspect_several(&mut self, ui: &mut Ui, items: &[Item]) {
+        ui.label(RichText::new(format!("{} parts selected", items.len())).strong());
+        let soft = Palette::of(ui.ctx()).ink_soft;
+        for words in self.measured_together(items) {
+            ui.label(RichText::new(words).color(soft));
+        }
+        for entries in self.common_numbers(items) {
+            self.common_field(ui, &entries);
+        }
+    }
+
+    /// Lengths of edges and curves together; distance and direction between two points.
+    fn measured_together(&self, items: &[Item]) -> Vec<String> {
+        let unit = self.base.pattern().unit;
+        let length = |length: f64| number::show(length, Want::Length, unit);
+        let mut words = Vec::new();
+        let lengths = items.iter().map(|item| match item {
+            Item::Edge(_, edge) => Some(self.base.edge(*edge)?.length()),
+            Item::Curve(curve) => Some(self.base.curve(*curve)?.length()),
+            _ => None,
+        });
+        if let Some(lengths) = lengths.collect::<Option<Vec<f64>>>() {
+            words.push(format!("{} long together", length(lengths.iter().sum())));
+        }
+        if let [Item::Point(a), Item::Point(b)] = items
+            && let (Some(a), Some(b)) = (self.base.point(*a), self.base.point(*b))
+        {
+            let way = b - a;
+            let angle = number::show(way.y.atan2(way.x), Want::Angle, unit);
+            words.push(format!("{} apart, {angle}", length(way.norm())));
+        }
+        words
+    }
+
+    /// Numbers that all parts have, each with its entry in every part.
+    fn common_numbers(&self, items: &[Item]) -> Vec<Vec<NumberEntry>> {
+        let mut of_parts = items
+            .iter()
+            .map(|item| plan::numbers_of(&self.base, item.part()));
+        let Some(first) = of_parts.next() else {
+            return Vec::new();
+        };
+        let mut common: Vec<Vec<NumberEntry>> = first.into_iter().map(|e| vec![e]).collect();
+        for mut entries in of_parts {
+            common.retain_mut(|known| {
+                let alike = |entry: &NumberEntry| {
+                    entry.label == known[0].label && entry.want == known[0].want
+                };
+                match entries.iter().position(alike) {
+                    Some(k) => {
+                        known.push(entries.remove(k));
+                        true
+                    }
+                    None => false,
+                }
+            });
+        }
+        common
+    }
+
+    fn common_field(&mut self, ui: &mut Ui, entries: &[NumberEntry]) {
+        let first = &entries[0];
+        let label = ui.label(format!("{} of all", first.label)).id;
+        let id = egui::Id::unique(("number of all", first.label));
+        let base = self.base.clone();
+        let want = first.want;
+        let text = |entry: &NumberEntry| {
+            let number = entry.number.as_ref()?;
+            Some(plan::number_text(&base, number, want))
+        };
+        // Where they differ, nothing is shown.
+        let shown = match entries.iter().all(|entry| text(entry) == text(first)) {
+            true => text(first).unwrap_or_default(),
+            false => String::new(),
+        };
+        let unit = base.pattern().unit;
+        let value = |text: &str| -> Result<String, String> {
+            let found = number::parse(text, want, &base)?;
+            let value = base.number_or_fault(&found, want)?;
+            Ok(format!("= {}", number::show(value, want, unit)))
+        };
+        let entered = self
+            .typed
+            .number_field(ui, (id, label), &shown, &self.base, value);
+        if let Entered::Text(text) = entered {
+            let mut planning = Planning::of(&self.base);
+            let planned = entries.iter().try_for_each(|entry| {
+                let edits = planning.run(|evaluation| {
+                    let number = number::parse(&text, want, evaluation).map_err(|words| {
+                        EditError::Impossible {
+                            message: words,
+                            hint: "type another".into(),
+                        }
+                    })?;
+                    Ok((plan::set_number(evaluation, &entry.place, number)?, ()))
+                });
+                edits.map_err(|error| error.to_string())
+            });
+            match planned {
+                Ok(()) => {
+                    self.edit(Ok(planning.edits()), &format!("Set {}", first.label));
+                }
+                Err(fault) => self.typed.refuse(id, text, fault),
+            }
+        }
+    }
+
+    /// Numbers of the curve an edge follows.
+    pub(crate) fn curve_numbers(&mut self, ui: &mut Ui, (panel, edge): (PanelId, EdgeId)) {
+        let pattern = self.base.pattern();
+        let owner = pattern.owner_of(panel, edge.into());
+        let curve = owner.and_then(|owner| owner.edge(edge));
+        let Some(curve) = curve.map(|edge| edge.curve) else {
+            return;
+        };
+        let entries = plan::numbers_of(&self.base, curve.into());
+        if !entries.is_empty() {
+            ui.label(RichText::new("Its curve").strong());
+        }
+        for entry in entries {
+            self.number_field(ui, &entry);
+        }
+        self.handle_numbers(ui, curve);
+    }
+}

@@ -1,0 +1,120 @@
+//! The inspector's list of a panel's operations: their order and settings.
+
+use crate::app::ToileApp;
+use crate::canvas::selection::{Item, Selection};
+use crate::fields::choice;
+use egui::{Button, RichText, Ui};
+use toile_pattern::plan;
+use toile_pattern::{
+    Bridge, OperationId, OperationKind, PanelId, PleatKind, Pressed, Side, Turned,
+};
+
+impl ToileApp {
+    /// The steps of a panel in the order they are done: a click selects one, and it is done earlier
+    /// or later by a button.
+    pub(crate) fn panel_steps(&mut self, ui: &mut Ui, id: PanelId) {
+        let pattern = self.base.pattern().clone();
+        let steps = pattern.panel(id).map_or(&[][..], |panel| &panel.operations);
+        if steps.is_empty() {
+            return;
+        }
+        ui.label(RichText::new("Steps, in order").strong());
+        let mut chosen = None;
+        let mut moved = None;
+        for (k, step) in steps.iter().enumerate() {
+            ui.horizontal(|ui| {
+                let name = format!("{}. {}", k + 1, step.name);
+                let button = ui.add(Button::new(&name).frame_when_inactive(false));
+                if button.on_hover_text("Select the step").clicked() {
+                    chosen = Some(step.id);
+                }
+                for (sign, words, to, possible) in [
+                    ("earlier", "Earlier", k.wrapping_sub(1), k > 0),
+                    ("later", "Later", k + 1, k + 1 < steps.len()),
+                ] {
+                    let label = format!("{words}: {}", step.name);
+                    let button = ui.add_enabled(possible, Button::new(sign).small());
+                    button.widget_info(|| {
+                        egui::WidgetInfo::labeled(egui::Role::Button, possible, &label)
+                    });
+                    if button
+                        .on_hover_text(format!("{words} than it is done now"))
+                        .clicked()
+                    {
+                        moved = Some((step.id, to));
+                    }
+                }
+            });
+        }
+        if let Some(step) = chosen {
+            self.view.select(Selection::one(Item::Operation(id, step)));
+        }
+        if let Some((step, to)) = moved {
+            self.edit(
+                plan::move_operation(&self.base, (id, step), to),
+                "Change order of steps",
+            );
+        }
+    }
+
+    /// How a step is done, where that is a choice.
+    pub(crate) fn step_choices(&mut self, ui: &mut Ui, panel: PanelId, id: OperationId) {
+        let pattern = self.base.pattern().clone();
+        let Some(owner) = pattern.owner_of(panel, id.into()) else {
+            return;
+        };
+        let Some(step) = owner.operations.iter().find(|step| step.id == id) else {
+            return;
+        };
+        let mut kind = step.kind.clone();
+        match &mut kind {
+            OperationKind::Dart { pressed, .. } => press_choice(ui, pressed),
+            OperationKind::Pivot {
+                turned, pressed, ..
+            } => {
+                let parts = [
+                    (Turned::FromDart, "from the dart to the new mouth"),
+                    (Turned::ToDart, "from the new mouth to the dart"),
+                ];
+                choice(ui, "Part that is turned", &parts, turned);
+                press_choice(ui, pressed);
+            }
+            OperationKind::Spread { bridge, .. } => {
+                let ways = [(Bridge::Straight, "straight"), (Bridge::Smooth, "smooth")];
+                choice(ui, "Line across openings", &ways, bridge);
+            }
+            OperationKind::Pleat { kind, pressed, .. } => {
+                let kinds = [
+                    (PleatKind::Knife, "knife"),
+                    (PleatKind::Box, "box"),
+                    (PleatKind::Inverted, "inverted"),
+                ];
+                choice(ui, "Pleat", &kinds, kind);
+                if *kind == PleatKind::Knife {
+                    let sides = [(Side::Left, "left"), (Side::Right, "right")];
+                    choice(ui, "Pressed to", &sides, pressed);
+                }
+            }
+            OperationKind::Diamond { .. }
+            | OperationKind::Fold { .. }
+            | OperationKind::Split { .. }
+            | OperationKind::Insert { .. } => {}
+        }
+        if kind != step.kind {
+            let owner = owner.id;
+            self.edit(
+                plan::set_operation(&self.base, (owner, id), kind),
+                "Change step",
+            );
+        }
+    }
+}
+
+/// The leg a dart is pressed towards, along the outline.
+fn press_choice(ui: &mut Ui, pressed: &mut Pressed) {
+    let legs = [
+        (Pressed::Before, "its first leg along the outline"),
+        (Pressed::After, "its second leg along the outline"),
+    ];
+    choice(ui, "Pressed towards", &legs, pressed);
+}
