@@ -15,7 +15,7 @@ pub use stage::Stage;
 use crate::collision::{ClothMemory, Tally};
 use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
 use crate::measure::{Measures, measure};
-use crate::world::{MeetingPlace, ObjectId, Simulation, WorldEdit};
+use crate::world::{MeetingPoint, ObjectId, Simulation, WorldEdit};
 use crate::{Control, DrapeError, Equilibrium, SewRun, State, System, Workspace};
 use setup::GarmentWorld;
 use stage::{Attempts, Settling, StageState, Swinging};
@@ -153,7 +153,7 @@ impl GarmentRun {
             WorldEdit::SetEnvironment(Box::new(self.setup.sewing_environment())),
             WorldEdit::ReplaceMesh(self.garment, cloth, level.layers()),
         ];
-        self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
+        self.simulation.edit_all(edits, MeetingPoint::Midpoint)?;
         self.simulation.reset_motion();
         Ok(())
     }
@@ -414,7 +414,7 @@ impl GarmentRun {
             WorldEdit::SetEnvironment(Box::new(self.setup.worn_environment())),
             WorldEdit::Merge(self.setup.levels[self.level].seams(self.garment)),
         ];
-        self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
+        self.simulation.edit_all(edits, MeetingPoint::Midpoint)?;
         self.simulation.reset_motion();
         self.steps[0] += steps;
         self.gap_before_merging = gap;

@@ -16,7 +16,7 @@ pub(crate) use compile::Solids;
 pub use edit::{Edited, WorldEdit};
 pub use object::{Kind, Layers, MeshVertex, Object, ObjectId, VertexGrip};
 pub use simulation::Simulation;
-pub(crate) use transfer::MeetingPlace;
+pub(crate) use transfer::MeetingPoint;
 pub use vertex_map::VertexMap;
 
 use crate::scene::{SceneEnd, SceneObject};

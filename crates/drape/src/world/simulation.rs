@@ -4,7 +4,7 @@ use super::compile::Solids;
 use super::edit::{Change, Edited, WorldEdit};
 use super::object::{MeshVertex, ObjectId};
 use super::present::Present;
-use super::transfer::{MeetingPlace, StartingMotion, Transfer};
+use super::transfer::{MeetingPoint, StartingMotion, Transfer};
 use super::{VertexMap, World};
 use crate::{Control, DrapeError, State, System};
 use std::collections::BTreeMap;
@@ -105,7 +105,7 @@ impl Simulation {
     /// # Errors
     /// The property that does not fit; world and state are then unchanged.
     pub fn edit(&mut self, edit: WorldEdit) -> Result<Edited, DrapeError> {
-        self.edit_all(vec![edit], MeetingPlace::CentreOfMass)
+        self.edit_all(vec![edit], MeetingPoint::CentreOfMass)
     }
 
     /// Applies several edits as one; merged vertices meet as `meeting` says.
@@ -115,7 +115,7 @@ impl Simulation {
     pub(crate) fn edit_all(
         &mut self,
         edits: Vec<WorldEdit>,
-        meeting: MeetingPlace,
+        meeting: MeetingPoint,
     ) -> Result<Edited, DrapeError> {
         let mut world = self.world.clone();
         let (mut edited, mut change) = (Edited::default(), None::<Change>);
@@ -191,7 +191,7 @@ impl Simulation {
         &mut self,
         world: World,
         starting: &BTreeMap<ObjectId, StartingMotion>,
-        meeting: MeetingPlace,
+        meeting: MeetingPoint,
     ) -> Result<(), DrapeError> {
         let map = VertexMap::new(&world);
         let (prescribed, _) = self.present().prescribed();
@@ -219,7 +219,7 @@ impl Simulation {
             }
             // The triangles are sound, but the neighbours chosen for their curvatures no longer are.
             Err(DrapeError::NeedsRemesh { .. }) => {
-                self.restructure(world, &BTreeMap::new(), MeetingPlace::CentreOfMass)?;
+                self.restructure(world, &BTreeMap::new(), MeetingPoint::CentreOfMass)?;
                 Ok(true)
             }
             Err(error) => Err(error),

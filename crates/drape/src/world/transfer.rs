@@ -10,7 +10,7 @@ use toile_geometry::Vec3;
 
 /// The meeting point of vertices that merge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum MeetingPlace {
+pub(crate) enum MeetingPoint {
     /// Their centre of mass.
     CentreOfMass,
     /// The mean of their positions without regard to mass, for the two sides of a seam.
@@ -121,12 +121,12 @@ impl Transfer {
         &self,
         state: &State,
         mass: &[f64],
-        meeting: MeetingPlace,
+        meeting: MeetingPoint,
     ) -> (Vec<Vec3>, Vec<Vec3>) {
         let [equal, by_mass] = [&vec![1.0; mass.len()][..], mass];
         let weights = match meeting {
-            MeetingPlace::CentreOfMass => by_mass,
-            MeetingPlace::Midpoint => equal,
+            MeetingPoint::CentreOfMass => by_mass,
+            MeetingPoint::Midpoint => equal,
         };
         let positions = self.blend(weights, &state.positions, |position, _| position);
         let velocities = self.blend(by_mass, &state.velocities, |_, velocity| velocity);
