@@ -48,7 +48,7 @@ impl Nearness {
         }
     }
 
-    /// [`Self::measure`] for a pair that fails [`passes_by`], at the positions `p` of its vertices [m].
+    /// [`Self::measure`] for a pair that fails `passes_by`, at the positions `p` of its vertices [m].
     pub fn measured(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> Option<Self> {
         if is_far(pair, p, reach) {
             return None;
