@@ -1,5 +1,5 @@
-//! The structure of bending, which stays while rest shapes change: the neighbours that curvatures are estimated
-//! from, and the places of their products in the matrix.
+//! The structure of bending, which is reused when rest shapes change: the neighbours of each curvature estimate, and
+//! the matrix entries of their products.
 
 use crate::Material;
 use crate::laws::bending::{BendingMatrix, BendingStencil};
@@ -15,21 +15,21 @@ use toile_sparse::ScalarMatrix;
 pub(crate) struct BendingStructure {
     triangles: Vec<[u32; 3]>,
     edges: Topology,
-    /// Rings of neighbours that the estimate across each edge is made from; nothing for one without.
+    /// Number of rings of neighbours in the estimate across each edge; none for an edge without an estimate.
     rings: Vec<Option<u8>>,
-    /// A matrix of the pattern.
+    /// A matrix with the sparsity pattern.
     pattern: ScalarMatrix,
-    /// Where the products of each triangle's stencil stand in the matrix, row by row of the stencil; where those
-    /// of each begin, and the end.
-    places: Vec<u32>,
+    /// Indices in the matrix of the products of each triangle's stencil, row by row of the stencil.
+    entries: Vec<u32>,
+    /// First index into `entries` of each triangle, and the end.
     start: Vec<usize>,
 }
 
-/// The stencils of a cloth, each shared with the rest shapes before that it did not change from.
+/// The stencils of a cloth; unchanged ones are shared with those of the rest shapes before.
 pub(crate) type Stencils = Vec<Arc<BendingStencil>>;
 
 impl BendingStructure {
-    /// The structure that some rest shapes choose on triangles of `count` vertices, with their stencils.
+    /// The structure for some rest shapes on triangles of `count` vertices, and their stencils.
     ///
     /// # Errors
     /// A triangle whose curvature cannot be estimated.
@@ -61,13 +61,14 @@ impl BendingStructure {
         };
         let entries: Vec<(u32, u32, f64)> = stencils.iter().flat_map(pairs).collect();
         let pattern = ScalarMatrix::from_entries(count, &entries);
-        let place = |&(i, j, _): &(u32, u32, f64)| pattern.place(i, j).unwrap_or_default() as u32;
+        let index =
+            |&(i, j, _): &(u32, u32, f64)| pattern.index_of(i, j).unwrap_or_default() as u32;
         let mut start = vec![0];
         for stencil in &stencils {
             start.push(start[start.len() - 1] + stencil.vertices.len().pow(2));
         }
         let structure = Self {
-            places: entries.iter().map(place).collect(),
+            entries: entries.iter().map(index).collect(),
             start,
             triangles: triangles.to_vec(),
             rings,
@@ -77,11 +78,11 @@ impl BendingStructure {
         Ok((structure, stencils.into_iter().map(Arc::new).collect()))
     }
 
-    /// The stencils for other rest shapes than those `before` are of: the same ones where no shape near
-    /// changed.
+    /// The stencils for new rest shapes; `before` are the last rest shapes with their stencils, which are reused where
+    /// no shape in their neighbourhood changed.
     ///
     /// # Errors
-    /// A triangle that the rings do not serve any more.
+    /// A triangle whose rings are ill-conditioned for the new shapes.
     pub fn stencils(
         &self,
         before: (&[[Vec2; 3]], &Stencils),
@@ -106,7 +107,7 @@ impl BendingStructure {
         Ok(stencils)
     }
 
-    /// Triangles whose stencils look at any of some triangles: those within one edge more than the rings.
+    /// Triangles whose stencils depend on any of the marked triangles: within one edge more than the rings of them.
     fn near(&self, mut near: Vec<bool>) -> Vec<bool> {
         let rings = self.rings.iter().flatten().copied().max().unwrap_or(0);
         for _ in 0..=rings {
@@ -122,7 +123,7 @@ impl BendingStructure {
         near
     }
 
-    /// The bending matrix of some stencils: for each material what `law` gives.
+    /// The bending matrix of some stencils, with the stiffness or viscosity matrix `law` of each material.
     pub fn matrix(
         &self,
         stencils: &Stencils,
@@ -135,10 +136,10 @@ impl BendingStructure {
             for (t, stencil) in stencils.iter().enumerate() {
                 let law = laws[materials.of_triangle[t] as usize];
                 let stiffness = stencil.stiffness(law) * elements[t].area;
-                let mut places = self.places[self.start[t]..self.start[t + 1]].iter();
+                let mut indices = self.entries[self.start[t]..self.start[t + 1]].iter();
                 for p in &stencil.weights {
                     let moment = stiffness * Vector3::from(*p);
-                    for (q, &at) in stencil.weights.iter().zip(&mut places) {
+                    for (q, &at) in stencil.weights.iter().zip(&mut indices) {
                         values[at as usize] += moment.dot(&Vector3::from(*q));
                     }
                 }

@@ -1,12 +1,11 @@
-//! Triangles with an angle near 180 degrees, taken out of a cloth before it is simulated.
+//! Removal of caps, triangles with an angle near 180 degrees, from a cloth before it is simulated.
 //!
 //! Linear triangles follow a curved surface only while their largest angle stays away from 180
-//! degrees (the maximum angle condition, Babuska and Aziz 1976). A cap whose three corners lie
-//! nearly on a line holds the middle one to the chord of the other two as stiffly as the
-//! membrane is stiff, and a bent sheet with caps comes out several per cent too stiff (membrane
-//! locking). Its long edge is exchanged for the other diagonal of the two triangles there (an
-//! intrinsic flip, Bobenko and Springborn 2007): the vertices, the area and the rest metric stay
-//! as they were. Cloth without caps is left untouched.
+//! degrees (the maximum angle condition, Babuska and Aziz 1976). The membrane of a cap
+//! ties the corner with the large angle to the chord of the other two, and a bent sheet with caps is several per cent
+//! too stiff (membrane locking). The long edge of a cap is exchanged for the other diagonal of its two triangles (an
+//! intrinsic flip, Bobenko and Springborn 2007): vertices, area and rest metric stay the same. Cloth without caps is
+//! left untouched.
 
 use crate::Cloth;
 use crate::laws::rest_sheet::IllConditioned;
@@ -17,28 +16,26 @@ use toile_geometry::Vec2;
 /// Cosine of the angle from which a triangle is a cap: 150 degrees.
 const CAP: f64 = -0.866_025_403_784_438_6;
 
-/// Least cosine between the warps of two triangles whose common edge may be exchanged: 10 degrees.
+/// Least cosine between the warp directions of two triangles whose common edge may be exchanged: 10 degrees.
 const SAME_WARP: f64 = 0.985;
 
-/// Largest difference of the common edge's two lengths at rest, a share: beyond it the edge is a
-/// seam with ease.
+/// Largest relative difference of the two rest lengths of a common edge; beyond it the edge is a seam with ease.
 const SAME_LENGTH: f64 = 1e-6;
 
-/// Flips for every triangle at the most; each lowers the largest angle of its pair.
+/// Most flips for each cap; each flip lowers the largest angle of its pair.
 const MOST_FLIPS: usize = 8;
 
-/// One exchange: the long edge of a cap for the other diagonal of its pair.
+/// The flip of a cap's long edge to the other diagonal of its pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Exchange {
-    /// The cap, and its corner with the large angle.
+    /// The cap, and the corner with its large angle.
     cap: (u32, usize),
-    /// The triangle behind its long edge, and the corner where that edge begins.
+    /// The triangle across the long edge, and its corner at which that edge begins.
     behind: (u32, usize),
 }
 
-/// The cloth with the long edges of its caps exchanged where that makes the pair's largest angle
-/// smaller, and the exchanges. Triangles keep their indices, material and panel; a pair shares its area
-/// anew.
+/// The cloth with the long edges of its caps exchanged where that lowers the largest angle of the pair, and the
+/// exchanges. Triangles keep their indices, materials and panels; only the areas of a pair change, not their sum.
 pub(crate) fn without_caps(cloth: &Cloth) -> (Cow<'_, Cloth>, Vec<Exchange>) {
     let caps: Vec<u32> = (0..cloth.triangles.len() as u32)
         .filter(|&t| largest_angle(cloth.rest[t as usize]).1 < CAP)
@@ -63,10 +60,10 @@ pub(crate) fn without_caps(cloth: &Cloth) -> (Cow<'_, Cloth>, Vec<Exchange>) {
     (Cow::Owned(flipper.cloth), exchanges)
 }
 
-/// Rest shapes after the same exchanges as those of another cloth with the same triangles.
+/// Rest shapes of a cloth with the same triangles after given exchanges.
 ///
 /// # Errors
-/// The cap of a pair that cannot be exchanged with these rest shapes.
+/// The cap of a pair whose edge cannot be exchanged with these rest shapes.
 pub(crate) fn exchange_again(
     mut rest: Vec<[Vec2; 3]>,
     exchanges: &[Exchange],
@@ -81,8 +78,8 @@ pub(crate) fn exchange_again(
     Ok(rest)
 }
 
-/// The rest shapes of a pair once its long edge is exchanged: those of the cap and of the triangle behind
-/// it. Nothing where that would turn the warp or one of the two over.
+/// The rest shapes of cap and neighbour after the exchange; none where the warp directions differ or a triangle would
+/// be inverted.
 fn exchanged(rest: &[[Vec2; 3]], exchange: &Exchange) -> Option<[[Vec2; 3]; 2]> {
     let ((t, k), (s, at)) = (exchange.cap, exchange.behind);
     let [pn, pa, pb] = [0, 1, 2].map(|i| rest[t as usize][(k + i) % 3]);
@@ -93,8 +90,8 @@ fn exchanged(rest: &[[Vec2; 3]], exchange: &Exchange) -> Option<[[Vec2; 3]; 2]> 
     convex.then_some(pair)
 }
 
-/// The far corner of a triangle moved rigidly so that its edge from corner `at` lies on `pb`, `pa`; nothing
-/// where that would turn the warp or the edge is a seam with ease.
+/// The far corner of a triangle moved rigidly so that its edge from corner `at` lies on `pb`, `pa`; none where the warp
+/// directions differ or the edge is a seam with ease.
 fn unfolded(corners: [Vec2; 3], at: usize, [pa, pb]: [Vec2; 2]) -> Option<Vec2> {
     let [qb, qa, qd] = [0, 1, 2].map(|i| corners[(at + i) % 3]);
     let (from, to) = ((qb - qa).try_normalize(0.0)?, (pb - pa).try_normalize(0.0)?);
@@ -131,9 +128,10 @@ fn twice_area([a, b, c]: [Vec2; 3]) -> f64 {
     (b - a).perp(&(c - a))
 }
 
+/// A cloth whose edges are flipped, with its edge map.
 struct Flipper {
     cloth: Cloth,
-    /// Triangles at every edge, its smaller vertex first.
+    /// Triangles at each edge; the key has the smaller vertex first.
     edges: BTreeMap<[u32; 2], Vec<u32>>,
 }
 
@@ -153,8 +151,8 @@ impl Flipper {
         Self { cloth, edges }
     }
 
-    /// Exchanges the long edge of a cap; nothing where the triangle is no cap, its long edge is free, sewn or between unlike cloths, or where the
-    /// exchange would help nothing.
+    /// Exchanges the long edge of a cap. None where the triangle is no cap, where its long edge is free, sewn or
+    /// between different materials, and where the exchange would not lower the largest angle.
     fn flip(&mut self, t: u32) -> Option<Exchange> {
         let (k, cosine) = largest_angle(self.cloth.rest[t as usize]);
         if cosine >= CAP {
@@ -271,8 +269,8 @@ mod tests {
         // Rest and surface agree at every corner, and the mesh is whole.
         for (rest, corners) in eased.rest.iter().zip(&eased.triangles) {
             for (p, &v) in rest.iter().zip(corners) {
-                let place = cloth.positions[v as usize];
-                assert!((Vec3::new(p.x, p.y, 0.0) - place).norm() < 1e-15);
+                let position = cloth.positions[v as usize];
+                assert!((Vec3::new(p.x, p.y, 0.0) - position).norm() < 1e-15);
             }
         }
         assert!(eased.mesh().check().is_ok());

@@ -1,22 +1,23 @@
-//! Carrying a shape from one mesh of the same panels to another, by place in the panel.
+//! Interpolation of a shape from one mesh of panels to another mesh of the same panels, at the same points of the
+//! panels.
 
 use crate::{Cloth, DrapeError};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Where every vertex of one mesh lies in another mesh of the same panels.
+/// For each vertex of a new mesh its barycentric coordinates in an old mesh of the same panels.
 #[derive(Clone, Debug)]
 pub struct Carry {
-    /// Triangle of the old mesh and weights of its corners, for each new vertex. Outside the old
-    /// mesh (a curved edge that the old one cut short) a weight is negative.
-    places: Vec<(u32, [f64; 3])>,
+    /// Triangle of the old mesh and barycentric coordinates in it, for each new vertex. Outside the old mesh, where it
+    /// cut a curved edge short, a coordinate is negative.
+    coordinates: Vec<(u32, [f64; 3])>,
 }
 
-/// How far a carried point is drawn from the flat triangle to the blend of its tangent planes
-/// (alpha of Boubekeur and Alexa 2008): a half is exact on a circular arc.
-const CURVING: f64 = 0.5;
+/// Share of the displacement from the flat triangle to the blend of its tangent planes (alpha of Boubekeur and Alexa
+/// 2008): a half is exact on a circular arc.
+const PHONG_SHARE: f64 = 0.5;
 
 impl Carry {
-    /// Finds every vertex of `to` in the panel it belongs to. Neither mesh may be merged.
+    /// Locates each vertex of `to` in its panel of `from`. Neither mesh may be merged.
     ///
     /// # Errors
     /// When `to` has a panel that `from` has not.
@@ -35,10 +36,10 @@ impl Carry {
             .into_iter()
             .map(|(mesh, triangles)| (SurfaceTree::new(mesh), triangles))
             .collect();
-        let mut places = vec![(u32::MAX, [0.0; 3]); to.positions.len()];
+        let mut coordinates = vec![(u32::MAX, [0.0; 3]); to.positions.len()];
         for ((corners, rest), &panel) in to.triangles.iter().zip(&to.rest).zip(&to.panel) {
             for (&v, p) in corners.iter().zip(rest) {
-                if places[v as usize].0 != u32::MAX {
+                if coordinates[v as usize].0 != u32::MAX {
                     continue;
                 }
                 let found = trees.get(panel as usize).and_then(|(tree, triangles)| {
@@ -56,48 +57,48 @@ impl Carry {
                 let twice = (b - a).perp(&(c - a));
                 let (second, third) = ((p - a).perp(&(c - a)), (b - a).perp(&(p - a)));
                 let (second, third) = (second / twice, third / twice);
-                places[v as usize] = (triangle, [1.0 - second - third, second, third]);
+                coordinates[v as usize] = (triangle, [1.0 - second - third, second, third]);
             }
         }
-        // A vertex on no triangle goes where the first triangle is.
-        for place in &mut places {
-            if place.0 == u32::MAX {
-                *place = (0, [1.0, 0.0, 0.0]);
+        // A vertex on no triangle gets the first corner of the first triangle.
+        for entry in &mut coordinates {
+            if entry.0 == u32::MAX {
+                *entry = (0, [1.0, 0.0, 0.0]);
             }
         }
-        Ok(Self { places })
+        Ok(Self { coordinates })
     }
 
-    /// Places of the new vertices on the old mesh as it lies now, with Phong tessellation
-    /// (Boubekeur and Alexa 2008) so that a coarse mesh's flats do not show in the finer one.
-    /// `shape` has a triangle for each of the old mesh's, by the same number.
+    /// Positions of the new vertices on the old mesh in a shape of it [m], with Phong tessellation (Boubekeur and Alexa
+    /// 2008) so that the facets of a coarse mesh do not show on the finer one. `shape` has the triangles of the old
+    /// mesh in the same order.
     pub fn apply(&self, shape: &TriangleMesh) -> Vec<Vec3> {
         let normals = shape.vertex_normals();
-        self.places
+        self.coordinates
             .iter()
             .map(|&(triangle, weights)| {
                 let corners = shape.triangles[triangle as usize];
-                let places = corners.map(|v| shape.positions[v as usize]);
-                let flat = places[0] * weights[0] + places[1] * weights[1] + places[2] * weights[2];
+                let [a, b, c] = corners.map(|v| shape.positions[v as usize]);
+                let flat = a * weights[0] + b * weights[1] + c * weights[2];
                 let mut curved = Vec3::zeros();
-                for ((&v, place), weight) in corners.iter().zip(&places).zip(weights) {
+                for ((&v, corner), weight) in corners.iter().zip(&[a, b, c]).zip(weights) {
                     let normal = normals[v as usize];
-                    curved += (flat - normal * (flat - place).dot(&normal)) * weight;
+                    curved += (flat - normal * (flat - corner).dot(&normal)) * weight;
                 }
-                flat * (1.0 - CURVING) + curved * CURVING
+                flat * (1.0 - PHONG_SHARE) + curved * PHONG_SHARE
             })
             .collect()
     }
 
-    /// Vectors at the old mesh's vertices, at the new ones: straight over the triangle each lies in, whose
-    /// corners `triangles` gives by the same number.
+    /// Vectors at the new vertices, interpolated linearly from those at the old ones. `triangles` has the triangles of
+    /// the old mesh in the same order.
     pub fn interpolate(&self, triangles: &[[u32; 3]], values: &[Vec3]) -> Vec<Vec3> {
-        let one = |&(triangle, weights): &(u32, [f64; 3])| {
+        let vector = |&(triangle, weights): &(u32, [f64; 3])| {
             let corners = triangles[triangle as usize];
             let three = corners.iter().zip(weights);
             three.map(|(&v, weight)| values[v as usize] * weight).sum()
         };
-        self.places.iter().map(one).collect()
+        self.coordinates.iter().map(vector).collect()
     }
 }
 
@@ -149,8 +150,8 @@ mod tests {
         let (coarse, fine) = (quarter(8), quarter(32));
         let carry = Carry::new(&coarse, &fine).expect("the same panel");
         let carried = carry.apply(&coarse.mesh());
-        let worst = |places: &[Vec3]| {
-            let inner = places
+        let worst = |positions: &[Vec3]| {
+            let inner = positions
                 .iter()
                 .zip(&fine.positions)
                 .filter(|(_, p)| p.x > 0.05 && p.x < 0.15);

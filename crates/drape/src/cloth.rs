@@ -1,10 +1,10 @@
-//! A sheet of cloth before it is simulated: where it is, and its shape at rest.
+//! A cloth before it is simulated: positions, triangles, rest shapes and materials.
 
 use crate::merge::keeps_corners;
 use crate::{DrapeError, Material};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
-/// A deformable surface: positions now, and the rest shape of every triangle.
+/// A deformable surface: positions, and the rest shape of each triangle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cloth {
     /// Positions [m].
@@ -22,12 +22,12 @@ pub struct Cloth {
     pub materials: Vec<Material>,
 }
 
-/// Largest number of a panel: many objects with panels can be laid end to end.
+/// Largest number of a panel: panel numbers of many concatenated objects still fit 32 bits.
 const MOST_PANEL: u32 = 1 << 24;
 
 impl Cloth {
-    /// A cloth whose rest shape is the mesh itself: every triangle keeps its own size and shape,
-    /// and lies flat at rest, a panel of its own. The warp runs along the mesh's first axis, projected.
+    /// A cloth whose rest shape is the mesh itself: each triangle is a panel of its own with the size and shape it has
+    /// in the mesh. The warp runs along the mesh's first axis, projected.
     ///
     /// # Errors
     /// Bad indices, coordinates that are not finite, triangles without area.
@@ -69,7 +69,7 @@ impl Cloth {
         })
     }
 
-    /// What of its lists does not fit its triangles, in words; nothing where all do.
+    /// The first list that does not fit the triangles, in words; none where all fit.
     pub(crate) fn defect(&self) -> Option<String> {
         let count = self.triangles.len();
         let lists = [
@@ -88,7 +88,7 @@ impl Cloth {
         Some(format!("panel {far} is out of range"))
     }
 
-    /// The surface as it lies now.
+    /// The surface at the present positions.
     pub fn mesh(&self) -> TriangleMesh {
         TriangleMesh {
             positions: self.positions.clone(),
@@ -96,9 +96,8 @@ impl Cloth {
         }
     }
 
-    /// Joins vertices that `target` sends to the same place: `target[v]` is the new index of old
-    /// vertex `v`. Positions become the mean of those joined; triangles keep their rest shapes.
-    /// A triangle that loses a corner (two of its own vertices joined) is dropped.
+    /// The cloth with merged vertices: `target[v]` is the new index of vertex `v`. The position of a merged vertex is
+    /// the mean; triangles keep their rest shapes. A triangle with two of its vertices merged is dropped.
     pub fn merged(&self, target: &[u32], count: usize) -> Self {
         let mut sums = vec![(Vec3::zeros(), 0.0); count];
         for (position, &to) in self.positions.iter().zip(target) {
@@ -123,9 +122,9 @@ impl Cloth {
         merged
     }
 
-    /// Triangles that are still there when vertices are joined as in [`Self::merged`], ascending.
+    /// Triangles that [`Self::merged`] does not drop, ascending.
     pub fn merged_triangles(&self, target: &[u32]) -> Vec<usize> {
-        let stays = |&t: &usize| keeps_corners(self.triangles[t], target);
-        (0..self.triangles.len()).filter(stays).collect()
+        let keeps = |&t: &usize| keeps_corners(self.triangles[t], target);
+        (0..self.triangles.len()).filter(keeps).collect()
     }
 }

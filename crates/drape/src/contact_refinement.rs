@@ -1,29 +1,27 @@
-//! Contact tested more finely where cloth went on crossing a solid surface.
+//! Refinement of contact samples in triangles that cross a solid.
 
 use crate::contact_settings::MOST_EXTRA;
 use crate::{ContactSample, Model, State};
 use std::sync::Arc;
 
-/// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
-/// usual offset.
+/// Extra contact offset added each time a refined triangle still crosses a solid [m]: a quarter of the default offset.
 const EXTRA_OFFSET: f64 = 1e-3;
 
 impl State {
-    /// Tests a triangle at its middle and the middles of its edges too, where it is too large
-    /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
-    /// from the surface. Whoever looks for triangles that cross a surface may count those of an object
-    /// that ignores it ([`PairPolicies`](crate::PairPolicies)): its samples then grow more, and still do not
-    /// feel that surface.
+    /// Adds contact samples at the centroid and the edge midpoints of a triangle that is too large for the curvature of
+    /// a solid; where it has them already, enlarges their contact offset and that of its corners. A triangle of an
+    /// object that ignores the solid ([`PairPolicies`](crate::PairPolicies)) may be given, too: its samples make no
+    /// contact with that solid.
     pub fn refine_contact(&mut self, model: &Model, triangle: u32) {
         let samples = Arc::make_mut(&mut self.samples);
-        for triangle in under(model, triangle) {
+        for triangle in covering(model, triangle) {
             refine(model, samples, triangle);
         }
         self.follow_samples();
     }
 
-    /// Goes on where it is under other rest shapes of the same triangles: cloth sticks where it stuck, and is
-    /// tested against solids where it was. A way to rest begins anew.
+    /// Adapts the state to other rest shapes of the same triangles: contact samples and friction anchors stay, the
+    /// areas of samples change. The memory of an equilibrium method is cleared.
     pub(crate) fn follow_shapes(&mut self, model: &Model) {
         let at_vertices = model.rest.samples.iter().copied();
         let mut samples: Vec<ContactSample> = at_vertices.collect();
@@ -43,13 +41,13 @@ impl State {
             }
         }));
         self.samples = Arc::new(samples);
-        self.begin_rest_anew();
+        self.clear_equilibrium_memory();
     }
 }
 
-/// Triangles of the model that cover one of the surface: itself, or the two that were exchanged
-/// for it and its neighbour.
-fn under(model: &Model, triangle: u32) -> Vec<u32> {
+/// Triangles of the model that cover a triangle of the surface: itself, or both triangles of a pair whose diagonal was
+/// exchanged.
+fn covering(model: &Model, triangle: u32) -> Vec<u32> {
     let given = model.surface_triangles()[triangle as usize];
     let own = model.topology.triangles[triangle as usize];
     if given == own {
@@ -61,7 +59,7 @@ fn under(model: &Model, triangle: u32) -> Vec<u32> {
         .collect()
 }
 
-/// Adds samples within a triangle, or keeps those that are there farther off.
+/// Adds samples within a triangle, or enlarges the offset of its samples.
 fn refine(model: &Model, samples: &mut Vec<ContactSample>, triangle: u32) {
     if samples.iter().any(|s| s.triangle == Some(triangle)) {
         let corners = model.topology.triangles[triangle as usize];

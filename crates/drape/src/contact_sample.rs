@@ -1,31 +1,31 @@
-//! Points of the cloth that are tested against solid surfaces.
+//! Contact samples: points of the cloth that are tested against solids.
 
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// A point of the cloth that is tested against surfaces.
+/// A point of the cloth that is tested against solids.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSample {
     /// The triangle it lies on; none for a sample at a vertex (then `vertices[0]`).
     pub triangle: Option<u32>,
-    /// Vertices it hangs on.
+    /// Vertices whose weighted mean it is.
     pub vertices: [u32; 3],
-    /// Their weights.
+    /// Weights of the vertices.
     pub weights: [f64; 3],
-    /// Area of cloth it stands for [m2].
+    /// Area of cloth it represents [m2].
     pub area: f64,
-    /// Friction coefficient there.
+    /// Friction coefficient.
     pub friction: f64,
-    /// Share of the normal speed of an impact that comes back there, where any cloth says it.
+    /// Coefficient of restitution; none where no material has one.
     pub restitution: Option<f64>,
-    /// Distance kept beyond the usual offset [m]: raised where a triangle went on crossing.
+    /// Contact offset beyond that of the settings [m]: enlarged in triangles that cross a solid.
     pub extra_offset: f64,
 }
 
 impl ContactSample {
-    /// Its place [m].
-    pub fn place(&self, x: &[Vec3]) -> Vec3 {
+    /// Its position [m].
+    pub fn position(&self, x: &[Vec3]) -> Vec3 {
         let [a, b, c] = self.vertices.map(|v| x[v as usize]);
         a * self.weights[0] + b * self.weights[1] + c * self.weights[2]
     }

@@ -1,31 +1,30 @@
-//! How cloth meets surfaces and cloth: distances kept, stiffness, friction.
+//! Settings of contact with solids and of cloth with cloth: offsets, stiffness, friction.
 
 use crate::{DrapeError, Material};
 
-/// How far outside a surface its distance field reaches [m].
+/// Distance from a solid to which its distance field extends [m].
 pub(crate) const FIELD_REACH: f64 = 0.03;
 
-/// The most that the samples of a triangle which goes on crossing a surface are kept farther off
-/// [m]: what is still found then is not cured by distance.
+/// Largest extra offset of the contact samples of a triangle that crosses a solid [m]: a crossing that remains then is
+/// not cured by distance.
 pub(crate) const MOST_EXTRA: f64 = 8e-3;
 
-/// The most that cloth can be kept from a surface [m]: what its distance field reaches, less what a
-/// triangle that goes on crossing is kept farther off.
+/// Largest contact offset from solids [m]: the extent of the distance field less the largest extra offset.
 pub const MOST_OFFSET: f64 = FIELD_REACH - MOST_EXTRA;
 
-/// How cloth meets solid surfaces and other cloth.
+/// Settings of contact with solids and of cloth with cloth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSettings {
-    /// Distance kept between the middle of the cloth and a surface [m], at most [`MOST_OFFSET`]; half
-    /// the cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an
-    /// edge on the tightest curve of the body: e^2 / (8 R).
+    /// Distance of the middle of the cloth from a solid at which contact begins [m], at most [`MOST_OFFSET`]; half the
+    /// cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an edge on the
+    /// tightest curve of the body, e^2 / (8 R).
     pub offset: f64,
     /// Normal stiffness per area of cloth [N/m3]: pressure per depth.
     pub stiffness: f64,
     /// Whether friction acts.
     pub friction: bool,
-    /// Distance kept between the middles of two cloths [m], the cloth's thickness where that is more; 0
-    /// lets cloth pass through cloth.
+    /// Distance between the middles of two cloths at which contact begins [m], the cloth's thickness where that is
+    /// more; at 0 cloth passes through cloth.
     pub cloth_offset: f64,
 }
 
@@ -43,16 +42,16 @@ impl Default for ContactSettings {
 }
 
 impl ContactSettings {
-    /// The same for cloth of some materials: it keeps at least half of the thickest one's thickness
-    /// from surfaces and, where cloth is kept from cloth, all of it from cloth.
+    /// The settings for cloth of some materials: the offset from solids is at least half of the largest thickness, that
+    /// of cloth with cloth, unless it is zero, at least all of it.
     #[must_use]
     pub fn for_cloth<'a>(self, materials: impl IntoIterator<Item = &'a Material>) -> Self {
         let each = materials.into_iter().map(|material| material.thickness);
         let thickness = each.fold(0.0, f64::max);
-        let apart = self.cloth_offset > 0.0;
+        let has_cloth_contact = self.cloth_offset > 0.0;
         Self {
             offset: self.offset.max(0.5 * thickness),
-            cloth_offset: match apart {
+            cloth_offset: match has_cloth_contact {
                 true => self.cloth_offset.max(thickness),
                 false => 0.0,
             },
@@ -60,10 +59,10 @@ impl ContactSettings {
         }
     }
 
-    /// Checks that surfaces are felt as far off as cloth is to be kept from them.
+    /// Refuses an offset that exceeds the extent of distance fields.
     ///
     /// # Errors
-    /// Refuses an offset beyond [`MOST_OFFSET`], at the place given.
+    /// An offset beyond [`MOST_OFFSET`]; `place` is named in the message.
     pub(crate) fn check_reach(&self, place: &str) -> Result<(), DrapeError> {
         if self.offset <= MOST_OFFSET {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Finding where the cloth touches solid surfaces: recomputed as it moves.
+//! Detection of contacts of the cloth with solids.
 
 use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;
@@ -10,20 +10,20 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// One sample near one surface.
+/// A contact of a sample with a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Index of the sample.
     pub sample: u32,
     /// The sample: a point of the cloth.
     pub point: ContactSample,
-    /// The surface, linearised there.
+    /// The surface, linearised at the sample.
     pub plane: ContactPlane,
     /// Its laws.
     pub law: ContactLaw,
 }
 
-/// Contacts of the present positions, and what makes finding them again cheap.
+/// Contacts at the present positions, with caches for the next detection.
 #[derive(Default)]
 pub struct Contacts {
     /// Contacts in order of their samples.
@@ -31,19 +31,21 @@ pub struct Contacts {
     /// Contacts of cloth with cloth.
     pub cloth: ContactSet,
     detector: ContactDetector,
-    memory: Vec<Memory>,
+    clearances: Vec<Clearance>,
     measured_for: Option<MeasuredFor>,
 }
 
-/// Where a sample was last measured and how far from every surface it was: until it has moved
-/// by that much less the contact distance, it cannot touch anything.
+/// The last measurement of a sample. As long as its displacement since then is below the distance less the reach of
+/// contacts, it makes no contact.
 #[derive(Clone, Copy)]
-struct Memory {
-    place: Vec3,
-    clearance: f64,
+struct Clearance {
+    /// Position at the measurement [m].
+    position: Vec3,
+    /// Lower bound of the distance from all solids there [m].
+    distance: f64,
 }
 
-/// What the memories of samples were measured for: they are valid while these are the same ones.
+/// The data that clearances depend on: they are valid while these are the same.
 struct MeasuredFor {
     colliders: Arc<Vec<Collider>>,
     policies: Arc<PairPolicies>,
@@ -58,35 +60,34 @@ impl MeasuredFor {
     }
 }
 
-/// Planes are kept from this many offsets away, so that a step is stopped before it lands.
+/// Reach of contacts in offsets: a step is stopped by a contact before the cloth lands.
 const REACH_IN_OFFSETS: f64 = 2.5;
 
-/// Below this slope of the distance a sample lies on a ridge between walls that push against each
-/// other: no direction leads out.
-const FLAT_SLOPE: f64 = 0.05;
+/// Slope of the distance below which a sample lies on the medial axis, with opposed surfaces on both sides and no
+/// direction out.
+const MIN_SLOPE: f64 = 0.05;
 
 impl Contacts {
-    /// Finds the contacts of the present positions. A sample is skipped only when the distance it
-    /// moved proves that it is out of reach.
+    /// Detects all contacts at `positions`. A sample is skipped only when its clearance proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         let (memory, found) = (&state.cloth, &mut self.cloth);
         self.detector.refresh(model, memory, positions, found);
         self.refresh_surfaces(model, state, positions);
     }
 
-    /// Finds all of them anew at the next look, so that what is found does not depend on what was before.
+    /// Makes the next detection independent of all earlier ones.
     pub(crate) fn forget(&mut self) {
-        self.memory.clear();
+        self.clearances.clear();
         self.detector.forget();
     }
 
-    /// Finds all contacts of cloth with cloth anew at the next look.
+    /// Makes the next detection of contacts of cloth with cloth independent of earlier ones.
     pub(crate) fn forget_cloth(&mut self) {
         self.detector.forget();
     }
 
-    /// Shortens moves from `x` so that cloth does not pass through cloth, but for pairs that the contacts in
-    /// hand exempt; returns the number of vertices held back.
+    /// Shortens displacements from `x` so that cloth does not pass through cloth, except for exempt pairs of the last
+    /// detection; returns the number of vertices whose displacement was shortened.
     pub(crate) fn truncate_moves(
         &mut self,
         model: &Model,
@@ -96,45 +97,45 @@ impl Contacts {
         (self.detector).truncate_moves(model, &self.cloth.exemptions, x, moves)
     }
 
-    /// Finds those with solid surfaces alone.
+    /// Detects the contacts with solids only.
     pub(crate) fn refresh_surfaces(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         if model.colliders.is_empty() {
             self.active.clear();
             return;
         }
-        let unknown = Memory {
-            place: Vec3::repeat(f64::INFINITY),
-            clearance: 0.0,
+        let unknown = Clearance {
+            position: Vec3::repeat(f64::INFINITY),
+            distance: 0.0,
         };
         let fits = |of: &MeasuredFor| of.fits(model, state);
         if !self.measured_for.as_ref().is_some_and(fits) {
-            self.memory.clear();
+            self.clearances.clear();
             self.measured_for = Some(MeasuredFor {
                 colliders: model.colliders.clone(),
                 policies: model.policies.clone(),
                 samples: state.samples.clone(),
             });
         }
-        self.memory.resize(state.samples.len(), unknown);
+        self.clearances.resize(state.samples.len(), unknown);
         let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
         if poses.iter().any(Option::is_some) {
-            // What was measured holds for a surface that stands still.
-            self.memory.fill(unknown);
+            // Clearances are valid for solids at rest only.
+            self.clearances.fill(unknown);
         }
         let found: Vec<Vec<Contact>> = self
-            .memory
+            .clearances
             .par_chunks_mut(128)
             .enumerate()
-            .map(|(chunk, memory)| {
+            .map(|(chunk, clearances)| {
                 let mut contacts = Vec::new();
-                for (k, memory) in memory.iter_mut().enumerate() {
+                for (k, clearance) in clearances.iter_mut().enumerate() {
                     let at = chunk * 128 + k;
                     let scene = Surfaces {
                         model,
                         state,
                         poses: &poses,
                     };
-                    find(&scene, positions, at, memory, &mut contacts);
+                    find(&scene, positions, at, clearance, &mut contacts);
                 }
                 contacts
             })
@@ -143,14 +144,14 @@ impl Contacts {
         self.active.extend(found.into_iter().flatten());
     }
 
-    /// Adds what damps the push of the surfaces, for explicit methods in substeps of `h` [s], and
-    /// takes from it what would throw cloth that a surface was put over [N].
+    /// Adds the damping of contact with solids to the forces [N], for explicit methods in substeps of `h` [s], and
+    /// limits the force on buried samples, which would throw the cloth off.
     pub fn damp(&self, model: &Model, state: &State, h: f64, force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &contact.point;
             let (plane, law) = (&contact.plane, &contact.law);
-            let place = sample.place(&state.positions);
-            let elastic = law.normal_force(plane, place);
+            let position = sample.position(&state.positions);
+            let elastic = law.normal_force(plane, position);
             if elastic <= 0.0 {
                 continue;
             }
@@ -161,7 +162,7 @@ impl Contacts {
                 mass += w * model.rest.mass[v as usize];
             }
             let mut push = damped_push(elastic, law.normal, mass, leaving);
-            if is_buried(model, state, contact, place) {
+            if is_buried(model, state, contact, position) {
                 push = push.min(gentle_push(mass, leaving, h));
             }
             for (&v, w) in corners {
@@ -170,58 +171,59 @@ impl Contacts {
         }
     }
 
-    /// Remembers which samples a surface was put over, for explicit methods, after
-    /// [`Self::settle`]. Methods with a memory of their own remember none.
+    /// Stores the buried samples in the state, for explicit methods, after
+    /// [`Self::remember_step`]. Methods with a memory of their own store none.
     pub fn remember_buried(&self, model: &Model, state: &mut State) {
         if !matches!(state.memory, StateMemory::Nothing | StateMemory::Buried(_)) {
             return;
         }
         let buried = self.active.iter().filter(|contact| {
             let sample = &contact.point;
-            is_buried(model, state, contact, sample.place(&state.positions))
+            is_buried(model, state, contact, sample.position(&state.positions))
         });
         state.memory = StateMemory::of_buried(buried.map(|contact| contact.sample));
     }
 
-    /// Moves the friction anchors after a step, and remembers the normal forces.
-    pub fn settle(&self, model: &Model, state: &mut State) {
-        self.cloth.settle(model, state);
+    /// Stores the end of a step in the state: friction anchors, moved along where contacts slide, and normal forces.
+    pub fn remember_step(&self, model: &Model, state: &mut State) {
+        self.cloth.remember_step(model, state);
         state.anchors.fill(None);
         state.normal_forces.fill(0.0);
         state.follow_samples();
         for contact in &self.active {
             let at = contact.sample as usize;
-            let place = contact.point.place(&state.positions);
-            let force = contact.law.normal_force(&contact.plane, place);
+            let position = contact.point.position(&state.positions);
+            let force = contact.law.normal_force(&contact.plane, position);
             if force > 0.0 {
-                state.anchors[at] = Some(contact.law.slide(&contact.plane, place, force));
+                state.anchors[at] = Some(contact.law.slide(&contact.plane, position, force));
                 state.normal_forces[at] = force;
             }
         }
     }
 }
 
-/// Whether a sample lies deeper in a surface than the offset, where no motion brings it, or has
-/// lain so and not come out since.
-fn is_buried(model: &Model, state: &State, contact: &Contact, place: Vec3) -> bool {
-    let depth = contact.plane.depth_of(place);
+/// Whether a sample is buried: deeper in a solid than the offset, which happens when a solid is put over the cloth and
+/// not by motion, or remembered as buried and not yet out.
+fn is_buried(model: &Model, state: &State, contact: &Contact, position: Vec3) -> bool {
+    let depth = contact.plane.depth_of(position);
     let offset = model.contact.offset + contact.point.extra_offset;
     let remembered = || state.memory.buried().binary_search(&contact.sample).is_ok();
     depth > offset || (depth > 0.0 && remembered())
 }
 
-/// What samples are measured against.
+/// The solids, with their poses, that samples are measured against.
 struct Surfaces<'a> {
     model: &'a Model,
     state: &'a State,
     poses: &'a [Option<Pose>],
 }
 
+/// Appends the contact of sample `at` with the nearest solid, if it is within reach.
 fn find(
     scene: &Surfaces,
     positions: &[Vec3],
     at: usize,
-    memory: &mut Memory,
+    clearance: &mut Clearance,
     out: &mut Vec<Contact>,
 ) {
     let Surfaces {
@@ -230,11 +232,11 @@ fn find(
         poses,
     } = scene;
     let sample = &state.samples[at];
-    let place = sample.place(positions);
+    let position = sample.position(positions);
     let offset = model.contact.offset + sample.extra_offset;
     let reach = offset * REACH_IN_OFFSETS;
-    let moved = (place - memory.place).norm();
-    if moved.is_finite() && memory.clearance - moved > reach {
+    let moved = (position - clearance.position).norm();
+    if moved.is_finite() && clearance.distance - moved > reach {
         return;
     }
     let mut nearest: Option<(f64, Vec3)> = None;
@@ -244,7 +246,7 @@ fn find(
         if model.policies.ignores_solid(object, k) {
             continue;
         }
-        if let Some(found) = collider.distance(pose.as_ref(), place)
+        if let Some(found) = collider.distance(pose.as_ref(), position)
             && nearest.is_none_or(|(distance, _)| found.0 < distance)
         {
             nearest = Some(found);
@@ -252,34 +254,34 @@ fn find(
         }
     }
     let Some((distance, slope)) = nearest else {
-        *memory = Memory {
-            place,
-            clearance: FIELD_REACH,
+        *clearance = Clearance {
+            position,
+            distance: FIELD_REACH,
         };
         return;
     };
     // The smooth distance may exceed the exact one by a fraction of a millimetre.
-    *memory = Memory {
-        place,
-        clearance: 0.9 * distance.max(0.0),
+    *clearance = Clearance {
+        position,
+        distance: 0.9 * distance.max(0.0),
     };
-    if distance > reach || slope.norm() < FLAT_SLOPE {
+    if distance > reach || slope.norm() < MIN_SLOPE {
         return;
     }
     let depth = offset - distance;
-    let bent = owner.filter(|_| depth > 0.0);
-    let [hollow, bulge] = bent
-        .and_then(|(collider, pose)| collider.curvature(pose.as_ref(), place))
-        .map_or([Matrix3::zeros(); 2], parts);
+    let pressing = owner.filter(|_| depth > 0.0);
+    let [hollow, bulge] = pressing
+        .and_then(|(collider, pose)| collider.curvature(pose.as_ref(), position))
+        .map_or([Matrix3::zeros(); 2], split_by_sign);
     let normal = model.contact.stiffness * sample.area;
     let plane = ContactPlane {
-        point: place,
+        point: position,
         depth,
         gradient: slope,
         normal: slope.normalize(),
         hollow,
         bulge,
-        anchor: state.anchors[at].unwrap_or(place),
+        anchor: state.anchors[at].unwrap_or(position),
         lagged_normal_force: state.normal_forces[at],
         returning: false,
         landing: false,
@@ -303,13 +305,13 @@ fn find(
     });
 }
 
-/// A symmetric matrix as the difference of two positive semidefinite ones: the one it lacks, the
-/// one it has.
-fn parts(matrix: Matrix3<f64>) -> [Matrix3<f64>; 2] {
+/// The negative and the positive part of a symmetric matrix, both positive semidefinite: it is the second minus the
+/// first.
+fn split_by_sign(matrix: Matrix3<f64>) -> [Matrix3<f64>; 2] {
     let eigen = matrix.symmetric_eigen();
     let part = |sign: f64| {
-        let kept = eigen.eigenvalues.map(|value| (sign * value).max(0.0));
-        eigen.eigenvectors * Matrix3::from_diagonal(&kept) * eigen.eigenvectors.transpose()
+        let values = eigen.eigenvalues.map(|value| (sign * value).max(0.0));
+        eigen.eigenvectors * Matrix3::from_diagonal(&values) * eigen.eigenvectors.transpose()
     };
     [part(-1.0), part(1.0)]
 }

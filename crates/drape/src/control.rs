@@ -1,4 +1,4 @@
-//! What may change with every step of a simulation without another structure.
+//! The control of a simulation: loads and attachments, which may change with each step without a new structure.
 
 use crate::Motion;
 use crate::laws::air::Air;
@@ -7,35 +7,35 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// A vertex drawn to a place: the pull of a hand, or an elastic whose other end is fixed in space.
+/// A spring from a vertex to a point in space: a hand, or an elastic with one end fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Attachment {
     /// The vertex.
     pub vertex: u32,
-    /// Where it is drawn to [m].
+    /// The point it is pulled to [m].
     pub place: Vec3,
     /// Its force law.
     pub law: ElasticLaw,
 }
 
-/// A vertex drawn to a point of a solid that moves. Only XPBD draws it.
+/// A spring from a vertex to a point of a moving solid. Only XPBD supports it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrameAttachment {
     /// The vertex.
     pub vertex: u32,
-    /// Where the point is while the solid stands as it was loaded [m].
+    /// The point in the frame of the solid [m].
     pub point: Vec3,
-    /// How the solid moves.
+    /// The motion of the solid.
     pub motion: Arc<Motion>,
     /// Its force law.
     pub law: ElasticLaw,
 }
 
 impl FrameAttachment {
-    /// Where the vertex is drawn to at a time \[s\], in metres.
-    pub fn place(&self, time: f64) -> Vec3 {
+    /// The point that the vertex is pulled to at a time \[s\], in metres.
+    pub fn target(&self, time: f64) -> Vec3 {
         self.motion.pose(time).apply(self.point)
     }
 }
@@ -46,23 +46,23 @@ impl FrameAttachment {
 pub struct Attachments(Arc<[Attachment]>);
 
 impl Attachments {
-    /// Those at a vertex, with the first one's number.
+    /// The attachments at a vertex, with the index of the first.
     pub(crate) fn at(&self, vertex: usize) -> (usize, &[Attachment]) {
         if self.0.is_empty() {
             return (0, &[]);
         }
-        let first = self.0.partition_point(|one| (one.vertex as usize) < vertex);
-        let behind = &self.0[first..];
-        let count = behind.partition_point(|one| one.vertex as usize == vertex);
-        (first, &behind[..count])
+        let first = (self.0).partition_point(|attachment| (attachment.vertex as usize) < vertex);
+        let rest = &self.0[first..];
+        let count = rest.partition_point(|attachment| attachment.vertex as usize == vertex);
+        (first, &rest[..count])
     }
 
-    /// Whether these are the very same attachments, not only equal ones.
+    /// Whether two lists share their memory, not only equal contents.
     pub(crate) fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// All of them.
+    /// All attachments.
     pub fn all(&self) -> &[Attachment] {
         &self.0
     }
@@ -83,12 +83,12 @@ impl From<Attachments> for Vec<Attachment> {
 impl FromIterator<Attachment> for Attachments {
     fn from_iter<I: IntoIterator<Item = Attachment>>(all: I) -> Self {
         let mut all: Vec<Attachment> = all.into_iter().collect();
-        all.sort_by_key(|one| one.vertex);
+        all.sort_by_key(|attachment| attachment.vertex);
         Self(all.into())
     }
 }
 
-/// What acts on the cloth from outside in the present step.
+/// Loads and attachments of the present step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Control {
@@ -97,17 +97,17 @@ pub struct Control {
     /// Drag per mass, of the air and of Rayleigh damping together [1/s]: a free velocity falls by
     /// exp(-drag t).
     pub air_drag: f64,
-    /// What the air does to triangles; its own `drag` is in [`Control::air_drag`].
+    /// Drag of the air on triangles; its own `drag` is part of [`Control::air_drag`].
     pub air: Air,
-    /// Vertices drawn to places.
+    /// Springs to points in space.
     pub attachments: Attachments,
-    /// Vertices drawn to points of solids that move.
+    /// Springs to points of moving solids.
     #[serde(default)]
     pub frames: Vec<FrameAttachment>,
 }
 
 impl Default for Control {
-    /// Gravity on earth, still air that resists nothing, no hand on the cloth.
+    /// Gravity on earth, no drag, no attachments.
     fn default() -> Self {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),

@@ -1,4 +1,4 @@
-//! Digests: whether a checkpoint is of the same scene or setup.
+//! Digests of scenes and setups, for checkpoints.
 
 use toile_geometry::{Vec2, Vec3};
 
@@ -6,7 +6,7 @@ use toile_geometry::{Vec2, Vec3};
 pub(crate) struct Digest(u64);
 
 impl Digest {
-    /// Of nothing yet.
+    /// The digest of no data.
     pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
@@ -17,7 +17,7 @@ impl Digest {
         }
     }
 
-    /// Takes in whole numbers and how many they are.
+    /// Adds integers and their count.
     pub fn whole(&mut self, numbers: impl IntoIterator<Item = u32>) {
         let numbers: Vec<u32> = numbers.into_iter().collect();
         self.bytes(&(numbers.len() as u64).to_le_bytes());
@@ -26,26 +26,26 @@ impl Digest {
         }
     }
 
-    /// Takes in vectors in space.
-    pub fn places(&mut self, places: &[Vec3]) {
-        for number in places.iter().flat_map(Vec3::iter) {
+    /// Adds vectors in space.
+    pub fn vectors(&mut self, vectors: &[Vec3]) {
+        for number in vectors.iter().flat_map(Vec3::iter) {
             self.bytes(&number.to_bits().to_le_bytes());
         }
     }
 
-    /// Takes in triangles of the plane.
+    /// Adds triangles in the plane.
     pub fn shapes(&mut self, shapes: &[[Vec2; 3]]) {
         for number in shapes.iter().flatten().flat_map(Vec2::iter) {
             self.bytes(&number.to_bits().to_le_bytes());
         }
     }
 
-    /// Takes in words.
-    pub fn text(&mut self, words: &str) {
-        self.bytes(words.as_bytes());
+    /// Adds a text.
+    pub fn text(&mut self, text: &str) {
+        self.bytes(text.as_bytes());
     }
 
-    /// The digest.
+    /// The digest of the data so far.
     pub fn value(&self) -> u64 {
         self.0
     }

@@ -1,4 +1,4 @@
-//! Elastics: attachment forces between a vertex and another, or a place.
+//! Elastics: springs from a vertex to another vertex or to a point in space.
 
 use crate::laws::elastic::ElasticLaw;
 use toile_geometry::Vec3;
@@ -8,51 +8,51 @@ use toile_geometry::Vec3;
 pub enum ElasticEnd {
     /// A vertex of the cloth.
     Vertex(u32),
-    /// A fixed place [m].
+    /// A fixed point [m].
     Point(Vec3),
 }
 
-/// An attachment force between a vertex and another vertex or a place.
+/// A spring from a vertex to another vertex or to a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastic {
-    /// The vertex it pulls.
+    /// The first end.
     pub from: u32,
-    /// What it is pulled to.
+    /// The second end.
     pub to: ElasticEnd,
     /// Its force law.
     pub law: ElasticLaw,
 }
 
 impl ElasticEnd {
-    /// Its place [m].
-    pub(crate) fn place(self, x: &[Vec3]) -> Vec3 {
+    /// Its position [m].
+    pub(crate) fn position(self, x: &[Vec3]) -> Vec3 {
         match self {
             Self::Vertex(v) => x[v as usize],
-            Self::Point(place) => place,
+            Self::Point(point) => point,
         }
     }
 }
 
 impl Elastic {
-    /// From the place it pulls to, to the vertex it pulls [m].
+    /// Vector from the second end to the first [m].
     pub(crate) fn gap(&self, x: &[Vec3]) -> Vec3 {
-        x[self.from as usize] - self.to.place(x)
+        x[self.from as usize] - self.to.position(x)
     }
 }
 
-/// Elastics between two vertices of the cloth, with those at each vertex.
+/// Elastics between two vertices of the cloth, and for each vertex the list of its elastics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ElasticCouplings {
     /// Ends and law of each.
     pub all: Vec<([u32; 2], ElasticLaw)>,
-    /// Where the uses of each vertex begin in `uses`, and the end.
+    /// First index into `uses` of each vertex, and the end.
     start: Vec<u32>,
     /// The elastics at each vertex, ascending.
     uses: Vec<u32>,
 }
 
 impl ElasticCouplings {
-    /// Of a cloth of `count` vertices.
+    /// Elastics of a cloth of `count` vertices.
     pub(crate) fn new(count: usize, all: Vec<([u32; 2], ElasticLaw)>) -> Self {
         let numbered = (0..).zip(&all);
         let mut uses: Vec<(u32, u32)> = numbered
@@ -73,12 +73,12 @@ impl ElasticCouplings {
         }
     }
 
-    /// The vertices that each couples.
+    /// The two vertices of each elastic.
     pub(crate) fn ends(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         self.all.iter().map(|(ends, _)| *ends)
     }
 
-    /// Those at a vertex, as indices into `all`.
+    /// The elastics at a vertex, as indices into `all`.
     pub(crate) fn at(&self, vertex: usize) -> &[u32] {
         &self.uses[self.start[vertex] as usize..self.start[vertex + 1] as usize]
     }

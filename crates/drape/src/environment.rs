@@ -1,35 +1,35 @@
-//! What acts on every object of a world alike.
+//! Gravity, air, damping and contact of a world, the same for all objects.
 
 use crate::{Air, ContactSettings, DrapeError};
 use toile_geometry::Vec3;
 
 /// Rayleigh damping (Rayleigh 1877): forces -(mass M + stiffness K) v. The stiffness part acts on
-/// strain rates of membrane and bending, so that no rigid motion feels it.
+/// strain rates of membrane and bending, so that rigid motion is not damped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Damping {
-    /// In proportion to mass [1/s].
+    /// Coefficient of mass [1/s].
     pub mass: f64,
-    /// In proportion to stiffness, beside each material's own [s].
+    /// Coefficient of stiffness, added to that of each material [s].
     pub stiffness: f64,
 }
 
-/// What acts on every object alike.
+/// Gravity, air, damping and contact, the same for all objects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
     /// The air.
     pub air: Air,
-    /// Damping of everything alike.
+    /// Rayleigh damping.
     pub damping: Damping,
-    /// How cloth meets surfaces, and itself.
+    /// Contact settings.
     pub contact: ContactSettings,
-    /// Where layers pass through each other, the distance [m] that each is kept farther from solids than the
-    /// one below it; none where they keep their order. It is taken up when a structure is made.
+    /// Extra contact offset from solids of each layer over that of the next inner one [m], while layers pass through
+    /// each other; none where contact keeps their order. It applies when a structure is compiled.
     pub(crate) layers_apart: Option<f64>,
 }
 
-/// Refuses a number that is not finite or below the least that it may be.
+/// Refuses a number that is not finite or below `least`.
 pub(crate) fn check_number(field: &str, value: f64, least: f64) -> Result<(), DrapeError> {
     match value.is_finite() && value >= least {
         true => Ok(()),
@@ -42,10 +42,10 @@ pub(crate) fn check_number(field: &str, value: f64, least: f64) -> Result<(), Dr
 }
 
 impl Environment {
-    /// Refuses numbers that nothing can be computed with.
+    /// Refuses numbers out of range.
     ///
     /// # Errors
-    /// The first of them, with the remedy.
+    /// The first such number, with the remedy.
     pub(crate) fn check(&self) -> Result<(), DrapeError> {
         for (field, value) in [
             ("air drag", self.air.drag),

@@ -1,22 +1,23 @@
-//! A garment that hangs at rest and stays alive: it says at once where it goes when its rest shapes change,
-//! and goes on from there.
+//! A garment at rest under changes of its rest shapes: a prediction of the new equilibrium to first order, and its
+//! correction by pseudo-transient continuation.
 
 use crate::newton::FirstOrder;
 use crate::{DrapeError, PseudoTransientContinuation, RestSettings, State, System, Workspace};
 use toile_geometry::{Vec2, Vec3};
 
-/// A system at rest with all that led there: the last factor of its matrix, pseudo step and kept curvature.
+/// A system at rest with the memory of the solver: the last factor, the pseudo step and the share of negative
+/// curvature.
 pub struct Equilibrium {
     pub(crate) system: System,
     pub(crate) state: State,
     pub(crate) workspace: Workspace,
     pub(crate) continuation: PseudoTransientContinuation,
     pub(crate) settings: RestSettings,
-    /// The triangle of the panels for each of the surface: those that seams collapsed are none.
+    /// For each triangle of the merged surface its triangle of the panels.
     pub(crate) merged: Vec<usize>,
 }
 
-/// Where a garment goes when its rest shapes change, to first order. It is shown, never replayed.
+/// The new equilibrium under other rest shapes, to first order.
 pub struct Prediction {
     /// The system with the other rest shapes.
     system: System,
@@ -24,17 +25,17 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Where the vertices come to lie [m].
+    /// Predicted positions of the vertices [m].
     pub fn positions(&self) -> &[Vec3] {
         &self.step.positions
     }
 
-    /// Energy above the new rest as the step measures it [J]: half the square of Newton's decrement.
+    /// Energy above the new equilibrium in the quadratic model [J]: half the square of Newton's decrement.
     pub fn energy(&self) -> f64 {
         self.step.predicted_decrease
     }
 
-    /// Share of the step that contact, the longest move and the potential let it take, 0..=1.
+    /// Share of the Newton step that is left by step truncation, the longest displacement and the line search, 0..=1.
     pub fn share(&self) -> f64 {
         self.step.share
     }
@@ -46,17 +47,17 @@ impl Prediction {
 }
 
 impl Equilibrium {
-    /// What is simulated.
+    /// The system.
     pub fn system(&self) -> &System {
         &self.system
     }
 
-    /// How it lies.
+    /// The state.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// How often the structure of its matrix was worked out.
+    /// Number of symbolic factorisations so far.
     pub fn structures(&self) -> usize {
         self.workspace.symbolic_factorisations()
     }
@@ -66,20 +67,20 @@ impl Equilibrium {
         self.continuation.residual()
     }
 
-    /// Its system with another rest shape for each triangle of the panels [m].
+    /// The system with other rest shapes for the triangles of the panels [m].
     ///
     /// # Errors
-    /// As [`System::reshaped`].
+    /// Those of [`System::reshaped`].
     pub fn reshaped(&self, rest: &[[Vec2; 3]]) -> Result<System, DrapeError> {
         let merged = self.merged.iter().filter_map(|&t| rest.get(t).copied());
         self.system.reshaped("garment", merged.collect())
     }
 
-    /// Where it goes to first order with another rest shape for each triangle of the panels [m]: one gradient
-    /// and one solution with the last factor. Nothing of it changes but its caches.
+    /// Predicts the equilibrium under other rest shapes for the triangles of the panels [m], by one gradient and one
+    /// solution with the last factor. Only caches change.
     ///
     /// # Errors
-    /// As [`System::reshaped`]; numbers that are not finite.
+    /// Those of [`System::reshaped`]; numbers that are not finite.
     pub fn predict(&mut self, rest: &[[Vec2; 3]]) -> Result<Prediction, DrapeError> {
         let system = self.reshaped(rest)?;
         let step = self.workspace.first_order(
@@ -97,19 +98,19 @@ impl Equilibrium {
         }
     }
 
-    /// Goes on from what was predicted: it is at rest no longer.
+    /// Takes over a prediction as the present state, which is then to be corrected.
     pub fn take(&mut self, prediction: Prediction) {
         self.system = prediction.system;
         self.state.follow_shapes(&self.system);
         self.state.positions = prediction.step.positions;
         self.continuation
-            .go_on(self.settings.residual, self.settings.steps);
+            .continue_to(self.settings.residual, self.settings.steps);
     }
 
-    /// Takes so many steps towards rest at the most; whether it is there.
+    /// Takes at most `steps` steps to equilibrium; returns whether it is reached.
     ///
     /// # Errors
-    /// As [`PseudoTransientContinuation::advance`].
+    /// Those of [`PseudoTransientContinuation::advance`].
     pub fn correct(&mut self, steps: usize) -> Result<bool, DrapeError> {
         for _ in 0..steps {
             if self.is_at_rest() {
@@ -121,7 +122,7 @@ impl Equilibrium {
         Ok(self.is_at_rest())
     }
 
-    /// Whether its net force is below what was asked for.
+    /// Whether the residual is that of the settings or less.
     pub fn is_at_rest(&self) -> bool {
         self.continuation.residual() <= self.settings.residual
     }

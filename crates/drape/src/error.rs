@@ -1,8 +1,8 @@
-//! What can go wrong in building or running a simulation.
+//! Errors of building and running a simulation.
 
 use crate::laws::rest_sheet::IllConditioned;
 
-/// Why a simulation could not be built or went no further.
+/// An error of building or running a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DrapeError {
     /// The mesh of an object cannot be simulated.
@@ -10,7 +10,7 @@ pub enum DrapeError {
     Mesh {
         /// Name of the object.
         object: String,
-        /// What is wrong with it.
+        /// The defect.
         defect: toile_geometry::MeshDefect,
     },
     /// A triangle of cloth has no area at rest, so no strain can be measured on it.
@@ -23,7 +23,7 @@ pub enum DrapeError {
         /// Index of the triangle.
         triangle: usize,
     },
-    /// Rest shapes changed so far that the triangles of their panel do not serve any more.
+    /// Rest shapes changed so far that the mesh of their panel is ill-conditioned.
     #[error(
         "triangle {triangle} is too far from the shape its mesh was made for; mesh its panel again"
     )]
@@ -36,34 +36,34 @@ pub enum DrapeError {
     Material {
         /// Name of the object.
         object: String,
-        /// Which number.
+        /// Name of the number.
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What would be right.
+        /// The remedy.
         remedy: &'static str,
     },
-    /// Something of the scene is given that does not fit.
+    /// Invalid data in a scene, a world or a checkpoint.
     #[error("{place}: {what}; {remedy}")]
     Scene {
-        /// Where in the scene.
+        /// Object or field concerned.
         place: String,
-        /// What is wrong.
+        /// The defect.
         what: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
-    /// A position or velocity is no finite number, given so or become so.
+    /// A position or velocity that is not finite, in the input or after a step.
     #[error(
         "{stage}: the position or velocity of vertex {vertex} is not a finite number; look for slivers or extreme stiffness near it, or take smaller steps"
     )]
     NotFinite {
-        /// What was being done.
+        /// The operation.
         stage: &'static str,
         /// The first vertex concerned.
         vertex: usize,
     },
-    /// A vertex moves as nothing physical does: the step is above the method's stability limit.
+    /// A vertex with a speed that is not physical: the step exceeds the method's stability limit.
     #[error(
         "{stage}: blown up at vertex {vertex} ({speed:.3e} m/s); the substep of {substep:.3e} s is too long: take more substeps, softer cloth or an implicit method"
     )]
@@ -77,7 +77,7 @@ pub enum DrapeError {
         /// The substep [s].
         substep: f64,
     },
-    /// A step ended with far more energy than the cloth can have come by.
+    /// A step ended with far more energy than initial energy, weight and air can have supplied.
     #[error(
         "{stage}: the energy grew to {energy:.3e} J where {possible:.3e} J can have come from the start, weight and air; the fastest is vertex {vertex}; take more substeps, or a method that damps such as implicit-euler"
     )]
@@ -86,12 +86,12 @@ pub enum DrapeError {
         stage: &'static str,
         /// The fastest vertex after the step.
         vertex: usize,
-        /// Energy of motion, strain, elastics and contact after it [J].
+        /// Energy of motion, strain, elastics and contact after the step [J].
         energy: f64,
-        /// The most that the cloth can have come by [J].
+        /// Largest energy that can have been supplied [J].
         possible: f64,
     },
-    /// No number of substeps that could be waited for keeps an explicit method stable.
+    /// An explicit method that would need too many substeps to be stable.
     #[error(
         "{stage}: vertex {vertex} is so stiff for its mass that a step would take {substeps:.1e} substeps; mesh without slivers or take an implicit method"
     )]
@@ -100,20 +100,20 @@ pub enum DrapeError {
         stage: &'static str,
         /// The vertex of the fastest vibration.
         vertex: usize,
-        /// Substeps it would take.
+        /// Substeps that stability needs.
         substeps: f64,
     },
-    /// Steps made no progress even at the smallest size.
+    /// No progress even with the smallest step.
     #[error(
         "{stage}: no progress even at the smallest step (residual {residual:.2e}); the last good state was kept"
     )]
     NoProgress {
-        /// What was being done.
+        /// The operation.
         stage: &'static str,
         /// Net force over weight at the last good state.
         residual: f64,
     },
-    /// Seams stayed open.
+    /// Seams that are still open after the last step of sewing.
     #[error(
         "seams are still {gap_mm:.1} mm apart after {steps} steps of sewing; the garment may be too tight for the body, or a panel hangs behind it: check the measurements and the placement"
     )]

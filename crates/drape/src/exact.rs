@@ -1,10 +1,10 @@
-//! Numbers of saved states that may be infinite, which JSON has no number for: those are written as words.
-//! For fields, by `#[serde(with = "crate::exact")]`.
+//! Serialisation of numbers that may be infinite or NaN, which JSON cannot represent: they are written as words. Fields
+//! use it by `#[serde(with = "crate::exact")]`.
 
 use serde::de::{Error, Unexpected};
 use serde::{Deserialize, Deserializer, Serializer};
 
-/// Words for what is not finite.
+/// Words for numbers that are not finite.
 const WORDS: [(&str, f64); 3] = [
     ("infinite", f64::INFINITY),
     ("-infinite", f64::NEG_INFINITY),
@@ -18,7 +18,7 @@ enum Written {
     Word(String),
 }
 
-/// Writes a number, or the word for it.
+/// Writes a number or its word.
 pub(crate) fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
     let word = WORDS
         .iter()
@@ -29,7 +29,7 @@ pub(crate) fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::
     }
 }
 
-/// Reads it again.
+/// Reads a number or its word.
 pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     match Written::deserialize(from)? {
         Written::Number(number) => Ok(number),

@@ -1,8 +1,8 @@
 //! A library of fabrics: published figures with their sources, none fitted to a drape.
 //!
 //! A figure is either measured on one cloth ("measured"), the mean of many ("mean of 214"), or a
-//! round figure inside a published range of its kind ("range"). Where a test gives no bias, the
-//! mean of warp and weft stands (see [`KesValues::material`](crate::KesValues::material)).
+//! round figure inside a published range of its kind ("range"). Where a test has no value for the bias, it is the
+//! mean of warp and weft (see [`KesValues::material`](crate::KesValues::material)).
 
 use crate::Material;
 use crate::kes::{bending, bending_of_length, shear, tensile_curve, weight};
@@ -12,7 +12,7 @@ use crate::kes::{bending, bending_of_length, shear, tensile_curve, weight};
 pub struct LibraryFabric {
     /// Its name in files and on the command line.
     pub name: &'static str,
-    /// What it is.
+    /// A short description.
     pub about: &'static str,
     /// Mass per area [kg/m2].
     pub density: f64,
@@ -55,8 +55,8 @@ impl LibraryFabric {
         LIBRARY.iter().find(|fabric| fabric.name == name)
     }
 
-    /// As a material. The stiffness of a strip that is free to contract is what `stretch` means;
-    /// tests hold it, hence the factor 1 - nu^2.
+    /// The material. `stretch` is the stiffness of a specimen clamped across, as in the tests, that of a material is
+    /// the stiffness of a strip that is free to contract: hence the factor 1 - nu^2.
     pub fn material(&self) -> Material {
         let free = 1.0 - self.poisson * self.poisson;
         Material {

@@ -1,40 +1,40 @@
-//! Features that a world may ask for beyond cloth that hangs and falls, the methods that support each, and the
-//! refusal of a world that asks its method for more.
+//! Features of a world beyond elastic cloth under gravity, and the methods that support each. A world with a feature
+//! that its method does not support is refused.
 
 use crate::world::{Kind, Object, World};
 use crate::{Compression, DrapeError, Material, MethodKind};
 
-/// What a world may ask for that not every method knows, or that acts only where it is asked for.
+/// An optional feature of a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
-    /// Solid objects that move.
+    /// Solids on a prescribed motion.
     MovingObjects,
-    /// Vertices of cloth that are led.
+    /// Vertices of cloth on a prescribed motion.
     Grips,
-    /// Impacts that bounce as a material says.
+    /// Impacts with a material's coefficient of restitution.
     Restitution,
-    /// Cloth that does not pass through cloth.
+    /// Contact of cloth with cloth.
     ClothContact,
-    /// Cloths in order over one another.
+    /// Cloths worn over one another in a given order.
     Layers,
-    /// Drag of the air and damping in proportion to mass.
+    /// Damping proportional to mass.
     MassDrag,
-    /// Forces of the air and the wind on triangles.
+    /// Drag of air and wind on triangles.
     TriangleDrag,
-    /// Viscosity, of its own or in proportion to stiffness.
+    /// Viscosity, of a material or proportional to stiffness.
     Viscosity,
-    /// Stretch and folds that stay when held.
+    /// Stretch and folds that relax (internal strain).
     KeptStrain,
-    /// Stretch that stiffens.
+    /// Stretch stiffness that grows with strain.
     Hardening,
-    /// Stretch that has a limit.
+    /// A limit of stretch.
     StrainLimit,
-    /// Cloth that does not resist being squeezed.
+    /// Cloth without resistance to compression.
     TensionField,
 }
 
 impl Feature {
-    /// Every feature with its name in messages and documentation.
+    /// All features with their names in messages and documentation.
     pub const ALL: [(&'static str, Self); 12] = [
         ("moving objects", Self::MovingObjects),
         ("grips", Self::Grips),
@@ -56,12 +56,12 @@ impl Feature {
         found.map_or("", |(name, _)| name)
     }
 
-    /// Whether it only takes energy out of motion: rest is the same with it and without.
+    /// Whether it only dissipates energy of motion and has no effect on equilibrium.
     pub fn only_damps(self) -> bool {
         matches!(self, Self::MassDrag | Self::Viscosity)
     }
 
-    /// Where a world asks for it, by the fields of a scene file; nothing where it does not.
+    /// The field of a scene file by which a world uses the feature; none where it does not.
     pub fn asked_by(self, world: &World) -> Option<String> {
         let environment = world.environment();
         match self {
@@ -107,7 +107,7 @@ impl Feature {
     }
 }
 
-/// The first cloth of a material that has something, as the place of a message.
+/// Names the first cloth with a material that `has` a property; `what` is the name of the property.
 fn cloth(world: &World, what: &str, has: impl Fn(&Material) -> bool) -> Option<String> {
     let (id, _) = (world.cloths()).find(|(_, cloth)| cloth.materials.iter().any(&has))?;
     let object = world.object(id)?;
@@ -115,7 +115,7 @@ fn cloth(world: &World, what: &str, has: impl Fn(&Material) -> bool) -> Option<S
 }
 
 impl MethodKind {
-    /// Whether it does what a feature asks for; a scene that asks for more is refused.
+    /// Whether the method supports a feature.
     pub fn supports(self, feature: Feature) -> bool {
         match feature {
             Feature::MovingObjects | Feature::Grips | Feature::Restitution => self == Self::Xpbd,
@@ -123,7 +123,7 @@ impl MethodKind {
                 self,
                 Self::Xpbd | Self::ImplicitEuler | Self::Bdf2 | Self::ImplicitMidpoint | Self::Rest
             ),
-            // Time does not run on the way to rest.
+            // Equilibrium methods have no time over which strain could relax.
             Feature::KeptStrain => !self.is_equilibrium() && self != Self::Xpbd,
             Feature::Viscosity | Feature::TriangleDrag => self != Self::Xpbd,
             Feature::MassDrag
@@ -135,7 +135,7 @@ impl MethodKind {
 }
 
 impl World {
-    /// Refuses what it asks for and a method leaves out.
+    /// Refuses a world with a feature that a method does not support.
     pub(crate) fn check_features(&self, kind: MethodKind) -> Result<(), DrapeError> {
         let all = Feature::ALL.iter().map(|&(_, feature)| feature);
         let asked = all.filter_map(|feature| Some((feature, feature.asked_by(self)?)));

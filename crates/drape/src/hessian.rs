@@ -1,6 +1,6 @@
-//! The matrix of a Newton step: membrane, contact and inertia in 3x3 blocks over the mesh's edges,
-//! bending as scalars two rings far, elastics between any two vertices. Read row by row, and
-//! solved by factorisation.
+//! The matrix of a Newton step: membrane, contact and inertia as 3x3 blocks over the mesh's edges, bending as scalars
+//! over two rings of neighbours, elastics between any two vertices. Rows are computed on demand; a direct solver
+//! factorises it.
 
 use crate::collision::Couplings;
 use crate::{ElasticEnd, Model, System};
@@ -9,27 +9,28 @@ use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 use toile_sparse::factor::{Block, Factor, Graph};
 
-/// A symmetric positive semidefinite Hessian; rows and columns of pinned vertices do not count.
+/// A symmetric positive semidefinite Hessian; rows and columns of pinned vertices are not used.
 pub struct Hessian<'a> {
     pub system: &'a System,
-    /// Bending, with what viscosity adds to it in a step.
+    /// Bending, with the viscous term of the step.
     pub bending: &'a ScalarMatrix,
-    /// Blocks over the mesh's pattern, everything on the diagonal but bending included.
+    /// Blocks over the mesh's pattern; the diagonal ones include all terms but bending.
     pub blocks: &'a [Matrix3<f64>],
     /// Stiffness of each elastic [N/m].
     pub secants: &'a [f64],
-    /// Blocks between vertices of cloths that touch.
+    /// Blocks between vertices coupled by contact of cloth with cloth.
     pub touching: &'a Couplings,
 }
 
-/// Numbers of the vertices that are free to move: the unknowns, in the order of the mesh.
+/// Numbering of the unknowns: the vertices that are not pinned, in the order of the mesh.
 struct Unknowns {
     /// Vertex of each unknown.
     vertex: Vec<u32>,
-    /// Unknown of each vertex, `PINNED` where it has none.
+    /// Unknown of each vertex, `PINNED` for a pinned one.
     number: Vec<u32>,
 }
 
+/// Number of a pinned vertex, which is no unknown.
 const PINNED: u32 = u32::MAX;
 
 impl Unknowns {
@@ -45,18 +46,18 @@ impl Unknowns {
         Self { vertex, number }
     }
 
-    /// The unknowns of a pair of vertices, none where one is pinned.
+    /// The unknowns of a pair of vertices; none where one is pinned.
     fn pair(&self, pair: [u32; 2]) -> Option<[u32; 2]> {
         let pair = pair.map(|v| self.number[v as usize]);
         (!pair.contains(&PINNED)).then_some(pair)
     }
 
-    /// Unknowns that the matrix couples.
+    /// The graph of unknowns that the matrix couples.
     fn graph(&self, system: &System, touching: &[[u32; 2]]) -> Graph {
         let mesh = self.vertex.iter().flat_map(|&v| {
             let edges = system.topology.pattern.row_columns(v as usize);
             let bending = system.rest.bending.row_entries(v as usize).0;
-            // Either way round is enough.
+            // Each pair once.
             let after = edges.iter().chain(bending).filter(move |&&u| u > v);
             after.map(move |&u| [v, u])
         });
@@ -72,7 +73,7 @@ fn couples(system: &System) -> impl Iterator<Item = [u32; 2]> + '_ {
 }
 
 impl Hessian<'_> {
-    /// A row times a vector, pins not heeded.
+    /// A row times a vector, pinned vertices included.
     pub fn row_times(&self, row: usize, p: &[Vec3]) -> Vec3 {
         let system = self.system;
         let mut sum =
@@ -85,7 +86,7 @@ impl Hessian<'_> {
         sum + self.touching.row_times(row, p)
     }
 
-    /// The block on the diagonal.
+    /// The diagonal block of a row.
     pub fn diagonal(&self, row: usize) -> Matrix3<f64> {
         self.system
             .topology
@@ -94,8 +95,7 @@ impl Hessian<'_> {
             + Matrix3::identity() * self.bending.diagonal(row)
     }
 
-    /// Writes an unknown's row as the factorisation wants it; `columns` are all unknowns that the row
-    /// may have.
+    /// Writes the row of an unknown for the factorisation; `columns` are the unknowns of its sparsity pattern.
     fn fill_row(&self, unknowns: &Unknowns, row: usize, columns: &[u32], out: &mut [Block<3>]) {
         let system = self.system;
         out.fill([[0.0; 3]; 3]);
@@ -109,9 +109,9 @@ impl Hessian<'_> {
                 out[at] = block.transpose().into();
             }
         }
-        let (bent, values) = self.bending.row_entries(row);
+        let (neighbours, values) = self.bending.row_entries(row);
         let mut at = 0;
-        for (&vertex, &value) in bent.iter().zip(values) {
+        for (&vertex, &value) in neighbours.iter().zip(values) {
             if seek(columns, &mut at, number(vertex)) {
                 (0..3).for_each(|k| out[at][k][k] += value);
             }
@@ -134,7 +134,7 @@ impl Hessian<'_> {
     }
 }
 
-/// Moves on to where a column stands in an ascending list; false for pinned vertices, which have none.
+/// Advances `at` to the index of a column in an ascending list; false for a pinned vertex, which has no column.
 fn seek(columns: &[u32], at: &mut usize, column: u32) -> bool {
     if column == PINNED {
         return false;
@@ -145,52 +145,52 @@ fn seek(columns: &[u32], at: &mut usize, column: u32) -> bool {
     true
 }
 
-/// A factorisation of such a matrix, its structure worked out once.
+/// Direct solver of a [`Hessian`], with one symbolic factorisation for many numeric ones.
 pub struct Direct {
     factor: Factor<3>,
     unknowns: Unknowns,
-    /// The model the structure was worked out for.
+    /// The model of the symbolic factorisation.
     model: Model,
-    /// Vertices of cloths that may touch, as it was made for them: the order of elimination follows.
+    /// Contact pairs of vertices in the sparsity pattern of the symbolic factorisation.
     touching: Vec<[u32; 2]>,
     /// Right side and solution at the unknowns.
     right: Vec<Vec3>,
-    found: Vec<Vec3>,
-    /// Whether the last factorisation came about.
-    ready: bool,
+    solution: Vec<Vec3>,
+    /// Whether the last numeric factorisation succeeded.
+    is_factorised: bool,
 }
 
 impl Direct {
-    /// Works out the structure for a model and vertices of cloths that may touch; `places` is any
-    /// layout of the vertices in space.
-    pub fn new(system: &System, places: &[Vec3], touching: &[[u32; 2]]) -> Self {
+    /// Symbolic factorisation for a model and contact pairs of vertices; `layout` are positions of the vertices, for
+    /// nested dissection [m].
+    pub fn new(system: &System, layout: &[Vec3], touching: &[[u32; 2]]) -> Self {
         let unknowns = Unknowns::new(system);
         let graph = unknowns.graph(system, touching);
-        let places: Vec<Vec3> = (unknowns.vertex.iter())
-            .map(|&v| places[v as usize])
+        let layout: Vec<Vec3> = (unknowns.vertex.iter())
+            .map(|&v| layout[v as usize])
             .collect();
         Self {
-            factor: Factor::new(graph, &places),
+            factor: Factor::new(graph, &layout),
             model: system.model.clone(),
             touching: touching.to_vec(),
             right: Vec::new(),
-            found: vec![Vec3::zeros(); places.len()],
+            solution: vec![Vec3::zeros(); layout.len()],
             unknowns,
-            ready: false,
+            is_factorised: false,
         }
     }
 
-    /// Vertices of cloths that may touch, as the structure was worked out for them.
+    /// Contact pairs of vertices in the sparsity pattern.
     pub fn touching(&self) -> &[[u32; 2]] {
         &self.touching
     }
 
-    /// Whether it is over the free vertices of a model with the same triangles.
+    /// Whether it is of a model with the same triangles, prescribed vertices and elastics.
     pub fn is_of(&self, model: &Model) -> bool {
         self.model.has_structure_of(model) && self.model.has_couplings_of(model)
     }
 
-    /// Whether the structure is that of a model where some vertices of cloths touch.
+    /// Whether the sparsity pattern covers a system with its contact pairs.
     pub fn fits(&self, system: &System, touching: &Couplings) -> bool {
         let graph = self.factor.graph();
         let has = |[a, b]: [u32; 2]| graph.row(a as usize).binary_search(&b).is_ok();
@@ -200,31 +200,31 @@ impl Direct {
                 .all(has)
     }
 
-    /// Factorises A and solves A x = b for the free vertices; x is zero at pins. False when the matrix is
-    /// not numerically positive definite; `x` is then of no use.
+    /// Factorises A and solves A x = b for the free vertices; x is zero at pinned ones. False when the matrix is not
+    /// numerically positive definite; `x` is then undefined.
     pub fn solve(&mut self, hessian: &Hessian, b: &[Vec3], x: &mut [Vec3]) -> bool {
         let unknowns = &self.unknowns;
         let fill = |row: usize, columns: &[u32], out: &mut [Block<3>]| {
             hessian.fill_row(unknowns, row, columns, out);
         };
-        self.ready = self.factor.factorise(fill).is_ok();
+        self.is_factorised = self.factor.factorise(fill).is_ok();
         self.solve_again(b, x)
     }
 
-    /// Solves A x = b with the matrix factorised last; false where there is none.
+    /// Solves A x = b with the last factor; false without one.
     pub fn solve_again(&mut self, b: &[Vec3], x: &mut [Vec3]) -> bool {
-        if !self.ready {
+        if !self.is_factorised {
             return false;
         }
         let vertices = &self.unknowns.vertex;
         self.right.clear();
         (self.right).extend(vertices.iter().map(|&v| b[v as usize]));
-        self.factor.solve(&self.right, &mut self.found);
+        self.factor.solve(&self.right, &mut self.solution);
         x.fill(Vec3::zeros());
-        for (&v, found) in vertices.iter().zip(&self.found) {
-            x[v as usize] = *found;
+        for (&v, solution) in vertices.iter().zip(&self.solution) {
+            x[v as usize] = *solution;
         }
-        (self.found.iter()).all(|x| x.iter().all(|x| x.is_finite()))
+        (self.solution.iter()).all(|x| x.iter().all(|x| x.is_finite()))
     }
 }
 
@@ -248,8 +248,8 @@ mod tests {
             for v in 0..441 {
                 let p = flat([v % 21, v / 21]);
                 let wave = 0.004 * (40.0 * p.x).sin() * (30.0 * p.y).cos();
-                let place = Vec3::new(p.x, p.y, 0.02 * f64::from(sheet) + wave);
-                cloth.positions.push(place);
+                let position = Vec3::new(p.x, p.y, 0.02 * f64::from(sheet) + wave);
+                cloth.positions.push(position);
             }
             for (i, j) in (0..400).map(|q| (q % 20, q / 20)) {
                 let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
@@ -263,18 +263,18 @@ mod tests {
         cloth
     }
 
-    /// Norm of A x - b, b the weights, over that of b; and over what rounding x alone leaves,
-    /// |A| |x| + |b|, with pseudo steps of `step` seconds.
-    fn residuals(system: &System, places: &[Vec3], step: f64) -> [f64; 2] {
-        let state = State::at_rest(system, places.to_vec());
+    /// Norm of A x - b over the norm of b, the weights, and over |A| |x| + |b|, the scale of rounding, with pseudo
+    /// steps of `step` seconds.
+    fn residuals(system: &System, positions: &[Vec3], step: f64) -> [f64; 2] {
+        let state = State::at_rest(system, positions.to_vec());
         let mut workspace = Workspace::default();
         workspace.net_force(system, &state);
         let weight: Vec<f64> = system.rest.mass.iter().map(|m| m / (step * step)).collect();
         let inertia = Inertia {
             weight: &weight,
-            target: places,
+            target: positions,
         };
-        workspace.fill_hessian(system, places, &inertia, Curvature::CONVEX);
+        workspace.fill_hessian(system, positions, &inertia, Curvature::CONVEX);
         let hessian = workspace.hessian(system);
         let free = |v: usize, p: Vec3| {
             if system.prescribed.pinned[v] {
@@ -283,7 +283,7 @@ mod tests {
                 p
             }
         };
-        let b: Vec<Vec3> = (0..places.len())
+        let b: Vec<Vec3> = (0..positions.len())
             .map(|v| free(v, system.control.gravity * system.rest.mass[v]))
             .collect();
         let mut x = vec![Vec3::zeros(); b.len()];
@@ -302,8 +302,8 @@ mod tests {
         [off / whole, off / (largest * found + whole)]
     }
 
-    fn check(system: &System, places: &[Vec3], step: f64) {
-        let [relative, rounding] = residuals(system, places, step);
+    fn check(system: &System, positions: &[Vec3], step: f64) {
+        let [relative, rounding] = residuals(system, positions, step);
         assert!(rounding < 1e-14, "{step} s: {rounding:e}");
         assert!(relative < 1e-3, "{step} s: {relative:e}");
     }
@@ -322,8 +322,8 @@ mod tests {
     fn ill_conditioned_systems_are_solved() {
         let cloth = sheets(stiff(1e4));
         let mut system = System::new("sheets", &cloth).unwrap();
-        // Pseudo steps from the first to the longest of the way to rest; sheets that hang by one
-        // corner, and sheets that float, held by inertia alone.
+        // Pseudo steps from the first to the longest of pseudo-transient continuation; sheets pinned at one corner, and
+        // free sheets, whose matrix is regular by inertia alone.
         for (pins, step) in [
             (vec![], 0.02),
             (vec![], 1.0),
@@ -343,8 +343,8 @@ mod tests {
         let cloth = sheets(stiff(1.0));
         let system = System::new("sheets", &cloth).unwrap();
         for scale in [0.0, 0.1, 4.0] {
-            let places: Vec<Vec3> = cloth.positions.iter().map(|p| p * scale).collect();
-            check(&system, &places, 0.02);
+            let positions: Vec<Vec3> = cloth.positions.iter().map(|p| p * scale).collect();
+            check(&system, &positions, 0.02);
         }
     }
 
@@ -387,7 +387,7 @@ mod tests {
         assert!(held.fits(&system, &Couplings::default()));
         assert_eq!(held.factor.graph().vertex_count(), 441);
         assert!(held.factor.operations() < 0.51 * free.factor.operations());
-        // Contact with cloth that is pinned couples nothing, contact of what is free does.
+        // Contact with a pinned vertex adds no coupling, contact of free vertices does.
         let mut touching = Couplings::default();
         touching.add(3, 600, Matrix3::identity());
         touching.sort(system.vertex_count());

@@ -1,15 +1,15 @@
 //! The incremental potential of a step (Ortiz and Stainier 1999): viscosity, internal strain and air, linearised
-//! or frozen at the state in which the step begins. Every method takes these terms from here.
+//! or frozen at the state in which the step begins. All methods use these terms.
 //!
-//! Implicit methods add the terms to the potential they lower (viscosity as the dissipation
+//! Implicit methods add the terms to the potential that they minimise (viscosity as the dissipation
 //! potential eta / (2 h) |E - E_n|^2 over the step, so that the Hessian stays symmetric); explicit
-//! ones add the same forces at their velocities ([`add_forces_of_motion`]). In statics
+//! methods add the same forces at their velocities ([`add_forces_of_motion`]). In statics
 //! ([`IncrementalPotential::begin_static`]) only internal strain and the steady force of the wind are left.
 //!
-//! Internal strain is that of a standard linear solid: S = C (E - p v) with v' = (E - v) / tau, p the relaxed
-//! fraction and tau the relaxation time. Stress held for long falls to 1 - p of its first value; let go, the
-//! cloth keeps p of the strain and recovers over tau / (1 - p). The same holds for curvature. v is constant
-//! during a step; at its end it is integrated exactly for the strain reached ([`relax`]).
+//! Internal strain is that of a standard linear solid: S = C (E - p v) with v' = (E - v) / tau, p the relaxed fraction
+//! and tau the relaxation time. Under constant strain the stress falls to 1 - p of its first value; released, the cloth
+//! retains p of the strain at first and recovers over tau / (1 - p). The same holds for curvature. v is constant during
+//! a step; at its end it is integrated exactly for the strain reached ([`relax`]).
 
 use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};
@@ -95,7 +95,7 @@ struct AirTerm {
     hessian: Matrix3<f64>,
 }
 
-/// The terms of a step; empty for an elastic cloth without viscosity in still air.
+/// The incremental terms of a step; empty for an elastic cloth without viscosity in still air.
 #[derive(Default)]
 pub(crate) struct IncrementalPotential {
     stretch: Vec<StretchTerm>,
@@ -104,7 +104,7 @@ pub(crate) struct IncrementalPotential {
     bending: Option<ScalarMatrix>,
 }
 
-/// Triangles handled by one task.
+/// Triangles of one parallel task.
 const CHUNK: usize = 256;
 
 fn corners(system: &System, t: usize, x: &[Vec3]) -> [Vec3; 3] {
@@ -138,12 +138,12 @@ fn strain(system: &System, t: usize, x: &[Vec3]) -> [f64; 3] {
 }
 
 impl IncrementalPotential {
-    /// Sets the terms of a problem of statics.
+    /// Sets the terms of an equilibrium problem.
     pub fn begin_static(&mut self, system: &System, state: &State) {
         self.begin_step(system, state, 0.0);
     }
 
-    /// Sets the terms of a step that begins in a state; `rate` is 1/h [1/s], 0 in statics.
+    /// Sets the terms of a step from a state; `rate` is 1/h [1/s], 0 in statics.
     pub fn begin_step(&mut self, system: &System, state: &State, rate: f64) {
         let x = &state.positions;
         let count = system.topology.triangles.len();
@@ -207,12 +207,12 @@ impl IncrementalPotential {
         }
     }
 
-    /// Whether no term but those of stretch is set.
+    /// Whether only terms of stretch are set.
     pub fn are_of_stretch(&self) -> bool {
         self.fold.is_empty() && self.air.is_empty() && self.bending.is_none()
     }
 
-    /// The law of a triangle's membrane during the step.
+    /// The membrane law of a triangle during the step.
     #[inline]
     pub fn law<'a>(&'a self, system: &'a System, t: usize) -> IncrementalLaw<'a> {
         IncrementalLaw {

@@ -1,9 +1,9 @@
-//! Strain that cloth has crept into: plain data of a state.
+//! Internal strain of a relaxing material: plain data of a state.
 
 use serde::{Deserialize, Serialize};
 
-/// The internal variable v of a triangle's standard linear solid, for stretch and for bending: the strain
-/// that its relaxed share of the stress is measured from.
+/// The internal variable v of a triangle's standard linear solid, for stretch and for bending: the strain from which
+/// the relaxed fraction of the stress is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InternalStrain {

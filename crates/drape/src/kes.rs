@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// One gram force [N].
 const GRAM_FORCE: f64 = 9.80665e-3;
 
-/// Load at which KES-FB1 turns round: 500 gf/cm as force per length [N/m].
+/// Largest load of KES-FB1: 500 gf/cm as force per length [N/m].
 pub const KES_LOAD: f64 = 500.0 * GRAM_FORCE / 1e-2;
 
 /// Curvature to which KES-FB2 bends [1/m]: 2.5 per cm.
@@ -30,7 +30,7 @@ pub struct KesValues {
     pub extension: [f64; 2],
     /// LT: linearity of the load-extension curve \[1\], above 0.5 to 1.
     pub linearity: [f64; 2],
-    /// RT: share of the tensile energy given back [%].
+    /// RT: share of the tensile energy recovered [%].
     pub resilience: [f64; 2],
     /// T0: thickness at 0.5 gf/cm2 [mm].
     pub thickness: f64,
@@ -41,8 +41,8 @@ pub struct KesValues {
 }
 
 impl KesValues {
-    /// An elastic material. The weft's share of sideways contraction is not measured: `poisson` 0.
-    /// The bias is not bent: it is taken as the mean of warp and weft (618 fabrics have medians of
+    /// An elastic material. KES does not measure lateral contraction, so `poisson` is 0, nor bending along the bias,
+    /// which is set to the mean of warp and weft (618 fabrics have medians of
     /// 13.8, 8.8 and 11.5 uN m along warp, weft and bias; Feng et al. 2022).
     pub fn material(&self) -> Material {
         let curves = [0, 1].map(|k| tensile_curve(self.extension[k], self.linearity[k]));
@@ -60,9 +60,8 @@ impl KesValues {
         }
     }
 
-    /// Share of a fold that stays: KES bends to 2.5/cm and back, and where no moment is left the
-    /// curvature is HB / B. The larger of warp and weft, at most 0.95; use it in
-    /// [`Material::kept`].
+    /// Share of a fold that remains: KES bends to 2.5/cm and back, and at zero moment the curvature is HB / B. The
+    /// larger of warp and weft, at most 0.95, for [`Material::relaxed_fraction`].
     pub fn kept_fold(&self) -> f64 {
         let share = |k: usize| {
             let left = 0.5 * self.bending_hysteresis[k] / self.bending[k];
@@ -87,7 +86,7 @@ pub const fn weight(w: f64) -> f64 {
     w * 1e-2
 }
 
-/// Linearity below which the cubic curve cannot go: a pure cube has 1/2.
+/// Least linearity of the cubic curve: a pure cube has 1/2.
 const LEAST_LINEARITY: f64 = 0.51;
 
 /// Stiffness C [N/m] and hardening k of the curve S = C (E + k E^3) that reaches 500 gf/cm at an
@@ -118,10 +117,10 @@ pub const fn bending_of_length(density: f64, bending_length: f64) -> f64 {
 /// t = Gamma^(1/3) (1 - s) it is theta_tt = -t cos theta with theta_t = 0 at the tip, so one
 /// integration from a tip angle to where the strip is level gives Gamma = t^3 and the angle.
 /// (Peirce's own formula is 5.8 % too high at 41.5 degrees; the usual (l/2)^3 there is right.)
-/// Nothing unless both are positive and the angle is below 85 degrees.
+/// None unless all three are positive and the angle is below 85 degrees.
 pub fn bending_of_overhang(density: f64, overhang: f64, angle: f64) -> Option<f64> {
-    let most = 85.0 * PI / 180.0;
-    if !(density > 0.0 && overhang > 0.0 && angle > 0.0 && angle < most) {
+    let largest = 85.0 * PI / 180.0;
+    if !(density > 0.0 && overhang > 0.0 && angle > 0.0 && angle < largest) {
         return None;
     }
     let (mut low, mut high) = (0.0, 0.5 * PI - 1e-9);

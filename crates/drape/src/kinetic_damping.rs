@@ -1,6 +1,6 @@
-//! The swing, a garment's stage between sewing and settling: small XPBD steps with kinetic damping. A substep
-//! costs less than a thousandth of a Newton step and leaves saddles as the real cloth does; Newton's method
-//! finishes.
+//! The swing, a garment's stage between sewing and settling: small XPBD substeps with kinetic damping (Cundall 1976). A
+//! substep costs less than a thousandth of a Newton step, and inertia carries the cloth past saddle points; Newton's
+//! method then finishes.
 
 use crate::collision::Tally;
 use crate::xpbd::{ClothContacts, Substeps};
@@ -8,7 +8,7 @@ use crate::{DrapeError, State, System, Xpbd};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// A swing on its way to calm.
+/// A run of the swing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KineticDamping {
@@ -20,13 +20,13 @@ pub struct KineticDamping {
     energy: f64,
     calm: bool,
     longest: f64,
-    /// Lowest peak of kinetic energy [J], and the peaks since.
+    /// Lowest peak of kinetic energy [J], and the number of peaks since.
     #[serde(with = "crate::exact")]
     lowest: f64,
     waited: u32,
 }
 
-/// What is found anew for a swing: its constraints, and the contacts in hand.
+/// Workspace of a swing: its constraints and its contacts.
 #[derive(Default)]
 pub struct SwingWorkspace {
     xpbd: Option<Xpbd>,
@@ -34,44 +34,44 @@ pub struct SwingWorkspace {
 }
 
 impl SwingWorkspace {
-    /// What contact of cloth with cloth found and did.
+    /// Counts of contact of cloth with cloth so far.
     pub fn cloth_tally(&self) -> Tally {
         self.cloth.contacts.tally
     }
 
-    /// How often the constraints were built.
+    /// Number of times the constraints were built.
     pub fn builds(&self) -> usize {
         self.xpbd.as_ref().map_or(0, Xpbd::builds)
     }
 
-    /// Looks for contacts anew, whatever was found before.
+    /// Clears the contacts and their search structures.
     pub fn forget_contacts(&mut self) {
         self.cloth.reset();
     }
 }
 
-/// Edges that a wave in the cloth may cross in a substep. What one sweep of XPBD leaves unsolved
-/// makes the cloth softer by the square of this, so it is kept below 1.
+/// Courant number: edges that a wave in the cloth passes in a substep. The error of one XPBD sweep makes the cloth
+/// softer by the square of this number, so it is below 1.
 const COURANT: f64 = 0.7;
 /// Longest substep [s].
 const LONGEST_SUBSTEP: f64 = 5e-4;
-/// Substeps between two looks at the kinetic energy.
+/// Substeps between two measurements of the kinetic energy.
 const ROUND: u32 = 20;
 /// Drag while swinging [1/s].
 const DRAG: f64 = 3.0;
-/// Simulated time at the most [s], and the same where the shape of a coarser mesh at rest was carried
-/// over: all there is to do is to smooth it.
+/// Longest simulated time [s] on the coarsest mesh, and on a finer one, which starts from the interpolated shape of a
+/// coarser one at rest.
 const LONGEST: f64 = 3.0;
 const LONGEST_CARRIED: f64 = 0.3;
-/// The swing is over when its peaks of kinetic energy are those of this mean speed [m/s].
+/// Mean speed [m/s] whose kinetic energy a peak must not exceed for the swing to end.
 const CALM: f64 = 0.0015;
-/// A peak is a new low below this share of the lowest before; with crossings left the swing is over
-/// after as many peaks without one.
+/// A peak of kinetic energy is a new low below this share of the lowest before. With crossings left, the swing ends
+/// after more than `PATIENCE` peaks without a new low.
 const LOWER: f64 = 0.8;
 const PATIENCE: u32 = 12;
 
 impl KineticDamping {
-    /// A swing from where the cloth is.
+    /// A swing from the present state.
     pub fn new(system: &System) -> Self {
         Self {
             substep: substep(system),
@@ -85,7 +85,7 @@ impl KineticDamping {
         }
     }
 
-    /// The same for the shape of a coarser mesh at rest.
+    /// A swing from the interpolated shape of a coarser mesh at rest.
     pub fn carried(system: &System) -> Self {
         Self {
             longest: LONGEST_CARRIED,
@@ -98,31 +98,30 @@ impl KineticDamping {
         self.rounds
     }
 
-    /// Whether the motion has died out, or has had its time.
+    /// Whether the motion has died out, or the time is used up.
     pub fn finished(&self) -> bool {
         self.calm || self.stuck() || self.time >= self.longest
     }
 
-    /// Whether crossings of cloth that are pulled apart keep it moving: the peaks fall no more.
+    /// Whether the recovery forces of crossings keep the cloth moving: the peaks no longer fall.
     fn stuck(&self) -> bool {
         self.waited > PATIENCE
     }
 
-    /// Whether it ended before the cloth was calm, with crossings of cloth left.
+    /// Whether it ended with crossings of cloth before the motion had died out.
     pub fn left_crossings(&self, workspace: &SwingWorkspace) -> bool {
         !self.calm && !workspace.cloth.contacts.is_in_order()
     }
 
-    /// Rough share of the way to calm, 0..=1.
+    /// Share of the longest time that has passed, 0..=1.
     pub fn share(&self) -> f64 {
         self.time / self.longest
     }
 
-    /// One round of substeps. When the kinetic energy has passed a peak the velocities are set to
-    /// zero (kinetic damping; Cundall 1976).
+    /// One round of substeps. After a peak of the kinetic energy the velocities are set to zero.
     ///
     /// # Errors
-    /// When a substep fails at every size; the state is as it was.
+    /// A substep that fails at every size; the state is then unchanged.
     pub fn advance(
         &mut self,
         system: &System,
@@ -164,8 +163,7 @@ impl KineticDamping {
 }
 
 impl KineticDamping {
-    /// Counts the peaks of kinetic energy without a new low while cloth crosses cloth or layers lie
-    /// in the wrong order.
+    /// Counts the peaks of kinetic energy since the lowest while cloth crosses cloth or layers are out of order.
     fn watch_crossings(&mut self, in_order: bool) {
         if self.energy < LOWER * self.lowest || in_order {
             self.lowest = self.energy;
@@ -241,7 +239,7 @@ mod tests {
         assert!(stops >= 2, "{stops}");
         assert!(state.velocities.iter().all(|v| *v == Vec3::zeros()));
         assert!(state.positions[83].y < -0.15, "{}", state.positions[83]);
-        // Newton's method finds the tip near its place.
+        // Newton's method finds the tip near the same position.
         let tip = state.positions[83];
         let mut rest = PseudoTransientContinuation::near(RestSettings::default());
         let mut workspace = Workspace::default();

@@ -1,9 +1,8 @@
-//! Simulation of cloth: scene, model, state, materials, laws, contact, elastics, merging, and the
-//! drape to rest. Knows nothing of patterns, bodies, files or windows.
+//! Simulation of cloth: worlds and scenes, models, states, materials, force laws, contact, elastics, merging, methods
+//! in time and to equilibrium. It does not depend on patterns, bodies, files or windows.
 //!
-//! Five lifetimes: [`Model`] is constant, [`Control`] may change every step, [`State`] is all that changes as a
-//! simulation runs, contacts are recomputed, [`Workspace`] is private memory sized once. A [`World`] is what a model
-//! is compiled from.
+//! Five lifetimes: a [`Model`] is constant, a [`Control`] may change with each step, a [`State`] changes in time,
+//! contacts are recomputed, a [`Workspace`] is private memory. A model is compiled from a [`World`].
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod bending_structure;

@@ -1,4 +1,4 @@
-//! What a cloth is made of, in SI units.
+//! Materials of cloth, in SI units.
 
 use crate::DrapeError;
 use crate::laws::bending::{BendingMatrix, bending_matrix};
@@ -9,26 +9,28 @@ use crate::laws::stretch::{Compression, MembraneLaw};
 pub struct Material {
     /// Mass per area [kg/m2].
     pub density: f64,
-    /// Thickness [m]: at least half of it is kept between the middle of the cloth and any surface, all of
-    /// it between two cloths ([`crate::ContactSettings::for_cloth`]).
+    /// Thickness [m]: contact offsets are at least half of it from solids and all of it between two cloths
+    /// ([`crate::ContactSettings::for_cloth`]).
     pub thickness: f64,
     /// Stretch stiffness along warp and weft [N/m].
     pub stretch: [f64; 2],
     /// Shear stiffness [N/m]: force per length at a shear angle of one radian.
     pub shear: f64,
-    /// Poisson ratio of warp to weft, at most 0.95 of what keeps the membrane stable.
+    /// Poisson ratio of warp to weft, at most 0.95 of the limit of a stable membrane.
     pub poisson: f64,
-    /// Hardening k along warp and weft: stress C (E + k E^3) in tension. 0 is a straight line; a
+    /// Hardening k along warp and weft: stress C (E + k E^3) in tension. 0 is a linear law; a
     /// weave whose stiffness doubles at 5 % of stretch has 130.
     pub hardening: [f64; 2],
-    /// Stretch that warp and weft hardly exceed, as a share; infinite for none. Usual: 0.01 to 0.1.
+    /// Stretch beyond which warp and weft are 100 times as stiff, as a share of the rest length; infinite for none.
+    /// Usual:
+    /// 0.01 to 0.1.
     pub strain_limit: [f64; 2],
-    /// What the membrane does when squeezed.
+    /// Law of the membrane under compression.
     pub compression: Compression,
     /// Bending stiffness of strips cut along warp, weft and bias [N m].
     pub bend: [f64; 3],
-    /// Poisson ratio in bending: how much a fold along the warp bends the weft the other way. Little
-    /// measured; 0 for cloth.
+    /// Poisson ratio in bending: curvature of the weft opposed to that of the warp. Rarely measured; 0 for
+    /// cloth.
     pub bend_poisson: f64,
     /// Viscosity of stretch and shear (Kelvin-Voigt) [N s/m].
     pub viscosity: f64,
@@ -36,23 +38,22 @@ pub struct Material {
     pub bend_viscosity: f64,
     /// Rayleigh damping: viscosity in proportion to stiffness [s].
     pub stiffness_damping: f64,
-    /// Relaxed fraction p of the stress of stretch and of bending: held for long, stress falls to 1 - p of its
-    /// first value, and let go the cloth keeps p of the strain; 0 to 0.95.
+    /// Relaxed fraction p of the stress of stretch and of bending, 0 to 0.95: under constant strain the stress falls to
+    /// 1 - p of its first value, and released the cloth retains p of the strain at first.
     pub relaxed_fraction: [f64; 2],
     /// Time tau over which the internal strain follows the strain [s].
     pub relaxation_time: f64,
-    /// Coulomb friction coefficient: against solid surfaces it acts alone, between two cloths the mean of both.
+    /// Coulomb friction coefficient against solids; between two cloths the mean of both is used.
     pub friction: f64,
-    /// Share of the normal speed of an impact that comes back, 0 to 1; none leaves it to the spring of
-    /// the contact. Only `xpbd` knows it.
+    /// Coefficient of restitution, 0 to 1; none where the contact spring alone decides. Only `xpbd` supports it.
     pub restitution: Option<f64>,
 }
 
 impl Default for Material {
     /// A plain cotton weave. Round figures inside the ranges of measured fabrics: mass and bending
     /// near the medians 0.197 kg/m2 and 13.8 uN m of 618 fabrics (Feng et al. 2022); the stretch
-    /// stiffness is that of a soft weave, so that a drape keeps strains of a few per cent. Elastic,
-    /// without limit, hardening or memory.
+    /// stiffness is that of a soft weave, so that a drape has strains of a few per cent. Elastic,
+    /// without limit, hardening or relaxation.
     fn default() -> Self {
         Self {
             density: 0.2,
@@ -76,7 +77,7 @@ impl Default for Material {
     }
 }
 
-/// A field of a material as [`Material::check`] sees it: name, value, whether it is good, remedy.
+/// A field in [`Material::check`]: name, value, whether it is valid, remedy.
 type Field = (&'static str, f64, bool, &'static str);
 
 const POSITIVE: &str = "give a number above zero";
@@ -110,20 +111,20 @@ impl Material {
     }
 
     /// Bending stiffness of curvature along warp, along weft, and of twist [N m]. The twist term
-    /// is what makes a fold at 45 degrees cost the bias stiffness (Cooper 1960):
-    /// D_bias = (D_warp + D_weft + 2 D_nu + 2 D_twist) / 4, kept at zero or above.
+    /// gives a fold at 45 degrees the bias stiffness (Cooper 1960):
+    /// D_bias = (D_warp + D_weft + 2 D_nu + 2 D_twist) / 4, clamped to zero or above.
     pub fn bending(&self) -> [f64; 3] {
         let [warp, weft, _, twist] = self.plate();
         [warp, weft, twist]
     }
 
-    /// The same as a matrix over the three curvatures, with the coupling.
+    /// The bending stiffness as a matrix over the three curvatures, with the coupling.
     pub fn bending_matrix(&self) -> BendingMatrix {
         bending_matrix(self.plate())
     }
 
-    /// D_warp, D_weft, D_nu, D_twist [N m]. A strip is free to curl across, so it is softer than a
-    /// plate by 1 - nu^2: D_warp = B_warp / (1 - nu^2), D_nu = nu sqrt(D_warp D_weft).
+    /// D_warp, D_weft, D_nu, D_twist [N m]. A strip can curl across, so it is softer than a plate by the factor 1 -
+    /// nu^2: D_warp = B_warp / (1 - nu^2), D_nu = nu sqrt(D_warp D_weft).
     fn plate(&self) -> [f64; 4] {
         let spread = 1.0 - self.bend_poisson * self.bend_poisson;
         let [warp, weft, bias] = self.bend.map(|b| b / spread);
@@ -150,7 +151,7 @@ impl Material {
         bending_matrix([eta, eta, 0.0, eta]) + self.bending_matrix() * self.stiffness_damping
     }
 
-    /// Whether any viscosity acts.
+    /// Whether stretch and bending are viscous.
     pub(crate) fn is_viscous(&self) -> [bool; 2] {
         let damped = self.stiffness_damping > 0.0;
         [
@@ -159,7 +160,7 @@ impl Material {
         ]
     }
 
-    /// Whether stretch or folds are kept.
+    /// Whether stretch or bending relaxes.
     pub(crate) fn keeps_strain(&self) -> bool {
         self.relaxed_fraction.iter().any(|&share| share > 0.0)
     }
@@ -167,9 +168,9 @@ impl Material {
     /// Checks every number.
     ///
     /// # Errors
-    /// Names the first number that cannot be simulated and what would be right.
+    /// The first number out of range, with the remedy.
     pub fn check(&self, object: &str) -> Result<(), DrapeError> {
-        // Taken apart whole: a new field does not compile before it is checked.
+        // An exhaustive pattern: a new field does not compile before it is checked.
         let &Self {
             density,
             thickness,

@@ -1,20 +1,20 @@
-//! The materials of a cloth as its triangles use them.
+//! The materials of a cloth, by triangle.
 
 use crate::Material;
 use crate::laws::stretch::MembraneLaw;
 
-/// Materials, and which of them each triangle is of.
+/// Materials, and the material of each triangle.
 pub struct Materials {
     /// The materials.
     pub list: Vec<Material>,
     /// Index into `list` of each triangle.
     pub of_triangle: Vec<u16>,
-    /// How each material resists stretch.
+    /// Membrane law of each material.
     pub laws: Vec<MembraneLaw>,
 }
 
 impl Materials {
-    /// Of materials and an index into them for each triangle.
+    /// Materials, and an index into them for each triangle.
     pub(crate) fn new(list: Vec<Material>, of_triangle: Vec<u16>) -> Self {
         Self {
             laws: list.iter().map(Material::membrane).collect(),
@@ -28,22 +28,22 @@ impl Materials {
         &self.list[self.of_triangle[triangle] as usize]
     }
 
-    /// How a triangle resists stretch.
+    /// The membrane law of a triangle.
     pub(crate) fn law(&self, triangle: usize) -> &MembraneLaw {
         &self.laws[self.of_triangle[triangle] as usize]
     }
 
-    /// Whether any cloth says how it bounces.
+    /// Whether any material has a coefficient of restitution.
     pub(crate) fn bounce(&self) -> bool {
         self.list.iter().any(|m| m.restitution.is_some())
     }
 
-    /// Whether stretch of any cloth is viscous.
+    /// Whether any material is viscous in stretch.
     pub(crate) fn have_viscous_stretch(&self) -> bool {
         self.list.iter().any(|m| m.is_viscous()[0])
     }
 
-    /// Whether any cloth keeps stretch or folds.
+    /// Whether any material relaxes in stretch or bending.
     pub(crate) fn keep_strain(&self) -> bool {
         self.list.iter().any(Material::keeps_strain)
     }

@@ -5,8 +5,8 @@ use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Measures of one state. Crossings and depths of objects that ignore each other ([`PairPolicies`](crate::PairPolicies))
-/// do not count.
+/// Measures of one state. Crossings and depths of objects that ignore each other
+/// ([`PairPolicies`](crate::PairPolicies)) do not count.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Norm of the net forces over the norm of the weights, over free vertices; contact and
@@ -16,7 +16,7 @@ pub struct Measures {
     pub kinetic_energy: f64,
     /// Largest stretch along warp and weft.
     pub strain_max: [f64; 2],
-    /// Stretch along warp and weft that 99 % of the cloth's area stays under.
+    /// 99th percentile by area of the stretch along warp and weft.
     pub strain_p99: [f64; 2],
     /// Largest shortening along warp and weft, as a positive number.
     pub compression_max: [f64; 2],
@@ -28,7 +28,7 @@ pub struct Measures {
     pub body_intersections: usize,
     /// Pairs of cloth triangles that intersect and share no vertex, exactly.
     pub self_intersections: usize,
-    /// The same by layer, innermost first; empty where all cloth is of one.
+    /// Measures by layer, innermost first; empty where all cloth is in one layer.
     pub layers: Vec<LayerMeasures>,
 }
 
@@ -37,17 +37,17 @@ pub struct Measures {
 pub struct LayerMeasures {
     /// Its number.
     pub layer: u16,
-    /// Pairs of a triangle of it and a solid triangle that intersect, exactly.
+    /// Pairs of one of its triangles and a solid triangle that intersect, exactly.
     pub body_intersections: usize,
-    /// Pairs of triangles of it that intersect and share no vertex, exactly.
+    /// Pairs of its triangles that intersect and share no vertex, exactly.
     pub self_intersections: usize,
-    /// Pairs of a triangle of it and one of a layer farther out that intersect, exactly.
+    /// Pairs of one of its triangles and one of an outer layer that intersect, exactly.
     pub outer_intersections: usize,
-    /// Vertices of layers farther out that lie on its inside, within 5 cm of it.
+    /// Vertices of outer layers on its inside, within 5 cm of it.
     pub astray: usize,
 }
 
-/// How near a layer the order of those farther out is measured [m].
+/// Distance from a layer within which outer vertices on its inside are counted [m].
 const ORDER_REACH: f64 = 0.05;
 
 /// Net force over weight, both as norms over all free vertices.
@@ -57,7 +57,7 @@ pub fn residual(system: &System, state: &State, workspace: &mut Workspace) -> f6
     force.sqrt() / weight_norm(system)
 }
 
-/// Norm of the weights of the free vertices [N]; without gravity their weight on earth.
+/// Norm of the weights of the free vertices [N]; without gravity that of their weights on earth.
 pub(crate) fn weight_norm(system: &System) -> f64 {
     let free = system
         .rest
@@ -66,7 +66,6 @@ pub(crate) fn weight_norm(system: &System) -> f64 {
         .zip(&system.prescribed.pinned)
         .filter(|&(_, &pinned)| !pinned);
     let mass: f64 = free.map(|(m, _)| m * m).sum();
-    // Without gravity the weight on earth is the scale.
     let gravity = if system.control.gravity.norm() > 0.0 {
         system.control.gravity.norm()
     } else {
@@ -75,7 +74,7 @@ pub(crate) fn weight_norm(system: &System) -> f64 {
     mass.sqrt() * gravity
 }
 
-/// Measures a state. `counted` says which triangles count for strain (those away from gathers).
+/// Measures a state. `counted` marks the triangles whose strain counts, those away from gathers.
 pub fn measure(
     system: &System,
     state: &State,
@@ -102,8 +101,8 @@ pub fn measure(
             } else {
                 strain.weft
             };
-            let squeezed = &mut measures.compression_max[direction];
-            *squeezed = squeezed.max(-value);
+            let compression = &mut measures.compression_max[direction];
+            *compression = compression.max(-value);
             if counted.get(t).copied().unwrap_or(true) {
                 stretch.push((value.max(0.0), system.rest.elements[t].area));
                 measures.shear_max = measures.shear_max.max(strain.shear.abs());
@@ -117,18 +116,18 @@ pub fn measure(
     let mesh = system.mesh(x);
     let mut on_body = Vec::new();
     let policies = &system.policies;
-    let feels = |vertices: &[u32], collider: usize| {
+    let meets = |vertices: &[u32], collider: usize| {
         !policies.ignores_solid(policies.object_of_sample(vertices), collider)
     };
     for (number, collider) in system.colliders.iter().enumerate() {
         let pairs = collider.crossings(state.time, &mesh);
-        let met = |pair: &[u32; 2]| feels(&mesh.triangles[pair[0] as usize], number);
-        on_body.extend(pairs.into_iter().filter(met));
+        let pair_meets = |pair: &[u32; 2]| meets(&mesh.triangles[pair[0] as usize], number);
+        on_body.extend(pairs.into_iter().filter(pair_meets));
         let pose = collider.pose(state.time);
         let depths: Vec<f64> = x
             .par_iter()
             .enumerate()
-            .filter(|&(v, _)| feels(&[v as u32], number))
+            .filter(|&(v, _)| meets(&[v as u32], number))
             .map(|(_, &p)| -collider.exact_distance(pose.as_ref(), p))
             .collect();
         measures.penetration_max = depths
@@ -144,8 +143,8 @@ pub fn measure(
     measures
 }
 
-/// Pairs of cloth triangles that intersect and share no vertex, exactly, but for those of objects that ignore each
-/// other.
+/// Pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of objects that
+/// ignore each other.
 pub(crate) fn self_intersections(system: &System, cloth: &SurfaceTree) -> Vec<[u32; 2]> {
     let mut pairs = cloth.self_intersections();
     let triangles = &cloth.mesh().triangles;
@@ -156,7 +155,7 @@ pub(crate) fn self_intersections(system: &System, cloth: &SurfaceTree) -> Vec<[u
     pairs
 }
 
-/// What was found, by layer; a triangle between layers counts with the innermost of its corners.
+/// The measures by layer; a triangle with corners of several layers counts with the innermost.
 fn by_layer(
     system: &System,
     mesh: &TriangleMesh,
@@ -192,7 +191,7 @@ fn by_layer(
     layers.collect()
 }
 
-/// The largest value, and the value that 99 % of the weight stays under.
+/// The largest value, and the 99th percentile by weight.
 fn top_of(values: &mut [(f64, f64)]) -> (f64, f64) {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = values.iter().map(|v| v.1).sum();
@@ -208,7 +207,7 @@ fn top_of(values: &mut [(f64, f64)]) -> (f64, f64) {
     (values.last().map_or(0.0, |v| v.0), p99)
 }
 
-/// Stretch of every triangle: the larger of warp and weft, negative where both are squeezed.
+/// Stretch of each triangle: the larger of warp and weft, negative where both are compressed.
 pub fn stretch_per_triangle(system: &System, positions: &[Vec3]) -> Vec<f64> {
     (0..system.topology.triangles.len())
         .map(|t| {

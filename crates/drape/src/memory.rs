@@ -1,11 +1,11 @@
-//! What methods remember from one step to the next: plain data of a state.
+//! Memories of methods from step to step: plain data of a state.
 
 use crate::laws::membrane::Curvature;
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// What a method must remember from one step to the next beyond positions and velocities. Another
-/// method than the one that wrote it takes no notice of it.
+/// Memory of a method from step to step beside positions and velocities. Other methods than the one that wrote it
+/// ignore it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Memory {
@@ -14,23 +14,23 @@ pub enum Memory {
     Nothing,
     /// The state before the last step, for methods of two steps.
     Previous {
-        /// Positions then [m].
+        /// Positions before the last step [m].
         positions: Vec<Vec3>,
-        /// Velocities then [m/s].
+        /// Velocities before the last step [m/s].
         velocities: Vec<Vec3>,
-        /// Length of the step that followed [s].
+        /// Length of the last step [s].
         step: f64,
     },
-    /// Contact samples that a surface was put over and that have not come out since, in order.
+    /// Buried contact samples, ascending: a solid was put over them, and they have not come out since.
     Buried(Vec<u32>),
-    /// How the way to rest stands.
+    /// Memory of pseudo-transient continuation.
     Rest(RestMemory),
-    /// How dynamic relaxation stands.
+    /// Memory of dynamic relaxation.
     Relaxation(RelaxationMemory),
 }
 
 impl Memory {
-    /// Of contact samples that a surface was put over, in order.
+    /// The memory of buried contact samples, ascending.
     pub(crate) fn of_buried(samples: impl Iterator<Item = u32>) -> Self {
         let samples: Vec<u32> = samples.collect();
         match samples.is_empty() {
@@ -39,7 +39,7 @@ impl Memory {
         }
     }
 
-    /// The contact samples that a surface was put over, in order.
+    /// The buried contact samples, ascending.
     pub(crate) fn buried(&self) -> &[u32] {
         match self {
             Self::Buried(samples) => samples,
@@ -48,7 +48,7 @@ impl Memory {
     }
 }
 
-/// How the way to rest stands between two steps.
+/// Memory of pseudo-transient continuation between two steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestMemory {
@@ -61,23 +61,23 @@ pub struct RestMemory {
     pub(crate) residual: f64,
     #[serde(with = "crate::exact")]
     pub(crate) best: f64,
-    /// Steps since the residual found a new low.
+    /// Steps since the residual was lowest.
     pub(crate) waited: usize,
     pub(crate) linear_iterations: usize,
     pub(crate) curvature: Curvature,
 }
 
-/// How a relaxation stands between two steps.
+/// Memory of dynamic relaxation between two iterations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationMemory {
-    /// Moves per iteration, half an iteration back [m].
+    /// Displacements per iteration, half an iteration earlier [m].
     pub(crate) moves: Vec<Vec3>,
-    /// Fictitious masses in iterations [N/m].
+    /// Fictitious masses, with the iteration as unit of time [N/m].
     pub(crate) masses: Vec<f64>,
-    /// Kinetic energy in iterations, half an iteration back [J].
+    /// Fictitious kinetic energy half an iteration earlier [J].
     pub(crate) kinetic: f64,
-    /// Whether the next iteration starts from standstill.
+    /// Whether the next iteration starts without velocity.
     pub(crate) still: bool,
     pub(crate) iterations: usize,
     #[serde(with = "crate::exact")]

@@ -1,8 +1,8 @@
-//! Merging: vertices that seams have drawn together become one.
+//! Merging of vertices by union-find.
 
 use crate::collision::layer_order::BETWEEN_LAYERS;
 
-/// Union-find: sets of vertices, each known by its smallest.
+/// Union-find: sets of vertices, each with its smallest vertex as root.
 struct Sets {
     parent: Vec<u32>,
 }
@@ -23,21 +23,21 @@ impl Sets {
         v
     }
 
-    /// Joins two sets, given by their roots. The smaller index stays root, so that order does not
-    /// depend on the order of pairs.
+    /// Unites two sets, given by their roots. The smaller root remains, so that the result does not depend on the order
+    /// of pairs.
     fn join(&mut self, [a, b]: [u32; 2]) {
         self.parent[a.max(b) as usize] = a.min(b);
     }
 }
 
-/// Whether a triangle still has three corners when vertices are joined as `target` says.
+/// Whether a triangle still has three corners when vertices are merged by `target`.
 pub(crate) fn keeps_corners(triangle: [u32; 3], target: &[u32]) -> bool {
     let [a, b, c] = triangle.map(|v| target[v as usize]);
     a != b && b != c && c != a
 }
 
-/// Union-find over `count` vertices joined by pairs. Gives each vertex its new index and the
-/// number of new vertices; new indices follow the order of the smallest old vertex.
+/// Merges `count` vertices by pairs. Returns the new index of each vertex and the number of new vertices; new indices
+/// are in the order of the smallest old vertex.
 pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
     let mut sets = Sets::new(count);
     for pair in pairs {
@@ -58,20 +58,21 @@ pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Ve
     (target, next as usize)
 }
 
-/// Which of some pairs, in order, may be joined: none that would make one vertex of two that are held,
-/// unless `together` says that these two can be one; none that is not there.
+/// For each pair in order whether it may merge after those before it: not one that would merge two different prescribed
+/// vertices unless `together` allows it, and not a missing one.
 pub(crate) fn joinable(
     pairs: impl IntoIterator<Item = Option<[u32; 2]>>,
-    held: &[bool],
+    prescribed: &[bool],
     together: impl Fn(u32, u32) -> bool,
 ) -> Vec<bool> {
-    let mut sets = Sets::new(held.len());
-    // A held vertex of each set, at its root.
-    let own = held.iter().enumerate();
-    let mut holder: Vec<Option<u32>> = own.map(|(v, &held)| held.then_some(v as u32)).collect();
+    let mut sets = Sets::new(prescribed.len());
+    // A prescribed vertex of each set, at its root.
+    let marks = prescribed.iter().enumerate();
+    let leaders = marks.map(|(v, &prescribed)| prescribed.then_some(v as u32));
+    let mut leader: Vec<Option<u32>> = leaders.collect();
     let mut may = |pair: [u32; 2]| {
         let roots = pair.map(|v| sets.root(v));
-        let [a, b] = roots.map(|root| holder[root as usize]);
+        let [a, b] = roots.map(|root| leader[root as usize]);
         if let (Some(a), Some(b)) = (a, b)
             && a != b
             && !together(a, b)
@@ -79,19 +80,18 @@ pub(crate) fn joinable(
             return false;
         }
         sets.join(roots);
-        holder[roots[0].min(roots[1]) as usize] = a.or(b);
+        leader[roots[0].min(roots[1]) as usize] = a.or(b);
         true
     };
     (pairs.into_iter().map(|pair| pair.is_some_and(&mut may))).collect()
 }
 
-/// Layer of each merged vertex from those that became it; [`BETWEEN_LAYERS`] where they differ, and
-/// empty where none has any.
+/// Layer of each merged vertex; [`BETWEEN_LAYERS`] where those of its vertices differ, and empty without layers.
 pub(crate) fn merged_layers(layer: &[u16], target: &[u32], count: usize) -> Vec<u16> {
     let mut merged: Vec<Option<u16>> = vec![None; if layer.is_empty() { 0 } else { count }];
     for (&layer, &to) in layer.iter().zip(target) {
-        let kept = &mut merged[to as usize];
-        *kept = Some(match *kept {
+        let entry = &mut merged[to as usize];
+        *entry = Some(match *entry {
             Some(other) if other != layer => BETWEEN_LAYERS,
             _ => layer,
         });

@@ -1,32 +1,32 @@
-//! What a method is, and the closed list of them.
+//! The interface of methods, and their closed list.
 
 use crate::collision::Tally;
 use crate::{DrapeError, State, System};
 
-/// What one step of a method took.
+/// Cost of one step of a method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
-    /// Pieces the step had to be cut into because it failed whole; 1 when it did not.
+    /// Substeps into which the step was divided after a failure; 1 without one.
     pub pieces: u32,
     /// Iterations of the method's outer loop (Newton, local-global, sweeps, substeps).
     pub iterations: usize,
-    /// Iterations of linear solvers inside it.
+    /// Iterations of linear solvers.
     pub linear_iterations: usize,
 }
 
 /// A time integrator or equilibrium solver.
 ///
-/// It owns its workspace; everything it must remember from step to step to go on is in the
-/// [`State`], so that a saved state continues bit for bit with a fresh method. There are two exceptions. With
+/// It owns its workspace; its memory from step to step is in the [`State`], so that a saved state continues bit for bit
+/// with a fresh method. There are two exceptions. With
 /// contact of cloth with cloth `xpbd` stores the front of its last search, which decides which distant pairs the next
-/// search skips. `implicit-midpoint` stores the energy that its run can have at most, and refuses a step that
-/// exceeds ten times as much.
+/// search skips. `implicit-midpoint` stores a bound of the energy of its run, and refuses a step with more than ten
+/// times as much.
 pub trait Method: Send {
     /// Advances the state by `step` [s]. Equilibrium methods take one iteration; their time does
     /// not run and `step` is ignored.
     ///
     /// # Errors
-    /// Names vertex and stage; the state is then as it was before.
+    /// A failed step, with vertex and stage; the state is then unchanged.
     fn advance(
         &mut self,
         system: &System,
@@ -34,23 +34,22 @@ pub trait Method: Send {
         step: f64,
     ) -> Result<StepReport, DrapeError>;
 
-    /// Whether the method has nothing more to do: an equilibrium method at the residual asked
-    /// for. Methods in time never have.
+    /// Whether an equilibrium method has reached its residual; false for methods in time.
     fn finished(&self) -> bool {
         false
     }
 
-    /// What contact of cloth with cloth found and did so far, where the method counts it.
+    /// Counts of contact of cloth with cloth so far; none where the method has no such counts.
     fn cloth_tally(&self) -> Option<Tally> {
         None
     }
 
-    /// Whether it draws vertices to points of solids that move; a system that asks another for that is refused.
+    /// Whether it supports attachments to points of moving solids; other methods refuse a system with such attachments.
     fn follows_frames(&self) -> bool {
         false
     }
 
-    /// Net force over weight after the last step, where the method knows it.
+    /// Net force over weight after the last step; none where the method does not compute it.
     fn residual(&self) -> Option<f64> {
         None
     }
@@ -67,7 +66,7 @@ pub enum MethodKind {
     VelocityVerlet,
     /// The classical Runge-Kutta method: explicit, order 4.
     RungeKutta4,
-    /// The same in patches, for cloth of the plain laws: explicit, order 2, fast.
+    /// Velocity Verlet in patches, for cloth with linear laws: explicit, order 2, fast.
     PatchVerlet,
     /// Semi-implicit Euler: one linear solve a step (Baraff and Witkin 1998), order 1.
     SemiImplicitEuler,
@@ -84,18 +83,18 @@ pub enum MethodKind {
     Lbfgs,
     /// Vertex block descent (Chen et al. 2024) on implicit Euler.
     VertexBlockDescent,
-    /// The same with Chebyshev acceleration.
+    /// Vertex block descent with Chebyshev acceleration.
     ChebyshevBlockDescent,
-    /// Dynamic relaxation with kinetic damping: to rest without any system; time does not run.
+    /// Dynamic relaxation with kinetic damping: equilibrium without a linear system; time does not advance.
     DynamicRelaxation,
-    /// Straight to rest by pseudo-transient continuation; time does not run.
+    /// Equilibrium by pseudo-transient continuation; time does not advance.
     Rest,
     /// Extended position based dynamics: [`crate::Xpbd`].
     Xpbd,
 }
 
 impl MethodKind {
-    /// Every method with its name in files. Kept by hand: a method that is not listed cannot be named in a file.
+    /// All methods with their names in files. The compiler does not check that the list is complete.
     pub const ALL: [(&'static str, Self); 16] = [
         ("forward-euler", Self::ForwardEuler),
         ("symplectic-euler", Self::SymplecticEuler),
@@ -123,14 +122,14 @@ impl MethodKind {
             .map_or("", |(name, _)| name)
     }
 
-    /// Whether the states it comes to balance the forces of the model: net force over weight then says how
-    /// far from rest one is. `xpbd` leaves its constraints unsolved by some compliance of its own, and
-    /// keeps friction in no anchor, so at its rest the model's forces are far from balanced.
+    /// Whether the method converges to states with balanced forces of the model, so that net force over weight measures
+    /// the distance from equilibrium. `xpbd` does not: its unconverged constraints act as additional compliance, and
+    /// its friction has no anchors.
     pub fn balances_forces(self) -> bool {
         self != Self::Xpbd
     }
 
-    /// What kind of method it is.
+    /// The family of the method.
     fn family(self) -> Family {
         match self {
             Self::ForwardEuler => Family::Explicit { limit: 0.0 },
@@ -153,8 +152,8 @@ impl MethodKind {
         }
     }
 
-    /// Largest stable product of angular frequency and substep of an undamped vibration; nothing
-    /// for implicit methods, which have no limit, and for forward Euler 0.
+    /// Largest stable product of angular frequency and substep of an undamped vibration: none for implicit methods,
+    /// which have no limit, and 0 for forward Euler.
     pub fn stability_limit(self) -> Option<f64> {
         match self.family() {
             Family::Explicit { limit } => Some(limit),
@@ -162,7 +161,7 @@ impl MethodKind {
         }
     }
 
-    /// The fields of [`MethodSettings`] that it has a use for, by their names.
+    /// Names of the fields of [`MethodSettings`] that it uses.
     pub fn settings(self) -> &'static [&'static str] {
         match self.family() {
             Family::Explicit { .. } => &["substeps"],
@@ -172,33 +171,33 @@ impl MethodKind {
         }
     }
 
-    /// Whether it looks for rest rather than running in time.
+    /// Whether it computes equilibrium instead of motion in time.
     pub fn is_equilibrium(self) -> bool {
         matches!(self.family(), Family::Equilibrium)
     }
 }
 
-/// Kinds of methods.
+/// Families of methods.
 enum Family {
-    /// Forces at known positions; stable while angular frequency times substep stays below the limit.
+    /// Explicit in time; stable while angular frequency times substep is below the limit.
     Explicit { limit: f64 },
     /// Each substep minimises a potential.
     Implicit,
     /// Constraints solved one after the other.
     Constraints,
-    /// To equilibrium; time does not run.
+    /// Equilibrium; time does not advance.
     Equilibrium,
 }
 
-/// A method with its settings; what is not given is the method's own default.
+/// A method with its settings; fields that are none have the method's default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MethodSettings {
-    /// Which method.
+    /// The method.
     pub kind: MethodKind,
-    /// Substeps a step is cut into; explicit methods left without take what the largest frequency
-    /// at the start of each step asks for (0.9 of their limit).
+    /// Substeps of a step; explicit methods without a number take as many as the largest frequency at the start of each
+    /// step needs (at 0.9 of their stability limit).
     pub substeps: Option<u32>,
-    /// Iterations in a (sub)step at the most.
+    /// Most iterations in a (sub)step.
     pub iterations: Option<usize>,
     /// Where iterations stop: norm of the gradient [N] in time, net force over weight for rest.
     pub tolerance: Option<f64>,

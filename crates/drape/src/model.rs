@@ -1,4 +1,4 @@
-//! The model: everything about a simulation that does not change while it runs.
+//! The model: the constant data of a simulation.
 
 use crate::ContactSettings;
 use crate::collider::{Collider, PrescribedVertex};
@@ -12,42 +12,42 @@ use std::ops::Deref;
 use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Vertices whose motion is given.
+/// Vertices with a prescribed motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prescribed {
-    /// Whether each vertex is held: it is no unknown.
+    /// Whether each vertex is pinned, so that it is no unknown.
     pub pinned: Vec<bool>,
-    /// Held vertices that are led; only XPBD leads them.
+    /// Pinned vertices on a prescribed motion; only XPBD moves them.
     pub led: Vec<PrescribedVertex>,
 }
 
-/// The parts of a model. A cache holds a clone of the parts it was made from and is valid while the
-/// model has the same ones.
+/// The shared parts of a model. A cache has a clone of the parts it was made from and is valid while the model has the
+/// same ones.
 #[derive(Clone)]
 pub struct ModelParts {
     /// Triangles and the structure of matrices.
     pub topology: Arc<Topology>,
-    /// What follows from rest shapes.
+    /// Data that follow from rest shapes and materials.
     pub rest: Arc<RestData>,
-    /// What the cloth is made of.
+    /// Materials.
     pub materials: Arc<Materials>,
-    /// Vertices whose motion is given.
+    /// Vertices with a prescribed motion.
     pub prescribed: Arc<Prescribed>,
     /// Elastics between vertices.
     pub couplings: Arc<ElasticCouplings>,
     /// Solid surfaces.
     pub colliders: Arc<Vec<Collider>>,
-    /// How the cloth meets them, and itself.
+    /// Contact settings.
     pub contact: ContactSettings,
     /// Layer of each vertex, larger numbers farther out, or
-    /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
+    /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all have the same.
     pub layer: Arc<Vec<u16>>,
-    /// Which objects of the cloth do not meet each other, or which solids.
+    /// Pairs of objects that ignore each other.
     pub policies: Arc<PairPolicies>,
 }
 
-/// The constant part of a simulation, made by a [`SystemBuilder`](crate::SystemBuilder). Nothing assigns to
-/// it: it only lends its [`ModelParts`].
+/// The constant part of a simulation, made by a [`SystemBuilder`](crate::SystemBuilder). It is
+/// immutable: it gives read access to its [`ModelParts`] only.
 #[derive(Clone)]
 pub struct Model {
     parts: ModelParts,
@@ -71,14 +71,14 @@ impl fmt::Debug for Model {
 }
 
 impl Model {
-    /// Of its parts, which must be of one cloth.
+    /// A model of parts, which must belong to one cloth.
     pub(crate) fn of(parts: ModelParts) -> Self {
         Self { parts }
     }
 }
 
 impl ModelParts {
-    /// Mass of the cloth at each vertex [kg]: that of the model, and none for a vertex on no triangle.
+    /// Mass of the cloth at each vertex [kg]; zero for a vertex on no triangle, which has a mass in the model.
     pub(crate) fn cloth_mass(&self) -> Vec<f64> {
         let corners = self.topology.corner_start.windows(2);
         let own = self.rest.mass.iter().zip(corners);
@@ -86,20 +86,20 @@ impl ModelParts {
             .collect()
     }
 
-    /// Whether another model is of the very same cloth: triangles, rest shapes and materials.
+    /// Whether another model shares triangles, rest shapes and materials.
     pub(crate) fn has_cloth_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.topology, &other.topology)
             && Arc::ptr_eq(&self.rest, &other.rest)
             && Arc::ptr_eq(&self.materials, &other.materials)
     }
 
-    /// Whether matrices of another model have the very same structure, elastics between vertices apart.
+    /// Whether matrices of another model share the sparsity pattern, except for elastics between vertices.
     pub(crate) fn has_structure_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.topology, &other.topology)
             && (self.topology.bending.is_some() || Arc::ptr_eq(&self.rest, &other.rest))
     }
 
-    /// Whether another model has the very same prescribed vertices and the same elastics between vertices.
+    /// Whether another model shares prescribed vertices and elastics between vertices.
     pub(crate) fn has_couplings_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.prescribed, &other.prescribed)
             && Arc::ptr_eq(&self.couplings, &other.couplings)
@@ -115,7 +115,7 @@ impl ModelParts {
         self.rest.elements[triangle].area
     }
 
-    /// Triangles of the surface as it was given.
+    /// Triangles of the surface before the exchange of caps.
     pub fn surface_triangles(&self) -> &[[u32; 3]] {
         self.topology.surface_triangles()
     }

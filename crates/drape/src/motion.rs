@@ -1,33 +1,33 @@
-//! Prescribed rigid motion: keys in time, straight between them.
+//! Prescribed rigid motion by keys in time, linear between them.
 
 use nalgebra::Rotation3;
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// Where a body stands at one time.
+/// The position of a body at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionKey {
-    /// The time [s]; times rise from key to key.
+    /// The time [s], ascending from key to key.
     pub time: f64,
-    /// How far it is from where it was loaded [m].
+    /// Translation from the position as loaded [m].
     pub translation: Vec3,
-    /// How it is turned about the pivot: axis times angle [rad]; several turns are many radians.
+    /// Rotation about the pivot: axis times angle [rad], which may exceed a full turn.
     pub rotation: Vec3,
 }
 
-/// A rigid motion. Between two keys translation and rotation vector change evenly, so a body turns
-/// steadily where the axis stays; before the first and after the last it stands still.
+/// A rigid motion. Translation and rotation vector are linear between two keys, so the angular velocity is constant
+/// where the axis is; before the first key and after the last the body is at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// The place it is turned about, as loaded [m].
+    /// The centre of rotation, as loaded [m].
     pub pivot: Vec3,
     /// The keys.
     pub keys: Vec<MotionKey>,
 }
 
-/// A rigid placing: x goes to R x + s.
+/// A rigid transformation x -> R x + s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// R.
@@ -37,29 +37,30 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Where a point as loaded goes [m].
+    /// Image of a point [m].
     pub fn apply(&self, point: Vec3) -> Vec3 {
         self.rotation * point + self.shift
     }
 
-    /// The point as loaded that goes to some place [m].
-    pub fn undo(&self, place: Vec3) -> Vec3 {
+    /// The point with a given image [m].
+    pub fn undo(&self, image: Vec3) -> Vec3 {
         self.rotation
-            .inverse_transform_vector(&(place - self.shift))
+            .inverse_transform_vector(&(image - self.shift))
     }
 }
 
 impl Motion {
-    /// The placing at a time [s].
+    /// The pose at a time [s].
     pub fn pose(&self, time: f64) -> Pose {
-        let (translation, turn) = self.at(time);
-        let rotation = Rotation3::from_scaled_axis(turn);
+        let (translation, rotation_vector) = self.at(time);
+        let rotation = Rotation3::from_scaled_axis(rotation_vector);
         Pose {
             rotation,
             shift: self.pivot + translation - rotation * self.pivot,
         }
     }
 
+    /// Translation [m] and rotation vector [rad] at a time.
     fn at(&self, time: f64) -> (Vec3, Vec3) {
         let next = self.keys.partition_point(|key| key.time <= time);
         let Some(after) = self.keys.get(next) else {
@@ -79,7 +80,7 @@ impl Motion {
         )
     }
 
-    /// What is wrong with it, in words.
+    /// The first defect, in words; none in a valid motion.
     pub fn defect(&self) -> Option<String> {
         if self.keys.is_empty() {
             return Some("it has no key".to_owned());

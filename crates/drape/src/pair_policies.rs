@@ -1,11 +1,11 @@
-//! Policies for pairs of objects: which cloths pass through each other, and through which solids.
+//! Policies of pairs of objects: cloths that pass through each other, and solids that a cloth passes through.
 
-/// Object of a vertex that hangs in several objects, as at a merged seam: it ignores none.
+/// Object number of a vertex that several objects share, as at a merged seam: it ignores none.
 pub const BETWEEN_OBJECTS: u16 = u16::MAX;
 
-/// Which objects of a model do not meet. A pair of features of two objects that ignore each other makes
-/// no contact, no impact and no recovery pull; a contact sample of an object that ignores a solid does not
-/// feel it. The default ignores nothing.
+/// Pairs of objects that ignore each other. A pair of features of two such objects makes no contact, no impact and no
+/// recovery force; a contact sample of an object that ignores a solid makes no contact with it. The default has no
+/// pair.
 ///
 /// A feature (vertex, edge, face, or sample) belongs to the object of its vertices; one whose vertices all are
 /// [`BETWEEN_OBJECTS`] belongs to none and ignores none.
@@ -15,13 +15,13 @@ pub struct PairPolicies {
     object_of_vertex: Vec<u16>,
     /// Objects of cloth that ignore each other, the smaller first, sorted.
     ignored: Vec<[u16; 2]>,
-    /// Objects of cloth with the index of a solid that they ignore, sorted.
+    /// Pairs of an object of cloth and the index of a solid that it ignores, sorted.
     ignored_solids: Vec<(u16, u32)>,
 }
 
 impl PairPolicies {
-    /// Policies for the vertices of a model: `object_of_vertex` says for each which object it is of, or
-    /// [`BETWEEN_OBJECTS`]; vertices beyond its end are of none. `ignored` are pairs of objects in any order,
+    /// Policies for the vertices of a model: `object_of_vertex` has the object of each or [`BETWEEN_OBJECTS`]; vertices
+    /// beyond its end belong to none. `ignored` are pairs of objects in any order,
     /// an object with itself where it ignores itself; `ignored_solids` are pairs of an object and an index
     /// into [`ModelParts::colliders`](crate::ModelParts::colliders).
     pub fn new(
@@ -57,7 +57,7 @@ impl PairPolicies {
         &self.ignored_solids
     }
 
-    /// The same for vertices of which each `vertices[v]` was one before, in a model with the same solids.
+    /// The policies for a selection of vertices: vertex `v` of the result is `vertices[v]`.
     #[must_use]
     pub fn taken(&self, vertices: &[u32]) -> Self {
         if self.ignored.is_empty() && self.ignored_solids.is_empty() {
@@ -73,7 +73,7 @@ impl PairPolicies {
         }
     }
 
-    /// The object that a feature belongs to; none where all its vertices hang in several.
+    /// The object of a feature; none where all its vertices are [`BETWEEN_OBJECTS`].
     pub(crate) fn object_of(&self, feature: &[u32]) -> Option<u16> {
         let objects = feature
             .iter()
@@ -101,8 +101,8 @@ impl PairPolicies {
         others
     }
 
-    /// The object of a contact sample on some vertices, for [`Self::ignores_solid`]; none where the sample
-    /// feels every solid because no object ignores any.
+    /// The object of a contact sample on some vertices, for [`Self::ignores_solid`]; none where no object ignores a
+    /// solid.
     #[inline]
     pub(crate) fn object_of_sample(&self, vertices: &[u32]) -> Option<u16> {
         if self.ignored_solids.is_empty() {

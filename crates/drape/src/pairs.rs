@@ -1,4 +1,4 @@
-//! The memory of L-BFGS: pairs of a step and the change of the gradient over it.
+//! Memory of L-BFGS: pairs of a step and the change of the gradient over it.
 
 use std::collections::VecDeque;
 use toile_geometry::Vec3;
@@ -12,35 +12,38 @@ struct Pair {
     product: f64,
 }
 
-/// The last steps of a descent.
+/// The correction pairs of the last steps, and the last iterate.
 #[derive(Default)]
 pub struct Pairs {
     pairs: VecDeque<Pair>,
     spare: Option<Pair>,
-    place: Vec<Vec3>,
+    /// The last iterate and its gradient.
+    iterate: Vec<Vec3>,
     gradient: Vec<Vec3>,
-    rest: Vec<Vec3>,
-    shares: Vec<f64>,
+    /// The vector q of the two-loop recursion.
+    remainder: Vec<Vec3>,
+    /// The factors a_i of the two-loop recursion, from new to old.
+    factors: Vec<f64>,
 }
 
-/// Least s.y as a share of |s| |y|: below it a pair says nothing but rounding.
+/// Least s.y as a share of |s| |y|: below it the product is rounding.
 const LEAST_CURVATURE: f64 = 1e-10;
 
 impl Pairs {
-    /// Forgets the steps, but not where the last one ended.
+    /// Removes all pairs; the last iterate remains.
     pub fn clear(&mut self) {
         self.pairs.clear();
     }
 
-    /// Whether nothing is remembered.
+    /// Whether there is no pair.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
-    /// Notes a place and the gradient there; the step from the one noted before is remembered where the
-    /// gradient rises along it, with no more than `most` others.
-    pub fn note(&mut self, x: &[Vec3], gradient: &[Vec3], most: usize) {
-        if self.place.len() == x.len() {
+    /// Adds an iterate with its gradient. The step from the last iterate becomes a pair if its curvature s.y is
+    /// positive; at most `most` pairs remain.
+    pub fn push(&mut self, x: &[Vec3], gradient: &[Vec3], most: usize) {
+        if self.iterate.len() == x.len() {
             let mut pair = match self.pairs.len() >= most {
                 true => self.pairs.pop_front().unwrap_or_default(),
                 false => self.spare.take().unwrap_or_default(),
@@ -49,7 +52,7 @@ impl Pairs {
                 to.clear();
                 to.extend(now.iter().zip(before).map(|(a, b)| a - b));
             };
-            difference(&mut pair.s, x, &self.place);
+            difference(&mut pair.s, x, &self.iterate);
             difference(&mut pair.y, gradient, &self.gradient);
             pair.product = dot(&pair.s, &pair.y);
             let scale = (dot(&pair.s, &pair.s) * dot(&pair.y, &pair.y)).sqrt();
@@ -58,31 +61,35 @@ impl Pairs {
                 false => self.spare = Some(pair),
             }
         }
-        self.place.clear();
-        self.place.extend_from_slice(x);
+        self.iterate.clear();
+        self.iterate.extend_from_slice(x);
         self.gradient.clear();
         self.gradient.extend_from_slice(gradient);
     }
 
-    /// The direction down from the place noted last, by the two loops (Nocedal and Wright 2006, algorithm
-    /// 7.4): q = g; for the pairs from new to old a_i = s_i.q / s_i.y_i, q -= a_i y_i; r = A^-1 q; from
-    /// old to new r += (a_i - y_i.r / s_i.y_i) s_i; the direction is -r. `solve` gives A^-1 of a vector.
-    pub fn aim(&mut self, direction: &mut [Vec3], solve: impl FnOnce(&[Vec3], &mut [Vec3])) {
-        let q = &mut self.rest;
+    /// The descent direction at the last iterate by the two-loop recursion (Nocedal and Wright 2006, algorithm 7.4):
+    /// q = g; for the pairs from new to old a_i = s_i.q / s_i.y_i, q -= a_i y_i; r = A^-1 q;
+    /// from old to new r += (a_i - y_i.r / s_i.y_i) s_i; the direction is -r. `solve` gives A^-1 of a vector.
+    pub fn descent_direction(
+        &mut self,
+        direction: &mut [Vec3],
+        solve: impl FnOnce(&[Vec3], &mut [Vec3]),
+    ) {
+        let q = &mut self.remainder;
         q.clone_from(&self.gradient);
-        self.shares.clear();
+        self.factors.clear();
         for pair in self.pairs.iter().rev() {
-            let share = dot(&pair.s, q) / pair.product;
-            self.shares.push(share);
+            let factor = dot(&pair.s, q) / pair.product;
+            self.factors.push(factor);
             for (q, y) in q.iter_mut().zip(&pair.y) {
-                *q -= y * share;
+                *q -= y * factor;
             }
         }
         solve(q, direction);
-        for (pair, &share) in self.pairs.iter().zip(self.shares.iter().rev()) {
-            let rest = share - dot(&pair.y, direction) / pair.product;
+        for (pair, &factor) in self.pairs.iter().zip(self.factors.iter().rev()) {
+            let correction = factor - dot(&pair.y, direction) / pair.product;
             for (r, s) in direction.iter_mut().zip(&pair.s) {
-                *r += s * rest;
+                *r += s * correction;
             }
         }
         for d in direction {
@@ -106,8 +113,8 @@ mod tests {
         for _ in 0..4 {
             let gradient = [h * x[0]];
             norms.push(gradient[0].norm());
-            pairs.note(&x, &gradient, 8);
-            pairs.aim(&mut direction, |q, r| r.copy_from_slice(q));
+            pairs.push(&x, &gradient, 8);
+            pairs.descent_direction(&mut direction, |q, r| r.copy_from_slice(q));
             let slope = gradient[0].dot(&direction[0]);
             assert!(slope < 0.0 || norms[norms.len() - 1] < 1e-12);
             let curvature = direction[0].dot(&(h * direction[0]));
@@ -123,18 +130,18 @@ mod tests {
     fn steps_along_which_the_gradient_falls_and_old_ones_are_not_remembered() {
         let mut pairs = Pairs::default();
         let at = |x: f64| vec![Vec3::x() * x];
-        pairs.note(&at(0.0), &at(0.0), 2);
+        pairs.push(&at(0.0), &at(0.0), 2);
         assert!(pairs.is_empty(), "one place is no step");
-        pairs.note(&at(1.0), &at(-1.0), 2);
+        pairs.push(&at(1.0), &at(-1.0), 2);
         assert!(pairs.is_empty());
         for k in 2..6 {
-            pairs.note(&at(f64::from(k)), &at(f64::from(k * k)), 2);
+            pairs.push(&at(f64::from(k)), &at(f64::from(k * k)), 2);
         }
         assert_eq!(pairs.pairs.len(), 2);
         assert_eq!(pairs.pairs[1].product, 9.0);
         pairs.clear();
         assert!(pairs.is_empty());
-        pairs.note(&at(9.0), &at(81.0), 2);
+        pairs.push(&at(9.0), &at(81.0), 2);
         assert_eq!(pairs.pairs[0].product, 4.0 * 56.0);
     }
 }

@@ -1,10 +1,9 @@
-//! The way to rest: pseudo-transient continuation (Kelley and Keyes 1998). Each step is one
-//! Newton iteration held back by inertia m/h^2 towards where the cloth is; h grows while all goes
-//! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
-//! and near rest it is Newton's method. The matrix of each step serves a few more, and then regions
-//! that hold most of the net force are brought to rest apart (nonlinear elimination). How much of the
-//! curvature that compression takes away is kept in the Hessian is found in the same way: as much as
-//! leaves it positive definite.
+//! Equilibrium by pseudo-transient continuation (Kelley and Keyes 1998). Each step is one Newton iteration with an
+//! added inertia m/h^2 about the present positions. The pseudo step h grows while full steps lower the residual and
+//! shrinks when the line search cuts a step: far from rest steps are short, near rest they are those of Newton's
+//! method. After each Newton step follow chord steps with the same factor, and then regions with most of the net force
+//! are solved by themselves (nonlinear elimination). The Hessian has the largest tried share of the negative curvature
+//! of compression with which it is positive definite.
 
 use crate::laws::membrane::Curvature;
 use crate::measure::{residual, weight_norm};
@@ -17,15 +16,15 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// When the way to rest ends, and how fast it may go.
+/// Settings of pseudo-transient continuation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestSettings {
-    /// Stop when net force over weight is below this.
+    /// Net force over weight at which it ends.
     pub residual: f64,
-    /// Steps at the most.
+    /// Most steps.
     pub steps: usize,
-    /// Longest move of a vertex in one step [m].
+    /// Longest displacement of a vertex in one step [m].
     pub longest_move: f64,
 }
 
@@ -40,7 +39,7 @@ impl Default for RestSettings {
     }
 }
 
-/// A drape on its way to rest.
+/// A run of pseudo-transient continuation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PseudoTransientContinuation {
@@ -50,20 +49,20 @@ pub struct PseudoTransientContinuation {
 
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
-/// Most chord steps after a Newton step: steps with the factor of its matrix.
+/// Most chord steps (same factor, new gradient) after a Newton step.
 const CHORDS: usize = 24;
-/// Chord steps end when the net force is below this share of the one at which the garment is at rest.
+/// Chord steps end when the net force is below this share of the one that counts as rest.
 const CHORD_END: f64 = 0.5;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
 const FIRST_STEP: f64 = 0.02;
-/// The same where a swing has brought the cloth near rest.
+/// First pseudo time step near rest, after a swing [s].
 const NEAR_STEP: f64 = 0.1;
 /// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
 const SHORTEST_STEP: f64 = 1e-6;
 const LONGEST_STEP: f64 = 100.0;
 
 impl PseudoTransientContinuation {
-    /// A new way to rest.
+    /// A run from any state.
     pub fn new(settings: RestSettings) -> Self {
         let memory = RestMemory {
             pseudo_step: FIRST_STEP,
@@ -78,19 +77,19 @@ impl PseudoTransientContinuation {
         Self { settings, memory }
     }
 
-    /// A new way that starts near rest, where a swing ended.
+    /// A run from a state near rest, after a swing.
     pub fn near(settings: RestSettings) -> Self {
         let mut run = Self::new(settings);
         run.memory.pseudo_step = NEAR_STEP;
         run
     }
 
-    /// Goes on from what a state remembers.
+    /// A run that continues from the memory of a state.
     pub fn resume(settings: RestSettings, memory: RestMemory) -> Self {
         Self { settings, memory }
     }
 
-    /// What a state is to remember to go on.
+    /// The memory that a state stores, to continue from.
     pub fn memory(&self) -> &RestMemory {
         &self.memory
     }
@@ -110,18 +109,18 @@ impl PseudoTransientContinuation {
         self.memory.steps
     }
 
-    /// Conjugate-gradient iterations taken in all.
+    /// Conjugate-gradient iterations in all steps.
     pub fn linear_iterations(&self) -> usize {
         self.memory.linear_iterations
     }
 
-    /// Whether the residual asked for is reached or the steps are used up.
+    /// Whether the residual of the settings is reached or the steps are used up.
     pub fn finished(&self) -> bool {
         self.memory.residual <= self.settings.residual || self.memory.steps >= self.settings.steps
     }
 
-    /// Asks for a smaller residual with as many steps again.
-    pub fn go_on(&mut self, residual: f64, more_steps: usize) {
+    /// Continues to a residual, with a number of further steps.
+    pub fn continue_to(&mut self, residual: f64, more_steps: usize) {
         self.settings.residual = residual;
         self.settings.steps = self.memory.steps + more_steps;
         self.memory.residual = f64::INFINITY;
@@ -133,8 +132,8 @@ impl PseudoTransientContinuation {
     /// Takes one step.
     ///
     /// # Errors
-    /// When numbers stop being finite or no step lowers the potential any more although the
-    /// residual is not reached; the state is then the last good one.
+    /// Numbers that are not finite; no step that lowers the potential although the residual is not reached. The state
+    /// is then the last good one.
     pub fn advance(
         &mut self,
         system: &System,
@@ -176,7 +175,7 @@ impl PseudoTransientContinuation {
                 if workspace.eliminate(system, state, enough) {
                     workspace.contacts.refresh(system, state, &state.positions);
                 }
-                workspace.contacts.settle(system, state);
+                workspace.contacts.remember_step(system, state);
                 let before = self.memory.residual;
                 self.memory.residual = residual(system, state, workspace);
                 self.adapt(&report, before);
@@ -203,8 +202,8 @@ impl PseudoTransientContinuation {
         Ok(())
     }
 
-    /// Grows the pseudo step while the full step is taken and the residual does not rise; shrinks
-    /// it when the line search or the limit on moves cut the step short.
+    /// Enlarges the pseudo step after a full step that does not raise the residual; shortens it where the line search
+    /// or the longest displacement limited the step.
     fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
         let (fraction, moved) = (report.fraction, report.moved);
         self.memory.curvature = report.next_curvature();
@@ -217,9 +216,9 @@ impl PseudoTransientContinuation {
         self.break_cycles();
     }
 
-    /// Newton's method can go round in a cycle between two sets of contacts. When the residual has
-    /// found no new low for long, the pseudo step is bounded ten times lower: inertia then damps
-    /// the cycle, though not what regions do that are brought to rest apart.
+    /// Newton's method can cycle between two sets of contacts. After `PATIENCE` steps without a new lowest residual the
+    /// bound of the pseudo step falls to a tenth: inertia then damps the cycle, except in regions that nonlinear
+    /// elimination solves by themselves.
     fn break_cycles(&mut self) {
         if self.memory.residual < 0.9 * self.memory.best {
             self.memory.best = self.memory.residual;

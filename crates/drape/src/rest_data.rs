@@ -1,4 +1,4 @@
-//! What follows from the rest shapes of a cloth and its materials: elements, bending, masses.
+//! Data that follow from the rest shapes and materials of a cloth: elements, bending, masses.
 
 use crate::bending_structure::Stencils;
 use crate::contact_sample::ContactSample;
@@ -12,32 +12,30 @@ use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_sparse::ScalarMatrix;
 
-/// What follows from rest shapes and materials.
+/// Data that follow from rest shapes and materials.
 #[derive(Clone)]
 pub struct RestData {
-    /// Membrane of each triangle.
+    /// Membrane element of each triangle.
     pub(crate) elements: Vec<MembraneElement>,
-    /// Bending over the vertices, the same for x, y and z [N/m].
+    /// Bending matrix over the vertices, the same for x, y and z [N/m].
     pub(crate) bending: ScalarMatrix,
-    /// Viscous matrix of bending, where any cloth has one: the pattern of `bending`.
+    /// Viscous matrix of bending in the pattern of `bending`; none without viscosity.
     pub(crate) viscous_bending: Option<ScalarMatrix>,
-    /// How the curvature of each triangle follows from its vertices; empty unless bending has viscosity or internal
-    /// strain.
+    /// Curvature stencil of each triangle; empty unless bending has viscosity or internal strain.
     pub(crate) stencils: Vec<BendingStencil>,
-    /// The same stencils where the topology holds its structure of bending; else empty.
+    /// The shared stencils where the topology has a structure of bending; else empty.
     pub(crate) curvatures: Stencils,
     /// Mass of each vertex [kg].
     pub mass: Vec<f64>,
-    /// Where the cloth is tested against solids from the start: at its vertices. A state has more where
-    /// it needs them.
+    /// Contact samples at the vertices. A state adds more in triangles that cross a solid.
     pub samples: Arc<Vec<ContactSample>>,
 }
 
 impl RestData {
-    /// Of rest shapes of a topology's triangles, caps exchanged.
+    /// The data for rest shapes of a topology's triangles after the exchange of caps.
     ///
     /// # Errors
-    /// A triangle without area, told as one of `object`.
+    /// A triangle without area; the message names `object`.
     pub(crate) fn new(
         object: &str,
         topology: &Topology,
@@ -59,11 +57,11 @@ impl RestData {
         })
     }
 
-    /// The same for other rest shapes of the same topology. Where that keeps its structure of bending, what did
-    /// not change is shared, and [`Self::curvatures`] must be those of these rest shapes.
+    /// The data for other rest shapes of the same topology. With a structure of bending unchanged stencils are shared,
+    /// and [`Self::curvatures`] must be those of `self`.
     ///
     /// # Errors
-    /// A triangle without area, told as one of `object`, and one that the structure does not serve.
+    /// A triangle without area, or one that is ill-conditioned in the structure; the message names `object`.
     pub(crate) fn reshaped(
         &self,
         object: &str,
@@ -96,7 +94,7 @@ impl RestData {
         })
     }
 
-    /// The rest shape of every triangle, its warp along the first axis [m].
+    /// The rest shape of each triangle, warp along the first axis [m].
     pub(crate) fn shapes(&self) -> Vec<[Vec2; 3]> {
         self.elements.iter().map(MembraneElement::rest).collect()
     }
@@ -114,7 +112,7 @@ fn elements(object: &str, rest: &[[Vec2; 3]]) -> Result<Vec<MembraneElement>, Dr
 }
 
 /// Lumps mass, area and friction at the vertices: a third of each triangle to each corner. A vertex on
-/// no triangle has no sample, and a mass of 1 kg so that nothing is divided by zero.
+/// no triangle has no sample, and a mass of 1 kg so that it has a finite inverse.
 fn lump(
     topology: &Topology,
     materials: &Materials,
@@ -158,7 +156,7 @@ fn lump(
     (mass, samples)
 }
 
-/// The bending of a cloth.
+/// The bending matrices of a cloth.
 struct Bending {
     elastic: ScalarMatrix,
     viscous: Option<ScalarMatrix>,
@@ -193,10 +191,10 @@ impl Bending {
             .iter()
             .any(|m| m.is_viscous()[1])
             .then(|| sum(Material::viscous_bend));
-        let kept = materials.list.iter().any(|m| m.relaxed_fraction[1] > 0.0);
+        let relaxes = materials.list.iter().any(|m| m.relaxed_fraction[1] > 0.0);
         Self {
             elastic,
-            stencils: if kept || viscous.is_some() {
+            stencils: if relaxes || viscous.is_some() {
                 stencils
             } else {
                 Vec::new()

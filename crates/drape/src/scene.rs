@@ -1,35 +1,35 @@
-//! The scene: every object of a simulation in one form, whatever file it came from.
+//! The scene: the description of a simulation, independent of file formats.
 
 use crate::environment::check_number;
 use crate::{Air, Cloth, Damping, DrapeError, Environment, Material, MethodSettings, Motion};
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Objects, elastics, gravity and air: one simulation.
+/// A simulation: objects, elastics, grips, environment, duration and method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
     /// The air.
     pub air: Air,
-    /// Damping of everything alike.
+    /// Rayleigh damping.
     pub damping: Damping,
     /// Simulated time [s].
     pub duration: f64,
     /// Step in time [s].
     pub step: f64,
-    /// Time between saved frames [s]; nothing saves the last state only.
+    /// Time between saved frames [s]; none to save only the last state.
     pub frame_step: Option<f64>,
-    /// How the motion is computed.
+    /// The method.
     pub method: MethodSettings,
-    /// How cloth meets surfaces.
+    /// Contact settings.
     pub contact: crate::ContactSettings,
     /// The objects.
     pub objects: Vec<SceneObject>,
     /// Attachment forces between them.
     pub elastics: Vec<SceneElastic>,
-    /// Vertices of cloth that are led along motions.
+    /// Vertices of cloth on a prescribed motion.
     pub grips: Vec<SceneGrip>,
-    /// Pairs of objects, by their index, that pass through each other; a cloth with itself passes through itself.
+    /// Pairs of object indices that pass through each other; a cloth paired with itself passes through itself.
     pub ignored: Vec<[usize; 2]>,
 }
 
@@ -53,45 +53,45 @@ impl Default for Scene {
     }
 }
 
-/// What moves an object of a scene file, with its data; in a running world [`crate::world::Kind`].
+/// The cause of an object's motion in a scene, with its data; in a running world it is [`crate::world::Kind`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObjectKind {
-    /// Nothing: cloth collides with it.
+    /// A solid at rest.
     Static,
-    /// A motion that nothing can stop: cloth collides with it. Only `xpbd` follows it.
+    /// A solid on a prescribed motion. Only `xpbd` supports it.
     Animated {
         /// The motion.
         motion: Motion,
     },
     /// The simulation: it is cloth.
     Deformable {
-        /// What it is made of.
+        /// Its material.
         material: Material,
         /// Vertices that do not move.
         pins: Vec<u32>,
     },
 }
 
-/// One object, its transform already applied.
+/// An object, with its transform applied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneObject {
     /// Unique name.
     pub name: String,
-    /// What moves it.
+    /// The cause of its motion.
     pub kind: ObjectKind,
     /// Its surface [m].
     pub mesh: TriangleMesh,
-    /// Rest shape of a garment's panels; nothing when the mesh itself is the rest shape.
+    /// Rest shape of a garment's panels; none where the mesh itself is the rest shape.
     pub cloth: Option<Cloth>,
-    /// Place of a cloth among those worn over one another: larger numbers lie farther out, on the
-    /// side that the triangles of the inner ones face; cloths of one number are in no order.
+    /// Layer of a cloth among cloths worn over one another. Larger numbers lie farther out, on the side of the inner
+    /// ones' normals; cloths of one layer have no order.
     pub layer: u16,
 }
 
 /// Largest number of a layer.
 pub const MOST_LAYER: u16 = 999;
 
-/// Vertices of one cloth that are led along a motion. Only `xpbd` leads them.
+/// Vertices of a cloth on a prescribed motion. Only `xpbd` supports them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneGrip {
     /// Index of the object.
@@ -112,31 +112,31 @@ pub enum SceneEnd {
         /// The vertex.
         vertex: u32,
     },
-    /// A place in space [m].
+    /// A point in space [m].
     Point(Vec3),
 }
 
-/// An attachment force in a scene.
+/// A spring of rest length zero in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneElastic {
-    /// The end it starts from.
+    /// The first end.
     pub from: SceneEnd,
-    /// The end it is drawn to.
+    /// The second end.
     pub to: SceneEnd,
     /// Stiffness [N/m].
     pub stiffness: f64,
-    /// The two vertices become one when closer than this [m]; nothing keeps them apart.
+    /// Distance below which the two vertices are merged [m]; none where they never are.
     pub merge_within: Option<f64>,
 }
 
-/// Steps a scene may take at the most: beyond this the step is surely a mistake.
+/// Most steps of a scene: more are a mistake in step or duration.
 const MOST_STEPS: f64 = 1e7;
 
 impl Scene {
-    /// Checks what can be checked before building anything.
+    /// Refuses an invalid scene before anything is built.
     ///
     /// # Errors
-    /// The first thing that does not fit, with its place and remedy.
+    /// The first invalid value, with its field and the remedy.
     pub fn check(&self) -> Result<(), DrapeError> {
         let refuse = |place: String, what: String, remedy: &str| {
             Err(DrapeError::Scene {
@@ -231,7 +231,7 @@ impl Scene {
         Ok(())
     }
 
-    /// What acts on every object alike.
+    /// Gravity, air, damping and contact.
     pub(crate) fn environment(&self) -> Environment {
         Environment {
             gravity: self.gravity,
@@ -242,7 +242,7 @@ impl Scene {
         }
     }
 
-    /// The materials that an object's cloth is made of; none for a solid.
+    /// The materials of an object's cloth; none for a solid.
     pub fn materials_of(object: &SceneObject) -> &[Material] {
         match (&object.kind, &object.cloth) {
             (ObjectKind::Deformable { .. }, Some(cloth)) => &cloth.materials,
@@ -308,7 +308,7 @@ impl Scene {
                 moved.push((format!("motion of \"{}\"", object.name), motion));
             }
         }
-        let mut held = std::collections::BTreeSet::new();
+        let mut gripped = std::collections::BTreeSet::new();
         for (index, grip) in self.grips.iter().enumerate() {
             let place = format!("grip {index}");
             let Some(object) = self.objects.get(grip.object) else {
@@ -327,7 +327,7 @@ impl Scene {
                 let what = format!("\"{}\" has no vertex {vertex}", object.name);
                 return refuse(place, what, "name a vertex below the object's vertex count");
             }
-            let taken = |v: &&u32| !held.insert((grip.object, **v));
+            let taken = |v: &&u32| !gripped.insert((grip.object, **v));
             if let Some(vertex) = grip.vertices.iter().find(taken) {
                 let what = format!("vertex {vertex} of \"{}\" is gripped already", object.name);
                 return refuse(place, what, "name each vertex in one grip, once");

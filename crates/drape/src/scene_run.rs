@@ -1,5 +1,5 @@
-//! Running a scene: a world stepped in time by a method, or led to rest by one; what its attachments draw
-//! together is merged.
+//! The run of a scene: a method steps its world in time or to equilibrium, and vertices that attachments have brought
+//! together are merged.
 
 use crate::collision::Tally;
 use crate::digest::Digest;
@@ -13,18 +13,18 @@ use std::collections::BTreeMap;
 use std::ops::{Deref, Range};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// How long a scene is stepped and how.
+/// Duration, step and method of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeSettings {
     /// Simulated time [s].
     pub duration: f64,
     /// Step in time [s].
     pub step: f64,
-    /// How the motion is computed.
+    /// The method.
     pub method: MethodSettings,
 }
 
-/// A scene on its way.
+/// The run of a scene.
 pub struct SceneRun {
     simulation: Simulation,
     settings: TimeSettings,
@@ -33,24 +33,23 @@ pub struct SceneRun {
     steps: usize,
     split_steps: usize,
     refinements: usize,
-    /// What methods counted before the one in hand was built.
+    /// Counts of the methods before the present one.
     tally: Option<Tally>,
-    /// Whether the method was built anew after the last step.
+    /// Whether the method was rebuilt after the last step.
     is_renewed: bool,
-    /// Whether the world is not, or no more, the one of a scene.
+    /// Whether the world is not that of a scene, from the start or after an edit.
     is_edited: bool,
 }
 
-/// All that a scene's run is between two steps but the scene itself, which it is resumed with: plain data, to be
-/// written to a file.
+/// A scene's run between two steps, without the scene, which has to be given again to resume: plain data for a file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneCheckpoint {
     /// Digest of the scene.
     scene: u64,
-    /// Pairs of vertices that were merged on the way.
+    /// Pairs of vertices merged during the run.
     merged: Vec<[MeshVertex; 2]>,
-    /// Where the vertices lay when the structure was made [m].
+    /// Positions of the vertices when the structure was compiled [m].
     layout: Vec<Vec3>,
     state: State,
     control: Control,
@@ -60,9 +59,9 @@ pub struct SceneCheckpoint {
     tally: Option<Tally>,
 }
 
-/// Steps between two looks for cloth that crosses a body between its samples, and how often it may
-/// be tested more finely.
+/// Steps between two searches for triangles that cross a solid between their contact samples.
 const STEPS_TO_REFINE: usize = 4;
+/// Most rounds of refined contact samples.
 const MOST_REFINEMENTS: usize = 24;
 
 impl Deref for SceneRun {
@@ -74,21 +73,21 @@ impl Deref for SceneRun {
 }
 
 impl SceneRun {
-    /// What acts in the next steps beside the world's own: hands on the cloth, for instance. An edit takes it back.
+    /// The control of the next steps: attachments of hands on the cloth, gravity, air. An edit resets it.
     pub fn control_mut(&mut self) -> &mut Control {
         &mut self.simulation.system.control
     }
 
-    /// The state, to be changed between two steps.
+    /// The state, mutable between two steps.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.simulation.state
     }
 
-    /// Of a scene.
+    /// The run of a scene.
     ///
     /// # Errors
-    /// Whatever [`Scene::check`] and [`Simulation::new`] refuse, a scene without cloth, and one that asks its
-    /// method for what that does not know.
+    /// Those of [`Scene::check`] and [`Simulation::new`], a scene without cloth, and a feature that the method does not
+    /// support.
     pub fn new(scene: &Scene) -> Result<Self, DrapeError> {
         let world = World::of_scene(scene)?;
         world.check_features(scene.method.kind)?;
@@ -104,10 +103,10 @@ impl SceneRun {
         })
     }
 
-    /// Steps a simulation in time from its present state: a garment that was draped, for instance.
+    /// A run from the present state of a simulation, for instance of a draped garment.
     ///
     /// # Errors
-    /// A world that asks the method for what that does not know.
+    /// A feature of the world that the method does not support.
     pub fn of_simulation(
         simulation: Simulation,
         settings: TimeSettings,
@@ -127,10 +126,10 @@ impl SceneRun {
         })
     }
 
-    /// Goes on from a checkpoint of a scene.
+    /// Resumes a checkpoint of a scene.
     ///
     /// # Errors
-    /// A checkpoint of another scene, or one that does not fit itself.
+    /// A checkpoint of another scene, or one whose fields contradict each other.
     pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint) -> Result<Self, DrapeError> {
         let refuse = |place: &str, what: String| DrapeError::Scene {
             place: format!("checkpoint, {place}"),
@@ -149,7 +148,7 @@ impl SceneRun {
         let simulation = Simulation::laid_out(world, checkpoint.layout, Solids::new());
         run.simulation = simulation.map_err(|error| refuse("layout", error.to_string()))?;
         run.simulation
-            .go_on_from(checkpoint.state, checkpoint.control)?;
+            .restore(checkpoint.state, checkpoint.control)?;
         run.steps = checkpoint.steps;
         run.split_steps = checkpoint.split_steps;
         run.refinements = checkpoint.refinements;
@@ -157,19 +156,19 @@ impl SceneRun {
         Ok(run)
     }
 
-    /// Steps to the next checkpoint at the most: where cloth meets cloth there is one each simulated second and
-    /// wherever something is merged; else after every step.
+    /// Most steps to the next checkpoint. With contact of cloth with cloth there is one after each simulated second and
+    /// after each merge; without it after each step.
     pub fn steps_to_checkpoint(&self) -> usize {
-        match self.is_renewed || !self.meets_itself() {
+        match self.is_renewed || !self.has_cloth_contact() {
             true => 0,
             false => self.span() - self.steps % self.span(),
         }
     }
 
-    /// All that it takes to go on from here with its scene in another process to the same bytes.
+    /// A checkpoint from which another process with the same scene goes on to the same bytes.
     ///
     /// # Errors
-    /// Between two checkpoints, after edits from outside, and for methods that keep what no state has.
+    /// Between two checkpoints, after edits, and for methods with a memory outside the state.
     pub fn checkpoint(&self, scene: &Scene) -> Result<SceneCheckpoint, DrapeError> {
         let refuse = |what: String, remedy: &str| {
             Err(DrapeError::Scene {
@@ -204,9 +203,8 @@ impl SceneRun {
         })
     }
 
-    /// Whether contact of cloth with cloth is looked for: what was found at one look changes which of several right
-    /// answers is found at the next.
-    fn meets_itself(&self) -> bool {
+    /// Whether there is contact of cloth with cloth, whose search structures influence the order of later results.
+    fn has_cloth_contact(&self) -> bool {
         self.system.contact.cloth_offset > 0.0
     }
 
@@ -215,20 +213,20 @@ impl SceneRun {
         ((1.0 / self.settings.step).round() as usize).max(1)
     }
 
-    /// Builds the method anew; what it has to remember is in the state.
-    fn renew(&mut self) {
+    /// Rebuilds the method; its memory is in the state.
+    fn rebuild_method(&mut self) {
         self.tally = self.cloth_tally();
         self.method = self.settings.method.build();
         self.workspace = Workspace::default();
         self.is_renewed = true;
     }
 
-    /// How long it is stepped and how.
+    /// Duration, step and method.
     pub fn settings(&self) -> &TimeSettings {
         &self.settings
     }
 
-    /// Whether the duration is over, or rest is reached.
+    /// Whether the duration is over or equilibrium is reached.
     pub fn finished(&self) -> bool {
         let TimeSettings {
             duration,
@@ -241,7 +239,7 @@ impl SceneRun {
         self.steps as f64 * step >= duration - 1e-9 * step
     }
 
-    /// Share of the way, 0..=1.
+    /// Share of the run that is done, 0..=1.
     pub fn share(&self) -> f64 {
         let TimeSettings { duration, step, .. } = self.settings;
         match self.method.residual() {
@@ -256,15 +254,15 @@ impl SceneRun {
         self.steps
     }
 
-    /// Steps that had to be cut into smaller ones.
+    /// Steps that were divided after a failure.
     pub fn split_steps(&self) -> usize {
         self.split_steps
     }
 
-    /// Takes one step, then merges what attachments have drawn together.
+    /// Takes one step, then merges vertices that attachments have brought together.
     ///
     /// # Errors
-    /// When a step fails at every size; the state is the last good one.
+    /// A step that fails at every size; the state is then the last good one.
     pub fn advance(&mut self) -> Result<(), DrapeError> {
         let Simulation { system, state, .. } = &mut self.simulation;
         let report = self.method.advance(system, state, self.settings.step)?;
@@ -278,19 +276,19 @@ impl SceneRun {
         if !closed.is_empty() {
             self.simulation.edit(WorldEdit::Merge(closed))?;
             self.refinements = 0;
-            self.renew();
+            self.rebuild_method();
         }
         let in_time = !self.settings.method.kind.is_equilibrium();
-        if in_time && self.meets_itself() && self.steps.is_multiple_of(self.span()) {
-            self.renew();
+        if in_time && self.has_cloth_contact() && self.steps.is_multiple_of(self.span()) {
+            self.rebuild_method();
         }
         Ok(())
     }
 
-    /// Changes the world between two steps and goes on from its present state.
+    /// Edits the world between two steps; the run goes on from the present state.
     ///
     /// # Errors
-    /// What does not fit, by name, and what the method does not know; all is then as it was.
+    /// An edit that does not fit, and a feature that the method does not support; the run is then unchanged.
     pub fn edit(&mut self, edit: WorldEdit) -> Result<Edited, DrapeError> {
         let before = self.simulation.clone();
         let edited = self.simulation.edit(edit)?;
@@ -302,13 +300,13 @@ impl SceneRun {
         if edited.is_restructured {
             self.refinements = 0;
         }
-        // Solids and policies that were looked up may be others now.
-        self.renew();
+        // The method may have cached solids and policies.
+        self.rebuild_method();
         Ok(edited)
     }
 
-    /// Tests contact more finely where cloth crosses a body although its corners keep off: where a
-    /// body is too sharp for the triangles on it.
+    /// Refines contact samples of triangles that cross a solid although their corners are clear of it: where the solid
+    /// is too sharp for the mesh.
     fn refine(&mut self) {
         let Simulation { system, state, .. } = &mut self.simulation;
         if system.colliders.is_empty() || self.refinements >= MOST_REFINEMENTS {
@@ -325,9 +323,9 @@ impl SceneRun {
                 !system.policies.ignores_solid(object, number)
             };
             let clear = |&v: &u32| {
-                let place = state.positions[v as usize];
-                let off = 0.5 * system.contact.offset;
-                collider.exact_distance(pose.as_ref(), place) > off
+                let position = state.positions[v as usize];
+                let clearance = 0.5 * system.contact.offset;
+                collider.exact_distance(pose.as_ref(), position) > clearance
             };
             let pairs = collider.crossings(state.time, &mesh);
             let crossing = pairs.iter().map(|pair| pair[0]).filter(meets);
@@ -341,7 +339,7 @@ impl SceneRun {
         }
     }
 
-    /// What contact of cloth with cloth found and did, where the method counts it.
+    /// Counts of contact of cloth with cloth so far; none where the method has no such counts.
     pub fn cloth_tally(&self) -> Option<Tally> {
         match (self.tally, self.method.cloth_tally()) {
             (Some(before), Some(now)) => Some(before.then(now)),
@@ -349,13 +347,13 @@ impl SceneRun {
         }
     }
 
-    /// Surface of every object as it lies now, in order.
+    /// The present surfaces of all objects, in order.
     pub fn meshes(&self) -> Vec<TriangleMesh> {
         let ids = self.world().objects().map(|(id, _)| id);
         ids.filter_map(|id| self.mesh_of(id)).collect()
     }
 
-    /// Some objects as one surface, whose merged vertices are common.
+    /// Some objects as one surface with shared merged vertices.
     pub fn surface(&self, objects: &[ObjectId]) -> Surface {
         let mut surface = Surface::default();
         let mut number: BTreeMap<u32, u32> = BTreeMap::new();
@@ -365,13 +363,13 @@ impl SceneRun {
             };
             let first = surface.mesh.triangles.len();
             let own = self.map().vertices_of(id);
-            let places = &mut surface.mesh.positions;
+            let positions = &mut surface.mesh.positions;
             let mut numbers = Vec::with_capacity(mesh.positions.len());
-            for (k, place) in mesh.positions.iter().enumerate() {
-                let fresh = places.len() as u32;
+            for (k, position) in mesh.positions.iter().enumerate() {
+                let fresh = positions.len() as u32;
                 let at = own.map_or(fresh, |own| *number.entry(own[k]).or_insert(fresh));
                 if at == fresh {
-                    places.push(*place);
+                    positions.push(*position);
                 }
                 numbers.push(at);
             }
@@ -385,12 +383,12 @@ impl SceneRun {
         surface
     }
 
-    /// Largest gap of an elastic that still acts [m].
+    /// Largest gap of an elastic or of an attachment [m].
     pub fn elastic_gap(&self) -> f64 {
         let gap = |elastic: Elastic| elastic.gap(&self.state.positions).norm();
-        let frames = self.system.control.frames.iter().map(|one| {
-            let place = one.place(self.state.time);
-            (self.state.positions[one.vertex as usize] - place).norm()
+        let frames = self.system.control.frames.iter().map(|frame| {
+            let target = frame.target(self.state.time);
+            (self.state.positions[frame.vertex as usize] - target).norm()
         });
         let all = self.system.elastics().map(gap).chain(frames);
         all.fold(0.0, f64::max)
@@ -402,14 +400,14 @@ impl SceneRun {
         whole_energy(system, state, &mut self.workspace)
     }
 
-    /// Pairs of cloth triangles that intersect and share no vertex, exactly, but for those of objects that ignore
-    /// each other.
+    /// Number of pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of
+    /// objects that ignore each other.
     pub fn crossings(&self) -> usize {
         let mesh = self.system.mesh(&self.state.positions);
         self_intersections(&self.system, &SurfaceTree::new(mesh)).len()
     }
 
-    /// Net force over weight of a state measured, where that says how far from rest it is.
+    /// Net force over weight in some measures; none where the method does not balance forces.
     pub fn residual_of(&self, measures: &Measures) -> Option<f64> {
         let balances = self.settings.method.kind.balances_forces();
         balances.then_some(measures.residual)
@@ -422,7 +420,7 @@ impl SceneRun {
     }
 }
 
-/// Of all that a scene says: numbers are told apart to the last bit.
+/// Digest of a scene; its debug format is exact to the last bit of a number.
 fn digest(scene: &Scene) -> u64 {
     let mut digest = Digest::new();
     digest.text(&format!("{scene:?}"));
@@ -432,7 +430,7 @@ fn digest(scene: &Scene) -> u64 {
 /// Some objects as one surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// The objects, each with its triangles.
+    /// The objects with their ranges of triangles.
     pub objects: Vec<(ObjectId, Range<usize>)>,
     /// Vertices [m] and triangles.
     pub mesh: TriangleMesh,

@@ -1,5 +1,5 @@
-//! Sewing: elastics along the seams draw the panels together round the body until they can be
-//! merged. No gravity and no friction act meanwhile; the motion is damped.
+//! Sewing: springs along the seams draw the panels together round the body until the seams can be merged, by damped
+//! implicit Euler without gravity and friction.
 
 use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::Curvature;
@@ -7,13 +7,13 @@ use crate::step::{StepSettings, step_in_time};
 use crate::{DrapeError, LinearSolver, NewtonSettings, PcgLimits, State, System, Workspace};
 use serde::{Deserialize, Serialize};
 
-/// How panels are drawn together.
+/// Settings of sewing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SewSettings {
-    /// Gap at which the two sides of a seam may be merged [m].
+    /// Largest gap of a seam at which its sides are merged [m].
     pub merge_within: f64,
-    /// Steps at the most.
+    /// Most steps.
     pub steps: usize,
 }
 
@@ -27,12 +27,12 @@ impl Default for SewSettings {
     }
 }
 
-/// Panels on their way together.
+/// A run of sewing.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SewRun {
     settings: SewSettings,
-    /// Those of the level it is of: not saved.
+    /// The stitched vertex pairs of the level; not saved.
     #[serde(skip)]
     stitches: Vec<[u32; 2]>,
     stiffness: f64,
@@ -51,14 +51,14 @@ const STEP: f64 = 1.0 / 60.0;
 const DRAG: f64 = 5.0;
 /// Speed limit while sewing [m/s]: 20 mm a step, less than the body's thinnest half limb.
 const SPEED_LIMIT: f64 = 1.2;
-/// Strain that the pull of a seam may cause in the cloth beside it, at first.
+/// Strain of the cloth beside a seam under the largest force of its springs, before that force is raised.
 const PULL_STRAIN: f64 = 0.2;
-/// Steps without progress before the elastics pull harder.
+/// Steps without progress after which the springs get stiffer and stronger.
 const PATIENCE: usize = 12;
 
 impl SewRun {
-    /// Prepares a model for sewing: its elastics become the stitches, with a stiffness and a
-    /// largest force that follow from the cloth's own stiffness and the mesh's edge length.
+    /// Starts sewing: replaces the elastics of the system by springs at the stitches. Their stiffness follows from the
+    /// stretch stiffness of the cloth, their largest force also from the edge length of the mesh.
     pub fn new(system: &mut System, stitches: Vec<[u32; 2]>, settings: SewSettings) -> Self {
         let area: f64 = system.rest.elements.iter().map(|e| e.area).sum();
         let edge = (area / system.rest.elements.len().max(1) as f64 * 2.31).sqrt();
@@ -84,7 +84,7 @@ impl SewRun {
         run
     }
 
-    /// Goes on with the stitches of its level, which become the elastics of a system of it again.
+    /// Resumes a saved run: the stitches of its level become the elastics of the system again.
     pub(crate) fn resume(&mut self, system: &mut System, stitches: Vec<[u32; 2]>) {
         self.stitches = stitches;
         self.set_elastics(system);
@@ -110,8 +110,8 @@ impl SewRun {
         self.gap
     }
 
-    /// Measures the gap without a step.
-    pub fn look(&mut self, state: &State) {
+    /// Measures the largest gap without a step.
+    pub fn measure_gap(&mut self, state: &State) {
         self.gap = self.gap(state);
     }
 
@@ -128,7 +128,7 @@ impl SewRun {
     /// Takes one step.
     ///
     /// # Errors
-    /// When the seams stay open within the steps allowed, or a step fails at every size.
+    /// Seams still open after the allowed steps; a step that fails at every size.
     pub fn advance(
         &mut self,
         system: &mut System,

@@ -1,4 +1,4 @@
-//! The state: all that changes as a simulation runs and is needed to go on.
+//! The state of a simulation: all data that change with time and are needed to continue.
 
 use crate::collision::ClothMemory;
 use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// Positions, velocities, and what contact and methods remember. A new field is also to be carried over edits
+/// Positions, velocities, and the memories of contact and methods. A new field has to be transferred over edits
 /// (`world/transfer.rs`) and raises the version of saved checkpoints (`VERSION` in `toile-interchange`).
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -15,20 +15,19 @@ pub struct State {
     pub positions: Vec<Vec3>,
     /// Velocities [m/s].
     pub velocities: Vec<Vec3>,
-    /// Where the cloth is tested against solid surfaces: at its vertices, and within triangles where it
-    /// went on crossing.
+    /// Contact samples: at the vertices, and within triangles that crossed a solid.
     pub samples: Arc<Vec<ContactSample>>,
-    /// Where each contact sample sticks to a surface [m]; none while it is free.
+    /// Friction anchor of each contact sample [m]; none without contact.
     pub anchors: Vec<Option<Vec3>>,
     /// Normal force on each contact sample in the last step [N].
     pub normal_forces: Vec<f64>,
-    /// What contact of cloth with cloth remembers.
+    /// Memory of contact of cloth with cloth.
     pub cloth: ClothMemory,
     /// Internal strain of each triangle's standard linear solid; empty unless a material relaxes.
     pub internal_strain: Vec<InternalStrain>,
     /// Simulated time [s].
     pub time: f64,
-    /// What the method remembers.
+    /// Memory of the method.
     pub memory: Memory,
 }
 
@@ -39,7 +38,7 @@ impl Clone for State {
         copy
     }
 
-    /// Copies into the memory that is there: a step that keeps its start allocates nothing.
+    /// Copies into the allocated vectors, so that a step that copies its start allocates nothing.
     fn clone_from(&mut self, from: &Self) {
         let Self {
             positions,
@@ -65,7 +64,7 @@ impl Clone for State {
 }
 
 impl State {
-    /// At rest at some positions.
+    /// A state at rest at some positions [m].
     pub fn at_rest(model: &Model, positions: Vec<Vec3>) -> Self {
         Self {
             velocities: vec![Vec3::zeros(); positions.len()],
@@ -80,22 +79,22 @@ impl State {
         }
     }
 
-    /// Lets a way to rest begin anew: the forces are others than those it remembers.
-    pub(crate) fn begin_rest_anew(&mut self) {
+    /// Clears the memory of an equilibrium method, after a change of the forces.
+    pub(crate) fn clear_equilibrium_memory(&mut self) {
         if let Memory::Rest(_) | Memory::Relaxation(_) = self.memory {
             self.memory = Memory::Nothing;
         }
     }
 
-    /// Makes room for contact samples that were added.
+    /// Adds friction memory for new contact samples.
     pub fn follow_samples(&mut self) {
         self.anchors.resize(self.samples.len(), None);
         self.normal_forces.resize(self.samples.len(), 0.0);
     }
 
-    /// Refuses a state that does not fit a model, by the field.
+    /// Refuses a state that does not fit a model, and names the field.
     pub(crate) fn check(&self, model: &Model) -> Result<(), DrapeError> {
-        // Taken apart whole: a new field does not compile before it is checked or named as free.
+        // Exhaustive patterns: a new field does not compile before it is checked or ignored by name.
         let Self {
             positions,
             velocities,
@@ -108,11 +107,11 @@ impl State {
             memory: _,
         } = self;
         let ClothMemory {
-            places,
-            held,
+            positions: previous,
+            friction,
             layer_reach: _,
-            drawn,
-            crossed_for,
+            recovery_directions,
+            crossing_counts,
         } = cloth;
         let [count, triangles] = [model.vertex_count(), model.topology.triangles.len()];
         let of_sample = |sample: &ContactSample| {
@@ -120,8 +119,8 @@ impl State {
             corners && sample.triangle.is_none_or(|t| (t as usize) < triangles)
         };
         let is_vertex = |v: u32| (v as usize) < count;
-        let mut pairs = held.iter().map(|held| held.pair.vertices());
-        let mut pulled = drawn.iter().map(|drawn| drawn.vertex);
+        let mut pairs = friction.iter().map(|contact| contact.pair.vertices());
+        let mut recovering = recovery_directions.iter().map(|entry| entry.vertex);
         let is_full = |length: usize, whole: usize| length == 0 || length == whole;
         let fits = [
             ("positions", positions.len() == count),
@@ -129,14 +128,20 @@ impl State {
             ("samples", samples.iter().all(of_sample)),
             ("anchors", anchors.len() == samples.len()),
             ("normal_forces", normal_forces.len() == samples.len()),
-            ("cloth.places", is_full(places.len(), count)),
+            ("cloth.positions", is_full(previous.len(), count)),
             (
-                "cloth.held",
+                "cloth.friction",
                 pairs.all(|pair| pair.into_iter().all(is_vertex)),
             ),
-            ("cloth.held", held.is_empty() || !places.is_empty()),
-            ("cloth.drawn", pulled.all(is_vertex)),
-            ("cloth.crossed_for", is_full(crossed_for.len(), count)),
+            (
+                "cloth.friction",
+                friction.is_empty() || !previous.is_empty(),
+            ),
+            ("cloth.recovery_directions", recovering.all(is_vertex)),
+            (
+                "cloth.crossing_counts",
+                is_full(crossing_counts.len(), count),
+            ),
             ("internal strain", is_full(internal_strain.len(), triangles)),
         ];
         if let Some((field, _)) = fits.iter().find(|(_, fits)| !fits) {

@@ -1,31 +1,30 @@
-//! Steps of sewing by implicit Euler, with recovery: a failed step is undone and tried with half
-//! the size; if that goes on failing it is an error, never a result. The method `implicit-euler` of scenes is
-//! in `methods/implicit.rs`.
+//! Steps of sewing by implicit Euler. A failed step is undone and repeated as two of half the size, down to a smallest
+//! size at which failure is an error. The method `implicit-euler` of scenes is in `methods/implicit.rs`.
 
 use crate::{DrapeError, Inertia, NewtonReport, NewtonSettings, State, System, Workspace};
 use toile_geometry::Vec3;
 
-/// How a step in time is taken.
+/// Settings of a step in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepSettings {
     /// Step [s].
     pub step: f64,
     /// Drag per mass [1/s]: a free velocity falls by exp(-drag t).
     pub drag: f64,
-    /// Largest speed a vertex keeps after a step [m/s].
+    /// Limit of the speed of a vertex after a step [m/s].
     pub speed_limit: f64,
-    /// Newton iterations, tolerance, longest move, linear solver.
+    /// Newton iterations, tolerance, longest displacement, linear solver.
     pub newton: NewtonSettings,
 }
 
-/// Halvings of a step before it is an error: a thousandth of the step asked for.
+/// Most halvings of a step, to a thousandth of its size.
 const STEP_HALVINGS: u32 = 10;
 
-/// Advances by `settings.step`, in smaller steps where one fails. Returns the last solve's report
-/// and the number of pieces the step was cut into.
+/// Advances by `settings.step`, in smaller steps after a failure. Returns the report of the last solve and the number
+/// of steps.
 ///
 /// # Errors
-/// The state is left as it was when even the smallest step fails.
+/// Failure of the smallest step; the state is then unchanged.
 pub fn step_in_time(
     system: &System,
     state: &mut State,
@@ -73,7 +72,7 @@ fn failure(
     }
 }
 
-/// One step: minimise Phi with w = m (1 + drag h) / h^2 and y = x + h v / (1 + drag h); then
+/// One step: minimises Phi with w = m (1 + drag h) / h^2 and y = x + h v / (1 + drag h); then
 /// v = (x' - x) / h.
 fn implicit_euler(
     system: &System,
@@ -117,7 +116,7 @@ fn implicit_euler(
         };
     }
     workspace.contacts.refresh(system, state, &state.positions);
-    workspace.contacts.settle(system, state);
+    workspace.contacts.remember_step(system, state);
     state.time += h;
     report
 }

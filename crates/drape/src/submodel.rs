@@ -1,4 +1,5 @@
-//! A region of the cloth as a model of its own, its rim pinned: nonlinear elimination brings it to rest by itself.
+//! A region of the cloth as a model of its own with a pinned rim, which nonlinear elimination brings to equilibrium by
+//! itself.
 
 use crate::collision::ClothContact;
 use crate::laws::elastic::ElasticLaw;
@@ -11,21 +12,20 @@ use std::sync::Arc;
 use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 
-/// Some vertices of a model, free to move, and those they are coupled with, pinned.
+/// A submodel: some free vertices of a model, its own, and the pinned rim of all vertices coupled with them.
 pub struct SubModel {
-    /// The region as a model of its own: its potential is the whole's but for a constant.
+    /// The system of the region: its potential is that of the whole up to a constant.
     pub system: System,
     /// Its state.
     pub state: State,
-    /// Contacts of cloth with cloth at its own vertices, as found on the whole: none are detected in the
-    /// submodel.
+    /// Contacts of cloth with cloth at its own vertices, detected in the whole; the submodel detects none.
     pub touching: Vec<ClothContact>,
-    /// Vertices of the whole, own ones first.
+    /// Vertices in the whole, own ones first.
     vertices: Vec<u32>,
     own: usize,
 }
 
-/// Numbers of vertices in the submodel: its own first, then those of the rim as they are met.
+/// Numbering of the submodel's vertices: its own first, then those of the rim in order of their first use.
 struct Numbers {
     numbers: BTreeMap<u32, u32>,
     vertices: Vec<u32>,
@@ -48,7 +48,7 @@ impl Numbers {
         })
     }
 
-    /// Whether any of some vertices with a weight is the submodel's own.
+    /// Whether any vertex with a nonzero weight is the submodel's own.
     fn moves(&self, vertices: &[u32], weights: &[f64]) -> bool {
         let own = |v: &u32| self.numbers.get(v).is_some_and(|&n| n < self.own as u32);
         vertices
@@ -57,8 +57,8 @@ impl Numbers {
             .any(|(v, w)| *w != 0.0 && own(v))
     }
 
-    /// The rows of bending that own vertices take part in. Energy counts a pair once in each
-    /// vertex's row, so the rim's rows hold what couples them with own vertices.
+    /// The bending entries with an own vertex. The energy counts a pair once in the row of each of its vertices, so
+    /// rows of the rim have their entries with own vertices.
     fn bending(&mut self, system: &System) -> Vec<(u32, u32, f64)> {
         let mut entries = Vec::new();
         for i in 0..self.own {
@@ -74,7 +74,7 @@ impl Numbers {
         entries
     }
 
-    /// Elastics at own vertices between two, in their order.
+    /// Elastics between vertices with an own vertex, in their order.
     fn couplings(&mut self, system: &System) -> Vec<([u32; 2], ElasticLaw)> {
         let uses = self.vertices[..self.own].iter();
         let uses = uses.flat_map(|&v| system.couplings.at(v as usize));
@@ -92,10 +92,10 @@ impl Numbers {
     fn attachments(&mut self, system: &System) -> Attachments {
         let own = (0..).zip(&self.vertices[..self.own]);
         let attachments = own.flat_map(|(number, &v)| {
-            let there = system.control.attachments.at(v as usize).1.iter();
-            there.map(move |one| Attachment {
+            let at_vertex = system.control.attachments.at(v as usize).1.iter();
+            at_vertex.map(move |attachment| Attachment {
                 vertex: number,
-                ..*one
+                ..*attachment
             })
         });
         attachments.collect()
@@ -114,8 +114,8 @@ impl Numbers {
         touching
     }
 
-    /// Contact samples on own vertices, with their numbers in the whole; `triangles` are those of
-    /// the submodel, ascending.
+    /// Contact samples with an own vertex, and their indices in the whole; `triangles` are those of the submodel,
+    /// ascending.
     fn samples(&mut self, all: &[ContactSample], triangles: &[u32]) -> Vec<(usize, ContactSample)> {
         let mut samples = Vec::new();
         for (at, sample) in all.iter().enumerate() {
@@ -134,8 +134,8 @@ impl Numbers {
 }
 
 impl SubModel {
-    /// The submodel of some free vertices; `contacts` are those of cloth with cloth. Viscosity and internal strain
-    /// of bending, and moving air, are left out: see where [`crate::newton::elimination`] refuses them.
+    /// The submodel of some free vertices; `contacts` are those of cloth with cloth. It has no viscosity, no internal
+    /// strain of bending and no wind: [`crate::newton::elimination`] refuses systems with these.
     pub fn new(system: &System, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
         let corners = (own.iter()).flat_map(|&v| system.topology.corners_of(v as usize));
         let mut used: Vec<u32> = corners.map(|corner| corner / 3).collect();
@@ -224,13 +224,14 @@ impl SubModel {
         }
     }
 
-    /// Its own vertices, as numbered in the whole, and where they are [m].
-    pub fn places(&self) -> impl Iterator<Item = (u32, Vec3)> + '_ {
+    /// Its own vertices, as numbered in the whole, with their positions [m].
+    pub fn own_positions(&self) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let own = self.vertices[..self.own].iter().copied();
         own.zip(self.state.positions.iter().copied())
     }
 }
 
+/// The elements of a slice at some indices.
 fn taken<T: Copy>(which: &[u32], from: &[T]) -> Vec<T> {
     which.iter().map(|&k| from[k as usize]).collect()
 }
@@ -306,8 +307,8 @@ mod tests {
             .increment
             .begin_static(&submodel.system, &submodel.state);
         alone.contacts.cloth.contacts.clone_from(&submodel.touching);
-        let places = &submodel.state.positions;
-        (alone.contacts).refresh_surfaces(&submodel.system, &submodel.state, places);
+        let positions = &submodel.state.positions;
+        (alone.contacts).refresh_surfaces(&submodel.system, &submodel.state, positions);
         assert!(alone.contacts.active.iter().any(|c| c.plane.depth > 0.0));
         let triangles = submodel
             .state
@@ -315,7 +316,7 @@ mod tests {
             .iter()
             .filter(|s| s.triangle.is_some());
         assert_eq!(triangles.count(), 4);
-        alone.fill_gradient(&submodel.system, places, None);
+        alone.fill_gradient(&submodel.system, positions, None);
         let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         for (k, &v) in own.iter().enumerate() {
             let off = (alone.gradient[k] + forces[v as usize]).norm();
@@ -327,7 +328,7 @@ mod tests {
                 .all(|g| *g == Vec3::zeros())
         );
 
-        // Its vertices moved: the same change of the potential.
+        // A displacement of its own vertices changes both potentials equally.
         let moved = |v: u32| 1e-3 * Vec3::new(0.0, f64::from(v % 5) - 2.0, f64::from(v % 3) - 1.0);
         let mut there = [state.positions.clone(), submodel.state.positions.clone()];
         for (k, &v) in own.iter().enumerate() {
@@ -342,7 +343,7 @@ mod tests {
             workspace.potential(system, to, &inertia) - workspace.potential(system, from, &inertia)
         };
         let expected = change(&whole, &system, &state.positions, &there[0]);
-        let got = change(&alone, &submodel.system, places, &there[1]);
+        let got = change(&alone, &submodel.system, positions, &there[1]);
         assert!(expected.abs() > 1e-5);
         assert!(
             (got - expected).abs() < 1e-11 * expected.abs(),

@@ -1,4 +1,4 @@
-//! What is simulated: a constant model and the control of the present step; how both are made.
+//! The simulated system: a constant model and the control of the present step; and its builder.
 
 use crate::bending_structure::BendingStructure;
 use crate::caps::{exchange_again, without_caps};
@@ -16,13 +16,13 @@ use std::ops::Deref;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// A model and what acts on it in the present step. Between steps the control may change freely; another
-/// structure is another model.
+/// A model and the control of the present step. The control may change between steps; a change of structure is a new
+/// model.
 #[derive(Clone)]
 pub struct System {
     /// The constant part.
     pub model: Model,
-    /// What acts in the present step.
+    /// Loads and attachments of the present step.
     pub control: Control,
 }
 
@@ -35,16 +35,16 @@ impl Deref for System {
 }
 
 impl System {
-    /// A cloth that hangs free on earth.
+    /// A free cloth under gravity.
     ///
     /// # Errors
-    /// Bad indices, triangles without area, materials that cannot be simulated, told as those of `object`.
+    /// Bad indices, triangles without area, materials that cannot be simulated; the message names `object`.
     pub fn new(object: &str, cloth: &Cloth) -> Result<Self, DrapeError> {
         Ok(SystemBuilder::new(object, cloth)?.build())
     }
 
-    /// A builder that has all of this, for a system that differs in some of it: what is left as it is
-    /// shares its part of the model.
+    /// A builder with the data of this system, for one that differs in some of them; unchanged parts of the model are
+    /// shared.
     pub fn edit(&self) -> SystemBuilder {
         SystemBuilder {
             pinned: self.prescribed.pinned.clone(),
@@ -62,7 +62,7 @@ impl System {
         }
     }
 
-    /// The same but for what `change` changes of it.
+    /// The system after a change of its builder.
     #[must_use]
     pub fn with(&self, change: impl FnOnce(&mut SystemBuilder)) -> Self {
         let mut builder = self.edit();
@@ -70,13 +70,12 @@ impl System {
         builder.build()
     }
 
-    /// The same with another rest shape for each triangle of [`Topology::surface_triangles`], in the same
-    /// order [m]: what hangs on the triangles alone stays the same one, but that the first change keeps what
-    /// curvatures are estimated from.
+    /// The system with other rest shapes for the triangles of [`Topology::surface_triangles`], in the same order [m].
+    /// The topology is shared; at the first change it is replaced by one with a structure of bending.
     ///
     /// # Errors
-    /// Another number of shapes, one without area, and [`DrapeError::NeedsRemesh`] for shapes that the
-    /// triangles do not serve; told as those of `object`.
+    /// A wrong number of shapes, one without area, and [`DrapeError::NeedsRemesh`] for ill-conditioned ones; the
+    /// message names `object`.
     pub fn reshaped(&self, object: &str, rest: Vec<[Vec2; 3]>) -> Result<Self, DrapeError> {
         let count = self.topology.triangles.len();
         if rest.len() != count {
@@ -87,21 +86,22 @@ impl System {
             });
         }
         let rest = exchange_again(rest, &self.topology.exchanges)?;
-        let kept = match &self.topology.bending {
+        let structured = match &self.topology.bending {
             Some(_) => self.model.clone(),
             None => self.with_bending_structure()?,
         };
-        let rest = (kept.rest).reshaped(object, &kept.topology, &rest, &self.materials)?;
+        let topology = &structured.topology;
+        let rest = (structured.rest).reshaped(object, topology, &rest, &self.materials)?;
         Ok(Self {
             model: Model::of(ModelParts {
                 rest: Arc::new(rest),
-                ..ModelParts::clone(&kept)
+                ..ModelParts::clone(&structured)
             }),
             control: self.control.clone(),
         })
     }
 
-    /// The same model, its topology with the structure of bending that its rest shapes choose.
+    /// The model with a structure of bending in its topology, which suits the present rest shapes.
     fn with_bending_structure(&self) -> Result<Model, DrapeError> {
         let (triangles, shapes) = (&self.topology.triangles, self.rest.shapes());
         let (structure, curvatures) =
@@ -121,7 +121,7 @@ impl System {
         }))
     }
 
-    /// Has other elastics between vertices; all other parts of its model stay the ones they are.
+    /// Replaces the elastics between vertices; all other parts of the model stay shared.
     pub fn couple(&mut self, between: Vec<([u32; 2], ElasticLaw)>) {
         self.model = Model::of(ModelParts {
             couplings: Arc::new(ElasticCouplings::new(self.vertex_count(), between)),
@@ -129,27 +129,27 @@ impl System {
         });
     }
 
-    /// Every elastic: those between vertices, then the attachments.
+    /// All elastics: those between vertices, then the attachments.
     pub fn elastics(&self) -> impl Iterator<Item = Elastic> + '_ {
         let between = (self.couplings.all.iter()).map(|&([from, to], law)| Elastic {
             from,
             to: ElasticEnd::Vertex(to),
             law,
         });
-        let to_places = (self.control.attachments.all().iter()).map(|one| Elastic {
-            from: one.vertex,
-            to: ElasticEnd::Point(one.place),
-            law: one.law,
+        let to_points = (self.control.attachments.all().iter()).map(|attachment| Elastic {
+            from: attachment.vertex,
+            to: ElasticEnd::Point(attachment.place),
+            law: attachment.law,
         });
-        between.chain(to_places)
+        between.chain(to_points)
     }
 
-    /// How many elastics there are.
+    /// Number of elastics.
     pub(crate) fn elastic_count(&self) -> usize {
         self.couplings.all.len() + self.control.attachments.all().len()
     }
 
-    /// Elastics at a vertex, as indices into [`Self::elastics`], with their other end.
+    /// Elastics at a vertex, as indices into [`Self::elastics`], with their other ends.
     #[inline]
     pub(crate) fn elastics_at(&self, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
         let between = self.couplings.at(v).iter().map(move |&e| {
@@ -157,10 +157,10 @@ impl System {
             let other = ends[usize::from(ends[0] as usize == v)];
             (e as usize, ElasticEnd::Vertex(other))
         });
-        let (first, some) = self.control.attachments.at(v);
+        let (first, at_vertex) = self.control.attachments.at(v);
         let first = self.couplings.all.len() + first;
-        let to_places = (first..).zip(some);
-        between.chain(to_places.map(|(e, one)| (e, ElasticEnd::Point(one.place))))
+        let to_points = (first..).zip(at_vertex);
+        between.chain(to_points.map(|(e, attachment)| (e, ElasticEnd::Point(attachment.place))))
     }
 
     /// The law of one of [`Self::elastics`].
@@ -175,42 +175,44 @@ impl System {
     pub(crate) fn elastic_stiffness(&self, v: usize) -> f64 {
         let between = self.couplings.at(v).iter();
         let between = between.map(|&e| self.couplings.all[e as usize].1.stiffness);
-        let to_places = self.control.attachments.at(v).1.iter();
-        between.chain(to_places.map(|one| one.law.stiffness)).sum()
+        let to_points = self.control.attachments.at(v).1.iter();
+        between
+            .chain(to_points.map(|attachment| attachment.law.stiffness))
+            .sum()
     }
 }
 
-/// A system in the making: of a cloth, its fields say what holds it, what it meets and what acts on it.
+/// A builder of a system from a cloth, pins, elastics, solids, contact settings and control.
 pub struct SystemBuilder {
-    /// Vertices that do not move; those on no triangle from the start.
+    /// Pinned vertices; at first those on no triangle.
     pub pinned: Vec<bool>,
-    /// Pinned vertices that are led; only XPBD leads them.
+    /// Pinned vertices on a prescribed motion; only XPBD moves them.
     pub led: Vec<PrescribedVertex>,
-    /// Attachment forces.
+    /// Elastics between vertices and to fixed points.
     pub elastics: Vec<Elastic>,
     /// Solid surfaces.
     pub colliders: Vec<Collider>,
-    /// How the cloth meets them, and itself.
+    /// Contact settings.
     pub contact: ContactSettings,
     /// Layer of each vertex, larger numbers farther out, or
-    /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
+    /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all have the same.
     pub layer: Vec<u16>,
-    /// Which objects of the cloth do not meet each other, or which of `colliders`; at first all meet.
+    /// Pairs of objects that ignore each other; at first none.
     pub policies: PairPolicies,
-    /// What acts at first; its attachments to places are those of `elastics`.
+    /// The control at first; its attachments are replaced by the fixed-point ones of `elastics`.
     pub control: Control,
     topology: Arc<Topology>,
     rest: Arc<RestData>,
     materials: Arc<Materials>,
-    /// The model it was taken from.
+    /// The model it was made from, whose unchanged parts are shared.
     from: Option<Model>,
 }
 
 impl SystemBuilder {
-    /// A cloth that hangs free on earth.
+    /// A free cloth under gravity.
     ///
     /// # Errors
-    /// Bad indices, triangles without area, materials that cannot be simulated, told as those of `object`.
+    /// Bad indices, triangles without area, materials that cannot be simulated; the message names `object`.
     pub fn new(object: &str, cloth: &Cloth) -> Result<Self, DrapeError> {
         let mesh = cloth.mesh();
         mesh.check().map_err(|defect| DrapeError::Mesh {
@@ -243,7 +245,7 @@ impl SystemBuilder {
         Ok(builder)
     }
 
-    /// Lets every vertex go that is on a triangle.
+    /// Unpins all vertices but those on no triangle.
     pub(crate) fn release(&mut self) {
         self.pinned.fill(true);
         for sample in self.rest.samples.iter() {
@@ -256,9 +258,9 @@ impl SystemBuilder {
         self.pinned.len()
     }
 
-    /// Keeps outer layers farther from solids than the contact settings say, each by `apart` [m] more than the
-    /// one below; `layer` is that of each vertex, or empty.
-    pub(crate) fn keep_layers_off(&mut self, layer: &[u16], apart: f64) {
+    /// Enlarges the contact offset of outer layers from solids, by `apart` [m] for each layer inside of them; `layer`
+    /// has the layer of each vertex, or is empty.
+    pub(crate) fn offset_layers(&mut self, layer: &[u16], apart: f64) {
         let mut layers = layer.to_vec();
         layers.sort_unstable();
         layers.dedup();
@@ -319,14 +321,14 @@ impl SystemBuilder {
     }
 }
 
-/// A part of a model: the one it had, where that says the same.
-fn shared<T: PartialEq>(had: Option<&Arc<T>>, now: T) -> Arc<T> {
-    match had {
-        Some(had) if **had == now => had.clone(),
-        _ => Arc::new(now),
+/// A part of a model: the former one where it is equal.
+fn shared<T: PartialEq>(former: Option<&Arc<T>>, new: T) -> Arc<T> {
+    match former {
+        Some(former) if **former == new => former.clone(),
+        _ => Arc::new(new),
     }
 }
 
-fn same_colliders(had: &[Collider], now: &[Collider]) -> bool {
-    had.len() == now.len() && had.iter().zip(now).all(|(a, b)| a.is_same(b))
+fn same_colliders(former: &[Collider], new: &[Collider]) -> bool {
+    former.len() == new.len() && former.iter().zip(new).all(|(a, b)| a.is_same(b))
 }

@@ -1,4 +1,4 @@
-//! What of a cloth stays the same whatever its rest shapes: triangles and the structure of its matrices.
+//! The data of a cloth that do not depend on rest shapes: triangles and the sparsity patterns of its matrices.
 
 use crate::bending_structure::BendingStructure;
 use crate::caps::Exchange;
@@ -8,30 +8,29 @@ use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 use toile_sparse::BlockPattern;
 
-/// Triangles of a cloth and what follows from them alone.
+/// Triangles of a cloth and the data that follow from them alone.
 #[derive(Clone)]
 pub struct Topology {
-    /// Corners of the triangles: those of the cloth, but that caps (an angle near 180 degrees)
-    /// have exchanged their long edge for the other diagonal of their pair.
+    /// Corners of the triangles, after the exchange of the long edges of caps (an angle near 180 degrees).
     pub triangles: Vec<[u32; 3]>,
-    /// Triangles of the surface as it was given, where caps were exchanged.
+    /// Triangles of the surface before the exchange; none without caps.
     pub(crate) surface: Option<Vec<[u32; 3]>>,
-    /// Where the vertices lay when the structure was made [m]: what orders of elimination follow.
+    /// Positions of the vertices at compilation [m], by which nested dissection orders the unknowns.
     pub layout: Vec<Vec3>,
-    /// Blocks of a matrix that couples the corners of each triangle.
+    /// Sparsity pattern of a matrix that couples the corners of each triangle.
     pub(crate) pattern: BlockPattern,
-    /// Where the corners of each vertex begin in `corners`, and the end.
+    /// First index into `corners` of each vertex, and the end.
     pub(crate) corner_start: Vec<u32>,
-    /// For each vertex the corners (3 t + k) that use it, ascending.
+    /// Corners (3 t + k) of each vertex, ascending.
     pub(crate) corners: Vec<u32>,
-    /// The long edges of caps that were exchanged, in order.
+    /// The exchanges of caps, in order.
     pub(crate) exchanges: Vec<Exchange>,
-    /// The structure of bending, once it is not chosen by the rest shapes any more.
+    /// The structure of bending that all rest shapes share after the first change of them; none before.
     pub(crate) bending: Option<Arc<BendingStructure>>,
 }
 
 impl Topology {
-    /// Of triangles between the vertices of a layout.
+    /// The topology of triangles between vertices at the positions `layout` [m].
     pub(crate) fn new(layout: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let (corner_start, corners) = corner_lists(layout.len(), &triangles);
         Self {
@@ -46,7 +45,7 @@ impl Topology {
         }
     }
 
-    /// Of a surface whose caps were exchanged to give `triangles`.
+    /// Records the surface before the exchange of caps, and the exchanges.
     pub(crate) fn with_exchanges(self, surface: Vec<[u32; 3]>, exchanges: Vec<Exchange>) -> Self {
         Self {
             surface: (!exchanges.is_empty()).then_some(surface),
@@ -55,8 +54,7 @@ impl Topology {
         }
     }
 
-    /// The curvatures of every triangle for some rest shapes, which choose the neighbours that each is
-    /// estimated from.
+    /// The curvature stencils of all triangles, with the neighbours that suit these rest shapes.
     pub(crate) fn stencils(&self, rest: &[[Vec2; 3]]) -> Vec<BendingStencil> {
         let mesh = TriangleMesh {
             positions: vec![Vec3::zeros(); self.layout.len()],
@@ -76,7 +74,7 @@ impl Topology {
         &self.corners[uses]
     }
 
-    /// Triangles of the surface as it was given.
+    /// Triangles of the surface before the exchange of caps.
     pub fn surface_triangles(&self) -> &[[u32; 3]] {
         self.surface.as_ref().unwrap_or(&self.triangles)
     }
@@ -90,7 +88,7 @@ impl Topology {
     }
 }
 
-/// For each vertex the corners (3 t + k) that use it, in order.
+/// For each vertex its corners (3 t + k), ascending, as start indices and a list.
 fn corner_lists(count: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0u32; count + 1];
     for &v in triangles.iter().flatten() {

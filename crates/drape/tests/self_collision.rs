@@ -125,7 +125,7 @@ fn features_that_came_nearer_since_detection_do_not_pass() {
     let mut builder = SystemBuilder::new("two", &cloth).unwrap();
     builder.contact.cloth_offset = 2e-3;
     let system = builder.build();
-    let lightness: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
+    let inverse_mass: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
     let state = State::at_rest(&system, mesh.positions.clone());
     let mut contacts = ContactSet::default();
     let mut detector = ContactDetector::default();
@@ -148,7 +148,7 @@ fn features_that_came_nearer_since_detection_do_not_pass() {
         x: &x,
         moves: &mut moves,
         velocities: &mut velocities,
-        lightness: &lightness,
+        inverse_mass: &inverse_mass,
         span: 1.0,
     };
     let kept = detector.resolve_impacts(&system, &contacts.exemptions, &mut motion);
@@ -222,7 +222,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
     let mut builder = SystemBuilder::new("layers", &cloth).unwrap();
     builder.contact.cloth_offset = 2e-3;
     let system = builder.build();
-    let lightness: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
+    let inverse_mass: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
     let (mut uncut, mut impulses) = (0, 0);
     for seed in 0..40 {
         let mut numbers = Numbers(seed);
@@ -246,7 +246,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             x: &mesh.positions,
             moves: &mut moves,
             velocities: &mut velocities,
-            lightness: &lightness,
+            inverse_mass: &inverse_mass,
             span: 1.0,
         };
         let kept = detector.resolve_impacts(&system, &contacts.exemptions, &mut motion);

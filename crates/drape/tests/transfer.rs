@@ -75,8 +75,8 @@ fn remembered(run: &SceneRun, id: ObjectId) -> Vec<u64> {
     for &v in own {
         write(&state.positions[v as usize]);
         write(&state.velocities[v as usize]);
-        if !state.cloth.places.is_empty() {
-            write(&state.cloth.places[v as usize]);
+        if !state.cloth.positions.is_empty() {
+            write(&state.cloth.positions[v as usize]);
         }
     }
     let number: BTreeMap<u32, usize> = own.iter().copied().zip(0..).collect();
@@ -92,13 +92,13 @@ fn remembered(run: &SceneRun, id: ObjectId) -> Vec<u64> {
             ));
         }
     }
-    for held in &state.cloth.held {
-        let vertices = held.pair.vertices();
+    for contact in &state.cloth.friction {
+        let vertices = contact.pair.vertices();
         if vertices.iter().all(|v| number.contains_key(v)) {
             for v in vertices {
                 write(&Vec3::x().scale(number[&v] as f64));
             }
-            write(&held.slip);
+            write(&contact.slip);
         }
     }
     bits

@@ -155,7 +155,7 @@ fn an_object_stays_where_it_is_when_its_kind_changes_and_so_does_what_is_attache
     let before = lies(&run);
     assert!((before[0] - start).norm() > 0.1, "the block had not moved");
     let ends_at = |run: &SceneRun| match run.system.control.frames.first() {
-        Some(frame) => frame.place(run.state.time),
+        Some(frame) => frame.target(run.state.time),
         None => run.system.control.attachments.all()[0].place,
     };
     assert!((ends_at(&run) - before[0]).norm() < 1e-12);

@@ -1,6 +1,6 @@
 //! Sparse symmetric matrices over a mesh: 3x3 blocks and scalars by rows, nested dissection and Cholesky
-//! factorisation, conjugate gradients. Knows nothing of cloth; the same input gives the same bytes at any
-//! number of threads.
+//! factorisation, conjugate gradients. It does not depend on cloth. Results are the same to the byte at any number of
+//! threads.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod factor;

@@ -1,14 +1,14 @@
 //! Sparse matrices of the implicit step: 3x3 blocks for the membrane, scalars for bending.
-//! Rows are independent, so any number of threads gives the same bytes.
+//! Rows are computed independently, so results do not depend on the number of threads.
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Rows handled by one task: large enough to pay for the task, small enough to share.
+/// Rows of one parallel task: enough to outweigh its overhead, few enough to balance the load.
 pub const ROW_CHUNK: usize = 256;
 
-/// A symmetric matrix of scalars, each standing for itself times the 3x3 identity.
+/// A symmetric matrix of scalars, each of which represents itself times the 3x3 identity.
 #[derive(Clone, Debug, Default)]
 pub struct ScalarMatrix {
     row_start: Vec<u32>,
@@ -18,7 +18,7 @@ pub struct ScalarMatrix {
 }
 
 impl ScalarMatrix {
-    /// Sums entries (row, column, value); the order of entries fixes the order of the sums.
+    /// The sum of entries (row, column, value), added in the given order.
     pub fn from_entries(rows: usize, entries: &[(u32, u32, f64)]) -> Self {
         let mut start = vec![0u32; rows + 1];
         for &(row, _, _) in entries {
@@ -61,7 +61,7 @@ impl ScalarMatrix {
         matrix
     }
 
-    /// This plus `factor` times a matrix of the same pattern.
+    /// `self` plus `factor` times a matrix of the same pattern.
     pub fn plus(&self, other: &Self, factor: f64) -> Self {
         assert_eq!(self.columns, other.columns, "matrices of one pattern");
         let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + factor * b).collect();
@@ -73,8 +73,8 @@ impl ScalarMatrix {
         }
     }
 
-    /// Where an entry stands among the values; nothing for one that the pattern has not.
-    pub fn place(&self, row: u32, column: u32) -> Option<usize> {
+    /// Index of an entry among the values; none for one outside the pattern.
+    pub fn index_of(&self, row: u32, column: u32) -> Option<usize> {
         let first = self.row_start[row as usize] as usize;
         let end = self.row_start[row as usize + 1] as usize;
         let found = self.columns[first..end].binary_search(&column).ok()?;
@@ -82,7 +82,7 @@ impl ScalarMatrix {
     }
 
     /// A matrix of the same pattern with the values that `fill` adds to zeros, each at its
-    /// [`Self::place`].
+    /// [`Self::index_of`].
     #[must_use]
     pub fn filled(&self, fill: impl FnOnce(&mut [f64])) -> Self {
         let mut matrix = Self {
@@ -93,14 +93,14 @@ impl ScalarMatrix {
         };
         fill(&mut matrix.values);
         for row in 0..matrix.diagonal.len() as u32 {
-            if let Some(at) = matrix.place(row, row) {
+            if let Some(at) = matrix.index_of(row, row) {
                 matrix.diagonal[row as usize] = matrix.values[at];
             }
         }
         matrix
     }
 
-    /// The entry on the diagonal of a row.
+    /// The diagonal entry of a row.
     pub fn diagonal(&self, row: usize) -> f64 {
         self.diagonal[row]
     }
@@ -143,7 +143,7 @@ impl ScalarMatrix {
     }
 }
 
-/// Where the blocks of triangles go in a matrix of 3x3 blocks over the edges of a mesh.
+/// Sparsity pattern of a matrix of 3x3 blocks over the edges of a mesh, with the positions of the triangles' blocks.
 #[derive(Clone, Debug, Default)]
 pub struct BlockPattern {
     row_start: Vec<u32>,
@@ -153,8 +153,7 @@ pub struct BlockPattern {
     sources: Vec<u32>,
 }
 
-/// Which of the six stored blocks (00, 01, 02, 11, 12, 22) a corner pair is, and whether it is
-/// transposed.
+/// For each pair of corners the index of its stored block (00, 01, 02, 11, 12, 22), and whether it is transposed.
 const BLOCK_OF_PAIR: [[(u32, bool); 3]; 3] = [
     [(0, false), (1, false), (2, false)],
     [(1, true), (3, false), (4, false)],
@@ -162,7 +161,7 @@ const BLOCK_OF_PAIR: [[(u32, bool); 3]; 3] = [
 ];
 
 impl BlockPattern {
-    /// The pattern of a mesh: a block for every vertex and every edge in both directions.
+    /// The pattern of a mesh: a block for each vertex, and two for each edge.
     pub fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
         let mut entries: Vec<(u32, u32, u32)> = Vec::with_capacity(9 * triangles.len() + vertices);
         for (t, corners) in triangles.iter().enumerate() {
@@ -289,13 +288,13 @@ impl BlockPattern {
         sum
     }
 
-    /// The block on the diagonal of a row.
+    /// The diagonal block of a row.
     pub fn diagonal_block<'a>(&self, row: usize, blocks: &'a [Matrix3<f64>]) -> &'a Matrix3<f64> {
         &blocks[self.diagonal[row] as usize]
     }
 }
 
-/// Sum of dot products, in fixed chunks so that the thread count does not change its bytes.
+/// Sum of dot products, in fixed chunks so that the result does not depend on the number of threads.
 pub fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
     let partial: Vec<f64> = a
         .par_chunks(1024)

@@ -6,29 +6,29 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// When the linear solver stops.
+/// Stopping criteria of the linear solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PcgLimits {
-    /// Preconditioned residual relative to the start.
+    /// Preconditioned residual relative to the first.
     pub tolerance: f64,
-    /// Iterations at the most.
+    /// Most iterations.
     pub iterations: usize,
 }
 
-/// An approximate inverse, symmetric and positive definite.
+/// A symmetric positive definite approximate inverse.
 pub trait Preconditioner {
     /// Writes the approximate solution for a right-hand side.
     fn apply(&mut self, residual: &[Vec3], solution: &mut [Vec3]);
 }
 
-/// The inverses of the 3x3 blocks on the diagonal.
+/// Block Jacobi: the inverses of the 3x3 diagonal blocks.
 #[derive(Clone, Debug, Default)]
 pub struct BlockJacobi {
     inverses: Vec<Matrix3<f64>>,
 }
 
 impl BlockJacobi {
-    /// Inverts the blocks on the diagonal; those of fixed rows become zero.
+    /// Inverts the diagonal blocks; those of fixed rows become zero.
     pub fn refresh(&mut self, fixed: &[bool], diagonal: impl Fn(usize) -> Matrix3<f64> + Sync) {
         self.inverses.resize(fixed.len(), Matrix3::zeros());
         self.inverses
@@ -58,24 +58,24 @@ impl Preconditioner for BlockJacobi {
     }
 }
 
-/// A factorisation of a nearby matrix; its rows at fixed vertices must couple them with no other.
+/// The factor of a similar matrix; it must not couple fixed vertices with others.
 impl<const D: usize, T: Number> Preconditioner for Factor<D, T> {
     fn apply(&mut self, residual: &[Vec3], solution: &mut [Vec3]) {
         self.solve(residual, solution);
     }
 }
 
-/// A x = b with A symmetric and positive definite.
+/// A system A x = b with A symmetric and positive definite.
 pub struct LinearSystem<'a, F> {
     /// The right-hand side.
     pub b: &'a [Vec3],
-    /// Rows of the result that are zero.
+    /// Rows whose solution is zero.
     pub fixed: &'a [bool],
     /// A row of A times a vector.
     pub row: F,
 }
 
-/// Private vectors of the solver, sized once.
+/// Work vectors of the solver.
 #[derive(Default)]
 pub struct Pcg {
     residual: Vec<Vec3>,
@@ -85,7 +85,7 @@ pub struct Pcg {
 }
 
 impl Pcg {
-    /// Solves a system. Stops early with what it has. Returns the iterations taken.
+    /// Solves a system up to the limits; the solution is then the last iterate. Returns the number of iterations.
     pub fn solve<F: Fn(usize, &[Vec3]) -> Vec3 + Sync>(
         &mut self,
         system: &LinearSystem<F>,
@@ -137,7 +137,7 @@ impl Pcg {
         limits.iterations
     }
 
-    /// A times the direction of search.
+    /// A times the search direction.
     fn apply<F: Fn(usize, &[Vec3]) -> Vec3 + Sync>(&mut self, system: &LinearSystem<F>) {
         let search = &self.search;
         self.image
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
     use crate::factor::Graph;
 
-    /// A chain held at its first vertex: row v of 2 x_v - x_(v-1) - x_(v+1), the last one free.
+    /// A chain fixed at its first vertex: row v of 2 x_v - x_(v-1) - x_(v+1), the last one free.
     fn row(n: usize, v: usize, p: &[Vec3]) -> Vec3 {
         if v + 1 < n {
             p[v] * 2.0 - p[v - 1] - p[v + 1]
@@ -210,7 +210,7 @@ mod tests {
         let graph = Graph::from_pairs(n, (1..n as u32).map(|v| [v - 1, v]));
         let places: Vec<Vec3> = (0..n).map(|v| Vec3::x() * v as f64).collect();
         let mut stale = Factor::<1, f32>::new(graph, &places);
-        // The same chain, each link a fifth stiffer or softer than it is by now.
+        // The same chain with each link a fifth stiffer or softer.
         let link = |v: u32| if v.is_multiple_of(2) { 1.2 } else { 0.8 };
         stale
             .factorise(|v, columns, row| {

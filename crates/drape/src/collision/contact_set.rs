@@ -1,5 +1,5 @@
-//! Contacts of cloth with cloth as one detection found them: a value that is handed to forces, to
-//! impacts, to the truncation of steps and to the memory of a state.
+//! Contacts of cloth with cloth from one detection. Forces, impact resolution, step truncation and the memory of the
+//! state read this value.
 
 use super::cloth_contact::ClothContact;
 use super::exemptions::ContactExemptions;
@@ -8,48 +8,48 @@ use super::recovery::Recovery;
 use super::tally::Tally;
 use crate::{Model, State};
 
-/// Contacts, what is exempt from them, and the pulls on what has crossed.
+/// Contacts, exempt pairs and recovery forces of one detection.
 #[derive(Clone, Debug, Default)]
 pub struct ContactSet {
     /// The contacts, in order of their features.
     pub contacts: Vec<ClothContact>,
-    /// Pairs that make no contact, or may pass through each other.
+    /// Pairs exempt from contact, and pairs exempt from impacts.
     pub exemptions: ContactExemptions,
-    /// The pulls on what has crossed or is on the wrong side of a layer.
+    /// Recovery forces on cloth that has crossed or is on the wrong side of a layer.
     pub recovery: Recovery,
-    /// Pairs of an edge and a face that cross.
+    /// Number of pairs of an edge and a face that cross.
     pub crossings: usize,
-    /// Vertices of outer layers on the wrong side of inner ones.
+    /// Number of vertices of outer layers on the wrong side of inner ones.
     pub violations: usize,
-    /// How far from a layer the next detection is to search for vertices on its wrong side [m]; none where
-    /// none was made.
+    /// Distance within which the next detection searches for vertices on the wrong side of a layer [m]; none without
+    /// a detection.
     pub layer_reach: Option<f64>,
-    /// Counts over the detections so far.
+    /// Counts over all detections so far.
     pub tally: Tally,
 }
 
 impl ContactSet {
-    /// The contacts, then the pulls.
+    /// The contacts, then the recovery forces.
     pub fn all(&self) -> impl Iterator<Item = &ClothContact> {
         self.contacts.iter().chain(&self.recovery.pulls)
     }
 
-    /// [`Self::all`], to be changed.
+    /// [`Self::all`], mutable.
     pub fn all_mut(&mut self) -> impl Iterator<Item = &mut ClothContact> {
         self.contacts.iter_mut().chain(&mut self.recovery.pulls)
     }
 
-    /// Whether there is neither a contact nor a pull.
+    /// Whether there is neither a contact nor a recovery force.
     pub fn is_empty(&self) -> bool {
         self.contacts.is_empty() && self.recovery.pulls.is_empty()
     }
 
-    /// Whether nothing crosses and nothing is on the wrong side of a layer.
+    /// Whether no cloth crosses and no vertex is on the wrong side of a layer.
     pub fn is_in_order(&self) -> bool {
         self.crossings == 0 && self.violations == 0
     }
 
-    /// Pairs of vertices that contacts and pulls couple.
+    /// Pairs of vertices that contacts and recovery forces couple.
     pub fn couples(&self) -> Vec<[u32; 2]> {
         let mut pairs = Vec::new();
         for contact in self.all() {
@@ -59,19 +59,20 @@ impl ContactSet {
         pairs
     }
 
-    /// Has a state remember crossings and layers for the next detection.
-    pub fn remember(&self, state: &mut State) {
-        state.cloth.drawn.clone_from(&self.recovery.directions);
-        (state.cloth.crossed_for).clone_from(&self.exemptions.crossed_for);
+    /// Stores the recovery directions, crossing counts and layer reach in the state, for the next detection.
+    pub fn remember_crossings(&self, state: &mut State) {
+        (state.cloth.recovery_directions).clone_from(&self.recovery.directions);
+        (state.cloth.crossing_counts).clone_from(&self.exemptions.crossing_counts);
         state.cloth.layer_reach = self.layer_reach.or(state.cloth.layer_reach);
     }
 
-    /// Has a state remember, after a step, the friction of what presses, crossings and layers.
-    pub fn settle(&self, model: &Model, state: &mut State) {
-        state.cloth.held = friction_memory::after_step(&self.contacts, &state.positions);
-        self.remember(state);
+    /// Stores the end of a step in the state: positions, friction of the contacts that press, and
+    /// [`Self::remember_crossings`].
+    pub fn remember_step(&self, model: &Model, state: &mut State) {
+        state.cloth.friction = friction_memory::after_step(&self.contacts, &state.positions);
+        self.remember_crossings(state);
         if model.contact.cloth_offset > 0.0 {
-            state.cloth.places.clone_from(&state.positions);
+            state.cloth.positions.clone_from(&state.positions);
         }
     }
 }

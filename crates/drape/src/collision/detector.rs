@@ -1,5 +1,5 @@
-//! Detection of contacts of cloth with cloth. A contact has the laws of contact with a surface, applied to the vector
-//! between two features instead of the position of a point.
+//! Detection of contacts of cloth with cloth. The laws are those of contact with a solid, applied to the vector between
+//! two features instead of the position of a point.
 
 use super::candidate_search::Near;
 use super::cloth_contact::ClothContact;
@@ -25,8 +25,8 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// The search structures of contact of cloth with cloth. Results are in a [`ContactSet`]; of earlier detections only
-/// neighbour lists stay here, which hold more pairs than those within reach.
+/// The search structures of contact of cloth with cloth. A detection writes its results to a [`ContactSet`]; here only
+/// search structures persist between detections, with more pairs than those within reach.
 #[derive(Clone, Debug, Default)]
 pub struct ContactDetector {
     surface: ClothSurface,
@@ -34,10 +34,10 @@ pub struct ContactDetector {
     made_for: Option<Model>,
 }
 
-/// Reach of [`ContactDetector::refresh`], in contact offsets: a step meets the contact before it presses.
+/// Reach of [`ContactDetector::refresh`], in contact offsets: pairs are contacts before they press.
 const REACH_IN_OFFSETS: f64 = 2.0;
 
-/// Share of the offset that two cloths give way by before their contact is hard.
+/// Depth at which the hard term of a contact sets in, as a share of the offset.
 const HARD_FROM: f64 = 0.75;
 
 /// Drift of a region's vertices from their common rigid motion after which it is given the curvature test again [m]. A
@@ -53,10 +53,11 @@ impl ContactDetector {
         }
     }
 
-    /// Surface of a model's cloth, rebuilt where the last one was of another model.
+    /// Surface of a model's cloth, rebuilt when the model is another one than at the last call.
     fn surface(&mut self, model: &Model) -> &mut ClothSurface {
-        let fits = |of: &Model| of.has_cloth_of(model) && Arc::ptr_eq(&of.layer, &model.layer);
-        if !self.made_for.as_ref().is_some_and(fits) {
+        let is_same_cloth =
+            |of: &Model| of.has_cloth_of(model) && Arc::ptr_eq(&of.layer, &model.layer);
+        if !self.made_for.as_ref().is_some_and(is_same_cloth) {
             self.surface = ClothSurface::new(model);
             self.made_for = Some(model.clone());
         }
@@ -69,8 +70,8 @@ impl ContactDetector {
     }
 
     /// Finds contacts within `reach` at positions `x`, crossings and layer violations, and from these the exempt pairs
-    /// and the recovery pulls. `memory` is that of the last step. Replaces everything in `set` but the tally, to
-    /// which it adds.
+    /// and the recovery forces. `memory` is that of the last step. Replaces the content of `set` and adds to its
+    /// tally.
     pub fn detect(
         &mut self,
         model: &Model,
@@ -94,7 +95,7 @@ impl ContactDetector {
         set.violations = entangled.violations.len();
         set.layer_reach = Some(entangled.layer_reach);
         set.tally.count_detection(set.crossings, set.violations);
-        (set.exemptions).mark(&self.surface, &entangled, &memory.crossed_for);
+        (set.exemptions).mark(&self.surface, &entangled, &memory.crossing_counts);
         let exemptions = &set.exemptions;
         let mut found = nearnesses(&self.surface, Near::Listed, x, reach);
         found.retain(|near| {
@@ -106,7 +107,12 @@ impl ContactDetector {
         });
         let contacts = found.par_iter().with_min_len(256);
         (set.contacts).par_extend(contacts.map(|near| self.contact(model, memory, x, near)));
-        (set.recovery).plan(&self.surface, model, &entangled, (x, &memory.drawn));
+        (set.recovery).plan(
+            &self.surface,
+            model,
+            &entangled,
+            (x, &memory.recovery_directions),
+        );
     }
 
     /// [`Self::detect`] within two offsets, with the stiffness of edge-edge contacts multiplied by their mollifier, so
@@ -145,7 +151,7 @@ impl ContactDetector {
         let offset = self
             .surface
             .contact_offset(near.pair, near.neighbours, offset);
-        // Vertices of either side make contacts with faces of the other, each with half of the area.
+        // Vertices of both sides make contacts with faces of the other side, so each contact has half of the area.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
         let (anchor, force) = friction_memory::anchor(memory, near, x).unwrap_or((between, 0.0));
@@ -171,8 +177,8 @@ impl ContactDetector {
             },
             law: ContactLaw {
                 normal,
-                // It grows with the force: cloth pressed into the hard part of a contact slips no farther before it
-                // slides than cloth at the end of the soft part.
+                // The tangential stiffness grows with the force, so that the slip at which cloth begins to slide is no
+                // longer in the hard range of a contact than at the end of the soft range.
                 tangential: 0.5 * normal.max(force / offset),
                 friction,
                 hard_from: HARD_FROM * offset,
@@ -182,7 +188,7 @@ impl ContactDetector {
         }
     }
 
-    /// The mean restitution, by weight, of those of the vertices that have one.
+    /// Mean by weight of the restitution of the vertices that have one; none where no vertex has.
     fn restitution(&self, vertices: [u32; 4], weights: [f64; 4]) -> Option<f64> {
         let (mut sum, mut all) = (0.0, 0.0);
         for (v, w) in vertices.into_iter().zip(weights) {
@@ -194,7 +200,7 @@ impl ContactDetector {
         (all > 0.0).then(|| sum / all)
     }
 
-    /// Corrects a motion so that cloth does not pass through cloth, pairs that are exempt left alone.
+    /// Corrects a motion so that cloth does not pass through cloth, except for exempt pairs.
     pub fn resolve_impacts(
         &mut self,
         model: &Model,
@@ -208,8 +214,8 @@ impl ContactDetector {
         resolve_impacts(self.surface(model), exemptions, motion, clearance)
     }
 
-    /// Shortens moves from `x` so that cloth does not pass through cloth, pairs that are exempt left alone;
-    /// returns the number of vertices held back.
+    /// Shortens displacements from `x` so that cloth does not pass through cloth, except for exempt pairs; returns the
+    /// number of vertices whose displacement was shortened.
     pub fn truncate_moves(
         &mut self,
         model: &Model,

@@ -1,4 +1,4 @@
-//! Where cloth has crossed cloth, or lies on the wrong side of a layer that it is worn over.
+//! Search for entanglement: crossings of cloth with cloth, and vertices on the wrong side of a layer.
 
 use super::candidate_search::Near;
 use super::intersections::crossings;
@@ -9,30 +9,30 @@ use crate::PairPolicies;
 use std::cmp::Ordering;
 use toile_geometry::Vec3;
 
-/// How far inside an inner layer the cloth of an outer one may start [m]: the ease of a wide garment.
-const LONGEST_REACH: f64 = 0.15;
+/// Largest distance searched for vertices on the wrong side of a layer [m]: the ease of a wide garment.
+const MAX_REACH: f64 = 0.15;
 
-/// How much deeper than the deepest violation found the next detection searches [m].
+/// Distance added to the deepest violation for the search of the next detection [m].
 const REACH_SLACK: f64 = 0.02;
 
-/// Edges and faces that cross, and vertices on the wrong side of a layer; those of objects that ignore each
-/// other left out.
+/// Edges and faces that cross, and vertices on the wrong side of a layer, without pairs of objects that ignore each
+/// other.
 #[derive(Debug, Default)]
 pub(super) struct Entanglement {
-    /// Edges and faces that cross within a layer, or in no order of layers.
+    /// Pairs of an edge and a face that cross within a layer, or without an order of layers.
     pub within: Vec<[u32; 2]>,
-    /// Edges and faces of two layers that cross.
+    /// Pairs of an edge and a face of two layers that cross.
     pub of_layers: Vec<[u32; 2]>,
     /// Vertices on the wrong side of a layer.
     pub violations: Vec<LayerViolation>,
-    /// How far from a layer the next detection is to search for vertices on its wrong side [m]: zero where
-    /// there can be none, since layers that do not cross do not change sides.
+    /// Distance within which the next detection searches for vertices on the wrong side of a layer [m]. Zero once no
+    /// layers cross and no vertex is on a wrong side: sides change only through a crossing.
     pub layer_reach: f64,
 }
 
 impl Entanglement {
-    /// What is entangled at positions `x`, of the features in the surface's lists. `reach` is the
-    /// [`Self::layer_reach`] of the detection before; none at the first.
+    /// The entanglement at positions `x` of the features in the surface's neighbour lists. `reach` is the
+    /// [`Self::layer_reach`] of the last detection, none at the first.
     pub fn find(
         surface: &ClothSurface,
         policies: &PairPolicies,
@@ -55,11 +55,11 @@ impl Entanglement {
             ..Self::default()
         };
         let violations = |reach| layer_violations(surface, policies, x, reach);
-        found.find_violations(violations, reach.unwrap_or(LONGEST_REACH));
+        found.find_violations(violations, reach.unwrap_or(MAX_REACH));
         found
     }
 
-    /// Finds vertices on the wrong side of a layer, no farther off than `reach` [m], where there may be any.
+    /// Finds the vertices on the wrong side of a layer within `reach` [m], unless there can be none.
     fn find_violations(&mut self, within: impl Fn(f64) -> Vec<LayerViolation>, reach: f64) {
         let crossed = !self.of_layers.is_empty();
         if reach == 0.0 && !crossed {
@@ -69,11 +69,11 @@ impl Entanglement {
         if crossed || !self.violations.is_empty() {
             let deepest = self.violations.iter().map(|violation| violation.depth);
             let deepest = deepest.fold(0.0, f64::max);
-            self.layer_reach = (deepest + REACH_SLACK).min(LONGEST_REACH);
+            self.layer_reach = (deepest + REACH_SLACK).min(MAX_REACH);
         }
     }
 
-    /// How many edges cross a face.
+    /// Number of pairs of an edge and a face that cross.
     pub fn crossing_count(&self) -> usize {
         self.within.len() + self.of_layers.len()
     }

@@ -1,6 +1,5 @@
-//! Pairs of features that are exempt from contact and from impacts. Contact would hold cloth that has
-//! crossed where it is; where features are exempt, the pulls of [`Recovery`](super::Recovery) can draw
-//! it apart.
+//! Pairs of features that are exempt from contact and from impacts. Contact forces would lock a crossing in place;
+//! between exempt features the recovery forces of [`Recovery`](super::Recovery) can undo it.
 
 use super::entanglement::Entanglement;
 use super::feature_pair::FeaturePair;
@@ -10,22 +9,22 @@ use crate::{Model, PairPolicies};
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// Exempt pairs of features, told by their vertices: a value that a detection makes and hands to all that
-/// follows it, until the next one.
+/// Exempt pairs of features, given by marks on their vertices. Each detection makes them; contact, impact resolution
+/// and step truncation use them until the next one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactExemptions {
-    /// Vertices at a crossing of cloth that is in no order of layers.
+    /// Vertices of an edge and a face that cross within one layer, or between vertices of no layer.
     pub crossed: Vec<bool>,
-    /// Vertices at a crossing of two layers, or on the wrong side of one.
+    /// Vertices of an edge and a face of two layers that cross, and vertices on the wrong side of a layer.
     pub disordered: Vec<bool>,
-    /// Vertices round a crossing that persists; empty where none does.
+    /// Vertices within a few rings of edges of a crossing that persists; empty where no crossing persists.
     pub loosened: Vec<bool>,
-    /// A count for each vertex, up by one in a detection that finds it at a crossing and down by one, not below
-    /// zero, in any other; empty where all are zero.
-    pub crossed_for: Vec<u32>,
+    /// Persistence of the crossing at each vertex: up by one in a detection that finds the vertex at a crossing, down
+    /// by one but not below zero in any other; empty where all are zero.
+    pub crossing_counts: Vec<u32>,
     /// Layer of each vertex; empty where all are of one.
     pub layer: Arc<Vec<u16>>,
-    /// Objects that ignore each other: their pairs are exempt from both.
+    /// Objects that ignore each other: their pairs are exempt from contact and from impacts.
     pub policies: Arc<PairPolicies>,
 }
 
@@ -35,9 +34,9 @@ fn any(marks: &[bool], feature: &[u32]) -> bool {
 }
 
 impl ContactExemptions {
-    /// Whether two features may pass through each other: in one layer where both have a vertex at a
-    /// crossing or both one round a crossing that persists, between layers where either has a
-    /// disordered vertex; and where their objects ignore each other.
+    /// Whether two features may pass through each other. Within one layer: both have a vertex marked `crossed`, or
+    /// both one marked `loosened`. Between layers: either has a `disordered` vertex. Always: their objects ignore
+    /// each other.
     pub fn exempts_impact(&self, pair: FeaturePair) -> bool {
         let vertices = pair.vertices();
         let (first, second) = vertices.split_at(pair.first());
@@ -52,8 +51,8 @@ impl ContactExemptions {
         }
     }
 
-    /// Whether two features make no contact: those of [`Self::exempts_impact`], and in one layer also
-    /// those of which only one has a vertex at a crossing.
+    /// Whether two features make no contact: the pairs of [`Self::exempts_impact`], and within one layer also pairs
+    /// with a `crossed` vertex in only one of the two features.
     pub fn exempts_contact(&self, pair: FeaturePair) -> bool {
         let vertices = pair.vertices();
         let ordered = layer_order(&self.layer, vertices[0], vertices[pair.first()]);
@@ -65,12 +64,12 @@ impl ContactExemptions {
         if self.policies.ignores(first, second) {
             return true;
         }
-        let loose =
+        let both_loosened =
             ordered == Ordering::Equal && any(&self.loosened, first) && any(&self.loosened, second);
-        any(marks, &vertices) || loose
+        any(marks, &vertices) || both_loosened
     }
 
-    /// Exempts nothing but what the policies of a model say.
+    /// Clears all marks and takes over the layers and the pair policies of a model.
     pub(super) fn reset(&mut self, model: &Model) {
         let count = model.vertex_count();
         for marks in [&mut self.crossed, &mut self.disordered] {
@@ -78,18 +77,18 @@ impl ContactExemptions {
             marks.resize(count, false);
         }
         self.loosened.clear();
-        self.crossed_for.clear();
+        self.crossing_counts.clear();
         self.layer.clone_from(&model.layer);
         self.policies.clone_from(&model.policies);
     }
 
-    /// Exempts what is entangled, and, round crossings that persist, what lies about them. `crossed_for`
-    /// is what the last detection remembered.
+    /// Marks the vertices of an entanglement, and those round crossings that persist. `crossing_counts` has the counts
+    /// of the last detection.
     pub(super) fn mark(
         &mut self,
         surface: &ClothSurface,
         entangled: &Entanglement,
-        crossed_for: &[u32],
+        crossing_counts: &[u32],
     ) {
         let marks = [
             (&entangled.within, &mut self.crossed),
@@ -106,14 +105,14 @@ impl ContactExemptions {
         for violation in &entangled.violations {
             self.disordered[violation.vertex as usize] = true;
         }
-        self.crossed_for = counted(&self.crossed, crossed_for);
-        self.loosened = loosened_round(&surface.edges, &self.crossed, &self.crossed_for);
+        self.crossing_counts = updated_counts(&self.crossed, crossing_counts);
+        self.loosened = loosened_round(&surface.edges, &self.crossed, &self.crossing_counts);
     }
 }
 
-/// For how many detections vertices have been at a crossing, each without subtracted; empty where none
-/// was.
-fn counted(crossed: &[bool], before: &[u32]) -> Vec<u32> {
+/// The persistence counts after a detection: plus one at crossed vertices, minus one elsewhere; empty where all are
+/// zero.
+fn updated_counts(crossed: &[bool], before: &[u32]) -> Vec<u32> {
     if before.is_empty() && !crossed.contains(&true) {
         return Vec::new();
     }
@@ -130,18 +129,20 @@ fn counted(crossed: &[bool], before: &[u32]) -> Vec<u32> {
     }
 }
 
-/// Detections after which the cloth is loosened by one ring of edges more round a vertex that stays at a
-/// crossing, and the most rings.
-const WIDER_AFTER: u32 = 25;
-const WIDEST: u32 = 8;
+/// Persistence, in detections, after which another ring of vertices round a crossing is loosened: measured with
+/// the planted tangles of the soak test.
+const DETECTIONS_PER_RING: u32 = 25;
 
-/// Vertices round those that stay at a crossing, one ring of edges more after every [`WIDER_AFTER`]
-/// detections: where cloth lies on the wrong side round a crossing, its contacts hold it there. Empty where
-/// none stays.
-fn loosened_round(edges: &[[u32; 2]], crossed: &[bool], crossed_for: &[u32]) -> Vec<bool> {
-    let rings = crossed.iter().zip(crossed_for);
-    let rings = rings.map(|(&crossed, count)| u32::from(crossed) * count / WIDER_AFTER);
-    let mut rings: Vec<u32> = rings.map(|rings| rings.min(WIDEST)).collect();
+/// Most rings of vertices loosened round a crossing: contact farther off does not hold it.
+const MAX_RINGS: u32 = 8;
+
+/// Vertices within some rings of edges of a persistent crossing, one ring more for every [`DETECTIONS_PER_RING`] of
+/// its count: the contacts of cloth on the wrong side round a crossing would lock the crossing. Empty where no
+/// crossing persists.
+fn loosened_round(edges: &[[u32; 2]], crossed: &[bool], crossing_counts: &[u32]) -> Vec<bool> {
+    let rings = crossed.iter().zip(crossing_counts);
+    let rings = rings.map(|(&crossed, count)| u32::from(crossed) * count / DETECTIONS_PER_RING);
+    let mut rings: Vec<u32> = rings.map(|rings| rings.min(MAX_RINGS)).collect();
     let widest = rings.iter().copied().max().unwrap_or(0);
     if widest == 0 {
         return Vec::new();
@@ -172,29 +173,29 @@ mod tests {
         let edges: Vec<[u32; 2]> = (0..12).map(|v| [v, v + 1]).collect();
         let crossed: Vec<bool> = (0..13).map(|v| v == 0).collect();
         let mut counts = Vec::new();
-        for look in 1..=400 {
-            counts = counted(&crossed, &counts);
+        for detection in 1..=400 {
+            counts = updated_counts(&crossed, &counts);
             let loosened = loosened_round(&edges, &crossed, &counts);
-            let rings = (look / WIDER_AFTER).min(WIDEST) as usize;
+            let rings = (detection / DETECTIONS_PER_RING).min(MAX_RINGS) as usize;
             match rings {
                 0 => assert!(loosened.is_empty()),
                 _ => assert!(
                     (0..13).all(|v| loosened[v] == (v <= rings)),
-                    "{look}: {loosened:?}"
+                    "{detection}: {loosened:?}"
                 ),
             }
         }
         let none = [false; 13];
         assert!(
             loosened_round(&edges, &none, &counts).is_empty(),
-            "not where none is"
+            "only round crossings of this detection"
         );
         for _ in 0..399 {
-            counts = counted(&none, &counts);
+            counts = updated_counts(&none, &counts);
         }
         assert_eq!(counts[0], 1);
-        assert!(counted(&none, &counts).is_empty());
-        assert!(counted(&none, &[]).is_empty());
+        assert!(updated_counts(&none, &counts).is_empty());
+        assert!(updated_counts(&none, &[]).is_empty());
     }
 
     #[test]
@@ -233,7 +234,7 @@ mod tests {
             ..same
         };
         assert_eq!(both(&one), [false, true], "one of the two at a crossing");
-        // Round a crossing both have to be loosened.
+        // Both features need a loosened vertex.
         for (loosened, exempt) in [([true, true, false], true), ([true, false, true], false)] {
             let round = ContactExemptions {
                 loosened: loosened.to_vec(),

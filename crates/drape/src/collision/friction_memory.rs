@@ -1,5 +1,5 @@
 //! Friction of cloth on cloth from step to step: how far each contact has slid since it stuck. It is stored in the
-//! state by [`super::ContactSet::settle`] and carried over edits by `world/transfer.rs`.
+//! state by [`super::ContactSet::remember_step`] and carried over edits by `world/transfer.rs`.
 
 use super::cloth_contact::ClothContact;
 use super::memory::{ClothMemory, ContactFrictionState};
@@ -10,16 +10,16 @@ use toile_geometry::Vec3;
 /// stuck [m], and the normal force then [N]. None where they did not press.
 pub(super) fn anchor(memory: &ClothMemory, near: &Nearness, x: &[Vec3]) -> Option<(Vec3, f64)> {
     let at = memory
-        .held
-        .binary_search_by(|held| held.pair.cmp(&near.pair))
+        .friction
+        .binary_search_by(|state| state.pair.cmp(&near.pair))
         .ok()?;
-    let held = &memory.held[at];
+    let state = &memory.friction[at];
     let four = near.pair.vertices().into_iter().zip(near.weights);
     let slid: Vec3 = four
-        .map(|(v, w)| (x[v as usize] - memory.places[v as usize]) * w)
+        .map(|(v, w)| (x[v as usize] - memory.positions[v as usize]) * w)
         .sum();
     let between = near.normal * near.distance;
-    Some((between - held.slip - slid, held.force))
+    Some((between - state.slip - slid, state.force))
 }
 
 /// The friction of contacts that press at positions `x`, in order of their features.

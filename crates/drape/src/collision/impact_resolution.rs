@@ -76,7 +76,7 @@ pub fn resolve_impacts(
             continue;
         }
         for (impact, _) in &impacts {
-            zones.join(impact.pair.vertices(), motion.lightness);
+            zones.join(impact.pair.vertices(), motion.inverse_mass);
         }
         zones.make_rigid(motion);
         for &v in zones.members() {
@@ -95,7 +95,7 @@ fn truncate_relative_moves(
     exemptions: &ContactExemptions,
     motion: &mut Motions,
 ) -> usize {
-    let any_pinned = motion.lightness.contains(&0.0);
+    let any_pinned = motion.inverse_mass.contains(&0.0);
     let count = motion.moves.len().max(1) as f64;
     let divisor = if any_pinned { f64::INFINITY } else { count };
     let mean = |all: &[Vec3]| all.iter().sum::<Vec3>() / divisor;
@@ -173,14 +173,14 @@ fn apply_impulse(impact: &ImpactPair, time: f64, motion: &mut Motions) -> bool {
     } else {
         n
     };
-    let lightness = vertices.map(|v| motion.lightness[v]);
-    let inverse_mass: f64 = lightness.iter().zip(w).map(|(l, w)| l * w * w).sum();
+    let inverse_mass = vertices.map(|v| motion.inverse_mass[v]);
+    let effective_inverse_mass: f64 = inverse_mass.iter().zip(w).map(|(l, w)| l * w * w).sum();
     let lacking = (1.0 + EXCESS) * impact.gap - n.dot(&weighted(&positions(1.0)));
-    if inverse_mass <= 0.0 || lacking <= 0.0 {
+    if effective_inverse_mass <= 0.0 || lacking <= 0.0 {
         return false;
     }
     let velocity = |k: usize| {
-        if lightness[k] > 0.0 {
+        if inverse_mass[k] > 0.0 {
             motion.velocities[vertices[k]]
         } else {
             motion.moves[vertices[k]] / motion.span
@@ -193,7 +193,7 @@ fn apply_impulse(impact: &ImpactPair, time: f64, motion: &mut Motions) -> bool {
         velocity(3),
     ]));
     for k in 0..4 {
-        let share = n * (w[k] * lightness[k] / inverse_mass);
+        let share = n * (w[k] * inverse_mass[k] / effective_inverse_mass);
         motion.moves[vertices[k]] += share * lacking;
         motion.velocities[vertices[k]] += share * (-separation_speed).max(0.0);
     }

@@ -1,29 +1,29 @@
-//! Where cloth has crossed cloth, exactly, and the way out: each edge that crosses a face is moved
-//! so that the line of intersection grows shorter (Volino and Magnenat-Thalmann 2006, Resolving
-//! surface collisions through intersection contour minimization).
+//! Edge-face intersections of cloth with cloth, by exact predicates, and for each the direction in which the edge has
+//! to move against the face so that the intersection contour grows shorter (Volino and Magnenat-Thalmann 2006,
+//! Resolving surface collisions through intersection contour minimization).
 
 use super::candidate_search::Near;
 use super::surface::ClothSurface;
-use toile_geometry::{Vec3, segment_intersects_triangle};
+use toile_geometry::{Vec3, closest_on_face, segment_intersects_triangle};
 
 /// An edge that crosses a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeFaceIntersection {
     /// Ends of the edge, then corners of the face.
     pub vertices: [u32; 5],
-    /// Weights of the common point on the edge, and negative ones on the face.
+    /// Barycentric weights of the intersection point on the edge, and their negatives on the face.
     pub weights: [f64; 5],
-    /// Unit direction in which the edge is to move against the face: against the gradient of the
-    /// contour's length or, between two layers, out.
+    /// Unit direction in which the edge has to move against the face: the negative gradient of the contour's length
+    /// or, between two layers, the outward normal of the inner one.
     pub direction: Vec3,
 }
 
-/// The cosine between edge and face's normal is not taken smaller than this: a move along the face
-/// cannot help an edge that lies in it.
-const FLAT: f64 = 0.15;
+/// Lower bound of the cosine between the edge and the face's normal, by which the gradient divides: without it an
+/// edge that nearly lies in the face would get a direction along the face alone.
+const MIN_SLOPE: f64 = 0.15;
 
-/// The directions out of some crossings, as [`crossings`] gives them, by their contour. An edge in the
-/// plane of the face has none, and neither has one in the middle of a flat sheet.
+/// The intersections of `crossings` (edge and face, see [`crossings`]) with their contour directions. Pairs without a
+/// direction are left out: edges in the plane of the face, and edges in the middle of a flat sheet.
 pub fn edge_face_intersections(
     surface: &ClothSurface,
     crossings: &[[u32; 2]],
@@ -31,11 +31,11 @@ pub fn edge_face_intersections(
 ) -> Vec<EdgeFaceIntersection> {
     let found = crossings.iter();
     found
-        .filter_map(|&[e, t]| along_contour(surface, e as usize, t as usize, x))
+        .filter_map(|&[e, t]| contour_direction(surface, e as usize, t as usize, x))
         .collect()
 }
 
-/// Every edge and face that cross, exactly, and share no vertex, of those that are near, sorted.
+/// Every edge and face among the near pairs that intersect by exact predicates and share no vertex, sorted.
 pub fn crossings<'a>(
     surface: &ClothSurface,
     near: impl Into<Near<'a>>,
@@ -54,29 +54,75 @@ pub fn crossings<'a>(
     found
 }
 
-/// The direction in which an edge shortens its contour with a face; none where the edge lies in the face or
-/// no direction shortens it.
-fn along_contour(
+/// The geometry of an edge and a face that cross.
+pub(super) struct CrossingGeometry {
+    /// Ends of the edge.
+    pub edge: [u32; 2],
+    /// Corners of the face.
+    pub face: [u32; 3],
+    /// Positions of the corners [m].
+    corners: [Vec3; 3],
+    /// Unit normal of the face.
+    pub normal: Vec3,
+    /// Parameter of the intersection point on the edge, 0 at its first end.
+    parameter: f64,
+    /// The intersection point [m].
+    pub point: Vec3,
+}
+
+impl CrossingGeometry {
+    /// The edge `e` and the face `t` at positions `x`; none for a face without area.
+    pub fn new(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Self> {
+        let (edge, face) = (surface.edges[e], surface.triangles[t]);
+        let [start, end] = edge.map(|v| x[v as usize]);
+        let corners = face.map(|v| x[v as usize]);
+        let normal = area_vector(corners).try_normalize(0.0)?;
+        let [above, below] = [start, end].map(|p| (p - corners[0]).dot(&normal));
+        let parameter = match above == below {
+            true => 0.5,
+            false => (above / (above - below)).clamp(0.0, 1.0),
+        };
+        Some(Self {
+            edge,
+            face,
+            corners,
+            normal,
+            parameter,
+            point: start + (end - start) * parameter,
+        })
+    }
+
+    /// The intersection, with the unit direction in which the edge has to move against the face.
+    pub fn with_direction(&self, direction: Vec3) -> EdgeFaceIntersection {
+        let ([a, b], [c, d, e]) = (self.edge, self.face);
+        let w = closest_on_face(self.point, self.corners);
+        EdgeFaceIntersection {
+            vertices: [a, b, c, d, e],
+            weights: [1.0 - self.parameter, self.parameter, -w[0], -w[1], -w[2]],
+            direction,
+        }
+    }
+}
+
+/// Normal of a triangle, twice as long as its area [m2].
+pub(super) fn area_vector([a, b, c]: [Vec3; 3]) -> Vec3 {
+    (b - a).cross(&(c - a))
+}
+
+/// The intersection with the direction that shortens the contour of the edge with the face; none where the edge lies
+/// in the face or no direction shortens it.
+fn contour_direction(
     surface: &ClothSurface,
     e: usize,
     t: usize,
     x: &[Vec3],
 ) -> Option<EdgeFaceIntersection> {
-    let [a, b] = surface.edges[e];
-    let face = surface.triangles[t];
-    let (pa, pb) = (x[a as usize], x[b as usize]);
-    let [p, q, r] = face.map(|v| x[v as usize]);
-    let along = (pb - pa).try_normalize(0.0)?;
-    let normal = (q - p).cross(&(r - p)).try_normalize(0.0)?;
-    let (da, db) = ((pa - p).dot(&normal), (pb - p).dot(&normal));
-    let s = if da == db {
-        0.5
-    } else {
-        (da / (da - db)).clamp(0.0, 1.0)
-    };
-    let point = pa + (pb - pa) * s;
+    let crossing = CrossingGeometry::new(surface, e, t, x)?;
+    let (normal, point) = (crossing.normal, crossing.point);
+    let [a, b] = crossing.edge;
+    let along = (x[b as usize] - x[a as usize]).try_normalize(0.0)?;
     let slope = along.dot(&normal);
-    let slope = slope.abs().max(FLAT) * if slope < 0.0 { -1.0 } else { 1.0 };
+    let slope = slope.abs().max(MIN_SLOPE) * if slope < 0.0 { -1.0 } else { 1.0 };
     let mut gradient = Vec3::zeros();
     for &of in &surface.edge_triangles[e] {
         let Some(third) = surface.triangles[of as usize]
@@ -95,10 +141,5 @@ fn along_contour(
         gradient += line - normal * (2.0 * along.dot(&line) / slope);
     }
     let direction = gradient.try_normalize(1e-3)?;
-    let w = toile_geometry::closest_on_face(point, [p, q, r]);
-    Some(EdgeFaceIntersection {
-        vertices: [a, b, face[0], face[1], face[2]],
-        weights: [1.0 - s, s, -w[0], -w[1], -w[2]],
-        direction,
-    })
+    Some(crossing.with_direction(direction))
 }

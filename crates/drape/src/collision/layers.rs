@@ -1,32 +1,32 @@
-//! Cloths worn one over another: which vertices are on the wrong side of a layer, which edges cross
-//! one, and in which direction they come out. The outside of a cloth is the side that its triangles
-//! face; of two cloths in order the outer one lies on the outside of the inner one.
+//! Order of cloths worn one over another: vertices on the wrong side of a layer, edges that cross one, and the
+//! direction of recovery for both. The outside of a cloth is the side of its triangles' normals; the cloth with the
+//! larger layer number belongs on the outside of the other.
 
-use super::intersections::EdgeFaceIntersection;
+use super::intersections::{CrossingGeometry, EdgeFaceIntersection, area_vector};
 use super::layer_order::{BETWEEN_LAYERS, layer_order};
 use super::surface::ClothSurface;
 use crate::PairPolicies;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
-use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3, closest_on_face};
+use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
 
 /// A vertex of an outer cloth on the inside of an inner one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerViolation {
     /// The vertex.
     pub vertex: u32,
-    /// The face of the inner cloth nearest to it.
+    /// The face of the inner cloth nearest to the vertex.
     pub face: [u32; 3],
-    /// Weights of the nearest point on it.
+    /// Barycentric weights of the closest point on the face.
     pub weights: [f64; 3],
-    /// Unit direction from the vertex to that point, which lies outwards.
+    /// Unit direction from the vertex to the closest point: outwards.
     pub direction: Vec3,
-    /// Distance to it [m].
+    /// Distance from the vertex to the closest point [m].
     pub depth: f64,
 }
 
-/// Layers in order, innermost first.
+/// The layers of a surface, innermost first.
 pub fn layers_of(surface: &ClothSurface) -> Vec<u16> {
     let mut layers = surface.layer.clone();
     layers.retain(|&layer| layer != BETWEEN_LAYERS);
@@ -35,9 +35,9 @@ pub fn layers_of(surface: &ClothSurface) -> Vec<u16> {
     layers
 }
 
-/// Every vertex on the inside of a layer that it belongs outside of, no farther from it than `reach`
-/// [m], in order of layers and vertices. A vertex nearest to the border of a cloth is on no side of it.
-/// Objects that ignore each other are in no order.
+/// Every vertex of an outer layer that lies on the inside of an inner one within `reach` [m] of it, in order of inner
+/// layers and vertices. A vertex whose closest point is on the border of a cloth is on neither side of it. Objects
+/// that ignore each other have no order.
 pub fn layer_violations(
     surface: &ClothSurface,
     policies: &PairPolicies,
@@ -60,7 +60,7 @@ pub fn layer_violations(
     found
 }
 
-/// [`layer_violations`] of one inner layer, whatever the policies, added to those found.
+/// [`layer_violations`] of one inner layer without regard to policies, appended to `found`.
 pub fn layer_violations_of(
     surface: &ClothSurface,
     inner: u16,
@@ -73,8 +73,8 @@ pub fn layer_violations_of(
     found.extend(vertices_inside(surface, faces, is_outer, x, reach));
 }
 
-/// [`layer_violations`] of one inner layer under policies: objects that ignore the same others are searched
-/// for together, against the faces that they do not ignore.
+/// [`layer_violations`] of one inner layer under policies: one search for each set of objects that ignore the same
+/// others, against the faces of the objects that they do not ignore.
 fn violations_between_objects(
     surface: &ClothSurface,
     policies: &PairPolicies,
@@ -115,7 +115,7 @@ fn is_outside(surface: &ClothSurface, inner: u16, v: usize) -> bool {
     layer > inner && layer != BETWEEN_LAYERS
 }
 
-/// Outer vertices on the inside of some faces, no farther from them than `reach` [m], in order.
+/// Outer vertices on the inside of some faces within `reach` [m] of them, in order.
 fn vertices_inside(
     surface: &ClothSurface,
     faces: Vec<[u32; 3]>,
@@ -150,7 +150,7 @@ fn vertices_inside(
     violations.into_iter().flatten().collect()
 }
 
-/// Whether the closest point lies on an edge that has cloth on one side only.
+/// Whether the closest point lies on an edge with a triangle on one side only.
 fn on_border(surface: &ClothSurface, face: [u32; 3], closest: &ClosestPoint) -> bool {
     let corners: Vec<u32> = (0..3)
         .filter(|&k| closest.weights[k] > 0.0)
@@ -166,56 +166,40 @@ fn on_border(surface: &ClothSurface, face: [u32; 3], closest: &ClosestPoint) -> 
     }
 }
 
-/// The directions out of crossings of two layers, by their order: an edge of the outer one is moved out
-/// along the normal of the face it crosses, and a face of the outer one out along that of the edge.
+/// The intersections of two layers (edge and face) with the direction given by their order: an edge of the outer layer
+/// moves along the normal of the face that it crosses; an edge of the inner layer moves against the mean normal of
+/// its own triangles.
 pub fn layer_crossings(
     surface: &ClothSurface,
     crossings: &[[u32; 2]],
     x: &[Vec3],
 ) -> Vec<EdgeFaceIntersection> {
     let each = crossings.iter();
-    each.filter_map(|&[e, t]| outwards(surface, e as usize, t as usize, x))
+    each.filter_map(|&[e, t]| order_direction(surface, e as usize, t as usize, x))
         .collect()
 }
 
-/// The direction out of a crossing of two layers; none between features in no order.
-fn outwards(
+/// The intersection of two layers with the direction that restores their order; none between features without an
+/// order.
+fn order_direction(
     surface: &ClothSurface,
     e: usize,
     t: usize,
     x: &[Vec3],
 ) -> Option<EdgeFaceIntersection> {
-    let [a, b] = surface.edges[e];
-    let face = surface.triangles[t];
-    let (start, end) = (x[a as usize], x[b as usize]);
-    let corners = face.map(|v| x[v as usize]);
-    let normal = normal_of(corners).try_normalize(0.0)?;
-    let [above, below] = [start, end].map(|p| (p - corners[0]).dot(&normal));
-    let s = match above == below {
-        true => 0.5,
-        false => (above / (above - below)).clamp(0.0, 1.0),
-    };
-    let direction = match layer_order(&surface.layer, a, face[0]) {
+    let crossing = CrossingGeometry::new(surface, e, t, x)?;
+    let direction = match layer_order(&surface.layer, crossing.edge[0], crossing.face[0]) {
         Ordering::Equal => return None,
-        Ordering::Greater => normal,
+        Ordering::Greater => crossing.normal,
         Ordering::Less => {
             let faces = surface.edge_triangles[e].iter();
             let sum: Vec3 = faces
-                .map(|&t| normal_of(surface.triangles[t as usize].map(|v| x[v as usize])))
+                .map(|&t| area_vector(surface.triangles[t as usize].map(|v| x[v as usize])))
                 .sum();
             -sum.try_normalize(0.0)?
         }
     };
-    let w = closest_on_face(start + (end - start) * s, corners);
-    Some(EdgeFaceIntersection {
-        vertices: [a, b, face[0], face[1], face[2]],
-        weights: [1.0 - s, s, -w[0], -w[1], -w[2]],
-        direction,
-    })
-}
-
-fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
-    (b - a).cross(&(c - a))
+    Some(crossing.with_direction(direction))
 }
 
 #[cfg(test)]
@@ -249,7 +233,7 @@ mod tests {
         let (surface, x) = squares(-0.1);
         let all = violations(&surface, &x, 0.5);
         let found = |ignored: &[[u16; 2]]| {
-            // The last vertex of the upper square hangs in several objects.
+            // The last vertex of the upper square belongs to several objects.
             let objects = vec![0, 0, 0, 0, 1, 1, 2, BETWEEN_OBJECTS];
             let policies = PairPolicies::new(objects, ignored.to_vec(), []);
             layer_violations(&surface, &policies, &x, 0.5)
@@ -273,7 +257,7 @@ mod tests {
             assert!((violation.depth - 0.1).abs() < 1e-12);
         }
         assert!(violations(&surface, &x, 0.05).is_empty(), "out of reach");
-        // The other order, and none.
+        // The opposite order, and one layer.
         surface.layer = vec![3, 3, 3, 3, 2, 2, 2, 2];
         assert!(violations(&surface, &x, 0.5).is_empty());
         surface.layer = vec![2; 8];
@@ -281,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_a_border_there_is_no_side() {
+    fn a_vertex_beyond_the_border_is_on_neither_side() {
         let (surface, mut x) = squares(-0.1);
         for p in &mut x[4..] {
             p.x += 2.0;
@@ -290,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn crossings_of_layers_lead_the_outer_one_out() {
+    fn crossings_of_layers_move_the_outer_one_outwards() {
         let (mut surface, mut x) = squares(0.1);
         x[4].y = -0.1;
         let near = surface.near_leaves(LinearTrajectories::still(&x), 0.0);
@@ -305,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_between_layers_are_in_no_order() {
+    fn vertices_of_several_layers_have_no_order() {
         let layer = [0, 1, BETWEEN_LAYERS];
         assert_eq!(layer_order(&layer, 0, 1), Ordering::Less);
         assert_eq!(layer_order(&layer, 1, 0), Ordering::Greater);

@@ -11,7 +11,7 @@ pub struct Motions<'a> {
     /// Velocities at the end [m/s].
     pub velocities: &'a mut [Vec3],
     /// Inverse masses [1/kg]; zero for vertices whose motion is prescribed.
-    pub lightness: &'a [f64],
+    pub inverse_mass: &'a [f64],
     /// Duration of the motion [s].
     pub span: f64,
 }

@@ -1,25 +1,26 @@
-//! Distances of two features, and what is quickly seen to be far.
+//! Closest points and distance of two features, and cheap conservative tests that discard distant pairs.
 
 use super::feature_pair::FeaturePair;
 use toile_geometry::{Vec3, closest_on_face, closest_on_segments};
 
-/// Two features near each other: n . sum w_i x_i is their distance, and the weights sum to zero.
+/// The closest points of two features: their distance is n . sum w_i x_i, and the weights sum to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearness {
     /// The features.
     pub pair: FeaturePair,
-    /// Weights of the four vertices.
+    /// Weight of each of the four vertices, negative for those of the second feature.
     pub weights: [f64; 4],
     /// Unit vector from the second feature to the first.
     pub normal: Vec3,
     /// Distance [m].
     pub distance: f64,
-    /// Whether they belong to triangles that share a vertex and face alike, as neighbours do.
+    /// Whether the features belong to triangles that share a vertex and are not folded against each other by more
+    /// than a right angle.
     pub neighbours: bool,
 }
 
-/// Weights of the closest points of two features, those of the second negative; `p` are the places
-/// of the four vertices.
+/// Barycentric weights of the closest points of two features, negative for the second feature; `p` are the positions
+/// of the four vertices [m].
 pub fn closest(pair: FeaturePair, p: &[Vec3; 4]) -> [f64; 4] {
     match pair {
         FeaturePair::VertexFace(_) => {
@@ -33,12 +34,12 @@ pub fn closest(pair: FeaturePair, p: &[Vec3; 4]) -> [f64; 4] {
     }
 }
 
-/// Below this distance no direction is known [m].
+/// Distance below which the unit vector between the features is not defined [m]: it would be rounding.
 const TOUCHING: f64 = 1e-12;
 
 impl Nearness {
-    /// Measures two features; nothing when they are farther than `reach` [m], or touch. Two edges
-    /// count only where the closest points are inside both: their ends are seen to by their faces.
+    /// The closest points of two features at positions `x`; none where they are farther apart than `reach` [m] or
+    /// touch, or where the closest point of an edge is one of its ends: vertex-face pairs cover those.
     pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {
         let p = pair.vertices().map(|v| x[v as usize]);
         match passes_by(pair, &p) {
@@ -47,7 +48,7 @@ impl Nearness {
         }
     }
 
-    /// [`Self::measure`] for what does not pass by each other, at the places of the vertices.
+    /// [`Self::measure`] for a pair that fails `passes_by`, at the positions `p` of its vertices [m].
     pub fn measured(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> Option<Self> {
         if is_far(pair, p, reach) {
             return None;
@@ -69,7 +70,7 @@ impl Nearness {
         })
     }
 
-    /// Distance of two features [m].
+    /// Distance of two features at positions `x` [m].
     pub fn distance(pair: FeaturePair, x: &[Vec3]) -> f64 {
         let p = pair.vertices().map(|v| x[v as usize]);
         match pair {
@@ -85,16 +86,16 @@ impl Nearness {
     }
 }
 
-/// Square of the sine below which two edges, or two sides of a face, count as parallel: the direction
-/// across both is then rounding.
+/// Squared sine of the angle below which two edges, or two sides of a face, count as parallel: their cross product
+/// is then rounding.
 pub const PARALLEL: f64 = 1e-8;
 
-/// Share of the way between two features that their distance across is off by at the most, where it
-/// is asked.
+/// Bound of the relative rounding error of the distance between two lines, or of a vertex from a plane, as a share
+/// of the distance of the vertices it is computed from.
 const ROUNDING: f64 = 1e-10;
 
-/// Whether boxes round two features are farther apart than `reach` [m], or the plane of a face is from
-/// its vertex, or the lines of two edges are from each other.
+/// Whether two features are certainly farther apart than `reach` [m]: their axis-aligned boxes are, or the plane of
+/// the face is from the vertex, or the lines of the two edges are from each other. False proves nothing.
 #[inline(always)]
 pub fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
     let (low, high, other_low, other_high) = match pair {
@@ -126,8 +127,8 @@ pub fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
         && square > PARALLEL * sides[0].norm_squared() * sides[1].norm_squared()
 }
 
-/// Whether two edges, not parallel, pass by each other: the lines through them are nearest where one of the
-/// edges is not. So do nearly all neighbours in a smooth sheet.
+/// Whether two edges that are not parallel have the closest point of their lines outside one of the edges. They then
+/// make no contact. Nearly all neighbouring edges of a smooth sheet are such a pair.
 #[inline(always)]
 pub fn passes_by(pair: FeaturePair, p: &[Vec3; 4]) -> bool {
     let FeaturePair::EdgeEdge(_) = pair else {
@@ -148,10 +149,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_far_is_far_even_of_edges_and_slivers_that_are_parallel_but_for_rounding() {
+    fn far_pairs_are_far_even_where_edges_and_slivers_are_nearly_parallel() {
         let mut numbers = Numbers(1);
         let mut vector = |size: f64| numbers.vector(0.5 * size);
-        let mut told = 0;
+        let mut far = 0;
         for turn in [0.0, 1e-15, 1e-14, 1e-12, 1e-7, 1e-5, 1e-2] {
             for distance in [5e-6, 5e-5, 5e-4] {
                 for _ in 0..2000 {
@@ -170,20 +171,20 @@ mod tests {
                             !is_far(pair, &p, 1.000_001 * exact),
                             "{turn} {distance} {pair:?}"
                         );
-                        told += usize::from(is_far(pair, &p, 0.5 * exact));
+                        far += usize::from(is_far(pair, &p, 0.5 * exact));
                     }
                 }
             }
         }
-        assert!(told > 1000, "{told}");
+        assert!(far > 1000, "{far}");
     }
 
     #[test]
-    fn edges_pass_by_each_other_where_an_end_is_nearest() {
+    fn edges_pass_by_each_other_where_the_closest_point_is_an_end() {
         let mut numbers = Numbers(1);
         let mut vector = |size: f64| numbers.vector(0.5 * size);
         let pair = FeaturePair::EdgeEdge([0, 1, 2, 3]);
-        let mut told = [0; 2];
+        let mut counts = [0; 2];
         for turn in [0.0, 1e-15, 1e-7, 1e-3, 1.0] {
             for _ in 0..2000 {
                 let (start, along, other) = (vector(2.0), vector(1.0), vector(2.0));
@@ -193,9 +194,9 @@ mod tests {
                 let least = weights.iter().fold(1.0, |least: f64, w| least.min(w.abs()));
                 let passes = passes_by(pair, &p);
                 assert!(least < 1e-7 || !passes, "{turn} {weights:?}");
-                told[usize::from(passes)] += 1;
+                counts[usize::from(passes)] += 1;
             }
         }
-        assert!(told[0] > 2000 && told[1] > 2000, "{told:?}");
+        assert!(counts[0] > 2000 && counts[1] > 2000, "{counts:?}");
     }
 }

@@ -1,5 +1,5 @@
-//! How crossed cloth is drawn apart: pulls along the contour gradient of crossings, and out of layers
-//! that cloth lies on the wrong side of.
+//! Recovery from entanglement: forces that undo crossings along the contour gradient, and forces that move vertices
+//! back to the right side of a layer.
 
 use super::cloth_contact::ClothContact;
 use super::entanglement::Entanglement;
@@ -12,28 +12,26 @@ use crate::laws::contact::{ContactLaw, ContactPlane};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
-/// The pulls on cloth that is entangled, found anew by each detection. They belong to no potential.
+/// The recovery forces on entangled cloth. Each detection makes them anew; they derive from no potential.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recovery {
-    /// The pulls, as contacts without friction and without a pair of features.
+    /// The forces, as contacts without friction and without a pair of features.
     pub pulls: Vec<ClothContact>,
-    /// Directions in which vertices at crossings are drawn, in order of vertices: to be remembered.
+    /// Recovery direction of each vertex at a crossing, in order of vertices; the state stores them.
     pub directions: Vec<RecoveryDirection>,
 }
 
-/// How far an edge that crosses a face is pulled at a time, in offsets: by less, a fold caught in a seam
-/// stays there.
-const PULL: f64 = 2.0;
+/// Depth of a recovery contact of a crossing, in contact offsets: with less a fold caught in a seam stays caught.
+const PULL_DEPTH: f64 = 2.0;
 
 impl Recovery {
-    /// Pulls nothing.
+    /// Removes all forces and directions.
     pub(super) fn clear(&mut self) {
         self.pulls.clear();
         self.directions.clear();
     }
 
-    /// Plans the pulls on what is entangled at positions `x`; `before` are the directions of the last
-    /// detection.
+    /// Makes the forces for an entanglement at positions `x`; `before` are the directions of the last detection.
     pub(super) fn plan(
         &mut self,
         surface: &ClothSurface,
@@ -42,39 +40,38 @@ impl Recovery {
         (x, before): (&[Vec3], &[RecoveryDirection]),
     ) {
         let mut crossings = edge_face_intersections(surface, &entangled.within, x);
-        self.directions = keep_direction(&mut crossings, before);
+        self.directions = align_with_previous(&mut crossings, before);
         crossings.extend(layer_crossings(surface, &entangled.of_layers, x));
         let puller = Puller { surface, model, x };
         self.pulls.clear();
-        let of_crossings = crossings.iter().filter_map(|c| puller.out_of_crossing(c));
+        let of_crossings = crossings.iter().filter_map(|c| puller.crossing_pull(c));
         self.pulls.extend(of_crossings);
         let of_violations = entangled.violations.iter();
-        let of_violations = of_violations.filter_map(|v| puller.out_of_layer(v));
+        let of_violations = of_violations.filter_map(|v| puller.violation_pull(v));
         self.pulls.extend(of_violations);
     }
 }
 
-/// Detections after which the direction in which a vertex was pulled is forgotten, unless it was pulled in that
-/// direction again since.
-const MEMORY: u32 = 8;
+/// Detections after which a vertex's recovery direction is dropped unless it was used again.
+const MAX_AGE: u32 = 8;
 
-/// Directions whose sum over the vertices of a crossing is this long or less cancel.
-const CANCELLED: f64 = 0.1;
+/// Length of the sum of a crossing's earlier directions below which they count as cancelled.
+const MIN_SUM: f64 = 0.1;
 
-/// Where the direction of a crossing is opposed to the mean direction in which its vertices were pulled `before`
-/// (sorted by vertex), replaces it by that mean; returns the directions to be remembered. Otherwise two edges at
-/// one corner that cross a face in turn would pull the cloth to and fro without end.
-fn keep_direction(
+/// Replaces the direction of a crossing by the mean of its vertices' earlier directions `before` (sorted by vertex)
+/// where the two are opposed; returns the directions that the state stores. Without this, two edges at one corner that
+/// cross a face in turn would pull the cloth to and fro without end.
+fn align_with_previous(
     crossings: &mut [EdgeFaceIntersection],
     before: &[RecoveryDirection],
 ) -> Vec<RecoveryDirection> {
-    let remembered = |v: &u32| {
-        let at = before.binary_search_by_key(v, |one| one.vertex);
+    let previous = |v: &u32| {
+        let at = before.binary_search_by_key(v, |entry| entry.vertex);
         at.ok().map(|at| before[at])
     };
-    let older = |one: &RecoveryDirection| RecoveryDirection {
-        detections: one.detections + 1,
-        ..*one
+    let aged = |entry: &RecoveryDirection| RecoveryDirection {
+        detections: entry.detections + 1,
+        ..*entry
     };
     let mut after: Vec<RecoveryDirection> = Vec::new();
     for crossing in crossings {
@@ -82,18 +79,21 @@ fn keep_direction(
             .vertices
             .into_iter()
             .zip([1.0, 1.0, -1.0, -1.0, -1.0]);
-        let known = || {
+        let previous_signed = || {
             signed
                 .clone()
-                .filter_map(|(v, sign)| Some((remembered(&v)?, sign)))
+                .filter_map(|(v, sign)| Some((previous(&v)?, sign)))
         };
-        let sum: Vec3 = known().map(|(one, sign)| one.direction * sign).sum();
-        let before = sum.try_normalize(CANCELLED);
-        let opposed = before.filter(|direction| direction.dot(&crossing.direction) < 0.0);
+        let sum: Vec3 = previous_signed()
+            .map(|(entry, sign)| entry.direction * sign)
+            .sum();
+        let mean = sum.try_normalize(MIN_SUM);
+        let opposed = mean.filter(|direction| direction.dot(&crossing.direction) < 0.0);
         let mut detections = 0;
         if let Some(direction) = opposed {
             crossing.direction = direction;
-            detections = 1 + known().map(|(one, _)| one.detections).min().unwrap_or(0);
+            let ages = previous_signed().map(|(entry, _)| entry.detections);
+            detections = 1 + ages.min().unwrap_or(0);
         }
         after.extend(signed.map(|(vertex, sign)| RecoveryDirection {
             vertex,
@@ -101,15 +101,15 @@ fn keep_direction(
             detections,
         }));
     }
-    after.extend(before.iter().map(older));
-    after.retain(|one| one.detections <= MEMORY);
-    // The latest of a vertex; of one detection, that of its first crossing.
-    after.sort_by_key(|one| (one.vertex, one.detections));
-    after.dedup_by_key(|one| one.vertex);
+    after.extend(before.iter().map(aged));
+    after.retain(|entry| entry.detections <= MAX_AGE);
+    // One direction for each vertex: the latest, and among those of one detection that of the first crossing.
+    after.sort_by_key(|entry| (entry.vertex, entry.detections));
+    after.dedup_by_key(|entry| entry.vertex);
     after
 }
 
-/// Makes pulls at some positions.
+/// Makes recovery forces at the positions `x`.
 struct Puller<'a> {
     surface: &'a ClothSurface,
     model: &'a Model,
@@ -117,12 +117,13 @@ struct Puller<'a> {
 }
 
 impl Puller<'_> {
-    /// A pull on the ends of an edge that crosses a face and on the two corners of the face nearest to it;
-    /// none where all four are held.
-    fn out_of_crossing(&self, crossing: &EdgeFaceIntersection) -> Option<ClothContact> {
+    /// A force between the ends of an edge that crosses a face and the two corners of the face with the largest
+    /// weights; none where all four vertices are pinned.
+    fn crossing_pull(&self, crossing: &EdgeFaceIntersection) -> Option<ClothContact> {
         let (v, w) = (crossing.vertices, crossing.weights);
-        let least = (2..5).fold(2, |least, k| if w[k] > w[least] { k } else { least });
-        let mut corners = (2..5).filter(|&k| k != least);
+        // Weights of the face are negative: the largest is that of the corner farthest from the intersection.
+        let farthest = (2..5).fold(2, |far, k| if w[k] > w[far] { k } else { far });
+        let mut corners = (2..5).filter(|&k| k != farthest);
         let [c, d] = [corners.next()?, corners.next()?];
         let total = w[c] + w[d];
         let vertices = [v[0], v[1], v[c], v[d]];
@@ -131,13 +132,13 @@ impl Puller<'_> {
             .iter()
             .map(|&v| self.surface.area[v as usize])
             .sum();
-        let depth = PULL * self.model.contact.cloth_offset;
+        let depth = PULL_DEPTH * self.model.contact.cloth_offset;
         self.pull((vertices, weights), crossing.direction, depth, area)
     }
 
-    /// A pull on a vertex that is on the wrong side of a layer, and on the face that it belongs beyond; none
-    /// where all are held.
-    fn out_of_layer(&self, violation: &LayerViolation) -> Option<ClothContact> {
+    /// A force between a vertex on the wrong side of a layer and the closest face of that layer; none where all four
+    /// vertices are pinned.
+    fn violation_pull(&self, violation: &LayerViolation) -> Option<ClothContact> {
         let ([a, b, c], w) = (violation.face, violation.weights);
         let vertices = [violation.vertex, a, b, c];
         let weights = [1.0, -w[0], -w[1], -w[2]];
@@ -146,12 +147,12 @@ impl Puller<'_> {
             .map(|(&v, w)| self.surface.area[v as usize] * w.abs())
             .sum();
         let offset = self.model.contact.cloth_offset;
-        let depth = (offset + violation.depth).min(PULL * offset);
+        let depth = (offset + violation.depth).min(PULL_DEPTH * offset);
         self.pull((vertices, weights), violation.direction, depth, area)
     }
 
-    /// A contact that pulls the first feature against the second in a unit `direction`, `depth` [m] far, as
-    /// stiff as contact of a quarter of the `area` [m2]; none where all its vertices are held.
+    /// A contact of depth `depth` [m] that pulls the first feature along the unit `direction` and the second against
+    /// it, with the stiffness of a contact of a quarter of `area` [m2]; none where all four vertices are pinned.
     fn pull(
         &self,
         (vertices, weights): ([u32; 4], [f64; 4]),
@@ -206,29 +207,33 @@ mod tests {
     }
 
     #[test]
-    fn two_edges_at_one_corner_are_drawn_in_one_direction() {
+    fn two_edges_at_one_corner_are_pulled_in_one_direction() {
         let mut first = [crossing([7, 1, 2, 3, 4], Vec3::x())];
-        let drawn = keep_direction(&mut first, &[]);
+        let directions = align_with_previous(&mut first, &[]);
         assert_eq!(first[0].direction, Vec3::x());
-        assert_eq!(drawn.len(), 5);
-        // The other edge would turn back, its neighbour in another corner of the cloth goes its own way.
+        assert_eq!(directions.len(), 5);
+        // The second edge at the corner is opposed to the first; an edge elsewhere in the cloth has its own direction.
         let back = Vec3::new(-0.8, 0.6, 0.0);
         let mut second = [
             crossing([7, 8, 2, 5, 6], back),
             crossing([20, 21, 22, 23, 24], back),
         ];
-        let drawn = keep_direction(&mut second, &drawn);
+        let directions = align_with_previous(&mut second, &directions);
         assert_eq!(second[0].direction, Vec3::x());
         assert_eq!(second[1].direction, back);
-        // A direction that turns by less than a right angle is followed.
+        // A direction within a right angle of the earlier one is taken as it is.
         let turned = Vec3::new(0.6, 0.8, 0.0);
         let mut third = [crossing([8, 7, 2, 5, 6], turned)];
-        let mut drawn = keep_direction(&mut third, &drawn);
+        let mut directions = align_with_previous(&mut third, &directions);
         assert_eq!(third[0].direction, turned);
-        assert!(drawn.windows(2).all(|pair| pair[0].vertex < pair[1].vertex));
-        for _ in 0..=MEMORY {
-            drawn = keep_direction(&mut [], &drawn);
+        assert!(
+            directions
+                .windows(2)
+                .all(|pair| pair[0].vertex < pair[1].vertex)
+        );
+        for _ in 0..=MAX_AGE {
+            directions = align_with_previous(&mut [], &directions);
         }
-        assert_eq!(drawn, []);
+        assert_eq!(directions, []);
     }
 }

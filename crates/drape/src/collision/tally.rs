@@ -1,28 +1,28 @@
-//! Counts over the contact detections of a run.
+//! Counts of detections, crossings and impact corrections over a run.
 
 use super::impact_resolution::ImpactStats;
 use serde::{Deserialize, Serialize};
 
-/// Counts so far.
+/// Counts over a run so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
     /// Detections.
     pub looks: usize,
-    /// Pairs of an edge and a face that cross: in the first detection, the most in one detection, in the last.
+    /// Pairs of an edge and a face that cross: in the first detection, in the detection with most, in the last.
     pub crossings: [usize; 3],
     /// Vertices of outer layers on the wrong side of inner ones, in the same three counts.
     pub astray: [usize; 3],
-    /// Impulses that resolved collisions between detections.
+    /// Impulses applied to collisions between detections.
     pub impulses: usize,
-    /// Moves of vertices in rigid impact zones, where impulses did not resolve the collisions.
+    /// Displacements of vertices replaced by those of a rigid impact zone, where impulses were not enough.
     pub zoned: usize,
-    /// Moves of vertices that were truncated, where zones did not resolve the collisions.
+    /// Displacements of vertices truncated, where zones were not enough.
     pub cut: usize,
 }
 
 impl Tally {
-    /// Counts a detection with its crossings and layer violations.
+    /// Adds a detection with its crossings and layer violations.
     pub(super) fn count_detection(&mut self, crossings: usize, violations: usize) {
         let counts = [
             (&mut self.crossings, crossings),
@@ -38,14 +38,14 @@ impl Tally {
         self.looks += 1;
     }
 
-    /// Counts the corrections of a motion.
+    /// Adds the corrections of a motion.
     pub fn count_impacts(&mut self, impacts: ImpactStats) {
         self.impulses += impacts.impulses;
         self.zoned += impacts.zoned;
         self.cut += impacts.cut;
     }
 
-    /// These counts, followed by those of a later run.
+    /// The counts of this run and of a later one together.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         if self.looks == 0 || next.looks == 0 {

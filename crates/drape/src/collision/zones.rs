@@ -59,12 +59,12 @@ impl ImpactZones {
         v
     }
 
-    /// Joins the vertices of a collision, and the zones that they are in, into one zone. `lightness` is the inverse
+    /// Joins the vertices of a collision, and the zones that they are in, into one zone. `inverse_mass` is the inverse
     /// mass of each vertex [1/kg]. Vertices of infinite mass join no zone: all zones at them would become one.
-    pub fn join(&mut self, vertices: [u32; 4], lightness: &[f64]) {
+    pub fn join(&mut self, vertices: [u32; 4], inverse_mass: &[f64]) {
         let mut first = None;
         for v in vertices {
-            if lightness[v as usize] <= 0.0 {
+            if inverse_mass[v as usize] <= 0.0 {
                 continue;
             }
             if !std::mem::replace(&mut self.is_member[v as usize], true) {
@@ -97,7 +97,7 @@ impl ImpactZones {
     /// rotate too far are not changed.
     pub fn make_rigid(&mut self, motion: &mut Motions) {
         for zone in self.groups() {
-            let zone = ImpactZone::new(&zone, motion.x, motion.lightness);
+            let zone = ImpactZone::new(&zone, motion.x, motion.inverse_mass);
             let [shift, rotation] = zone.rigid_motion(motion.moves);
             if rotation.norm() > MAX_ROTATION {
                 continue;
@@ -117,7 +117,7 @@ struct ImpactZone<'a> {
     vertices: &'a [u32],
     x: &'a [Vec3],
     /// Inverse masses of all vertices [1/kg].
-    lightness: &'a [f64],
+    inverse_mass: &'a [f64],
     /// Mass of the zone [kg].
     mass: f64,
     /// Centre of mass [m].
@@ -127,19 +127,19 @@ struct ImpactZone<'a> {
 }
 
 impl<'a> ImpactZone<'a> {
-    fn new(vertices: &'a [u32], x: &'a [Vec3], lightness: &'a [f64]) -> Self {
+    fn new(vertices: &'a [u32], x: &'a [Vec3], inverse_mass: &'a [f64]) -> Self {
         let mut mass = 0.0;
         let mut centre = Vec3::zeros();
         for &v in vertices {
-            mass += 1.0 / lightness[v as usize];
-            centre += x[v as usize] / lightness[v as usize];
+            mass += 1.0 / inverse_mass[v as usize];
+            centre += x[v as usize] / inverse_mass[v as usize];
         }
         centre /= mass;
         let mut inertia = Matrix3::zeros();
         for &v in vertices {
             let arm = x[v as usize] - centre;
             let square = Matrix3::identity() * arm.norm_squared() - arm * arm.transpose();
-            inertia += square / lightness[v as usize];
+            inertia += square / inverse_mass[v as usize];
         }
         let mut principal = inertia.symmetric_eigen();
         let largest = principal.eigenvalues.max();
@@ -153,7 +153,7 @@ impl<'a> ImpactZone<'a> {
         Self {
             vertices,
             x,
-            lightness,
+            inverse_mass,
             mass,
             centre,
             inverse_inertia: principal.recompose(),
@@ -164,7 +164,7 @@ impl<'a> ImpactZone<'a> {
     fn rigid_motion(&self, moves: &[Vec3]) -> [Vec3; 2] {
         let (mut momentum, mut moment) = (Vec3::zeros(), Vec3::zeros());
         for &v in self.vertices {
-            let of_vertex = moves[v as usize] / self.lightness[v as usize];
+            let of_vertex = moves[v as usize] / self.inverse_mass[v as usize];
             momentum += of_vertex;
             moment += (self.x[v as usize] - self.centre).cross(&of_vertex);
         }
@@ -190,7 +190,7 @@ mod tests {
             let x: Vec<Vec3> = (0..5).map(|k| if flat { Vec3::x() * v(k).x } else { v(k) }).collect();
             let mut moves: Vec<Vec3> = (5..10).map(|k| v(k) * 0.005).collect();
             let mut velocities: Vec<Vec3> = moves.iter().map(|d| d * 7.0).collect();
-            let lightness: Vec<f64> = masses.iter().map(|m| 1.0 / m).collect();
+            let inverse_mass: Vec<f64> = masses.iter().map(|m| 1.0 / m).collect();
             let momenta = |moves: &[Vec3]| {
                 let each = || moves.iter().zip(&masses).zip(&x);
                 let shift: Vec3 = each().map(|((d, m), _)| d * *m).sum();
@@ -200,14 +200,14 @@ mod tests {
             let before = momenta(&moves);
             let start = moves.clone();
             let mut zones = ImpactZones::new(5);
-            zones.join([0, 1, 2, 3], &lightness);
-            zones.join([3, 4, 3, 4], &lightness);
+            zones.join([0, 1, 2, 3], &inverse_mass);
+            zones.join([3, 4, 3, 4], &inverse_mass);
             prop_assert_eq!(zones.count(), 5);
             zones.make_rigid(&mut Motions {
                 x: &x,
                 moves: &mut moves,
                 velocities: &mut velocities,
-                lightness: &lightness,
+                inverse_mass: &inverse_mass,
                 span: 1.0,
             });
             if moves == start {
@@ -230,12 +230,12 @@ mod tests {
 
     #[test]
     fn collisions_join_zones_but_not_through_pinned_vertices() {
-        let lightness = [1.0, 1.0, 1.0, 0.0, 1.0, 1.0];
+        let inverse_mass = [1.0, 1.0, 1.0, 0.0, 1.0, 1.0];
         let mut zones = ImpactZones::new(6);
-        zones.join([5, 3, 4, 5], &lightness);
-        zones.join([0, 1, 3, 3], &lightness);
+        zones.join([5, 3, 4, 5], &inverse_mass);
+        zones.join([0, 1, 3, 3], &inverse_mass);
         assert_eq!(zones.groups(), vec![vec![0, 1], vec![4, 5]]);
-        zones.join([1, 4, 2, 2], &lightness);
+        zones.join([1, 4, 2, 2], &inverse_mass);
         assert_eq!(zones.groups(), vec![vec![0, 1, 2, 4, 5]]);
     }
 }

@@ -1,4 +1,4 @@
-//! A garment's run saved between two steps, and gone on with.
+//! Checkpoints of a garment's run: saving it between two steps and resuming it.
 
 use super::digest::SetupDigest;
 use super::setup::GarmentWorld;
@@ -11,22 +11,22 @@ use crate::{Control, DrapeError, State, Workspace};
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Vec2, Vec3};
 
-/// All that a garment's run is between two steps but its setup, which it is resumed with: plain data, to be
-/// written to a file.
+/// A garment's run between two steps, without its setup, which has to be given again to resume: plain data for a
+/// file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
-    /// What it is of.
+    /// Digest of the setup it was saved with.
     setup: SetupDigest,
     level: usize,
     stage: StageState,
     state: State,
     control: Control,
-    /// Where the vertices lay when the structure was made [m]: orders of elimination follow.
+    /// Positions of the vertices when the structure was compiled [m]: they decide the elimination orders.
     layout: Vec<Vec3>,
-    /// Shapes after an edit.
+    /// Rest shapes after an edit; none without one.
     edited: Option<EditedShapes>,
-    /// Vertices that might touch when the factor's structure was worked out for them.
+    /// Contact pairs of vertices in the sparsity pattern of the last symbolic factorisation.
     eliminated_pairs: Option<Vec<[u32; 2]>>,
     #[serde(with = "crate::exact")]
     gap_before_merging: f64,
@@ -36,23 +36,22 @@ pub struct Checkpoint {
     tally: Tally,
 }
 
-/// Shapes of a garment whose pattern was edited while it was worn.
+/// Rest shapes of a garment whose pattern was edited while it was worn.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EditedShapes {
-    /// Rest shapes that the structure was made for [m].
+    /// Rest shapes that the structure was compiled for [m].
     made_for: Vec<[Vec2; 3]>,
-    /// Whether others came after them.
+    /// Whether the rest shapes changed after that.
     is_reshaped: bool,
-    /// Rest shapes now [m].
+    /// Present rest shapes [m].
     rest: Vec<[Vec2; 3]>,
-    /// Where strain counts.
+    /// Triangles whose strain counts.
     counted: Vec<bool>,
 }
 
 impl GarmentRun {
-    /// All that it takes to go on from here in another process to the same bytes; nothing but where
-    /// [`GarmentRun::is_checkpoint`].
+    /// A checkpoint from which another process goes on to the same bytes; none unless [`GarmentRun::is_checkpoint`].
     pub fn checkpoint(&self) -> Option<Checkpoint> {
         if !self.is_checkpoint() {
             return None;
@@ -81,11 +80,11 @@ impl GarmentRun {
         })
     }
 
-    /// Goes on from a checkpoint, with the setup that it was saved of; after an edit, with one of the same
-    /// meshes, whose rest shapes do not count.
+    /// Resumes a checkpoint with the setup that it was saved with. After an edit the setup needs the same meshes, and
+    /// the rest shapes of the checkpoint replace its own.
     ///
     /// # Errors
-    /// A checkpoint of another setup, by what differs; one that does not fit itself.
+    /// A checkpoint of another setup, with the property that differs; a checkpoint whose fields contradict each other.
     pub fn resume(setup: GarmentSetup, checkpoint: Checkpoint) -> Result<Self, DrapeError> {
         let mut setup = setup.prepared()?;
         let (level, edited) = (checkpoint.level, checkpoint.edited);
@@ -102,12 +101,12 @@ impl GarmentRun {
         }
         let mut stage = checkpoint.stage;
         let is_sewn = matches!(stage, StageState::Sewing(_));
-        let made_as = (is_sewn, checkpoint.layout, edited.as_ref());
-        let (mut simulation, garment) = restored(&setup, level, made_as)?;
+        let structure = (is_sewn, checkpoint.layout, edited.as_ref());
+        let (mut simulation, garment) = restored(&setup, level, structure)?;
         if let StageState::Sewing(sewing) = &mut stage {
             sewing.resume(&mut simulation.system, setup.levels[level].stitches.clone());
         }
-        simulation.go_on_from(checkpoint.state, checkpoint.control)?;
+        simulation.restore(checkpoint.state, checkpoint.control)?;
         let system = &simulation.system;
         let mut workspace = Workspace::default();
         if let Some(pairs) = &checkpoint.eliminated_pairs {
@@ -151,24 +150,25 @@ impl EditedShapes {
     }
 }
 
-/// The world of a level as it was made: whether it is still sewn, where its vertices lay, and what edits came.
+/// The simulation of a level with the same structure as when the checkpoint was saved: from whether it is still sewn,
+/// the positions at compilation, and the edited rest shapes.
 fn restored(
     setup: &GarmentSetup,
     level: usize,
     (is_sewn, layout, edited): (bool, Vec<Vec3>, Option<&EditedShapes>),
 ) -> Result<(Simulation, ObjectId), DrapeError> {
-    let mut made = setup.clone();
+    let mut original = setup.clone();
     if let Some(edited) = edited {
-        made.levels[level].cloth.rest.clone_from(&edited.made_for);
+        (original.levels[level].cloth.rest).clone_from(&edited.made_for);
     }
     let GarmentWorld {
         mut world,
         garment,
         solids,
-    } = made.world(level);
+    } = original.world(level);
     if !is_sewn {
-        world.merge(made.levels[level].seams(garment));
-        world.set_environment(made.worn_environment());
+        world.merge(original.levels[level].seams(garment));
+        world.set_environment(original.worn_environment());
     }
     let simulation = Simulation::laid_out(world, layout, solids);
     let mut simulation = simulation.map_err(|error| damaged("layout", &error.to_string()))?;
@@ -178,7 +178,7 @@ fn restored(
     Ok((simulation, garment))
 }
 
-/// A checkpoint whose parts do not fit each other.
+/// The error of a checkpoint whose fields contradict each other.
 pub(super) fn damaged(place: &str, what: &str) -> DrapeError {
     DrapeError::Scene {
         place: format!("checkpoint, {place}"),

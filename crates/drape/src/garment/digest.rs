@@ -1,32 +1,32 @@
-//! Digests of a garment's setup: a checkpoint is resumed with the setup it was saved of, and with no other.
+//! Digests of a garment's setup, by which a checkpoint refuses to be resumed with another setup.
 
 use super::{GarmentLevel, GarmentSetup};
 use crate::DrapeError;
 use crate::digest::Digest;
 use serde::{Deserialize, Serialize};
 
-/// A setup from one of its levels on, in short.
+/// Digest of a setup from one of its levels on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SetupDigest {
     levels: usize,
-    /// Those from the present one on.
+    /// Meshes of the levels from the present one on.
     meshes: Vec<MeshDigest>,
     fabrics: u64,
     body: u64,
     settings: u64,
 }
 
-/// A mesh of the panels, in short.
+/// Digest of a mesh of the panels.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MeshDigest {
     vertices: usize,
     triangles: usize,
     stitches: usize,
-    /// Of the triangles, with panels, fabrics and layers, and of the stitches.
+    /// Hash of the triangles with their panels, fabrics and layers, and of the stitches.
     structure: u64,
-    /// Of the rest shapes and of where the panels were placed.
+    /// Hash of the rest shapes and of the starting positions.
     shapes: u64,
 }
 
@@ -45,7 +45,7 @@ impl MeshDigest {
         structure.whole(layer.iter().map(|&l| u32::from(l)));
         let mut shapes = Digest::new();
         shapes.shapes(&cloth.rest);
-        shapes.places(&cloth.positions);
+        shapes.vectors(&cloth.positions);
         Self {
             vertices: cloth.positions.len(),
             triangles: cloth.triangles.len(),
@@ -57,18 +57,18 @@ impl MeshDigest {
 }
 
 impl SetupDigest {
-    /// Of a setup from a level on.
+    /// The digest of a setup from a level on.
     pub fn of(setup: &GarmentSetup, level: usize) -> Self {
         let mut body = Digest::new();
         for surface in &setup.colliders {
             let mesh = surface.mesh();
-            body.places(&mesh.positions);
+            body.vectors(&mesh.positions);
             body.whole(mesh.triangles.iter().flatten().copied());
         }
-        // As written, numbers are told apart to the last bit.
-        let written = |words: String| {
+        // The debug format of a number is exact to the last bit.
+        let text_hash = |text: String| {
             let mut hash = Digest::new();
-            hash.text(&words);
+            hash.text(&text);
             hash.value()
         };
         let fabrics = setup.levels.iter().skip(level);
@@ -77,17 +77,17 @@ impl SetupDigest {
         Self {
             levels: setup.levels.len(),
             meshes: meshes.map(MeshDigest::of).collect(),
-            fabrics: written(format!("{fabrics:?}")),
+            fabrics: text_hash(format!("{fabrics:?}")),
             body: body.value(),
-            settings: written(format!(
+            settings: text_hash(format!(
                 "{:?} {:?} {:?} {:?}",
                 setup.contact, setup.gravity, setup.sew, setup.rest
             )),
         }
     }
 
-    /// Refuses another setup, which is named by what differs; where the garment's shapes came by an edit,
-    /// those of the setup do not count.
+    /// Refuses another setup and names the property that differs. Shapes are not compared where the checkpoint has
+    /// edited ones.
     pub fn check(&self, other: &Self, is_edited: bool) -> Result<(), DrapeError> {
         differs("count of meshes", self.levels, other.levels)?;
         for (own, given) in self.meshes.iter().zip(&other.meshes) {
@@ -106,7 +106,7 @@ impl SetupDigest {
     }
 }
 
-/// What to do about a checkpoint of something else.
+/// The remedy for a checkpoint of another setup.
 const REMEDY: &str = "go on with the pattern, body, fabrics and quality that it was saved of, or drape from the start";
 
 fn differs(what: &str, own: usize, given: usize) -> Result<(), DrapeError> {

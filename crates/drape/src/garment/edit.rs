@@ -1,5 +1,5 @@
-//! Edits of the pattern under a worn garment: other rest shapes, or another mesh of the same panels. It goes
-//! on from where it hangs.
+//! Edits of the pattern of a worn garment: other rest shapes, or another mesh of the same panels. The simulation goes
+//! on from the present positions.
 
 use super::stage::{Attempts, Settling};
 use super::{GarmentLevel, GarmentRun, Stage, StageState};
@@ -8,25 +8,25 @@ use crate::world::WorldEdit;
 use toile_geometry::{Vec2, Vec3};
 
 impl GarmentRun {
-    /// Whether an edit of the pattern can be taken: the finest mesh is in hand and its seams are closed.
+    /// Whether the pattern may be edited: on the finest mesh, once its seams are merged.
     pub fn takes_edits(&self) -> bool {
         self.is_finest() && self.stage.stage() != Stage::Sewing
     }
 
-    /// Gives the triangles of the finest mesh other rest shapes, and those where strain counts. The cloth
-    /// goes on from where it hangs, without velocity; contact samples keep where they stick.
+    /// Replaces the rest shapes of the finest mesh, and the flags of the triangles whose strain counts. The cloth goes
+    /// on from its present positions without velocity; friction anchors stay.
     ///
     /// # Errors
-    /// While it is sewn or on a coarser mesh; shapes that are too few, too many or without area. The garment
-    /// is then as it was.
+    /// A garment that is sewn or on a coarser mesh; too few or too many shapes, or one without area. The garment is
+    /// then unchanged.
     pub fn reshape(&mut self, rest: Vec<[Vec2; 3]>, counted: Vec<bool>) -> Result<(), DrapeError> {
         self.refuse_edit()?;
         let level = &self.setup.levels[self.level];
-        let [given, wanted] = [rest.len(), level.cloth.triangles.len()];
-        if given != wanted {
+        let [given, count] = [rest.len(), level.cloth.triangles.len()];
+        if given != count {
             return Err(DrapeError::Scene {
                 place: "the edited garment".to_owned(),
-                what: format!("it has {given} rest shapes for {wanted} triangles"),
+                what: format!("it has {given} rest shapes for {count} triangles"),
                 remedy: "give one for each, or mesh it again".to_owned(),
             });
         }
@@ -38,25 +38,25 @@ impl GarmentRun {
                 self.made_for.get_or_insert(before);
             }
             true => {
-                self.simulation.let_rest();
+                self.simulation.reset_motion();
                 self.made_for = Some(rest.clone());
-                self.begin_caches();
+                self.clear_caches();
             }
         }
         self.setup.levels[self.level].cloth.rest = rest;
         self.setup.counted = counted;
         self.steps = self.steps();
-        self.go_on_from_here();
+        self.restart_stage();
         Ok(())
     }
 
-    /// Puts another mesh of the same panels in the place of the finest one, and those of its triangles where
-    /// strain counts. It takes over the shape by place in the panels; seams that are closed there are merged
-    /// at once, others are sewn from there. Where cloth stuck and what strain it kept is let go.
+    /// Replaces the finest mesh by another one of the same panels, and the flags of the triangles whose strain counts.
+    /// Positions are interpolated at the same points of the panels. Seams that are closed there are merged at once,
+    /// others are sewn. Friction anchors and internal strain are lost.
     ///
     /// # Errors
-    /// While it is sewn or on a coarser mesh; a mesh that cannot be simulated or has other panels. The
-    /// garment is then as it was.
+    /// A garment that is sewn or on a coarser mesh; a mesh that cannot be simulated or has other panels. The garment is
+    /// then unchanged.
     pub fn remesh(&mut self, level: GarmentLevel, counted: Vec<bool>) -> Result<(), DrapeError> {
         self.refuse_edit()?;
         self.replace_mesh(&level)?;
@@ -64,7 +64,7 @@ impl GarmentRun {
         self.setup.levels[self.level] = level;
         self.setup.counted = counted;
         self.begin()?;
-        self.go_on_from_here();
+        self.restart_stage();
         Ok(())
     }
 
@@ -81,8 +81,8 @@ impl GarmentRun {
         })
     }
 
-    /// What was done to bring the garment to rest is to be done again; the share of the way falls.
-    fn go_on_from_here(&mut self) {
+    /// Restarts the stage with its full budget of attempts and steps; the progress falls back accordingly.
+    fn restart_stage(&mut self) {
         self.share = match &self.stage {
             StageState::Sewing(_) => 0.0,
             StageState::Swinging(_) => {
@@ -132,19 +132,19 @@ mod tests {
     }
 
     #[test]
-    fn a_garment_made_anew_where_it_hangs_goes_on_from_a_checkpoint() {
+    fn a_garment_compiled_again_where_it_hangs_goes_on_from_a_checkpoint() {
         let mut run = GarmentRun::new(setup()).unwrap();
         for _ in 0..3 {
             run.advance().unwrap();
         }
         assert!(!run.is_checkpoint());
-        // So narrow that the neighbours chosen for curvatures serve no more.
+        // So narrow that the neighbours chosen for curvatures are ill-conditioned.
         let narrow = |shape: &[Vec2; 3]| shape.map(|p| Vec2::new(0.01 * p.x, p.y));
         let rest: Vec<_> = setup().levels[0].cloth.rest.iter().map(narrow).collect();
         run.reshape(rest, Vec::new()).unwrap();
         assert!(
             run.system.topology.bending.is_none(),
-            "the structure was not made anew"
+            "the structure was not compiled again"
         );
         let checkpoint = run.checkpoint().unwrap();
         let mut resumed = GarmentRun::resume(setup(), checkpoint).unwrap();
@@ -153,7 +153,7 @@ mod tests {
             for _ in 0..3 {
                 run.advance().unwrap();
             }
-            // It is edited under the structure that it was made anew for.
+            // An edit under the structure that was compiled again.
             let rest = setup().levels[0].cloth.rest.clone();
             run.reshape(rest, Vec::new()).unwrap();
             for _ in 0..3 {

@@ -1,6 +1,6 @@
-//! A garment's whole way: sewn, merged, draped to rest, from the coarsest mesh of its panels to
-//! the finest. One `advance` is one step, so that a command line, a window and a test drive it
-//! alike; between some steps it can be saved and goes on in another process to the byte.
+//! The run of a garment through its stages: sewing, swing and settling, from the coarsest mesh of its panels to the
+//! finest. One call of `advance` is one step. Between some steps the run can be saved; resumed in another process it
+//! goes on to the same bytes.
 
 mod checkpoint;
 mod digest;
@@ -15,14 +15,14 @@ pub use stage::Stage;
 use crate::collision::{ClothMemory, Tally};
 use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
 use crate::measure::{Measures, measure};
-use crate::world::{MeetingPlace, ObjectId, Simulation, WorldEdit};
+use crate::world::{MeetingPoint, ObjectId, Simulation, WorldEdit};
 use crate::{Control, DrapeError, Equilibrium, SewRun, State, System, Workspace};
 use setup::GarmentWorld;
 use stage::{Attempts, Settling, StageState, Swinging};
 use std::ops::Deref;
 use toile_geometry::Vec2;
 
-/// How far a garment is.
+/// Progress of a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The stage.
@@ -33,51 +33,49 @@ pub struct Progress {
     pub gap: f64,
     /// Net force over weight.
     pub residual: f64,
-    /// Rough share of the whole way, 0..=1; only an edit makes it fall.
+    /// Rough share of the whole run that is done, 0..=1; only an edit lowers it.
     pub share: f64,
 }
 
 /// A garment being sewn and draped.
 pub struct GarmentRun {
-    /// The world of the present stage. From outside the control of its system may be changed, no more: what else
-    /// is changed is not saved.
+    /// The world of the present stage. Callers may change the control of its system only: other changes are not saved.
     simulation: Simulation,
-    /// Which of its objects the garment is.
+    /// The garment among its objects.
     garment: ObjectId,
     setup: GarmentSetup,
     level: usize,
     stage: StageState,
-    /// Rest shapes of the panels that the structure of the merged cloth was made for, where an edit came after.
+    /// Rest shapes that the structure of the merged cloth was compiled for; none without an edit since.
     made_for: Option<Vec<[Vec2; 3]>>,
     gap_before_merging: f64,
     share: f64,
     warnings: Vec<String>,
-    /// Steps of sewing and of settling in the stages left behind.
+    /// Steps of sewing and of settling in finished stages.
     steps: [usize; 2],
-    /// What contact of cloth with cloth found and did before the caches in hand were made.
+    /// Counts of contact of cloth with cloth before the present caches were made.
     tally: Tally,
     workspace: Workspace,
     swing_workspace: SwingWorkspace,
-    /// Whether contacts are found at the next look as if none had been found before.
+    /// Whether the next detection of contacts depends on no earlier one.
     forgot_contacts: bool,
 }
 
-/// Steps of a stage after which contacts are searched anew from nothing. A search that goes on from the one before
-/// may find contacts in another order, and what it goes on from is in no checkpoint. In the swing a step is a
-/// round; one whole search in 40 costs less than 1 %.
+/// Steps of a stage between two checkpoints, at which contacts are searched without the search structures of earlier
+/// detections: these are not in a checkpoint, and the order of contacts may depend on them. A step of the swing is a
+/// round; one full search in 40 rounds costs less than 1 %.
 const SEWING_SPAN: usize = 8;
 const SWINGING_SPAN: usize = 40;
 const SETTLING_SPAN: usize = 8;
 
-/// Rounds of finer contact testing before crossings of the body are left and reported.
+/// Most rounds of refined contact samples; crossings of the body that remain are reported.
 const MOST_REFINEMENTS: usize = 12;
 
-/// Most swings of a level. A swing that ended because cloth was tangled is taken again once the tangle is undone.
+/// Most swings of a level: a swing that ended at a tangle is repeated once the tangle is undone.
 const MOST_SWINGS: usize = 3;
 
-/// Crossings of the body are looked for again when the residual has fallen to this share of what it was the last
-/// time.
-const NEXT_LOOK: f64 = 0.1;
+/// Crossings of the body are searched again once the residual is below this share of that at the last search.
+const NEXT_CHECK: f64 = 0.1;
 
 impl Deref for GarmentRun {
     type Target = Simulation;
@@ -88,20 +86,20 @@ impl Deref for GarmentRun {
 }
 
 impl GarmentRun {
-    /// What acts in the next steps beside the world's own: hands on the cloth, for instance. An edit takes it back.
+    /// The control of the next steps: attachments of hands on the cloth, gravity, air. An edit resets it.
     pub fn control_mut(&mut self) -> &mut Control {
         &mut self.simulation.system.control
     }
 
-    /// The state, to be changed between two steps.
+    /// The state, mutable between two steps.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.simulation.state
     }
 
-    /// Prepares the first step.
+    /// A garment before its first step.
     ///
     /// # Errors
-    /// Meshes and materials that cannot be simulated, a setup without any level.
+    /// Meshes and materials that cannot be simulated, a setup without levels.
     pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
         let setup = setup.prepared()?;
         let GarmentWorld {
@@ -131,51 +129,51 @@ impl GarmentRun {
         Ok(run)
     }
 
-    /// Starts to sew the present level's panels where they lie; seams that are closed there already are merged
-    /// at once.
+    /// Starts to sew the panels of the present level at their present positions; seams that are closed already are
+    /// merged at once.
     fn begin(&mut self) -> Result<(), DrapeError> {
         let stitches = self.setup.levels[self.level].stitches.clone();
         let Simulation { system, state, .. } = &mut self.simulation;
         let mut sewing = SewRun::new(system, stitches, self.setup.sew);
-        sewing.look(state);
+        sewing.measure_gap(state);
         let closed = sewing.closed();
         self.stage = StageState::Sewing(sewing);
         self.made_for = None;
-        self.begin_caches();
+        self.clear_caches();
         if closed {
             self.merge()?;
         }
         Ok(())
     }
 
-    /// Puts the mesh of a level in the place of the one in hand, its seams open, at rest in the shape reached.
+    /// Replaces the present mesh by that of a level, with open seams and without velocity, in the shape reached.
     fn replace_mesh(&mut self, level: &GarmentLevel) -> Result<(), DrapeError> {
         let cloth = Box::new(level.cloth.clone());
         let edits = vec![
             WorldEdit::SetEnvironment(Box::new(self.setup.sewing_environment())),
             WorldEdit::ReplaceMesh(self.garment, cloth, level.layers()),
         ];
-        self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
-        self.simulation.let_rest();
+        self.simulation.edit_all(edits, MeetingPoint::Midpoint)?;
+        self.simulation.reset_motion();
         Ok(())
     }
 
-    /// Merged vertex of every vertex of the present level's cloth; the identity until merged.
+    /// Merged vertex of each vertex of the present level's cloth; the identity until its seams are merged.
     pub fn target(&self) -> &[u32] {
         &self.simulation.map().target
     }
 
-    /// Whether the present level is the garment wanted.
+    /// Whether the present level is the last.
     fn is_finest(&self) -> bool {
         self.level + 1 == self.setup.levels.len()
     }
 
-    /// Level of the mesh in hand, and how many there are.
+    /// Present level, and number of levels.
     pub fn level(&self) -> [usize; 2] {
         [self.level, self.setup.levels.len()]
     }
 
-    /// Where it is.
+    /// Present stage and progress.
     pub fn progress(&self) -> Progress {
         let (gap, residual) = match &self.stage {
             StageState::Sewing(sewing) => (sewing.last_gap(), f64::INFINITY),
@@ -193,16 +191,15 @@ impl GarmentRun {
         }
     }
 
-    /// Lets a merged garment settle anew, with all the steps of its setup again: for when the
-    /// elastics of [`GarmentRun::system`] were changed from outside. While it is sewn nothing
-    /// changes.
+    /// Restarts the settling of a merged garment with all the steps of its setup, after a caller changed the
+    /// attachments of its control. No effect in other stages.
     pub fn unsettle(&mut self) {
         if let StageState::Settling(settling) | StageState::Finished(settling) = &self.stage {
             let mut settling = settling.clone();
             let settings = self.setup.rest_on(self.level);
             settling
                 .continuation
-                .go_on(settings.residual, settings.steps);
+                .continue_to(settings.residual, settings.steps);
             self.stage = StageState::Settling(settling);
             self.warnings.clear();
         }
@@ -213,26 +210,26 @@ impl GarmentRun {
         self.gap_before_merging
     }
 
-    /// Steps of sewing and of settling; the swing is not counted.
+    /// Steps of sewing and of settling so far, without the swing.
     pub fn steps(&self) -> [usize; 2] {
         let [sewing, settling] = self.stage.steps();
         [self.steps[0] + sewing, self.steps[1] + settling]
     }
 
-    /// What contact of cloth with cloth found and did.
+    /// Counts of contact of cloth with cloth so far.
     pub fn cloth_tally(&self) -> Tally {
         let swinging = self.swing_workspace.cloth_tally();
         let settling = self.workspace.contacts.cloth.tally;
         self.tally.then(swinging).then(settling)
     }
 
-    /// How often the structure of what is solved was worked out for the present stage: once a stage, and for
-    /// every other model.
+    /// Number of symbolic factorisations and constraint layouts in the present stage: one, and one for each change of
+    /// the model.
     pub fn structures(&self) -> usize {
         self.swing_workspace.builds() + self.workspace.symbolic_factorisations()
     }
 
-    /// What went less than well, in plain words.
+    /// Shortcomings so far, in plain words.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -240,21 +237,19 @@ impl GarmentRun {
     /// Takes one step.
     ///
     /// # Errors
-    /// Seams that do not close, numbers that leave the finite ones, no progress: always with the
-    /// last good state kept.
+    /// Seams that do not close, numbers that are not finite, no progress; the state is then the last good one.
     pub fn advance(&mut self) -> Result<Progress, DrapeError> {
         match self.stage.stage() {
             Stage::Sewing => self.sew()?,
             Stage::Swinging => self.swing()?,
-            Stage::Settling => self.settle()?,
+            Stage::Settling => self.relax()?,
             Stage::Finished => {}
         }
         Ok(self.progress())
     }
 
-    /// Shows a share of the way on the present level. A level takes about a quarter of the time of the
-    /// next.
-    fn show(&mut self, share: f64) {
+    /// Sets the progress to a share of the present level. A level takes about a quarter of the time of the next.
+    fn set_progress(&mut self, share: f64) {
         let after = 4f64.powi(self.level as i32 + 1 - self.setup.levels.len() as i32);
         let before = if self.level == 0 { 0.0 } else { 0.25 * after };
         self.share = self.share.max(before + (after - before) * share);
@@ -269,7 +264,7 @@ impl GarmentRun {
         sewing.advance(system, state, &mut self.workspace)?;
         let (gap, closed, steps) = (sewing.last_gap(), sewing.closed(), sewing.steps());
         let start = 0.3;
-        self.show(0.5 * (1.0 - (gap / start).min(1.0)));
+        self.set_progress(0.5 * (1.0 - (gap / start).min(1.0)));
         if closed {
             return self.merge();
         }
@@ -300,11 +295,13 @@ impl GarmentRun {
         } else {
             self.forget_after(rounds, SWINGING_SPAN);
         }
-        self.show(shown);
+        self.set_progress(shown);
         Ok(())
     }
 
-    fn settle(&mut self) -> Result<(), DrapeError> {
+    /// Takes a step of pseudo-transient continuation, then goes on to another swing, to the next finer level or to
+    /// the end where its time has come.
+    fn relax(&mut self) -> Result<(), DrapeError> {
         let StageState::Settling(settling) = &mut self.stage else {
             return Ok(());
         };
@@ -322,7 +319,7 @@ impl GarmentRun {
             }
         }
         let decades = (1.0 / residual.max(1e-9)).log10() / 3.0;
-        self.show((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
+        self.set_progress((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
         if finished && !self.is_finest() {
             return self.refine();
         }
@@ -336,27 +333,27 @@ impl GarmentRun {
         Ok(())
     }
 
-    /// Sees to crossings of the body on the finest mesh, and ends its way where it is at rest.
+    /// Refines contact samples at crossings of the body on the finest mesh, and finishes a garment at rest.
     fn finish(&mut self) {
         let StageState::Settling(settling) = &mut self.stage else {
             return;
         };
         let finished = settling.continuation.finished();
         let residual = settling.continuation.residual();
-        if finished || residual < settling.attempts.look_below {
-            settling.attempts.look_below = NEXT_LOOK * residual;
+        if finished || residual < settling.attempts.check_below {
+            settling.attempts.check_below = NEXT_CHECK * residual;
             let Simulation { system, state, .. } = &mut self.simulation;
-            let offenders = body_crossings(system, state);
-            if !offenders.is_empty() && settling.attempts.refinements < MOST_REFINEMENTS {
+            let crossing = body_crossings(system, state);
+            if !crossing.is_empty() && settling.attempts.refinements < MOST_REFINEMENTS {
                 settling.attempts.refinements += 1;
-                for triangle in offenders {
+                for triangle in crossing {
                     state.refine_contact(system, triangle);
                 }
                 if finished {
                     let settings = self.setup.rest;
                     settling
                         .continuation
-                        .go_on(settings.residual, settings.steps / 4);
+                        .continue_to(settings.residual, settings.steps / 4);
                     return;
                 }
             }
@@ -375,7 +372,7 @@ impl GarmentRun {
         self.share = 1.0;
     }
 
-    /// Swings again: what had ended the last swing too early is undone.
+    /// Starts another swing, after the tangle that ended the last one is undone.
     fn swing_again(&mut self) {
         let StageState::Settling(settling) = &self.stage else {
             return;
@@ -398,7 +395,7 @@ impl GarmentRun {
         StageState::Swinging(Swinging { damping, attempts })
     }
 
-    /// Goes on to the next finer level with the shape reached.
+    /// Continues on the next finer level with the shape reached.
     fn refine(&mut self) -> Result<(), DrapeError> {
         let finer = self.setup.levels[self.level + 1].clone();
         self.replace_mesh(&finer)?;
@@ -407,7 +404,7 @@ impl GarmentRun {
         self.begin()
     }
 
-    /// Joins the stitched vertices; gravity and friction act from here on.
+    /// Merges the stitched vertices, and starts gravity and friction.
     fn merge(&mut self) -> Result<(), DrapeError> {
         let StageState::Sewing(sewing) = &self.stage else {
             return Ok(());
@@ -417,24 +414,23 @@ impl GarmentRun {
             WorldEdit::SetEnvironment(Box::new(self.setup.worn_environment())),
             WorldEdit::Merge(self.setup.levels[self.level].seams(self.garment)),
         ];
-        self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
-        self.simulation.let_rest();
+        self.simulation.edit_all(edits, MeetingPoint::Midpoint)?;
+        self.simulation.reset_motion();
         self.steps[0] += steps;
         self.gap_before_merging = gap;
         self.stage = self.swinging(Attempts::default());
-        self.begin_caches();
-        self.show(0.5);
+        self.clear_caches();
+        self.set_progress(0.5);
         Ok(())
     }
 
-    /// The garment in its present stage, to be stepped in time as it is: merged once its finest mesh has left
+    /// The simulation of the present stage, to be stepped in time. The cloth is merged unless the stage is
     /// [`Stage::Sewing`].
     pub fn into_simulation(self) -> Simulation {
         self.simulation
     }
 
-    /// The garment at rest, to be predicted and corrected under other rest shapes; nothing before it is
-    /// [`Stage::Finished`].
+    /// The garment at rest, to be predicted and corrected under other rest shapes; none before [`Stage::Finished`].
     pub fn into_equilibrium(self) -> Option<Equilibrium> {
         let StageState::Finished(settling) = self.stage else {
             return None;
@@ -450,7 +446,7 @@ impl GarmentRun {
         })
     }
 
-    /// Measures the present state, which changes nothing. Strain counts only where the setup says so.
+    /// Measures the present state, with the strain of those triangles that count in the setup.
     pub fn measure(&self) -> Measures {
         let counted = match self.system.topology.triangles.len() == self.setup.counted.len() {
             true => &self.setup.counted[..],
@@ -464,13 +460,13 @@ impl GarmentRun {
         )
     }
 
-    /// Whether contacts are found at the next look as if none had been found before: from here another
-    /// process goes on to the same bytes.
+    /// Whether the next detection of contacts depends on no earlier one, so that another process can go on from here to
+    /// the same bytes.
     pub fn is_checkpoint(&self) -> bool {
         self.forgot_contacts
     }
 
-    /// Steps to the next checkpoint at the most: the end of a stage is one, too.
+    /// Most steps to the next checkpoint; the end of a stage is one, too.
     pub fn steps_to_checkpoint(&self) -> usize {
         if self.forgot_contacts {
             return 0;
@@ -485,21 +481,22 @@ impl GarmentRun {
         span - steps % span
     }
 
-    /// Has contacts found anew once a stage took a number of steps that `span` divides.
+    /// Forgets contacts when `span` divides the number of steps of a stage.
     fn forget_after(&mut self, steps: usize, span: usize) {
         if steps.is_multiple_of(span) {
             self.forget_contacts();
         }
     }
 
+    /// Clears the search structures of contacts.
     fn forget_contacts(&mut self) {
         self.workspace.contacts.forget();
         self.swing_workspace.forget_contacts();
         self.forgot_contacts = true;
     }
 
-    /// Caches for another cloth.
-    fn begin_caches(&mut self) {
+    /// Clears all caches, for another cloth.
+    fn clear_caches(&mut self) {
         self.tally = self.cloth_tally();
         self.workspace = Workspace::default();
         self.swing_workspace = SwingWorkspace::default();
@@ -507,7 +504,7 @@ impl GarmentRun {
     }
 }
 
-/// Cloth triangles that cross a solid surface, exactly.
+/// Triangles of the cloth that cross a solid surface by exact predicates, ascending.
 fn body_crossings(system: &System, state: &State) -> Vec<u32> {
     let mesh = system.mesh(&state.positions);
     let mut crossing: Vec<u32> = Vec::new();

@@ -1,4 +1,4 @@
-//! What a garment's drape is made from, and the world that it is.
+//! The setup of a garment's run, and the world made from it.
 
 use crate::world::{Layers, MeshVertex, Object, ObjectId, Solids, World};
 use crate::{
@@ -11,35 +11,35 @@ use toile_geometry::{SurfaceTree, Vec3};
 /// One mesh of a garment's panels and how it is sewn.
 #[derive(Clone, Debug, Default)]
 pub struct GarmentLevel {
-    /// Panels, not yet merged; the coarsest is placed round the body.
+    /// Unmerged panels; those of the coarsest level are placed round the body.
     pub cloth: Cloth,
-    /// Vertex pairs the seams join.
+    /// Vertex pairs that the seams join.
     pub stitches: Vec<[u32; 2]>,
-    /// Layer of each vertex where several garments are worn, larger numbers farther out; empty for one.
+    /// Layer of each vertex where several garments are worn, larger numbers farther out; empty for one garment.
     pub layer: Vec<u16>,
 }
 
-/// What a garment's drape is made from.
+/// The setup of a garment's run.
 #[derive(Clone)]
 pub struct GarmentSetup {
-    /// The same panels ever finer; the last is the garment wanted. Only the first needs to be
-    /// placed: the others take over the shape of the one before.
+    /// Meshes of the same panels, from coarse to fine; the last is that of the result. Only the first needs placed
+    /// panels: each other starts in the shape that the one before reached.
     pub levels: Vec<GarmentLevel>,
-    /// Triangles of the last level (one flag each) where strain counts: away from gathers.
+    /// One flag for each triangle of the last level: whether its strain counts, as it does away from gathers.
     pub counted: Vec<bool>,
     /// The body and other solid surfaces.
     pub colliders: Vec<Arc<SurfaceTree>>,
-    /// Contact.
+    /// Contact settings.
     pub contact: ContactSettings,
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
-    /// Sewing.
+    /// Sewing settings.
     pub sew: SewSettings,
-    /// The way to rest.
+    /// Settings of pseudo-transient continuation.
     pub rest: RestSettings,
 }
 
-/// Net force over weight at which a coarser level is left.
+/// Net force over weight at which a level other than the last is finished.
 const COARSE_RESIDUAL: f64 = 2e-2;
 
 impl GarmentLevel {
@@ -51,7 +51,7 @@ impl GarmentLevel {
         }
     }
 
-    /// The vertex pairs that its seams join, of the object that it is.
+    /// The vertex pairs that its seams join, as vertices of the garment's object.
     pub(super) fn seams(&self, object: ObjectId) -> Vec<[MeshVertex; 2]> {
         let of_object = |vertex| MeshVertex { object, vertex };
         let stitches = self.stitches.iter();
@@ -59,7 +59,7 @@ impl GarmentLevel {
     }
 }
 
-/// A garment's world, which object the garment is, and the solids with their distance fields.
+/// A garment's world, the garment's object, and the solids with their distance fields.
 pub(super) struct GarmentWorld {
     pub world: World,
     pub garment: ObjectId,
@@ -67,7 +67,7 @@ pub(super) struct GarmentWorld {
 }
 
 impl GarmentSetup {
-    /// The same with contact as its cloth has it.
+    /// The setup with contact offsets enlarged for the thickness of its cloth.
     ///
     /// # Errors
     /// No level, contact that reaches too far.
@@ -84,8 +84,8 @@ impl GarmentSetup {
         Ok(self)
     }
 
-    /// What acts on panels that are sewn: no gravity, no friction. Layers pass through each other meanwhile; each
-    /// is kept off solids by as much more as it lies farther out, so that most of it comes to lie where it belongs.
+    /// The environment of sewing: no gravity, no friction. Layers pass through each other; the contact offset from
+    /// solids grows with the layer, so that most of each comes to lie in order.
     pub(super) fn sewing_environment(&self) -> Environment {
         Environment {
             gravity: Vec3::zeros(),
@@ -99,7 +99,7 @@ impl GarmentSetup {
         }
     }
 
-    /// What acts on the merged garment: gravity and friction.
+    /// The environment of the merged garment: gravity and friction.
     pub(super) fn worn_environment(&self) -> Environment {
         Environment {
             gravity: self.gravity,
@@ -110,7 +110,7 @@ impl GarmentSetup {
         }
     }
 
-    /// The solids, and the panels of a level with their seams open, while they are sewn.
+    /// The world of sewing: the solids, and the panels of a level with open seams.
     pub(super) fn world(&self, level: usize) -> GarmentWorld {
         let mut world = World::new("garment", self.sewing_environment());
         let mut solids = Solids::new();
@@ -131,7 +131,7 @@ impl GarmentSetup {
         }
     }
 
-    /// The way to rest on a level: a coarser one is left when its large motion is over.
+    /// Settings of pseudo-transient continuation on a level; a coarser level ends at a larger residual.
     pub(super) fn rest_on(&self, level: usize) -> RestSettings {
         match level + 1 == self.levels.len() {
             true => self.rest,

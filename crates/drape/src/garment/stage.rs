@@ -1,36 +1,36 @@
-//! The stages of a garment's way, each with what it remembers: plain data of a checkpoint.
+//! The stages of a garment's run with their memories: plain data of a checkpoint.
 
 use crate::kinetic_damping::KineticDamping;
 use crate::{PseudoTransientContinuation, RestSettings, SewRun};
 use serde::{Deserialize, Serialize};
 
-/// Where a garment is on its way.
+/// The stage of a garment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Elastics draw the panels together.
+    /// Springs along the seams draw the panels together.
     Sewing,
-    /// The merged garment swings under gravity until it is calm.
+    /// XPBD with kinetic damping moves the merged garment under gravity until its motion has died out.
     Swinging,
-    /// It settles to rest.
+    /// Pseudo-transient continuation brings it to rest.
     Settling,
-    /// At rest.
+    /// It is at rest, or its steps are used up.
     Finished,
 }
 
-/// A stage with all that it remembers from one step to the next beside the state of the cloth.
+/// A stage with its memory from step to step beside the state of the cloth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum StageState {
-    /// Elastics draw the panels together.
+    /// See [`Stage::Sewing`].
     Sewing(SewRun),
-    /// The merged garment swings.
+    /// See [`Stage::Swinging`].
     Swinging(Swinging),
-    /// It settles to rest.
+    /// See [`Stage::Settling`].
     Settling(Settling),
-    /// At rest: how it settled.
+    /// See [`Stage::Finished`]; the memory is that of the settling before.
     Finished(Settling),
 }
 
-/// A merged garment that swings.
+/// Memory of the swing.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Swinging {
@@ -38,44 +38,44 @@ pub(super) struct Swinging {
     pub attempts: Attempts,
 }
 
-/// A merged garment that settles.
+/// Memory of the settling.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settling {
     pub continuation: PseudoTransientContinuation,
-    /// Whether the swing ended at crossings of cloth before the cloth was calm.
+    /// Whether the swing ended with crossings of cloth before the motion had died out.
     pub cut_short: bool,
     pub attempts: Attempts,
 }
 
-/// What was tried so far to bring a merged level to rest; a level that comes back to a stage goes on with it.
+/// Attempts so far to bring a merged level to rest; a level that returns to an earlier stage continues the count.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Attempts {
-    /// Swings that are over.
+    /// Finished swings.
     pub swings: usize,
-    /// Rounds of finer contact testing.
+    /// Rounds of refined contact samples.
     pub refinements: usize,
-    /// Residual below which crossings of the body are looked for next.
-    pub look_below: f64,
+    /// Residual below which crossings of the body are searched next.
+    pub check_below: f64,
 }
 
-/// Residual below which crossings of the body are first looked for: what is found early is cured on the way.
-const FIRST_LOOK: f64 = 2.0;
+/// Residual below which crossings of the body are first searched: samples refined early need no steps of their own.
+const FIRST_CHECK: f64 = 2.0;
 
 impl Default for Attempts {
-    /// None yet.
+    /// No attempt yet.
     fn default() -> Self {
         Self {
             swings: 0,
             refinements: 0,
-            look_below: FIRST_LOOK,
+            check_below: FIRST_CHECK,
         }
     }
 }
 
 impl Settling {
-    /// Settles near rest, where a swing or an edit left the cloth.
+    /// The start of settling near rest, after a swing or an edit.
     pub fn near(settings: RestSettings, attempts: Attempts) -> Self {
         Self {
             continuation: PseudoTransientContinuation::near(settings),
@@ -86,7 +86,7 @@ impl Settling {
 }
 
 impl StageState {
-    /// Which it is.
+    /// The stage without its memory.
     pub fn stage(&self) -> Stage {
         match self {
             Self::Sewing(_) => Stage::Sewing,
@@ -96,7 +96,7 @@ impl StageState {
         }
     }
 
-    /// Steps of sewing and of settling that it counts.
+    /// Steps of sewing and of settling in this stage.
     pub fn steps(&self) -> [usize; 2] {
         match self {
             Self::Sewing(sewing) => [sewing.steps(), 0],

@@ -1,19 +1,19 @@
-//! The force of the air on a triangle.
+//! Aerodynamic force on a triangle.
 //!
-//! With the triangle's mean velocity relative to the air w = v - wind, its part along the normal
-//! w_n and in the plane w_t, F = -rho A / 2 (C_n |w_n| w_n + C_t |w_t| w_t): form drag and skin
+//! With the triangle's mean velocity relative to the air w = v - wind, its components w_n along the normal
+//! and w_t in the plane, F = -rho A / 2 (C_n |w_n| w_n + C_t |w_t| w_t): form drag and skin
 //! friction of a plate (Ling, Damodaran and Gay 1996; Hoerner 1965, 3-15 for the coefficients).
-//! F is minus the slope by w of rho A / 6 (C_n |w_n|^3 + C_t |w_t|^3), which is convex.
+//! F is minus the gradient with respect to w of rho A / 6 (C_n |w_n|^3 + C_t |w_t|^3), which is convex.
 
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// The air round a cloth.
+/// Properties of the air.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Air {
-    /// Drag per mass [1/s]: a free velocity falls by exp(-drag t). Crude, but cheap.
+    /// Drag per mass [1/s]: a free velocity decays as exp(-drag t). A crude model, but cheap.
     pub drag: f64,
     /// Density [kg/m3]; 0 for none, 1.2 at sea level.
     pub density: f64,
@@ -26,7 +26,7 @@ pub struct Air {
 }
 
 impl Default for Air {
-    /// None: density 0. The coefficients of a square plate, so that a density alone makes it act.
+    /// No air (density 0), with the coefficients of a square plate, so that a density is enough to make it act.
     fn default() -> Self {
         Self {
             drag: 0.0,
@@ -42,17 +42,17 @@ impl Air {
     /// Density at sea level and 20 degrees [kg/m3] (ISO 2533).
     pub const SEA_LEVEL: f64 = 1.204;
 
-    /// Whether it acts on triangles.
+    /// Whether it exerts a force on triangles.
     pub fn acts(&self) -> bool {
         self.density > 0.0 && (self.normal > 0.0 || self.tangential > 0.0)
     }
 
-    /// The most that the wind can accelerate resting cloth of `mass` per area [kg/m2]: [m/s2].
-    pub fn push(&self, mass: f64) -> f64 {
+    /// Largest acceleration of resting cloth of `mass` per area [kg/m2] by the wind [m/s2].
+    pub fn largest_acceleration(&self, mass: f64) -> f64 {
         0.5 * self.density * (self.normal + self.tangential) * self.wind.norm_squared() / mass
     }
 
-    /// The pull of the air on a triangle: area [m2], unit normal.
+    /// The drag law of a triangle: area [m2], unit normal.
     pub fn on(&self, area: f64, normal: Vec3) -> AirPull {
         let half = 0.5 * self.density * area;
         AirPull {
@@ -75,25 +75,26 @@ pub struct AirPull {
 }
 
 impl AirPull {
+    /// Components of w: along the normal, in the plane, and the length of the latter.
     fn split(&self, w: Vec3) -> (f64, Vec3, f64) {
         let across = w.dot(&self.normal);
         let along = w - self.normal * across;
         (across, along, along.norm())
     }
 
-    /// Power lost to the air over three at a velocity relative to it [m/s]: [W].
+    /// Potential of the force at a velocity relative to the air [m/s]: a third of the dissipated power [W].
     pub fn potential(&self, w: Vec3) -> f64 {
         let (across, _, along) = self.split(w);
         (self.across * across.abs().powi(3) + self.along * along.powi(3)) / 3.0
     }
 
-    /// Slope of the potential by the velocity: minus the force on the triangle [N].
+    /// Gradient of the potential with respect to the velocity: minus the force on the triangle [N].
     pub fn gradient(&self, w: Vec3) -> Vec3 {
         let (across, along, speed) = self.split(w);
         self.normal * (self.across * across.abs() * across) + along * (self.along * speed)
     }
 
-    /// Second derivative of the potential by the velocity, positive semidefinite [N s/m].
+    /// Hessian of the potential with respect to the velocity, positive semidefinite [N s/m].
     pub fn hessian(&self, w: Vec3) -> Matrix3<f64> {
         let (across, along, speed) = self.split(w);
         let nn = self.normal * self.normal.transpose();
@@ -133,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn still_cloth_in_still_air_feels_nothing() {
+    fn there_is_no_force_on_still_cloth_in_still_air() {
         let pull = Air {
             density: 1.2,
             ..Air::default()

@@ -1,20 +1,18 @@
 //! Bending on a triangle mesh whose only unknowns are the positions of its vertices.
 //!
-//! The curvature of a triangle is the mean of the second derivatives over it, turned by Gauss's
-//! theorem into a sum over its edges,
-//! kappa_T = 1/A sum_e l_e sym(n_e (x) g_e), with g_e the gradient of the surface at the edge's
-//! middle. Along the edge g_e is the difference of its ends; across it, it is estimated from the
-//! vertices around, **once for both triangles** and **exactly for every parabola**. The first makes
-//! a constant moment keep balance at every inner vertex (nothing is softer than it should be), the
-//! second gives a cylinder its energy (nothing is stiffer): the two patch tests. Estimates that pass
-//! only one do not converge on irregular meshes: parabolas fitted triangle by triangle were found
-//! 6 to 38 % too soft, edge gradients averaged from the two triangles (Onate and Zarate 2000, whose
-//! sum over edges this is) 15 to 30 % too stiff. This one is right to 0.05 % with 40 elements along
-//! a cantilever on every kind of mesh, error falling with the square of the element.
+//! The curvature of a triangle is the mean of the second derivatives over it, which Gauss's theorem converts to a sum
+//! over its edges, kappa_T = 1/A sum_e l_e sym(n_e (x) g_e), with g_e the gradient of the surface at the edge's
+//! midpoint. Along the edge g_e is the difference of its ends; across it, it is estimated from the vertices around,
+//! **once for both triangles** and **exactly for every parabola**. With the first property a constant moment is
+//! balanced at each inner vertex, so that no mesh is too soft; with the second a cylinder has the exact energy, so that
+//! no mesh is too stiff. These are the two patch tests. Estimates that pass only one do not converge on irregular
+//! meshes: parabolas fitted triangle by triangle were 6 to 38 % too soft, edge gradients averaged from the two
+//! triangles (Onate and Zarate 2000, whose sum over edges this is) 15 to 30 % too stiff. This one has an error of
+//! 0.05 % with 40 elements along a cantilever on every kind of mesh, quadratic in the element size.
 //!
 //! Curvatures are linear in the vertex positions, so E = A/2 kappa : D : kappa is quadratic with a
-//! constant positive semidefinite Hessian that is the same for x, y and z. At a free edge no moment
-//! crosses it: the gradient across is what makes the triangle's energy least.
+//! constant positive semidefinite Hessian that is the same for x, y and z. No moment acts at a free
+//! edge: the gradient across it is the one that minimises the triangle's energy.
 
 use super::rest_sheet::{Across, IllConditioned, RestSheet, hat_gradients, outward};
 use nalgebra::{Matrix3, Vector3};
@@ -23,11 +21,11 @@ use rayon::prelude::*;
 /// Curvatures of one triangle as combinations of vertex positions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BendingStencil {
-    /// Vertices taking part.
+    /// The vertices.
     pub vertices: Vec<u32>,
     /// Weights of each vertex in x_uu, x_uv, x_vv [1/m2].
     pub weights: Vec<[f64; 3]>,
-    /// For each free edge the curvature (uu, uv, vv) that a turn of the surface across it gives.
+    /// For each free edge the curvature (uu, uv, vv) per unit change of the gradient across it.
     pub free: Vec<[f64; 3]>,
 }
 
@@ -51,7 +49,7 @@ pub fn bending_matrix([warp, weft, coupling, twist]: [f64; 4]) -> BendingMatrix 
 }
 
 impl BendingStencil {
-    /// The stiffness matrix left at the triangle's free edges: min over t of the energy of
+    /// The stiffness matrix after elimination of the gradients across free edges: the minimum over t of the energy of
     /// kappa + t nu is that of D - D nu nu^T D / (nu^T D nu).
     pub fn stiffness(&self, mut d: BendingMatrix) -> BendingMatrix {
         let full = d.trace();
@@ -67,26 +65,26 @@ impl BendingStencil {
 }
 
 impl BendingStencil {
-    /// The stencil turned to the principal directions of its stiffness, so that the energy per area
+    /// The stencil in the principal directions of its stiffness, so that the energy per area
     /// is 1/2 sum_k D_k |kappa_k|^2: weights of each vertex in the three kappa_k, and the D_k, zero or
     /// above [N m].
     pub fn principal(&self, d: BendingMatrix) -> (Vec<[f64; 3]>, [f64; 3]) {
         let eigen = self.stiffness(d).symmetric_eigen();
-        let turn = eigen.eigenvectors.transpose();
+        let rotation = eigen.eigenvectors.transpose();
         let weights = self
             .weights
             .iter()
-            .map(|w| (turn * Vector3::from(*w)).into())
+            .map(|w| (rotation * Vector3::from(*w)).into())
             .collect();
         (weights, [0, 1, 2].map(|k| eigen.eigenvalues[k].max(0.0)))
     }
 }
 
-/// Weights below this share of the largest are rounding and left out.
+/// Share of the largest weight below which a weight is rounding and is dropped.
 const SMALLEST_WEIGHT: f64 = 1e-11;
 
 impl RestSheet<'_> {
-    /// The stencil of every triangle, without vertices whose weight is rounding.
+    /// The stencils of all triangles, without vertices whose weight is rounding.
     pub fn stencils(&self) -> Vec<BendingStencil> {
         let across = self.all_across();
         let stencil = |triangle| {
@@ -100,7 +98,7 @@ impl RestSheet<'_> {
             .collect()
     }
 
-    /// For each edge how many rings of neighbours its estimate is made from; nothing for one without.
+    /// For each edge the number of rings of neighbours in its estimate; none for an edge without an estimate.
     pub fn rings(&self) -> Vec<Option<u8>> {
         let across = self.all_across();
         across.iter().map(|a| Some(a.as_ref()?.rings)).collect()
@@ -111,31 +109,31 @@ impl RestSheet<'_> {
         edges.map(|edge| self.across(edge, None)).collect()
     }
 
-    /// The stencils of some triangles from rings of neighbours that were found for other rest shapes: their
-    /// vertices hang on the triangles and the rings alone.
+    /// The stencils of some triangles with numbers of rings chosen for other rest shapes: the vertices of a stencil
+    /// depend on triangles and rings only.
     ///
     /// # Errors
-    /// A triangle that these rings do not serve any more.
+    /// A triangle whose estimate is ill-conditioned with these rings.
     pub fn stencils_with(
         &self,
         rings: &[Option<u8>],
         triangles: &[u32],
     ) -> Result<Vec<BendingStencil>, IllConditioned> {
-        let mut asked = vec![None; rings.len()];
+        let mut needed = vec![None; rings.len()];
         for &t in triangles {
             for edge in self.topology.triangle_edges[t as usize] {
-                asked[edge as usize] = rings[edge as usize];
+                needed[edge as usize] = rings[edge as usize];
             }
         }
-        let estimate = |(edge, asked): (usize, Option<u8>)| {
-            let Some(asked) = asked else {
+        let estimate = |(edge, rings): (usize, Option<u8>)| {
+            let Some(rings) = rings else {
                 return Ok(None);
             };
             let triangle = self.topology.edge_triangles[edge][0] as usize;
-            let across = self.across(edge, Some(asked));
+            let across = self.across(edge, Some(rings));
             across.map(Some).ok_or(IllConditioned { triangle })
         };
-        let edges = asked.into_par_iter().enumerate().with_min_len(64);
+        let edges = needed.into_par_iter().enumerate().with_min_len(64);
         let across: Vec<Option<Across>> = edges.map(estimate).collect::<Result<_, _>>()?;
         let each = triangles.par_iter().with_min_len(64);
         Ok(each.map(|&t| self.stencil(t as usize, &across)).collect())
@@ -193,13 +191,14 @@ impl RestSheet<'_> {
 }
 
 impl BendingStencil {
+    /// Removes the vertices whose weights are rounding.
     fn trim(&mut self) {
         let size = |w: &[f64; 3]| w.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let most = self.weights.iter().map(size).fold(0.0, f64::max);
+        let largest = self.weights.iter().map(size).fold(0.0, f64::max);
         let keep: Vec<bool> = self
             .weights
             .iter()
-            .map(|w| size(w) > SMALLEST_WEIGHT * most)
+            .map(|w| size(w) > SMALLEST_WEIGHT * largest)
             .collect();
         let mut at = keep.iter();
         self.vertices.retain(|_| at.next() == Some(&true));

@@ -1,4 +1,4 @@
-//! Contact of a point with a plane: normal push and Coulomb friction.
+//! Contact of a point with a plane: normal force and Coulomb friction.
 
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
@@ -14,40 +14,38 @@ pub struct ContactLaw {
     pub tangential: f64,
     /// Friction coefficient.
     pub friction: f64,
-    /// Depth from which it is [`HARDER`] [m]; infinite for surfaces that cloth may sink into.
+    /// Depth beyond which the normal stiffness is [`HARDER`] times larger [m]; infinite for solids.
     pub hard_from: f64,
 }
 
-/// Factor of the stiffness of a contact beyond its hard depth. A linear spring between two cloths has its
-/// largest force when they touch: a greater load would be stopped by the truncation of steps alone, and no
-/// method would come to rest there.
+/// Factor of the additional stiffness of a contact beyond its hard depth. A linear spring between two cloths has its
+/// largest force when they touch: under a greater load only step truncation would keep them apart, and no method would
+/// reach equilibrium.
 pub const HARDER: f64 = 100.0;
 
-/// A point near a surface, and the surface as seen from there.
+/// A point near a surface, with a second-order model of the surface at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPlane {
     /// The point [m].
     pub point: Vec3,
-    /// How deep it lies below the offset surface, negative above it [m].
+    /// Depth of the point below the offset surface, negative above it [m].
     pub depth: f64,
-    /// Gradient of the distance there \[1\]. Its length is 1 but where two walls are equally near.
+    /// Gradient of the smooth distance at the point \[1\], of length 1 except near the medial axis.
     pub gradient: Vec3,
-    /// Outward unit normal: the gradient's direction \[1\].
+    /// Outward unit normal, the direction of the gradient \[1\].
     pub normal: Vec3,
-    /// Second derivative of the distance there, its negative eigenvalues alone, sign turned: how
-    /// hollow the surface is [1/m].
+    /// Negative part of the Hessian of the distance, with positive sign: concave curvature of the surface [1/m].
     pub hollow: Matrix3<f64>,
-    /// Its positive eigenvalues: how the surface bulges [1/m].
+    /// Positive part of the Hessian of the distance: convex curvature of the surface [1/m].
     pub bulge: Matrix3<f64>,
-    /// Where the point stuck to the surface [m].
+    /// Friction anchor: the position at which the point stuck [m].
     pub anchor: Vec3,
-    /// Normal force that limits friction [N], taken from the last iteration.
+    /// Lagged normal force, which limits friction [N].
     pub lagged_normal_force: f64,
-    /// Whether a point at the limit of friction counts as sticking for the Hessian, because it is
-    /// about to come back.
+    /// Whether the Hessian treats a point at the limit of friction as sticking, because the step moves it back into the
+    /// cone.
     pub returning: bool,
-    /// Whether a point above the surface counts as touching for the Hessian, because it is about to
-    /// land.
+    /// Whether the Hessian treats a point above the surface as in contact, because the step makes it land.
     pub landing: bool,
 }
 
@@ -58,35 +56,35 @@ impl ContactPlane {
     }
 }
 
-/// Share of critical damping in the push of a surface on cloth that moves, for methods that damp
-/// nothing themselves. Without it contact and friction together feed a flutter of cloth at rest.
+/// Share of critical damping of the normal force on moving cloth, for methods without numerical damping. Without it
+/// contact and friction together excite a flutter of cloth at rest.
 pub const RESTITUTION_DAMPING: f64 = 0.2;
 
-/// Speed [m/s] at which a surface that was put over cloth lets it go: faster, a push that no motion
-/// has stored would throw it.
-const LEAVING: f64 = 1.0;
+/// Largest speed [m/s] at which a solid ejects buried cloth: the energy of its depth was not stored by motion and would
+/// throw it.
+const EJECTION_SPEED: f64 = 1.0;
 
-/// The most push [N] on cloth of a mass [kg] that a surface was put over, for a substep [s].
+/// Largest normal force [N] on buried cloth of a mass [kg] with a speed `leaving` [m/s], in a substep [s].
 #[inline(always)]
 pub fn gentle_push(mass: f64, leaving: f64, substep: f64) -> f64 {
-    (mass / substep * (LEAVING - leaving)).max(0.0)
+    (mass / substep * (EJECTION_SPEED - leaving)).max(0.0)
 }
 
-/// Push of a surface [N] that stiffness and damping make together: max(0, k d - c v), with k d the
+/// Normal force [N] of stiffness and damping together: max(0, k d - c v), with k d the
 /// `elastic` part [N], v the `leaving` speed along the normal [m/s] and c = 2 zeta sqrt(k m) for
-/// the `mass` [kg] on the spring `normal` [N/m]. It never pulls (Wriggers 2006, section 5.1).
+/// the `mass` [kg] on the spring `normal` [N/m]. It is never attractive (Wriggers 2006, section 5.1).
 #[inline(always)]
 pub fn damped_push(elastic: f64, normal: f64, mass: f64, leaving: f64) -> f64 {
     (elastic - 2.0 * RESTITUTION_DAMPING * (normal * mass).sqrt() * leaving).max(0.0)
 }
 
-/// From this share of the friction limit on a point counts as sliding for the Hessian: a point
-/// that slid in the last step lies just at the limit, and must not be held there as if it stuck.
+/// Share of the friction limit from which the Hessian treats a point as sliding: a point that slid in the last step is
+/// just at the limit and must not be treated as sticking.
 const AT_LIMIT: f64 = 0.99;
 
 impl ContactLaw {
-    /// Energy [J], force [N] and stiffness [N/m] of the push at some depth [m].
-    fn push(&self, depth: f64) -> [f64; 3] {
+    /// Energy [J], force [N] and stiffness [N/m] of the normal spring at a depth [m].
+    fn normal_spring(&self, depth: f64) -> [f64; 3] {
         let (soft, hard) = (depth.max(0.0), (depth - self.hard_from).max(0.0));
         let harder = HARDER * self.normal;
         [
@@ -98,18 +96,17 @@ impl ContactLaw {
 
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
     ///
-    /// Normal part: k d^2 / 2 for depth d > 0, and [`HARDER`] k (d - h)^2 / 2 more beyond the hard depth h.
-    /// Its Hessian has k g g' and, where the surface is
-    /// hollow, the turning of the normal as the point slides along: without that Newton's steps in
-    /// an armpit are too long by several times and never settle. Tangential part: the Huber function of the slip
-    /// from the anchor with limit mu N, N lagged, so that it has an energy.
+    /// Normal part: k d^2 / 2 for depth d > 0, and [`HARDER`] k (d - h)^2 / 2 more beyond the hard depth h. Its Hessian
+    /// has k g g' and, where the surface is concave, the change of the normal along the surface: without it Newton's
+    /// steps in an armpit are several times too long and do not converge. Tangential part: the Huber function of the
+    /// slip from the anchor with limit mu N; N is lagged, so that friction has a potential.
     pub fn evaluate(&self, plane: &ContactPlane, point: Vec3) -> (f64, Vec3, Matrix3<f64>) {
         let n = plane.normal;
         let depth = plane.depth_of(point);
         let (mut energy, mut gradient, mut hessian) = (0.0, Vec3::zeros(), Matrix3::zeros());
-        let [pushed, force, stiffness] = self.push(depth);
+        let [normal_energy, force, stiffness] = self.normal_spring(depth);
         if depth > 0.0 {
-            energy += pushed;
+            energy += normal_energy;
             gradient -= plane.gradient * force;
             hessian += plane.hollow * force;
         }
@@ -132,7 +129,7 @@ impl ContactLaw {
             if plane.returning || self.tangential * length <= AT_LIMIT * limit {
                 hessian += tangent * self.tangential;
             } else {
-                // Friction is constant along the slip, so nothing holds the point back there.
+                // Friction is constant along the slip, so it has no stiffness in that direction.
                 let along = slip / length;
                 let across = self.tangential.min(limit / length);
                 hessian += (tangent - along * along.transpose()) * across;
@@ -141,15 +138,15 @@ impl ContactLaw {
         (energy, gradient, hessian)
     }
 
-    /// What the exact Hessian lacks against the one of [`Self::evaluate`]: a point on a bulge is
-    /// pushed off it the more the farther it slides down [N/m].
+    /// The Hessian of [`Self::evaluate`] minus the exact one, from the convex curvature of the surface, which
+    /// destabilises sliding [N/m].
     pub fn missing_curvature(&self, plane: &ContactPlane, point: Vec3) -> Matrix3<f64> {
-        let [_, force, _] = self.push(plane.depth_of(point));
+        let [_, force, _] = self.normal_spring(plane.depth_of(point));
         plane.bulge * force
     }
 
-    /// Energy that a point at the limit of friction finds on a `step` back into the cone, and that
-    /// the Hessian of [`Self::evaluate`] does not foresee [J].
+    /// Energy that a `step` of a point at the limit of friction back into the cone adds to the quadratic model of
+    /// [`Self::evaluate`] [J].
     pub fn unforeseen_return(&self, plane: &ContactPlane, point: Vec3, step: Vec3) -> f64 {
         let limit = self.friction * plane.lagged_normal_force;
         let n = plane.normal;
@@ -160,32 +157,32 @@ impl ContactLaw {
             return 0.0;
         }
         let back = -step.dot(&slip) / length;
-        // Beyond the far side of the cone it slides the other way.
-        let most = 2.0 * limit / self.tangential;
-        let spring = back.clamp(0.0, most);
+        // Beyond the far side of the cone it slides in the opposite direction.
+        let width = 2.0 * limit / self.tangential;
+        let spring = back.clamp(0.0, width);
         self.tangential * spring * (back - 0.5 * spring).max(0.0)
     }
 
-    /// Energy that a point above a surface finds when a `step` takes it in [J].
+    /// Contact energy of a point above a surface after a `step` into it [J].
     pub fn unforeseen_landing(&self, plane: &ContactPlane, point: Vec3, step: Vec3) -> f64 {
         if plane.depth_of(point) > 0.0 || plane.landing {
             return 0.0;
         }
-        let [energy, ..] = self.push(plane.depth_of(point + step));
+        let [energy, ..] = self.normal_spring(plane.depth_of(point + step));
         energy
     }
 
-    /// Force that draws a point about to land down to the surface, so that the Newton step ends
-    /// there: that of the spring of the surface if it could pull \[N\].
+    /// Force on a landing point above the surface with which the Newton step ends at the surface: that of the normal
+    /// spring extended to negative depths \[N\]. None for other points.
     pub fn pull_down(&self, plane: &ContactPlane, point: Vec3) -> Option<Vec3> {
         let depth = plane.depth_of(point);
         (plane.landing && depth < 0.0).then(|| plane.gradient * (self.normal * depth))
     }
 
-    /// Energy alone [J].
+    /// The energy of [`Self::evaluate`] [J].
     pub fn energy(&self, plane: &ContactPlane, point: Vec3) -> f64 {
         let n = plane.normal;
-        let [mut energy, ..] = self.push(plane.depth_of(point));
+        let [mut energy, ..] = self.normal_spring(plane.depth_of(point));
         let limit = self.friction * plane.lagged_normal_force;
         if limit > 0.0 {
             let offset = point - plane.anchor;
@@ -201,12 +198,12 @@ impl ContactLaw {
 
     /// Normal force at a point [N].
     pub fn normal_force(&self, plane: &ContactPlane, point: Vec3) -> f64 {
-        let [_, force, _] = self.push(plane.depth_of(point));
+        let [_, force, _] = self.normal_spring(plane.depth_of(point));
         force * plane.gradient.norm()
     }
 
-    /// The anchor after a step: it stays while the tangential spring is inside the friction cone
-    /// of `normal_force`, and slides after the point otherwise [m].
+    /// The anchor after a step [m]: unchanged inside the friction cone of `normal_force`, else moved to the boundary of
+    /// the cone (return mapping).
     pub fn slide(&self, plane: &ContactPlane, point: Vec3, normal_force: f64) -> Vec3 {
         let n = plane.normal;
         let offset = point - plane.anchor;
@@ -308,14 +305,17 @@ mod tests {
     }
 
     #[test]
-    fn what_the_hessian_does_not_foresee_of_a_return_is_told() {
+    fn the_energy_of_a_return_that_the_hessian_lacks_is_exact() {
         let (plane, point, along) = at_limit();
         let (energy, gradient, hessian) = LAW.evaluate(&plane, point);
         for step in [-1e-4, -5e-4, -2.5e-3, 0.0, 3e-4].map(|s| along * s) {
             let quadratic = energy + gradient.dot(&step) + 0.5 * step.dot(&(hessian * step));
             let more = LAW.energy(&plane, point + step) - quadratic;
-            let told = LAW.unforeseen_return(&plane, point, step);
-            assert!((more - told).abs() < 1e-12, "{step:?}: {more} {told}");
+            let predicted = LAW.unforeseen_return(&plane, point, step);
+            assert!(
+                (more - predicted).abs() < 1e-12,
+                "{step:?}: {more} {predicted}"
+            );
         }
         let returning = ContactPlane {
             returning: true,
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_hessian_does_not_foresee_of_a_landing_is_told_and_drawn_to_the_surface() {
+    fn the_energy_of_a_landing_that_the_hessian_lacks_is_exact_and_the_force_ends_at_the_surface() {
         let law = ContactLaw {
             friction: 0.0,
             ..LAW

@@ -1,10 +1,10 @@
-//! Elastics: attachment forces that draw two points together.
+//! The force law of elastics: springs of rest length zero.
 
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// The force law of an elastic of rest length zero: proportional to the gap up to a largest
-/// force, constant beyond (so that far panels are drawn, not torn).
+/// force, constant beyond, so that distant panels are not accelerated too much.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticLaw {
@@ -20,11 +20,11 @@ impl ElasticLaw {
     /// (the Huber function, convex).
     pub fn energy(&self, gap: Vec3) -> f64 {
         let length = gap.norm();
-        let (k, most) = (self.stiffness, self.largest_force);
-        if k * length <= most {
+        let (k, largest) = (self.stiffness, self.largest_force);
+        if k * length <= largest {
             0.5 * k * length * length
         } else {
-            most * length - 0.5 * most * most / k
+            largest * length - 0.5 * largest * largest / k
         }
     }
 

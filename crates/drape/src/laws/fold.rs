@@ -1,7 +1,7 @@
-//! Bending beyond the quadratic energy of [`super::bending`]: internal strain (folds that stay) and viscosity.
+//! Bending terms beside the quadratic energy of [`super::bending`]: internal strain (permanent folds) and viscosity.
 //!
 //! Both act on the curvatures measured along the triangle's normal, s_c = n . kappa_c, so that a
-//! rigid turn costs nothing:
+//! rigid rotation has no energy:
 //! E = -q . s + 1/2 (s - s_0) . V (s - s_0),
 //! with q = A D r the moment of the relaxed fraction of the internal curvature, r = p v (A/2 |kappa - r n|^2_D
 //! less the quadratic energy and a constant), V = A N / h of the viscous matrix N over a step h, and s_0 the
@@ -38,8 +38,8 @@ impl FoldTerm {
         -self.internal_moment.dot(&s) + 0.5 * change.dot(&(self.viscous * change))
     }
 
-    /// Slope of the energy by the three curvature vectors, and by the corners through the normal
-    /// [N m2] and [N]. A triangle without area has no normal and feels nothing.
+    /// Gradient of the energy with respect to the three curvature vectors [N m2], and to the corners through the normal
+    /// [N]. None for a triangle without area, which has no normal.
     pub fn gradient(&self, x: [Vec3; 3], curvature: [Vec3; 3]) -> Option<([Vec3; 3], [Vec3; 3])> {
         let normal = area_normal(x);
         let size = normal.norm();
@@ -80,7 +80,7 @@ mod tests {
                 start: Vector3::new(1.0, 0.2, -0.4),
                 viscous: Matrix3::new(2.0, 0.1, 0.3, 0.1, 1.0, 0.0, 0.3, 0.0, 3.0),
             };
-            // Curvatures that hang on the corners too.
+            // Curvatures that depend on the corners, too.
             let curvature = |x: [Vec3; 3]| {
                 [0, 1, 2].map(|c| {
                     others[c] + x[0] * weights[3 * c] + x[1] * weights[3 * c + 1] + x[2] * weights[3 * c + 2]
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_collapsed_triangle_feels_nothing() {
+    fn a_triangle_without_area_has_no_force() {
         let term = FoldTerm {
             internal_moment: Vector3::repeat(1.0),
             start: Vector3::zeros(),

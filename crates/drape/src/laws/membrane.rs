@@ -2,15 +2,15 @@
 //!
 //! With warp and weft tangents f_u = sum a_i x_i and f_v = sum b_i x_i, Green strain
 //! E_uu = (f_u.f_u - 1) / 2, E_vv = (f_v.f_v - 1) / 2, gamma = f_u.f_v, the energy per area is
-//! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2), or what [`crate::laws::stretch`] makes of
-//! it (Volino, Magnenat-Thalmann and Faure 2009, section 3).
+//! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2), or that of another law in
+//! [`crate::laws::stretch`] (Volino, Magnenat-Thalmann and Faure 2009, section 3).
 
 use crate::laws::stretch::StrainLaw;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Vec2, Vec3};
 
-/// A triangle at rest: how its corners give the tangents, and its area.
+/// A triangle at rest: the weights of its corners in the tangents, and its area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneElement {
     /// Weights a_i of the corners in f_u [1/m].
@@ -21,26 +21,24 @@ pub struct MembraneElement {
     pub area: f64,
 }
 
-/// Share of the destabilising curvature that a Hessian keeps, 0..=1: with all of it it is exact,
-/// and indefinite where cloth is about to buckle.
+/// Share of the negative curvature of compression in a Hessian, 0..=1. With 1 the Hessian is exact, and indefinite
+/// where cloth is about to buckle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curvature(pub f64);
 
 impl Curvature {
-    /// All of the energy's curvature.
+    /// The exact Hessian.
     pub const EXACT: Self = Self(1.0);
-    /// None that could make the Hessian indefinite.
+    /// No negative curvature: a positive semidefinite Hessian.
     pub const CONVEX: Self = Self(0.0);
 
-    /// Leaves out twice as much, and no less than [`Self::FINEST`]: what to try where a Hessian is
-    /// not positive definite.
+    /// Twice the omitted share, at least [`Self::FINEST`]: the next try after a Hessian that is not positive definite.
     pub fn less(self) -> Self {
         let left_out = (2.0 * (1.0 - self.0)).max(Self::FINEST);
         Self((1.0 - left_out).max(0.0))
     }
 
-    /// Leaves out 0.7 of that, or nothing where that is less than [`Self::FINEST`]: what to try
-    /// after a step that went well.
+    /// The omitted share times 0.7, or zero where that is less than [`Self::FINEST`]: the next try after a full step.
     pub fn more(self) -> Self {
         let left_out = 0.7 * (1.0 - self.0);
         if left_out < Self::FINEST {
@@ -50,12 +48,12 @@ impl Curvature {
         }
     }
 
-    /// Least share that is left out where not all of the curvature can be kept.
+    /// Least omitted share other than zero.
     pub const FINEST: f64 = 0.02;
 }
 
 impl Default for Curvature {
-    /// None: what is always safe.
+    /// No negative curvature, the choice that is always positive semidefinite.
     fn default() -> Self {
         Self::CONVEX
     }
@@ -73,8 +71,8 @@ pub struct Strain {
 }
 
 impl MembraneElement {
-    /// From the corners in the material plane, warp along the first axis [m]; nothing when the
-    /// triangle has no area.
+    /// The element with these corners in the material plane, warp along the first axis [m]; none for a triangle without
+    /// area.
     pub fn new(rest: [Vec2; 3]) -> Option<Self> {
         let (d1, d2) = (rest[1] - rest[0], rest[2] - rest[0]);
         let twice = d1.perp(&d2);
@@ -92,8 +90,7 @@ impl MembraneElement {
         })
     }
 
-    /// Corners in the material plane, the first at the origin [m]: what [`Self::new`] was made
-    /// from, but for its place.
+    /// Corners in the material plane, the first at the origin [m]: those of [`Self::new`] up to translation.
     pub fn rest(&self) -> [Vec2; 3] {
         // The gradients of the weights of corners 1 and 2 are dual to the edges from corner 0.
         let determinant = self.warp[1] * self.weft[2] - self.warp[2] * self.weft[1];
@@ -116,7 +113,7 @@ impl MembraneElement {
         self.area * law.stress(green_strain(self.tangents(x))).1
     }
 
-    /// Energy [J] and its gradient by the corners [N].
+    /// Energy [J] and its gradient with respect to the corners [N].
     pub fn gradient(&self, law: &impl StrainLaw, x: [Vec3; 3]) -> (f64, [Vec3; 3]) {
         let [fu, fv] = self.tangents(x);
         let ([s_uu, s_vv, s_uv], density) = law.stress(green_strain([fu, fv]));
@@ -126,8 +123,8 @@ impl MembraneElement {
         (self.area * density, gradient)
     }
 
-    /// Gradient by one corner [N] and the positive semidefinite block of the Hessian there [N/m]:
-    /// one corner of what [`Self::gradient`] and [`Self::hessian`] give for all three.
+    /// Gradient with respect to one corner [N] and the positive semidefinite diagonal block of the Hessian [N/m]: one
+    /// corner of [`Self::gradient`] and [`Self::hessian`].
     pub fn corner(&self, law: &impl StrainLaw, x: [Vec3; 3], i: usize) -> (Vec3, Matrix3<f64>) {
         let [fu, fv] = self.tangents(x);
         let strain = green_strain([fu, fv]);
@@ -137,7 +134,7 @@ impl MembraneElement {
         let by_u = fu * s[0] + fv * s[2];
         let by_v = fv * s[1] + fu * s[2];
         let [s_uu, s_vv, s_uv] = tension_part(s);
-        // Derivatives of E_uu, E_vv and gamma by the corner.
+        // Derivatives of E_uu, E_vv and gamma with respect to the corner.
         let (e_uu, e_vv, e_uv) = (fu * a, fv * b, fv * a + fu * b);
         let geometric = s_uu * a * a + s_vv * b * b + 2.0 * s_uv * a * b;
         let hessian = Matrix3::identity() * geometric
@@ -149,10 +146,9 @@ impl MembraneElement {
 
     /// The Hessian: blocks of the corner pairs 00, 01, 02, 11, 12, 22 [N/m].
     ///
-    /// The material part is positive semidefinite as it stands. The geometric part is the 2x2
-    /// stress times the identity. Of its negative (compressive) principal stresses only the share
-    /// asked for is kept: with none the matrix is exact where the cloth is in tension and safe
-    /// where it buckles.
+    /// The material part is positive semidefinite. The geometric part is the 2x2 stress times the identity; its
+    /// negative (compressive) principal stresses are multiplied by `curvature`: with 0 the matrix is exact in tension
+    /// and positive semidefinite where the cloth buckles.
     pub fn hessian(
         &self,
         law: &impl StrainLaw,

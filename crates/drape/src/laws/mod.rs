@@ -1,5 +1,5 @@
 //! Force laws of materials, contact, elastics and air: pure functions over small stencils giving energy,
-//! gradient and Hessian. The physical laws that a simulation is tested by are in crate `lab`.
+//! gradient and Hessian. The physical laws by which simulations are validated are in crate `lab`.
 
 pub mod air;
 pub mod bending;

@@ -1,5 +1,5 @@
-//! A sheet of triangles at rest, and the derivative across each of its edges as a combination of the vertices
-//! around: see [`super::bending`].
+//! Estimates of the derivative across each edge of a sheet at rest, as linear combinations of the vertices around the
+//! edge: see [`super::bending`].
 
 use nalgebra::{Matrix6, SVector, Vector6};
 use toile_geometry::{Topology, Vec2};
@@ -8,44 +8,43 @@ use toile_geometry::{Topology, Vec2};
 pub struct RestSheet<'a> {
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
-    /// Place of each corner in the material plane [m].
+    /// Position of each corner in the material plane [m].
     pub rest: &'a [[Vec2; 3]],
     /// Edges of the triangles.
     pub topology: &'a Topology,
 }
 
-/// A triangle whose curvature cannot be estimated from the rings that are given: its neighbours lie close to
-/// a conic, or on a line.
+/// A triangle whose curvature cannot be estimated from given rings: its neighbours lie close to a conic or to a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IllConditioned {
     /// The triangle.
     pub triangle: usize,
 }
 
-/// The derivative across an edge at its middle, out of the edge's first triangle, as a combination
-/// of vertex positions.
+/// The derivative across an edge at its midpoint, outwards from the edge's first triangle, as a linear combination of
+/// vertex positions.
 pub(super) struct Across {
     /// The triangle it points out of.
     pub first: u32,
     pub vertices: Vec<u32>,
     /// [1/m]
     pub weights: Vec<f64>,
-    /// Rings of neighbours it is made from.
+    /// Rings of neighbours in the estimate.
     pub rings: u8,
 }
 
 /// Largest trace of the inverse of the scaled normal matrix of a fit: beyond it the vertices lie
-/// close to a conic and the next ring is taken in.
+/// close to a conic, and another ring is added.
 const LARGEST_INVERSE: f64 = 1e3;
 
-/// Rings of neighbours looked at before an estimate settles for the two triangles.
+/// Most rings of neighbours; without a good fit the estimate uses the two triangles of the edge only.
 const MOST_RINGS: u8 = 3;
 
 impl RestSheet<'_> {
-    /// The estimate of the derivative across an edge between two triangles; nothing at a free
-    /// edge, where more than two meet, and where the number of rings that is asked for does not serve. With
-    /// none asked for, from as few as serve.
-    pub(super) fn across(&self, edge: usize, asked: Option<u8>) -> Option<Across> {
+    /// The estimate of the derivative across an edge between two triangles, with a given number of rings, or with the
+    /// least number that is well conditioned. None at a free edge, at an edge of more than two triangles, and where the
+    /// given number is ill-conditioned.
+    pub(super) fn across(&self, edge: usize, given_rings: Option<u8>) -> Option<Across> {
         let [first, second] = self.topology.edge_triangles[edge][..] else {
             return None;
         };
@@ -74,10 +73,10 @@ impl RestSheet<'_> {
             .collect();
         let mut weights = start.clone();
         let mut rings = 0;
-        for ring in 1..=asked.unwrap_or(MOST_RINGS) {
+        for ring in 1..=given_rings.unwrap_or(MOST_RINGS) {
             front = self.next_ring(&front, &mut visited);
             collect(self.triangles, &front, &mut points);
-            if asked.is_some_and(|asked| ring < asked) {
+            if given_rings.is_some_and(|given_rings| ring < given_rings) {
                 continue;
             }
             let scaled: Vec<Vec2> = points.iter().map(|(_, p)| (p - middle) / scale).collect();
@@ -90,7 +89,7 @@ impl RestSheet<'_> {
                 break;
             }
         }
-        if asked.is_some_and(|asked| rings != asked) {
+        if given_rings.is_some_and(|given_rings| rings != given_rings) {
             return None;
         }
         points.truncate(weights.len());
@@ -102,24 +101,24 @@ impl RestSheet<'_> {
         })
     }
 
-    /// Which edge of a triangle an edge of the mesh is.
+    /// Index in a triangle of an edge of the mesh.
     fn edge_of(&self, triangle: u32, edge: usize) -> Option<usize> {
         let edges = self.topology.triangle_edges[triangle as usize];
         edges.iter().position(|&other| other as usize == edge)
     }
 
-    /// The derivative along `n` of the two triangles, each counted by its height over the edge:
-    /// no weight grows without bound when one of them is a sliver.
+    /// The mean of the two triangles' derivatives along `n`, weighted by their heights over the edge, so that the
+    /// weights of a sliver are bounded.
     fn blend(
         &self,
         pair: [u32; 2],
-        places: [[Vec2; 3]; 2],
+        shapes: [[Vec2; 3]; 2],
         edge: usize,
         n: Vec2,
     ) -> Option<Vec<(u32, f64)>> {
         let mut weights = Vec::with_capacity(6);
         let mut heights = 0.0;
-        for (t, corners) in pair.into_iter().zip(places) {
+        for (t, corners) in pair.into_iter().zip(shapes) {
             let k = self.edge_of(t, edge)?;
             let (side, other) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3]);
             let height = side.perp(&(other - corners[k])).abs() / side.norm();
@@ -180,13 +179,13 @@ impl RestSheet<'_> {
         away: Vec2,
     ) -> Option<[Vec2; 3]> {
         let t = triangle as usize;
-        let place = |v: u32| {
+        let position = |v: u32| {
             self.triangles[t]
                 .iter()
                 .position(|&w| w == v)
                 .map(|k| self.rest[t][k])
         };
-        let (pa, pb) = (place(a)?, place(b)?);
+        let (pa, pb) = (position(a)?, position(b)?);
         let from = (pb - pa).try_normalize(0.0)?;
         let to = (onto[1] - onto[0]).try_normalize(0.0)?;
         let (from_middle, to_middle) = ((pa + pb) * 0.5, (onto[0] + onto[1]) * 0.5);
@@ -202,7 +201,7 @@ impl RestSheet<'_> {
     }
 }
 
-/// Normal of edge `k` out of a triangle, as long as the edge.
+/// Outward normal of edge `k` of a triangle, with the length of the edge.
 pub(super) fn outward(corners: [Vec2; 3], k: usize) -> Vec2 {
     let edge = corners[(k + 1) % 3] - corners[k];
     let normal = Vec2::new(edge.y, -edge.x);
@@ -222,7 +221,7 @@ pub(super) fn hat_gradients(corners: [Vec2; 3]) -> [Vec2; 3] {
     })
 }
 
-/// Adds the vertices of triangles that are not there yet.
+/// Appends the vertices of triangles that are not in the list.
 fn collect(triangles: &[[u32; 3]], ring: &[(u32, [Vec2; 3])], points: &mut Vec<(u32, Vec2)>) {
     for (t, corners) in ring {
         for (&v, &p) in triangles[*t as usize].iter().zip(corners) {
@@ -235,7 +234,7 @@ fn collect(triangles: &[[u32; 3]], ring: &[(u32, [Vec2; 3])], points: &mut Vec<(
 
 /// The smallest change of `start` (weights of the first points, zero for the others) that makes the
 /// derivative along `n` at the origin exact for every parabola; near points may change more
-/// (inverse fourth power of the distance). Nothing when the points do not determine it.
+/// (inverse fourth power of the distance). None where the points do not determine it.
 fn correct(points: &[Vec2], start: &[f64], n: Vec2) -> Option<Vec<f64>> {
     if points.len() < 6 {
         return None;

@@ -5,19 +5,19 @@
 //! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2)
 //!   + 1/4 (C11 k_u <E_uu>^4 + C22 k_v <E_vv>^4) + W_limit(E_uu) + W_limit(E_vv),
 //!
-//! where `<x>` is x above zero and zero below: along a thread S = C (E + k E^3), the J-shaped curve
-//! of a woven cloth whose crimp is pulled out before its yarns are.
+//! where `<x>` = max(x, 0): along a thread S = C (E + k E^3), the J-shaped curve of a woven cloth, whose yarns lose
+//! their crimp before they stretch.
 //!
-//! The strain limit adds K r(E - L) to the stress, with L the limit as Green strain, K = 100 C,
-//! r(x) = 0 below zero, x^2 / (2 d) up to d = L / 50, then x - d / 2. Energy and stress are smooth,
-//! the stiffness is continuous and bounded, so a cloth may start far beyond its limit. How soft it
-//! is: at twice the load that reaches the limit, the strain is beyond it by 2 % of itself.
+//! The strain limit adds K r(E - L) to the stress, with L the limit as Green strain, K = 100 C, r(x) = 0 below zero,
+//! x^2 / (2 d) up to d = L / 50, then x - d / 2. Energy and stress are smooth, the stiffness is continuous and bounded,
+//! so a cloth may start far beyond its limit. At twice the load that reaches the limit, the strain exceeds the limit by
+//! 2 %.
 //!
 //! In a tension field the first line is replaced by the least energy over all finer wrinkles (Pipkin
 //! 1986): min over A >= 0 of W(E + A), whose dual is max over stresses S >= 0 of
-//! S : E - 1/2 S : C^-1 : S. Taut where C E is a tension in every direction; slack where E shortens
-//! every direction: no energy; between, one tension T along the direction t that makes
-//! (t.E.t)^2 / (2 q(t)) largest, q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
+//! S : E - 1/2 S : C^-1 : S. The membrane is taut where C E is tensile in every direction, and slack, without energy,
+//! where E shortens every direction. Otherwise it is wrinkled: one tension T along the direction t that maximises
+//! (t.E.t)^2 / (2 q(t)), q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
 //! compressive and the energy is convex, so its Hessian is exact and positive semidefinite.
 
 use std::sync::LazyLock;
@@ -25,16 +25,16 @@ use std::sync::LazyLock;
 /// Stiffness of a strain limit as a multiple of the membrane's own.
 const LIMIT_STIFFNESS: f64 = 100.0;
 
-/// Width over which a strain limit sets in, as a share of the limit.
+/// Range of strain in which the stiffness of a limit rises, as a share of the limit.
 const LIMIT_ONSET: f64 = 0.02;
 
-/// What a cloth does when it is squeezed in its own plane.
+/// Behaviour of a membrane under compression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
-    /// It resists as much as it does stretch. The Hessian drops its compressive part.
+    /// The law of tension. The Hessian may omit its negative part.
     #[default]
     Full,
-    /// It buckles finer than the mesh can show and carries nothing: the tension field.
+    /// Tension field: the membrane wrinkles below the resolution of the mesh and has no compressive stress.
     TensionField,
 }
 
@@ -43,26 +43,26 @@ pub trait StrainLaw {
     /// Stress S_uu, S_vv, S_uv [N/m] and energy per area [J/m2].
     fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64);
 
-    /// Slope of the stress by the strain, a symmetric positive semidefinite matrix given as
+    /// Derivative of the stress with respect to the strain, a symmetric positive semidefinite matrix given as
     /// uu-uu, vv-vv, uu-vv, gamma-gamma, uu-gamma, vv-gamma [N/m].
     fn slope(&self, strain: [f64; 3]) -> [f64; 6];
 }
 
-/// How a membrane resists stretch and shear.
+/// The law of a membrane in stretch and shear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneLaw {
     /// C11, C22, C12 and the shear stiffness G [N/m].
     pub stiffness: [f64; 4],
-    /// The number k along warp and weft: S = C (E + k E^3) in tension; 0 is a straight line.
+    /// The number k along warp and weft: S = C (E + k E^3) in tension; 0 is a linear law.
     pub hardening: [f64; 2],
-    /// Stretch (share of the length at rest) that warp and weft hardly exceed; infinite for none.
+    /// Limit of the stretch of warp and weft, as a share of the rest length; infinite for none.
     pub limit: [f64; 2],
-    /// What it does when squeezed.
+    /// Behaviour under compression.
     pub compression: Compression,
 }
 
 impl MembraneLaw {
-    /// A straight-line law; `stiffness` is C11, C22, C12, G [N/m].
+    /// A linear law; `stiffness` is C11, C22, C12, G [N/m].
     pub fn linear(stiffness: [f64; 4]) -> Self {
         Self {
             stiffness,
@@ -72,8 +72,7 @@ impl MembraneLaw {
         }
     }
 
-    /// Whether the law is the straight line alone: then XPBD and explicit steps in patches take `stiffness` and
-    /// nothing else of it.
+    /// Whether the law is linear, so that XPBD and explicit steps in patches use `stiffness` only.
     pub fn is_linear(&self) -> bool {
         let &Self {
             stiffness: _,
@@ -84,17 +83,16 @@ impl MembraneLaw {
         hardening == [0.0; 2] && limit == [f64::INFINITY; 2] && compression == Compression::Full
     }
 
-    /// What hardening and limit add along one direction: stress [N/m], energy [J/m2] and slope
-    /// [N/m].
+    /// Contribution of hardening and limit along one direction: stress [N/m], energy [J/m2] and stiffness [N/m].
     fn beyond_line(&self, direction: usize, strain: f64) -> (f64, f64, f64) {
         let c = self.stiffness[direction];
         let e = strain.max(0.0);
         let k = c * self.hardening[direction];
         let (mut stress, mut energy, mut slope) =
             (k * e * e * e, 0.25 * k * e * e * e * e, 3.0 * k * e * e);
-        let most = self.limit[direction];
-        if most.is_finite() {
-            let limit = most + 0.5 * most * most;
+        let stretch = self.limit[direction];
+        if stretch.is_finite() {
+            let limit = stretch + 0.5 * stretch * stretch;
             let (x, d) = (strain - limit, LIMIT_ONSET * limit);
             let stiff = LIMIT_STIFFNESS * c;
             if x >= d {
@@ -125,7 +123,7 @@ impl StrainLaw for MembraneLaw {
                     Field::Slack => (s, energy) = ([0.0; 3], 0.0),
                     Field::Wrinkled(wrinkle) => {
                         s = wrinkle.along.map(|m| wrinkle.tension * m);
-                        energy = 0.5 * wrinkle.tension * wrinkle.tension * wrinkle.give;
+                        energy = 0.5 * wrinkle.tension * wrinkle.tension * wrinkle.compliance;
                     }
                 }
             }
@@ -160,40 +158,40 @@ impl StrainLaw for MembraneLaw {
     }
 }
 
-/// The state of a tension field.
+/// State of a tension field.
 enum Field {
     Taut,
     Slack,
     Wrinkled(Wrinkle),
 }
 
-/// One tension along a direction t.
+/// A wrinkled state: one tension along a direction t.
 struct Wrinkle {
     /// T [N/m].
     tension: f64,
     /// t t as (uu, vv, uv).
     along: [f64; 3],
-    /// q = t t : C^-1 : t t [m/N].
-    give: f64,
+    /// Compliance q = t t : C^-1 : t t [m/N].
+    compliance: f64,
     /// dT/dtheta m + T dm/dtheta, and minus the second derivative of the energy by theta.
     turn: ([f64; 3], f64),
 }
 
-/// Directions tried before the best is refined; between two of them q has one extremum at most
+/// Number of directions sampled before the best is refined; between two of them q has one extremum at most
 /// unless warp and bias differ by more than a factor of 10^4.
 const DIRECTIONS: usize = 32;
 
-/// Angle from one to the next.
+/// Angle between sampled directions.
 const WIDTH: f64 = std::f64::consts::PI / DIRECTIONS as f64;
 
 /// Sine and cosine of twice each angle.
 static DOUBLED: LazyLock<[(f64, f64); DIRECTIONS]> =
     LazyLock::new(|| std::array::from_fn(|k| (2.0 * k as f64 * WIDTH).sin_cos()));
 
-/// Newton and bisection steps of the refinement: 60 halvings reach rounding.
+/// Most Newton and bisection steps of the refinement: 60 halvings reach rounding.
 const REFINEMENTS: usize = 60;
 
-/// A step of the refinement below this is its last: rounding is a few times less.
+/// Step of the refinement below which it ends [rad]: rounding is a few times smaller.
 const CLOSE: f64 = 1e-15;
 
 impl Field {
@@ -216,7 +214,7 @@ impl Field {
         let a2 = 0.5 * (s11 - s22);
         let a4 = (s11 + s22 - 2.0 * s12 - sg) / 8.0;
         let (mean, half) = (0.5 * (e_uu + e_vv), 0.5 * (e_uu - e_vv));
-        // p = t.E.t and q with their first two derivatives by the angle.
+        // p = t.E.t and q with their first two derivatives with respect to the angle.
         let doubled = |(sin, cos): (f64, f64)| {
             let (sin2, cos2) = (2.0 * sin * cos, cos * cos - sin * sin);
             let p = [
@@ -280,7 +278,7 @@ impl Field {
         Self::Wrinkled(Wrinkle {
             tension,
             along,
-            give: q[0],
+            compliance: q[0],
             turn: (
                 [0, 1, 2].map(|k| turning * along[k] + tension * turned[k]),
                 -bend,
@@ -295,7 +293,7 @@ impl Wrinkle {
         let (m, (s, b)) = (self.along, self.turn);
         let soft = if b > 0.0 { 1.0 / b } else { 0.0 };
         [(0, 0), (1, 1), (0, 1), (2, 2), (0, 2), (1, 2)]
-            .map(|(i, j)| m[i] * m[j] / self.give + s[i] * s[j] * soft)
+            .map(|(i, j)| m[i] * m[j] / self.compliance + s[i] * s[j] * soft)
     }
 }
 

@@ -144,7 +144,8 @@ pub fn possible_energy(system: &System, before: f64, step: f64) -> f64 {
         .iter()
         .map(|m| m.density)
         .fold(f64::INFINITY, f64::min);
-    let acceleration = system.control.gravity.norm() + system.control.air.push(lightest);
+    let acceleration =
+        system.control.gravity.norm() + system.control.air.largest_acceleration(lightest);
     let root = before.max(0.0).sqrt() + acceleration * (0.5 * mass).sqrt() * step;
     root * root + 0.5 * mass * ROUNDING_SPEED * ROUNDING_SPEED
 }

@@ -69,7 +69,7 @@ pub fn forces_and_update_friction<'a>(
 ) -> &'a [Vec3] {
     forces(system, state, workspace, h);
     if !system.colliders.is_empty() {
-        workspace.contacts.settle(system, state);
+        workspace.contacts.remember_step(system, state);
         workspace.contacts.remember_buried(system, state);
     }
     workspace.last_force()

@@ -232,7 +232,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             return Err(Failure::Unstable(fastest_vertex(state).0));
         }
         // `is_possible` has detected the contacts at the new positions.
-        self.workspace.contacts.settle(system, state);
+        self.workspace.contacts.remember_step(system, state);
         state.time += h;
         Ok(report)
     }

@@ -73,12 +73,12 @@ impl Workspace {
         if !norm.is_finite() || norm <= limits.tolerance {
             return 0.0;
         }
-        pairs.note(&state.positions, &self.gradient, limits.steps);
+        pairs.push(&state.positions, &self.gradient, limits.steps);
         let Some(direct) = &mut self.direct else {
             return 0.0;
         };
         let mut solved = false;
-        pairs.aim(&mut self.direction, |q, r| {
+        pairs.descent_direction(&mut self.direction, |q, r| {
             solved = direct.solve_again(q, r);
         });
         self.negate_gradient();
@@ -89,7 +89,7 @@ impl Workspace {
         let fraction = self.line_search(system, &state.positions, inertia);
         if fraction > 0.0 {
             std::mem::swap(&mut state.positions, &mut self.trial);
-            self.contacts.settle(system, state);
+            self.contacts.remember_step(system, state);
         }
         fraction
     }

@@ -41,7 +41,7 @@ impl Contacts {
     ) {
         for contact in &mut self.active {
             let sample = &contact.point;
-            let (at, by) = (sample.place(x), sample.place(step));
+            let (at, by) = (sample.position(x), sample.position(step));
             visit(&mut contact.plane, &contact.law, at, by);
         }
         for contact in self.cloth.all_mut() {
@@ -54,7 +54,7 @@ impl Contacts {
     pub fn add_landing_pull(&self, system: &System, x: &[Vec3], force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &contact.point;
-            let pull = contact.law.pull_down(&contact.plane, sample.place(x));
+            let pull = contact.law.pull_down(&contact.plane, sample.position(x));
             let Some(pull) = pull else { continue };
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
                 if !system.prescribed.pinned[v as usize] {

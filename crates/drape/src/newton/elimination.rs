@@ -71,7 +71,7 @@ impl Workspace {
                 break;
             }
             moved = true;
-            for (v, position) in submodels.iter().flat_map(SubModel::places) {
+            for (v, position) in submodels.iter().flat_map(SubModel::own_positions) {
                 state.positions[v as usize] = position;
             }
         }

@@ -301,7 +301,7 @@ impl Workspace {
             energy += elastic.law.energy(elastic.gap(x));
         }
         for contact in &self.contacts.active {
-            let position = contact.point.place(x);
+            let position = contact.point.position(x);
             energy += contact.law.energy(&contact.plane, position);
         }
         for contact in self.contacts.cloth.all() {
@@ -334,7 +334,7 @@ impl Workspace {
                 g += corner_gradients[corner as usize / 3][corner as usize % 3];
             }
             for (e, other) in system.elastics_at(v) {
-                g += (x[v] - other.place(x)) * secants[e];
+                g += (x[v] - other.position(x)) * secants[e];
             }
             if let Some(inertia) = inertia {
                 g += (x[v] - inertia.target[v]) * inertia.weight[v];
@@ -343,7 +343,7 @@ impl Workspace {
         });
         for contact in &self.contacts.active {
             let sample = &contact.point;
-            let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
+            let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.position(x));
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
                 self.gradient[v as usize] += gradient * w;
             }
@@ -386,7 +386,7 @@ impl Workspace {
         }
         for contact in &self.contacts.active {
             let sample = &contact.point;
-            let position = sample.place(x);
+            let position = sample.position(x);
             let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, position);
             hessian -= contact.law.missing_curvature(&contact.plane, position) * curvature.0;
             match sample.triangle {

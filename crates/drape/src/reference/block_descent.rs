@@ -131,14 +131,14 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
             }
         }
         for (e, other) in system.elastics_at(v) {
-            let gap = x[v] - other.place(x);
+            let gap = x[v] - other.position(x);
             let secant = system.elastic_law(e).secant(gap);
             gradient += gap * secant;
             hessian += Matrix3::identity() * secant;
         }
         for &(at, w) in self.contacts.of(v) {
             let contact = &workspace.contacts.active[at as usize];
-            let position = contact.point.place(x);
+            let position = contact.point.position(x);
             let (_, g, h) = contact.law.evaluate(&contact.plane, position);
             gradient += g * w;
             hessian += h * (w * w);

@@ -30,7 +30,7 @@ impl Lbfgs {
         energy: &mut Option<f64>,
     ) -> f64 {
         let metric = &mut self.metric;
-        self.pairs.aim(&mut self.direction, |q, r| {
+        self.pairs.descent_direction(&mut self.direction, |q, r| {
             metric.solve(problem.system, q, r);
         });
         truncate_length(problem, &mut self.direction);
@@ -68,7 +68,7 @@ impl Solver for Lbfgs {
         descend(problem, state, workspace, |state, workspace, _| {
             self.metric.update_contacts(problem, state, workspace);
             let (x, gradient) = (&state.positions, &workspace.gradient);
-            self.pairs.note(x, gradient, MEMORY);
+            self.pairs.push(x, gradient, MEMORY);
             let fraction = self.step(problem, state, workspace, &mut energy);
             if fraction > 0.0 || self.pairs.is_empty() {
                 return fraction;

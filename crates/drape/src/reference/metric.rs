@@ -112,7 +112,7 @@ impl Metric {
         for contact in &workspace.contacts.active {
             let sample = &contact.point;
             let vertex = sample.vertices[0];
-            let position = sample.place(&state.positions);
+            let position = sample.position(&state.positions);
             if sample.triangle.is_none() && contact.plane.depth_of(position) > 0.0 {
                 let inertia = problem.inertia.weight[vertex as usize];
                 let scale = (inertia / (inertia + contact.law.normal)).sqrt();

@@ -58,7 +58,7 @@ impl Pieces {
             let sample = &contact.point;
             let (_, _, hessian) = contact
                 .law
-                .evaluate(&contact.plane, sample.place(&state.positions));
+                .evaluate(&contact.plane, sample.position(&state.positions));
             self.systems[self.label[sample.vertices[0] as usize] as usize].hessian += hessian;
         }
         let before = workspace.potential(system, &state.positions, &problem.inertia);

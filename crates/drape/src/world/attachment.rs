@@ -1,5 +1,5 @@
-//! Attachments between objects: springs whose ends may be vertices of cloth, places in space or points of
-//! solids, which may move.
+//! Attachments between objects: springs between vertices of cloth, points in space and points of solids, which may
+//! move.
 
 use super::MeshVertex;
 use super::World;
@@ -17,12 +17,11 @@ pub struct AttachmentId(pub(super) u32);
 /// One end of an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AttachmentEnd {
-    /// A vertex of an object: of a cloth, or of a solid, with which it moves.
+    /// A vertex of an object. Of a solid it moves with the solid.
     Vertex(MeshVertex),
-    /// A place in space [m].
+    /// A point in space [m].
     Point(Vec3),
-    /// A point in the frame of a solid object, which moves with it: where it would be were the object as it was
-    /// added [m].
+    /// A point that moves with a solid, in the coordinates of the object's mesh [m].
     Frame {
         /// The object.
         object: ObjectId,
@@ -38,30 +37,30 @@ pub struct ObjectAttachment {
     pub ends: [AttachmentEnd; 2],
     /// Stiffness [N/m].
     pub stiffness: f64,
-    /// The two vertices become one when closer than this [m]; nothing keeps them apart.
+    /// Distance below which the two vertices are merged [m]; none where they never are.
     pub merge_within: Option<f64>,
 }
 
-/// An end as the system takes it.
+/// An end in terms of the merged cloth.
 enum ResolvedEnd {
     Vertex(u32),
     Point(Vec3),
     Moving(ObjectId, Vec3),
 }
 
-/// Attachments as the system takes them.
+/// The attachments of a world in terms of the merged cloth.
 #[derive(Default)]
 pub(super) struct ResolvedAttachments {
-    /// Those between vertices and to places at rest.
+    /// Attachments between vertices, and of vertices to points at rest.
     pub elastics: Vec<Elastic>,
-    /// Those to moving objects.
+    /// Attachments of vertices to moving objects.
     pub frames: Vec<FrameAttachment>,
 }
 
 impl World {
     fn resolve_end(&self, map: &VertexMap, end: AttachmentEnd) -> Option<ResolvedEnd> {
         let (object, point) = match end {
-            AttachmentEnd::Point(place) => return Some(ResolvedEnd::Point(place)),
+            AttachmentEnd::Point(point) => return Some(ResolvedEnd::Point(point)),
             AttachmentEnd::Vertex(vertex) => match map.vertex(vertex) {
                 Some(v) => return Some(ResolvedEnd::Vertex(v)),
                 None => {
@@ -77,7 +76,8 @@ impl World {
         })
     }
 
-    /// Its attachments between the vertices of a merged cloth; those whose ends are one are left out.
+    /// The attachments in terms of the merged cloth, without those between a merged vertex and itself and those that
+    /// move no cloth.
     pub(super) fn resolve_attachments(&self, map: &VertexMap) -> ResolvedAttachments {
         let mut resolved = ResolvedAttachments::default();
         for attachment in self.attachments.values() {
@@ -95,9 +95,9 @@ impl World {
                     let to = ElasticEnd::Vertex(to);
                     resolved.elastics.push(Elastic { from, to, law });
                 }
-                (ResolvedEnd::Vertex(from), ResolvedEnd::Point(place))
-                | (ResolvedEnd::Point(place), ResolvedEnd::Vertex(from)) => {
-                    let to = ElasticEnd::Point(place);
+                (ResolvedEnd::Vertex(from), ResolvedEnd::Point(point))
+                | (ResolvedEnd::Point(point), ResolvedEnd::Vertex(from)) => {
+                    let to = ElasticEnd::Point(point);
                     resolved.elastics.push(Elastic { from, to, law });
                 }
                 (ResolvedEnd::Vertex(vertex), ResolvedEnd::Moving(object, point))
@@ -110,14 +110,14 @@ impl World {
                         law,
                     }));
                 }
-                // Two ends that no force can move.
+                // No force can move either end.
                 _ => {}
             }
         }
         resolved
     }
 
-    /// The mesh vertices that an attachment joins, where both its ends are of cloth.
+    /// The two mesh vertices of an attachment between cloths; none where an end is not of cloth.
     pub(super) fn cloth_ends(&self, attachment: &ObjectAttachment) -> Option<[MeshVertex; 2]> {
         let [AttachmentEnd::Vertex(a), AttachmentEnd::Vertex(b)] = attachment.ends else {
             return None;
@@ -129,7 +129,7 @@ impl World {
         (is_cloth(a) && is_cloth(b)).then_some([a, b])
     }
 
-    /// Refuses an attachment that names what is not there.
+    /// Refuses an attachment with a stiffness or a point that is no finite number, or with a missing object or vertex.
     pub(super) fn check_attachment(&self, attachment: &ObjectAttachment) -> Result<(), DrapeError> {
         let refuse = |what: String, remedy: &str| {
             Err(DrapeError::Scene {
@@ -144,7 +144,7 @@ impl World {
         }
         for end in attachment.ends {
             match end {
-                AttachmentEnd::Point(place) if !place.iter().all(|x| x.is_finite()) => {
+                AttachmentEnd::Point(point) if !point.iter().all(|x| x.is_finite()) => {
                     return refuse(
                         "a place is not finite".to_owned(),
                         "give finite numbers in m",

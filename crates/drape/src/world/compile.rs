@@ -1,4 +1,4 @@
-//! From a world to the system that is simulated.
+//! Compilation of a world into the system that is simulated.
 
 use super::{Kind, Object, ObjectId, VertexMap, World};
 use crate::merge::merged_layers;
@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Solid surfaces with the meshes they were made of: their distance fields serve again while an object has its
-/// mesh.
+/// Colliders by object, each with the mesh it was made of: its distance field is reused as long as the object keeps
+/// that mesh.
 pub(crate) type Solids = BTreeMap<ObjectId, (Arc<TriangleMesh>, Collider)>;
 
 impl World {
-    /// The cloths of its objects laid end to end, not merged, at the places from which they start.
+    /// The cloths of all objects concatenated, not merged, at their starting positions.
     pub(super) fn panels(&self) -> Cloth {
         let mut all = Cloth::default();
         for (_, cloth) in self.cloths() {
@@ -25,22 +25,22 @@ impl World {
         all
     }
 
-    /// The merged cloth with its vertices at some places [m].
-    pub(super) fn merged_cloth(&self, map: &VertexMap, places: Vec<Vec3>) -> Cloth {
+    /// The merged cloth at `positions` [m].
+    pub(super) fn merged_cloth(&self, map: &VertexMap, positions: Vec<Vec3>) -> Cloth {
         let panels = self.panels();
         let mut merged = panels.merged(&map.target, map.count);
-        merged.positions = places;
+        merged.positions = positions;
         merged
     }
 
-    /// The system of its present structure, laid out where the vertices are [m].
+    /// The system of the world, with the merged vertices at `positions` [m] when elimination orders are chosen.
     ///
     /// # Errors
     /// No cloth, bad meshes, materials that cannot be simulated.
     pub(super) fn compile(
         &self,
         map: &VertexMap,
-        places: Vec<Vec3>,
+        positions: Vec<Vec3>,
         solids: &mut Solids,
     ) -> Result<System, DrapeError> {
         let materials: usize = (self.cloths().map(|(_, cloth)| cloth.materials.len())).sum();
@@ -51,7 +51,7 @@ impl World {
                 remedy: "make cloths of one material one object".to_owned(),
             });
         }
-        let merged = self.merged_cloth(map, places);
+        let merged = self.merged_cloth(map, positions);
         if merged.triangles.is_empty() {
             return Err(DrapeError::Scene {
                 place: "objects".to_owned(),
@@ -63,7 +63,7 @@ impl World {
         Ok(self.furnish(map, builder, solids))
     }
 
-    /// Gives a cloth its solids, pins, grips, attachments and what acts on it.
+    /// Adds solids, pins, grips, attachments, layers, contact and loads to the system of a cloth.
     pub(super) fn furnish(
         &self,
         map: &VertexMap,
@@ -80,7 +80,7 @@ impl World {
             Some(apart) => {
                 builder.layer = Vec::new();
                 let own = merged_layers(&layers, &map.target, map.count);
-                builder.keep_layers_off(&own, apart);
+                builder.offset_layers(&own, apart);
             }
         }
         builder.policies = self.policies(map);
@@ -102,8 +102,8 @@ impl World {
         builder.build()
     }
 
-    /// Its solid objects, in order.
-    fn solids(&self, had: &mut Solids) -> Vec<Collider> {
+    /// The colliders of the solid objects, in order; `cache` has those of earlier compilations.
+    fn solids(&self, cache: &mut Solids) -> Vec<Collider> {
         let mut solids = Vec::new();
         for (id, object) in self.objects() {
             let motion = match object.kind {
@@ -111,8 +111,8 @@ impl World {
                 Kind::Static => None,
                 Kind::Animated => object.motion.clone(),
             };
-            had.retain(|other, (mesh, _)| *other != id || Arc::ptr_eq(mesh, &object.mesh));
-            let (_, collider) = had.entry(id).or_insert_with(|| {
+            cache.retain(|other, (mesh, _)| *other != id || Arc::ptr_eq(mesh, &object.mesh));
+            let (_, collider) = cache.entry(id).or_insert_with(|| {
                 let surface = SurfaceTree::new(TriangleMesh::clone(&object.mesh));
                 (object.mesh.clone(), Collider::new(Arc::new(surface)))
             });
@@ -123,7 +123,7 @@ impl World {
         solids
     }
 
-    /// Which cloths pass through each other, and through which solids.
+    /// The pairs of cloths, and of a cloth and a solid, that ignore each other.
     fn policies(&self, map: &VertexMap) -> PairPolicies {
         if self.ignored.is_empty() {
             return PairPolicies::default();
@@ -158,7 +158,7 @@ impl World {
         PairPolicies::new(owner.collect(), between, through)
     }
 
-    /// The layer of each vertex of the cloths laid end to end; empty where all are of one.
+    /// The layer of each vertex of the concatenated cloths; empty where all have the same.
     fn layers(&self, map: &VertexMap) -> Vec<u16> {
         let mut layers: Vec<u16> = Vec::with_capacity(map.target.len());
         for id in map.objects() {
@@ -173,7 +173,7 @@ impl World {
         }
     }
 
-    /// Merged vertices that pins hold.
+    /// The pinned vertices of the merged cloth.
     pub(super) fn pins<'a>(&'a self, map: &'a VertexMap) -> impl Iterator<Item = u32> + 'a {
         map.objects().flat_map(move |id| {
             let object = self.object(id);
@@ -183,6 +183,7 @@ impl World {
         })
     }
 
+    /// The gripped vertices of the merged cloth with their motions.
     fn led(&self, map: &VertexMap) -> Vec<PrescribedVertex> {
         let mut led = Vec::new();
         for id in map.objects() {

@@ -1,4 +1,5 @@
-//! Edits of a world: each is checked, gives another world, and says what of the system is made anew.
+//! Edits of a world. Each is checked, changes the world, and returns which level of the system has to be compiled
+//! again.
 
 use super::attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
 use super::object::{Kind, Layers, MeshVertex, Object, ObjectId};
@@ -17,50 +18,51 @@ pub enum WorldEdit {
     Add(Box<Object>),
     /// Removes an object with its attachments and opens its seams with others.
     Remove(ObjectId),
-    /// Lets another rule move an object. What becomes solid stays as it lies, its seams open; what becomes cloth
-    /// starts where it stands, without velocity.
+    /// Changes the kind of an object. A cloth that becomes solid keeps its present shape and loses its seams; a solid
+    /// that becomes cloth starts at its present position without velocity.
     ChangeKind(ObjectId, Kind),
-    /// Gives an object a motion for while it is animated: it is then where the motion takes its mesh.
+    /// Sets the motion of an object while it is animated: its position is that of its mesh under the pose of the
+    /// motion.
     SetMotion(ObjectId, Motion),
     /// Adds an attachment.
     Attach(ObjectAttachment),
     /// Removes an attachment.
     Detach(AttachmentId),
-    /// Makes the vertices of each pair one.
+    /// Merges the two vertices of each pair.
     Merge(Vec<[MeshVertex; 2]>),
-    /// Takes merged pairs apart again; attachments between them hold them, but merge them no more.
+    /// Separates merged pairs again. Attachments between them act on, but no longer merge them.
     Open(Vec<[MeshVertex; 2]>),
-    /// Holds these vertices of an object and no others.
+    /// Pins these vertices of an object and no others.
     Pin(ObjectId, Vec<u32>),
-    /// Gives the triangles of a cloth other rest shapes [m].
+    /// Replaces the rest shapes of a cloth's triangles [m].
     Reshape(ObjectId, Vec<[Vec2; 3]>),
-    /// Puts another mesh of the same panels in the place of a cloth, with its layers. It takes over shape and
-    /// velocity by place in the panels; its seams open, its pins, grips and attachments are removed.
+    /// Replaces the mesh of a cloth by another one of the same panels, with its layers. Positions and velocities are
+    /// interpolated at the same points of the panels; seams open, pins, grips and attachments are removed.
     ReplaceMesh(ObjectId, Box<Cloth>, Layers),
-    /// Says whether two objects meet, or a cloth itself.
+    /// Sets whether contact acts between two objects, or of a cloth with itself.
     SetPolicy([ObjectId; 2], PairPolicy),
-    /// Changes what acts on every object alike.
+    /// Replaces gravity, air, damping and contact.
     SetEnvironment(Box<Environment>),
 }
 
-/// What an edit made.
+/// The result of an edit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Edited {
-    /// The object that was added.
+    /// The added object.
     pub object: Option<ObjectId>,
-    /// The attachment that was added.
+    /// The added attachment.
     pub attachment: Option<AttachmentId>,
-    /// Whether the structure was made anew, so that vertices and triangles may have other numbers.
+    /// Whether the structure was compiled again, so that merged vertices and triangles may have other numbers.
     pub is_restructured: bool,
 }
 
-/// What of a system an edit makes anew.
+/// The level of a system that an edit compiles again.
 pub(super) enum Change {
-    /// Vertices or triangles; some objects begin anew where they are told to.
+    /// Vertices or triangles, with the starting motion of objects that do not go on from the state.
     Structure(BTreeMap<ObjectId, StartingMotion>),
-    /// Rest shapes alone.
+    /// Rest shapes only.
     Shapes,
-    /// Pins, led vertices, attachments, solids and loads: the cloth keeps its structure.
+    /// Pins, grips, attachments, solids and loads; the cloth keeps its structure.
     BoundaryConditions,
 }
 
@@ -69,7 +71,7 @@ impl Change {
         Self::Structure(BTreeMap::new())
     }
 
-    /// What has to be made anew for two changes, one after the other.
+    /// The level to compile again after two changes.
     pub fn and(self, next: Self) -> Self {
         match (self, next) {
             (Self::Structure(mut first), Self::Structure(second)) => {
@@ -89,10 +91,10 @@ impl Change {
 }
 
 impl World {
-    /// Changes it as an edit says.
+    /// Applies an edit; `before` is the simulated world with its state.
     ///
     /// # Errors
-    /// The first thing that does not fit; the world may then be changed in part.
+    /// The first property that does not fit. The world may then be partly changed: the caller edits a copy.
     pub(super) fn apply(
         &mut self,
         edit: WorldEdit,
@@ -117,7 +119,7 @@ impl World {
             }
             WorldEdit::Remove(id) => {
                 let was = self.existing(id)?.kind;
-                self.let_go(id);
+                self.open_seams_of(id);
                 self.attachments
                     .retain(|_, attachment| !attachment.names(id));
                 self.ignored.retain(|pair| !pair.contains(&id));
@@ -151,7 +153,7 @@ impl World {
             },
             WorldEdit::Merge(pairs) => {
                 self.check_pairs(&pairs)?;
-                before.check_held(&pairs)?;
+                before.check_joinable(&pairs)?;
                 self.merge(pairs);
                 Change::of_structure()
             }
@@ -178,12 +180,12 @@ impl World {
                 Change::BoundaryConditions
             }
             WorldEdit::SetEnvironment(environment) => {
-                let had = self.environment().damping.stiffness;
-                let is_same = had == environment.damping.stiffness;
+                let before = self.environment().damping.stiffness;
+                let is_same = before == environment.damping.stiffness;
                 self.set_environment(*environment);
                 match is_same {
                     true => Change::BoundaryConditions,
-                    // It is a property of the materials.
+                    // Stiffness damping is compiled into the materials.
                     false => Change::of_structure(),
                 }
             }
@@ -192,7 +194,7 @@ impl World {
     }
 
     /// Opens the seams of an object.
-    fn let_go(&mut self, id: ObjectId) {
+    fn open_seams_of(&mut self, id: ObjectId) {
         self.merged
             .retain(|pair| pair.iter().all(|vertex| vertex.object != id));
     }
@@ -240,7 +242,7 @@ impl World {
             let what = said(pair, "still one, by way of others, with");
             return Err(object.refuse(&what, "open these pairs, too"));
         }
-        // What was taken apart is not merged again at once.
+        // An attachment would merge the opened pair again at once.
         let opened = self.attachments.iter().filter(|(_, attachment)| {
             let ends = self.cloth_ends(attachment);
             ends.is_some_and(|ends| are_one(before, ends) && !are_one(&after, ends))
@@ -263,7 +265,7 @@ impl World {
         if kind == was {
             return Ok(Change::BoundaryConditions);
         }
-        let lies = before.mesh_of(id);
+        let present_mesh = before.mesh_of(id);
         let time = before.state.time;
         if kind == Kind::Deformable && self.attachments.values().any(|a| a.has_frame_of(id)) {
             let object = self.existing(id)?;
@@ -273,16 +275,21 @@ impl World {
         let object = self.existing_mut(id)?;
         let moves = |kind: Kind| object.motion.as_ref().filter(|_| kind == Kind::Animated);
         let [old_pose, new_pose] = [was, kind].map(|kind| moves(kind).map(|m| m.pose(time)));
-        let place = |point: Vec3| old_pose.as_ref().map_or(point, |pose| pose.apply(point));
-        let home = |place: Vec3| new_pose.as_ref().map_or(place, |pose| pose.undo(place));
+        let world_from_old =
+            |point: Vec3| old_pose.as_ref().map_or(point, |pose| pose.apply(point));
+        let new_from_world = |point: Vec3| new_pose.as_ref().map_or(point, |pose| pose.undo(point));
         object.kind = kind;
         let mut starting = BTreeMap::new();
-        if let Some(mut mesh) = lies {
+        if let Some(mut mesh) = present_mesh {
             if kind == Kind::Deformable {
-                let places = mesh.positions.clone();
-                let velocities = vec![Vec3::zeros(); places.len()];
-                starting.insert(id, StartingMotion { places, velocities });
-                // Led vertices go on from where they lie.
+                let positions = mesh.positions.clone();
+                let velocities = vec![Vec3::zeros(); positions.len()];
+                let motion = StartingMotion {
+                    positions,
+                    velocities,
+                };
+                starting.insert(id, motion);
+                // The motion of a grip takes its vertices from the mesh to their present positions.
                 for grip in &object.grips {
                     let pose = grip.motion.pose(time);
                     for &v in &grip.vertices {
@@ -292,7 +299,9 @@ impl World {
                     }
                 }
             }
-            mesh.positions.iter_mut().for_each(|p| *p = home(*p));
+            mesh.positions
+                .iter_mut()
+                .for_each(|p| *p = new_from_world(*p));
             object.mesh = Arc::new(mesh);
         }
         if kind == Kind::Deformable {
@@ -300,10 +309,10 @@ impl World {
         }
         object.check()?;
         for attachment in self.attachments.values_mut() {
-            attachment.move_frames(id, |point| home(place(point)));
+            attachment.move_frames(id, |point| new_from_world(world_from_old(point)));
         }
         if was == Kind::Deformable {
-            self.let_go(id);
+            self.open_seams_of(id);
         }
         Ok(match [was, kind].contains(&Kind::Deformable) {
             true => Change::Structure(starting),
@@ -346,19 +355,19 @@ impl World {
         };
         replaced.check()?;
         let mut starting = BTreeMap::new();
-        if let (Some(cloth), Some(lies)) = (&replaced.cloth, before.merged_surface_of(id)) {
+        if let (Some(cloth), Some(surface)) = (&replaced.cloth, before.merged_surface_of(id)) {
             let carry = Carry::new(old, cloth)?;
             let velocities = &before.state.velocities;
             starting.insert(
                 id,
                 StartingMotion {
-                    places: carry.apply(&lies),
-                    velocities: carry.interpolate(&lies.triangles, velocities),
+                    positions: carry.apply(&surface),
+                    velocities: carry.interpolate(&surface.triangles, velocities),
                 },
             );
         }
         *object = replaced;
-        self.let_go(id);
+        self.open_seams_of(id);
         self.attachments
             .retain(|_, attachment| !attachment.names(id));
         Ok(Change::Structure(starting))
@@ -366,13 +375,13 @@ impl World {
 }
 
 impl ObjectAttachment {
-    /// Whether it ends at a point in the frame of an object.
+    /// Whether an end is a point in the frame of an object.
     fn has_frame_of(&self, id: ObjectId) -> bool {
         let of = |end: &AttachmentEnd| matches!(end, AttachmentEnd::Frame { object, .. } if *object == id);
         self.ends.iter().any(of)
     }
 
-    /// Changes the points in the frame of an object at which it ends.
+    /// Maps those of its ends that are points in the frame of an object.
     fn move_frames(&mut self, id: ObjectId, change: impl Fn(Vec3) -> Vec3) {
         for end in &mut self.ends {
             if let AttachmentEnd::Frame { object, point } = end
@@ -383,7 +392,7 @@ impl ObjectAttachment {
         }
     }
 
-    /// Whether an object is at one of its ends.
+    /// Whether an end belongs to an object.
     fn names(&self, id: ObjectId) -> bool {
         self.ends.iter().any(|end| match end {
             AttachmentEnd::Vertex(vertex) => vertex.object == id,

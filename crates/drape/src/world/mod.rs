@@ -1,6 +1,6 @@
-//! The world: objects with stable numbers, their own meshes, which vertices of them are merged, attachments
-//! and the environment. A system is compiled from it; an edit of it gives another system, and what the state
-//! remembers is transferred.
+//! The world: objects with stable numbers and meshes of their own, merged vertices, attachments and the environment.
+//! The simulated system is compiled from it. After an edit of the world the system is compiled again and the state is
+//! transferred to it.
 
 mod attachment;
 mod compile;
@@ -16,7 +16,7 @@ pub(crate) use compile::Solids;
 pub use edit::{Edited, WorldEdit};
 pub use object::{Kind, Layers, MeshVertex, Object, ObjectId, VertexGrip};
 pub use simulation::Simulation;
-pub(crate) use transfer::MeetingPlace;
+pub(crate) use transfer::MeetingPoint;
 pub use vertex_map::VertexMap;
 
 use crate::scene::{SceneEnd, SceneObject};
@@ -24,10 +24,10 @@ use crate::{Cloth, DrapeError, Environment, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Whether two objects meet.
+/// Whether contact acts between two objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PairPolicy {
-    /// They do.
+    /// Contact acts.
     #[default]
     Meet,
     /// They pass through each other.
@@ -37,21 +37,21 @@ pub enum PairPolicy {
 /// Objects, attachments and environment: all that a system is compiled from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
-    /// What messages call it.
+    /// Name in messages.
     name: &'static str,
     environment: Environment,
     objects: BTreeMap<ObjectId, Arc<Object>>,
     attachments: BTreeMap<AttachmentId, ObjectAttachment>,
-    /// Pairs of vertices that are one.
+    /// Pairs of merged vertices.
     merged: BTreeSet<[MeshVertex; 2]>,
-    /// Pairs of objects that do not meet, the smaller first.
+    /// Pairs of objects that ignore each other, the smaller number first.
     ignored: BTreeSet<[ObjectId; 2]>,
     next_object: u32,
     next_attachment: u32,
 }
 
 impl World {
-    /// Without any object; `name` is what messages call it.
+    /// A world without objects; messages use `name`.
     pub fn new(name: &'static str, environment: Environment) -> Self {
         Self {
             name,
@@ -65,10 +65,10 @@ impl World {
         }
     }
 
-    /// Of a scene, whose objects get the numbers 0, 1, ... in their order.
+    /// The world of a scene, whose objects get the numbers 0, 1, ... in their order.
     ///
     /// # Errors
-    /// Whatever [`Scene::check`] refuses.
+    /// Those of [`Scene::check`].
     pub fn of_scene(scene: &Scene) -> Result<Self, DrapeError> {
         scene.check()?;
         let mut world = Self::new("scene", scene.environment());
@@ -89,7 +89,7 @@ impl World {
         }
         for elastic in &scene.elastics {
             let ends = [elastic.from, elastic.to].map(|end| match end {
-                SceneEnd::Point(place) => AttachmentEnd::Point(place),
+                SceneEnd::Point(point) => AttachmentEnd::Point(point),
                 SceneEnd::Vertex { object, vertex } => AttachmentEnd::Vertex(MeshVertex {
                     object: ObjectId(object as u32),
                     vertex,
@@ -104,7 +104,7 @@ impl World {
         Ok(world)
     }
 
-    /// Adds an object that was checked.
+    /// Adds an object, which the caller has checked.
     pub(crate) fn insert(&mut self, object: Object) -> ObjectId {
         let id = ObjectId(self.next_object);
         self.next_object += 1;
@@ -120,18 +120,19 @@ impl World {
         id
     }
 
-    /// Lets something else act.
+    /// Replaces the environment.
     pub(crate) fn set_environment(&mut self, environment: Environment) {
         self.environment = environment;
     }
 
-    /// Makes the vertices of pairs one.
+    /// Merges the two vertices of each pair.
     pub(crate) fn merge(&mut self, pairs: impl IntoIterator<Item = [MeshVertex; 2]>) {
         let pairs = pairs.into_iter().map(MeshVertex::pair);
         self.merged.extend(pairs);
     }
 
-    /// Refuses a world whose cloth cannot meet what it should.
+    /// Refuses an environment out of range, contact that reaches too far for a fabric, and layers without contact of
+    /// cloth with cloth.
     fn check(&self) -> Result<(), DrapeError> {
         self.environment.check()?;
         let contact = self.environment.contact;
@@ -154,27 +155,27 @@ impl World {
         }
     }
 
-    /// What acts on every object alike.
+    /// Gravity, air, damping and contact, the same for all objects.
     pub fn environment(&self) -> &Environment {
         &self.environment
     }
 
-    /// Its objects in order of their numbers.
+    /// The objects in order of their numbers.
     pub fn objects(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
         self.objects.iter().map(|(&id, object)| (id, &**object))
     }
 
-    /// An object; none where it was removed.
+    /// An object; none after its removal.
     pub fn object(&self, id: ObjectId) -> Option<&Object> {
         self.objects.get(&id).map(|object| &**object)
     }
 
-    /// An object that an edit names.
+    /// An object, or the error of an edit that names a missing one.
     fn existing(&self, id: ObjectId) -> Result<&Object, DrapeError> {
         self.object(id).ok_or_else(|| id.missing())
     }
 
-    /// An object to be changed.
+    /// [`Self::existing`], mutable.
     fn existing_mut(&mut self, id: ObjectId) -> Result<&mut Object, DrapeError> {
         let found = self.objects.get_mut(&id).map(Arc::make_mut);
         found.ok_or_else(|| id.missing())
@@ -191,19 +192,19 @@ impl World {
         }
     }
 
-    /// Its attachments in order of their numbers.
+    /// The attachments in order of their numbers.
     pub fn attachments(&self) -> impl Iterator<Item = (AttachmentId, &ObjectAttachment)> {
         self.attachments
             .iter()
             .map(|(&id, attachment)| (id, attachment))
     }
 
-    /// Pairs of vertices that are one.
+    /// Pairs of merged vertices.
     pub fn merged(&self) -> impl Iterator<Item = [MeshVertex; 2]> + '_ {
         self.merged.iter().copied()
     }
 
-    /// Whether two objects meet; whether a cloth meets itself where they are one.
+    /// Whether contact acts between two objects, or of a cloth with itself where both are the same.
     pub fn policy(&self, [a, b]: [ObjectId; 2]) -> PairPolicy {
         match self.ignored.contains(&[a.min(b), a.max(b)]) {
             true => PairPolicy::Ignore,
@@ -211,13 +212,14 @@ impl World {
         }
     }
 
-    /// The objects that are cloth, in order.
+    /// The deformable objects with their cloths, in order.
     pub fn cloths(&self) -> impl Iterator<Item = (ObjectId, &Cloth)> {
         let all = self.objects();
         all.filter_map(|(id, object)| Some((id, object.deformable_cloth()?)))
     }
 
-    /// Objects that are sewn together or are to be, in order of their first ones; each other object alone.
+    /// Groups of objects that merged vertices or attachments that merge connect, in order of their first objects; any
+    /// other object is a group of one.
     pub fn groups(&self) -> Vec<Vec<ObjectId>> {
         let ids: Vec<ObjectId> = self.objects.keys().copied().collect();
         let number = |id: ObjectId| ids.binary_search(&id).ok().map(|at| at as u32);
@@ -239,7 +241,7 @@ impl World {
 }
 
 impl ObjectId {
-    /// The error of an edit that names an object which is not there.
+    /// The error of an edit that names a missing object.
     fn missing(self) -> DrapeError {
         DrapeError::Scene {
             place: format!("object {}", self.0),
@@ -250,7 +252,7 @@ impl ObjectId {
 }
 
 impl SceneObject {
-    /// The number that the object at an index of a scene gets.
+    /// The number of the object at an index of a scene.
     pub fn id(index: usize) -> ObjectId {
         ObjectId(index as u32)
     }

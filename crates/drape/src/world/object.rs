@@ -1,4 +1,4 @@
-//! Objects of a world: surfaces with what moves them and what they are made of.
+//! Objects of a world: surfaces with their kind, cloth, material and motion.
 
 use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
 use crate::{Cloth, DrapeError, Material, Motion};
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::TriangleMesh;
 
-/// The number of an object: in order of creation, never given twice in a world.
+/// The number of an object, in order of creation; never reused in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ObjectId(pub(super) u32);
 
-/// A vertex of an object's own mesh, whatever it is merged with.
+/// A vertex of an object's own mesh, before merging.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshVertex {
@@ -21,38 +21,39 @@ pub struct MeshVertex {
 }
 
 impl MeshVertex {
-    /// Two vertices in the order in which a world has pairs.
+    /// A pair of vertices, the smaller first, as a world stores it.
     pub(super) fn pair([a, b]: [Self; 2]) -> [Self; 2] {
         [a.min(b), a.max(b)]
     }
 }
 
-/// What moves an object of a running world; of an object in a file, with its data, [`crate::ObjectKind`].
+/// The cause of an object's motion in a running world. [`crate::ObjectKind`] is that of an object in a file, with its
+/// data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Nothing: cloth collides with it.
+    /// A solid at rest.
     Static,
-    /// Its motion, which nothing can stop: cloth collides with it.
+    /// A solid on a prescribed motion.
     Animated,
-    /// The simulation: it is cloth.
+    /// Simulated cloth.
     Deformable,
 }
 
-/// Vertices of a cloth that are led along a motion.
+/// Vertices of a cloth with a prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VertexGrip {
     /// The vertices of its mesh.
     pub vertices: Vec<u32>,
-    /// The motion, of which each vertex starts at its place in the mesh.
+    /// The motion: its pose takes each vertex from its position in the mesh to its position in the world.
     pub motion: Arc<Motion>,
 }
 
-/// Places of the vertices of a cloth among cloths worn over one another: larger numbers lie farther out.
+/// Layers of the vertices of a cloth among cloths worn over one another; larger numbers lie farther out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Layers {
-    /// All of one.
+    /// The same layer for all vertices.
     One(u16),
-    /// One for each vertex.
+    /// A layer for each vertex.
     Each(Vec<u16>),
 }
 
@@ -66,34 +67,33 @@ impl Layers {
     }
 }
 
-/// An object. Kind, shape, material and motion are properties of their own: an object that changes its kind
-/// loses none of them.
+/// An object. Kind, shape, material and motion are independent: a change of kind loses none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Unique name.
     pub name: String,
-    /// What moves it.
+    /// The cause of its motion.
     pub kind: Kind,
-    /// Its surface where it stands; while it is animated, before its motion [m]. Of a cloth, where it lay when it
-    /// became one.
+    /// Its surface [m]: of a static object in the world, of an animated one in its own frame, of a cloth as it was when
+    /// it became cloth.
     pub mesh: Arc<TriangleMesh>,
-    /// Rest shape of its triangles and what they are made of, with places from which it starts [m]; made from
-    /// the mesh and the material when it first becomes deformable.
+    /// Rest shapes and materials of its triangles, and its starting positions [m]. Made from the mesh and the material
+    /// when it first becomes deformable.
     pub cloth: Option<Arc<Cloth>>,
-    /// What it is made of where no cloth says so.
+    /// Its material until it has a cloth.
     pub material: Option<Material>,
-    /// How it moves while it is animated.
+    /// Its motion while it is animated.
     pub motion: Option<Arc<Motion>>,
-    /// Vertices that do not move while it is deformable.
+    /// Vertices at rest while it is deformable.
     pub pins: Vec<u32>,
-    /// Vertices that are led while it is deformable.
+    /// Vertices with a prescribed motion while it is deformable.
     pub grips: Vec<VertexGrip>,
     /// Its layers while it is deformable.
     pub layers: Layers,
 }
 
 impl Object {
-    /// A surface that stands.
+    /// A static object.
     pub fn fixed(name: impl Into<String>, mesh: TriangleMesh) -> Self {
         Self {
             name: name.into(),
@@ -108,7 +108,7 @@ impl Object {
         }
     }
 
-    /// A cloth in one layer, which nothing holds.
+    /// A cloth in layer 0 without pins and grips.
     pub fn deformable(name: impl Into<String>, cloth: Cloth) -> Self {
         Self {
             kind: Kind::Deformable,
@@ -117,7 +117,7 @@ impl Object {
         }
     }
 
-    /// Of a scene's object, its grips apart.
+    /// An object of a scene, without its grips.
     ///
     /// # Errors
     /// A mesh without a rest shape.
@@ -143,7 +143,7 @@ impl Object {
         Ok(own)
     }
 
-    /// Makes its cloth from its mesh and its material where it has none.
+    /// Makes its cloth from its mesh and its material unless it has one.
     ///
     /// # Errors
     /// No material, a mesh that cannot be a rest shape.
@@ -159,7 +159,7 @@ impl Object {
         Ok(())
     }
 
-    /// Whether it is cloth, and what its cloth is.
+    /// Its cloth while it is deformable.
     pub fn deformable_cloth(&self) -> Option<&Cloth> {
         match self.kind {
             Kind::Deformable => self.cloth.as_deref(),
@@ -167,12 +167,12 @@ impl Object {
         }
     }
 
-    /// How many vertices its mesh has.
+    /// Number of vertices of its mesh.
     pub fn vertex_count(&self) -> usize {
         self.mesh.positions.len()
     }
 
-    /// Refuses an object that cannot be simulated as its kind says.
+    /// Refuses an object that cannot be simulated as its kind.
     ///
     /// # Errors
     /// The first of its properties that does not fit, with the remedy.
@@ -226,7 +226,7 @@ impl Object {
         }
     }
 
-    /// An error about it.
+    /// An error about this object.
     pub(super) fn refuse(&self, what: &str, remedy: &str) -> DrapeError {
         DrapeError::Scene {
             place: format!("\"{}\"", self.name),

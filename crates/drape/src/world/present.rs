@@ -1,4 +1,4 @@
-//! A world as it lies now: surfaces, what is held, and which vertices may become one.
+//! A world with its present state: surfaces of objects, prescribed vertices, and pairs of vertices that may merge.
 
 use super::object::{Kind, MeshVertex, ObjectId};
 use super::{VertexMap, World};
@@ -15,14 +15,14 @@ pub(super) struct Present<'a> {
 }
 
 impl Present<'_> {
-    /// The surface of an object as it lies now; none where it was removed.
+    /// The present surface of an object; none after its removal.
     pub fn mesh_of(&self, id: ObjectId) -> Option<TriangleMesh> {
         let object = self.world.object(id)?;
         let mesh = &object.mesh;
         Some(match (self.map.vertices_of(id), object.kind) {
             (Some(own), _) => {
-                let place = |&v: &u32| self.state.positions[v as usize];
-                moved(mesh, own.iter().map(place).collect())
+                let position = |&v: &u32| self.state.positions[v as usize];
+                moved(mesh, own.iter().map(position).collect())
             }
             (None, Kind::Animated) => {
                 let pose = object.motion.as_ref()?.pose(self.state.time);
@@ -35,7 +35,7 @@ impl Present<'_> {
         })
     }
 
-    /// The triangles of a cloth between the merged vertices, as they lie now.
+    /// The present surface of a cloth, its triangles between merged vertices.
     pub fn merged_surface_of(&self, id: ObjectId) -> Option<TriangleMesh> {
         let own = self.map.vertices_of(id)?;
         let triangles = self.world.object(id)?.mesh.triangles.iter();
@@ -45,23 +45,23 @@ impl Present<'_> {
         })
     }
 
-    /// Which merged vertices pins or grips hold, and which of them grips.
-    pub fn held(&self) -> (Vec<bool>, Vec<bool>) {
+    /// Marks of the merged vertices that are pinned or gripped, and of those that are gripped.
+    pub fn prescribed(&self) -> (Vec<bool>, Vec<bool>) {
         let mut gripped = vec![false; self.state.positions.len()];
         for grip in &self.system.prescribed.led {
             gripped[grip.vertex as usize] = true;
         }
-        let mut held = gripped.clone();
+        let mut prescribed = gripped.clone();
         for pin in self.world.pins(self.map) {
-            held[pin as usize] = true;
+            prescribed[pin as usize] = true;
         }
-        (held, gripped)
+        (prescribed, gripped)
     }
 
-    /// Of some pairs of mesh vertices, in order, those that may become one: two that are held only where both are
-    /// pinned at one place.
+    /// For each pair of mesh vertices whether it may merge. Two prescribed vertices may only where both are pinned at
+    /// the same position.
     fn joinable(&self, pairs: &[[MeshVertex; 2]]) -> Vec<bool> {
-        let (held, gripped) = self.held();
+        let (prescribed, gripped) = self.prescribed();
         let x = &self.state.positions;
         let together = |a: u32, b: u32| {
             let [a, b] = [a as usize, b as usize];
@@ -71,11 +71,11 @@ impl Present<'_> {
             let [a, b] = pair.map(|vertex| self.map.vertex(vertex));
             a.zip(b).map(|(a, b)| [a, b])
         });
-        joinable(present, &held, together)
+        joinable(present, &prescribed, together)
     }
 
-    /// Refuses to merge vertices that are held apart.
-    pub fn check_held(&self, pairs: &[[MeshVertex; 2]]) -> Result<(), DrapeError> {
+    /// Refuses to merge vertices that are prescribed to different positions.
+    pub fn check_joinable(&self, pairs: &[[MeshVertex; 2]]) -> Result<(), DrapeError> {
         let may = self.joinable(pairs);
         let Some((pair, _)) = pairs.iter().zip(may).find(|(_, may)| !may) else {
             return Ok(());
@@ -88,7 +88,7 @@ impl Present<'_> {
         Err(object.refuse(&what, "let one of the two go, or pin both at one place"))
     }
 
-    /// Pairs of vertices that attachments have drawn close enough to become one, and may.
+    /// Pairs of vertices that may merge and are within the merging distance of their attachment.
     pub fn closed_pairs(&self) -> Vec<[MeshVertex; 2]> {
         let x = &self.state.positions;
         let close = self.world.attachments().filter_map(|(_, attachment)| {
@@ -108,7 +108,7 @@ impl Present<'_> {
     }
 }
 
-/// A surface with its vertices at other places [m].
+/// A surface with its vertices at other positions [m].
 fn moved(mesh: &TriangleMesh, positions: Vec<Vec3>) -> TriangleMesh {
     TriangleMesh {
         positions,

@@ -1,10 +1,10 @@
-//! A world that is simulated: the system compiled from it, its state, and edits between steps.
+//! A simulated world: the compiled system, its state, and edits between steps.
 
 use super::compile::Solids;
 use super::edit::{Change, Edited, WorldEdit};
 use super::object::{MeshVertex, ObjectId};
 use super::present::Present;
-use super::transfer::{MeetingPlace, StartingMotion, Transfer};
+use super::transfer::{MeetingPoint, StartingMotion, Transfer};
 use super::{VertexMap, World};
 use crate::{Control, DrapeError, State, System};
 use std::collections::BTreeMap;
@@ -14,10 +14,10 @@ use toile_geometry::{TriangleMesh, Vec3};
 /// A world with its system and its state.
 #[derive(Clone)]
 pub struct Simulation {
-    /// Compiled from the world. From outside its control may be changed, no more: another structure comes by
+    /// The system compiled from the world. Callers may change its control only; all else changes by
     /// [`Simulation::edit`].
     pub system: System,
-    /// Places, velocities and what is remembered.
+    /// Positions, velocities and memories.
     pub state: State,
     world: World,
     map: VertexMap,
@@ -25,7 +25,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// At rest where the cloths of a world lie.
+    /// A world at rest at the starting positions of its cloths.
     ///
     /// # Errors
     /// A world without cloth, bad meshes, materials that cannot be simulated.
@@ -33,40 +33,40 @@ impl Simulation {
         Self::with_solids(world, Solids::new())
     }
 
-    /// The same with solid surfaces that are there already.
+    /// [`Simulation::new`] with colliders made before.
     ///
     /// # Errors
     /// As [`Simulation::new`].
     pub(crate) fn with_solids(world: World, solids: Solids) -> Result<Self, DrapeError> {
         let map = VertexMap::new(&world);
         let panels = world.panels();
-        let mut places = vec![Vec3::zeros(); map.count];
-        for (&place, &to) in panels.positions.iter().zip(&map.target).rev() {
-            places[to as usize] = place;
+        let mut positions = vec![Vec3::zeros(); map.count];
+        for (&position, &to) in panels.positions.iter().zip(&map.target).rev() {
+            positions[to as usize] = position;
         }
-        Self::laid_out(world, places, solids)
+        Self::laid_out(world, positions, solids)
     }
 
-    /// Of a world whose structure is laid out at some places of the merged vertices [m].
+    /// A world at rest with its merged vertices at `positions` [m], which also decide the elimination orders.
     ///
     /// # Errors
-    /// As [`Simulation::new`]; another number of places.
+    /// Those of [`Simulation::new`]; a wrong number of positions.
     pub(crate) fn laid_out(
         world: World,
-        places: Vec<Vec3>,
+        positions: Vec<Vec3>,
         mut solids: Solids,
     ) -> Result<Self, DrapeError> {
         let map = VertexMap::new(&world);
-        if places.len() != map.count {
+        if positions.len() != map.count {
             return Err(DrapeError::Scene {
                 place: "layout".to_owned(),
-                what: format!("{} places for {} vertices", places.len(), map.count),
+                what: format!("{} places for {} vertices", positions.len(), map.count),
                 remedy: "give one for each vertex once seams are merged".to_owned(),
             });
         }
-        let system = world.compile(&map, places.clone(), &mut solids)?;
+        let system = world.compile(&map, positions.clone(), &mut solids)?;
         Ok(Self {
-            state: State::at_rest(&system, places),
+            state: State::at_rest(&system, positions),
             system,
             world,
             map,
@@ -74,17 +74,17 @@ impl Simulation {
         })
     }
 
-    /// What is simulated.
+    /// The world.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Where the vertices of the objects' own meshes are in the merged cloth.
+    /// The map from the vertices of the objects' meshes to those of the merged cloth.
     pub fn map(&self) -> &VertexMap {
         &self.map
     }
 
-    /// The surface of an object as it lies now; none where it was removed.
+    /// The present surface of an object; none after its removal.
     pub fn mesh_of(&self, id: ObjectId) -> Option<TriangleMesh> {
         self.present().mesh_of(id)
     }
@@ -98,34 +98,34 @@ impl Simulation {
         }
     }
 
-    /// Changes the world and goes on from its present state: what an edit does not touch keeps its numbers to the
-    /// bit. Vertices that become one meet at their centre of mass with their common momentum. The control becomes the
-    /// world's: hands and winds that were put into it from outside are given again.
+    /// Applies an edit and transfers the present state: the state of untouched objects stays the same to the bit.
+    /// Vertices that merge meet at their centre of mass and keep their total momentum. The control is reset to that of
+    /// the world: callers that set attachments or wind in it set them again.
     ///
     /// # Errors
-    /// What does not fit, by name; world and state are then as they were.
+    /// The property that does not fit; world and state are then unchanged.
     pub fn edit(&mut self, edit: WorldEdit) -> Result<Edited, DrapeError> {
-        self.edit_all(vec![edit], MeetingPlace::CentreOfMass)
+        self.edit_all(vec![edit], MeetingPoint::CentreOfMass)
     }
 
-    /// Several edits as one, and where vertices that become one meet.
+    /// Applies several edits as one; merged vertices meet as `meeting` says.
     ///
     /// # Errors
-    /// As [`Simulation::edit`].
+    /// Those of [`Simulation::edit`].
     pub(crate) fn edit_all(
         &mut self,
         edits: Vec<WorldEdit>,
-        meeting: MeetingPlace,
+        meeting: MeetingPoint,
     ) -> Result<Edited, DrapeError> {
         let mut world = self.world.clone();
         let (mut edited, mut change) = (Edited::default(), None::<Change>);
         for edit in edits {
-            let (one, made_anew) = world.apply(edit, &self.present())?;
-            edited.object = one.object.or(edited.object);
-            edited.attachment = one.attachment.or(edited.attachment);
+            let (result, next) = world.apply(edit, &self.present())?;
+            edited.object = result.object.or(edited.object);
+            edited.attachment = result.attachment.or(edited.attachment);
             change = Some(match change {
-                Some(change) => change.and(made_anew),
-                None => made_anew,
+                Some(change) => change.and(next),
+                None => next,
             });
         }
         world.check()?;
@@ -139,11 +139,12 @@ impl Simulation {
             Some(Change::BoundaryConditions) => {
                 self.system = world.furnish(&self.map, self.system.edit(), &mut self.solids);
                 self.world = world;
-                self.state.begin_rest_anew();
-                let (held, gripped) = self.present().held();
+                self.state.clear_equilibrium_memory();
+                let (prescribed, gripped) = self.present().prescribed();
                 let velocities = self.state.velocities.iter_mut();
-                for (velocity, (held, gripped)) in velocities.zip(held.into_iter().zip(gripped)) {
-                    if held && !gripped {
+                let marks = prescribed.into_iter().zip(gripped);
+                for (velocity, (is_prescribed, is_gripped)) in velocities.zip(marks) {
+                    if is_prescribed && !is_gripped {
                         *velocity = Vec3::zeros();
                     }
                 }
@@ -152,14 +153,14 @@ impl Simulation {
         Ok(edited)
     }
 
-    /// Goes on from a state and a control that were saved.
+    /// Replaces state and control by saved ones.
     ///
     /// # Errors
-    /// Those of another system, by the field.
-    pub(crate) fn go_on_from(&mut self, state: State, control: Control) -> Result<(), DrapeError> {
+    /// The field that does not fit the system.
+    pub(crate) fn restore(&mut self, state: State, control: Control) -> Result<(), DrapeError> {
         let count = self.system.vertex_count() as u32;
-        let attachments = control.attachments.all().iter().map(|one| one.vertex);
-        let frames = control.frames.iter().map(|one| one.vertex);
+        let attachments = (control.attachments.all().iter()).map(|attachment| attachment.vertex);
+        let frames = control.frames.iter().map(|frame| frame.vertex);
         if attachments.chain(frames).any(|vertex| vertex >= count) {
             return Err(DrapeError::Scene {
                 place: "checkpoint, control.attachments".to_owned(),
@@ -176,25 +177,25 @@ impl Simulation {
         Ok(())
     }
 
-    /// Brings everything to rest where it is; contacts and methods remember nothing.
-    pub(crate) fn let_rest(&mut self) {
-        let places = std::mem::take(&mut self.state.positions);
+    /// Sets all velocities to zero and clears the memories of contacts and methods.
+    pub(crate) fn reset_motion(&mut self) {
+        let positions = std::mem::take(&mut self.state.positions);
         self.state = State {
             time: self.state.time,
-            ..State::at_rest(&self.system, places)
+            ..State::at_rest(&self.system, positions)
         };
     }
 
-    /// Compiles another world and carries the state over.
+    /// Compiles another world and transfers the state.
     fn restructure(
         &mut self,
         world: World,
         starting: &BTreeMap<ObjectId, StartingMotion>,
-        meeting: MeetingPlace,
+        meeting: MeetingPoint,
     ) -> Result<(), DrapeError> {
         let map = VertexMap::new(&world);
-        let (held, _) = self.present().held();
-        let transfer = Transfer::new(&world, [&self.map, &map], &held, starting);
+        let (prescribed, _) = self.present().prescribed();
+        let transfer = Transfer::new(&world, [&self.map, &map], &prescribed, starting);
         let mass = self.system.cloth_mass();
         let motion = transfer.motion(&self.state, &mass, meeting);
         let mut solids = self.solids.clone();
@@ -204,7 +205,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes up other rest shapes of the same triangles; whether the structure had to be made anew.
+    /// Replaces the rest shapes of the same triangles; returns whether the structure was compiled again.
     fn reshape(&mut self, world: World) -> Result<bool, DrapeError> {
         let panels = world.panels();
         let merged = self.map.triangles.iter();
@@ -216,16 +217,16 @@ impl Simulation {
                 self.world = world;
                 Ok(false)
             }
-            // The triangles serve, but not with what curvatures were estimated from.
+            // The triangles are sound, but the neighbours chosen for their curvatures no longer are.
             Err(DrapeError::NeedsRemesh { .. }) => {
-                self.restructure(world, &BTreeMap::new(), MeetingPlace::CentreOfMass)?;
+                self.restructure(world, &BTreeMap::new(), MeetingPoint::CentreOfMass)?;
                 Ok(true)
             }
             Err(error) => Err(error),
         }
     }
 
-    /// Pairs of vertices that attachments have drawn close enough to become one, and may.
+    /// Pairs of vertices that may merge and are within the merging distance of their attachment.
     pub(crate) fn closed_pairs(&self) -> Vec<[MeshVertex; 2]> {
         self.present().closed_pairs()
     }

@@ -1,5 +1,5 @@
-//! What the state remembers, carried from one structure of a world to the next: every vertex, sample and
-//! triangle of an object that an edit does not touch keeps its numbers to the bit.
+//! Transfer of a state from one structure of a world to the next: the state of every vertex, sample and triangle of an
+//! untouched object stays the same to the bit.
 
 use super::{ObjectId, VertexMap, World};
 use crate::collision::{ClothMemory, ContactFrictionState, FeaturePair, RecoveryDirection};
@@ -8,46 +8,46 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// Where vertices that become one meet.
+/// The meeting point of vertices that merge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum MeetingPlace {
-    /// At their centre of mass.
+pub(crate) enum MeetingPoint {
+    /// Their centre of mass.
     CentreOfMass,
-    /// Half-way, whatever they weigh: where the two sides of a seam are drawn.
+    /// The mean of their positions without regard to mass, for the two sides of a seam.
     Midpoint,
 }
 
-/// Places [m] and velocities [m/s] of an object that the former structure knew nothing of, or had another mesh
-/// of.
+/// Positions [m] and velocities [m/s] of an object that the former structure did not have, or had with another mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StartingMotion {
-    pub places: Vec<Vec3>,
+    pub positions: Vec<Vec3>,
     pub velocities: Vec<Vec3>,
 }
 
-/// Where a merged vertex comes from.
+/// The source of a merged vertex's state.
 enum Origin {
-    /// Former merged vertices, ascending, and the one among them that is held: it leads the others.
+    /// Former merged vertices, ascending, and the prescribed one among them, which decides alone.
     Vertices(Vec<u32>, Option<u32>),
-    /// An object that starts here.
+    /// Position [m] and velocity [m/s] of an object that starts.
     Start(Vec3, Vec3),
 }
 
-/// From the vertices and triangles of one structure to those of the next.
+/// The map from the vertices and triangles of one structure to those of the next.
 pub(super) struct Transfer {
     origins: Vec<Origin>,
-    /// The new vertex of each former one; none where it is gone or was divided.
+    /// The new vertex of each former one; none where it was removed or divided.
     successors: Vec<Option<u32>>,
     /// The former triangle of each new one.
     triangles: Vec<Option<u32>>,
 }
 
 impl Transfer {
-    /// From one structure to the next; objects among `starting` begin anew.
+    /// The map from one structure to the next; objects among `starting` take nothing from the former state, and
+    /// `prescribed` marks the former vertices that are pinned or gripped.
     pub fn new(
         world: &World,
         [old, new]: [&VertexMap; 2],
-        held: &[bool],
+        prescribed: &[bool],
         starting: &BTreeMap<ObjectId, StartingMotion>,
     ) -> Self {
         let former = |id: ObjectId| match starting.contains_key(&id) {
@@ -64,11 +64,11 @@ impl Transfer {
                     sources[vertex as usize].push(former[k]);
                 } else {
                     let given = starting.get(&id);
-                    let place = given.and_then(|start| start.places.get(k).copied());
-                    let place = place.or_else(|| Some(cloth?.positions[k]));
+                    let position = given.and_then(|start| start.positions.get(k).copied());
+                    let position = position.or_else(|| Some(cloth?.positions[k]));
                     let velocity = given.and_then(|start| start.velocities.get(k).copied());
                     let velocity = velocity.unwrap_or_else(Vec3::zeros);
-                    starts[vertex as usize] = place.map(|place| (place, velocity));
+                    starts[vertex as usize] = position.map(|position| (position, velocity));
                 }
             }
         }
@@ -83,9 +83,9 @@ impl Transfer {
                 successors[v as usize] = Some(vertex as u32);
             }
             origins.push(match (from.is_empty(), start) {
-                (true, Some((place, velocity))) => Origin::Start(place, velocity),
+                (true, Some((position, velocity))) => Origin::Start(position, velocity),
                 _ => {
-                    let leader = from.iter().copied().find(|&v| held[v as usize]);
+                    let leader = from.iter().copied().find(|&v| prescribed[v as usize]);
                     Origin::Vertices(from, leader)
                 }
             });
@@ -114,26 +114,26 @@ impl Transfer {
         }
     }
 
-    /// Places [m] and velocities [m/s] of the new vertices. One that is held stays where it is, exactly; others
-    /// meet as `meeting` says, with the velocity of their common momentum. A vertex without cloth has no
-    /// mass to draw others by.
+    /// Positions [m] and velocities [m/s] of the new vertices. A prescribed vertex keeps its position to the bit;
+    /// others meet as `meeting` says, with the velocity that keeps their total momentum. `mass` is that of the former
+    /// vertices [kg], zero for a vertex without cloth.
     pub fn motion(
         &self,
         state: &State,
         mass: &[f64],
-        meeting: MeetingPlace,
+        meeting: MeetingPoint,
     ) -> (Vec<Vec3>, Vec<Vec3>) {
-        let [alike, by_mass] = [&vec![1.0; mass.len()][..], mass];
+        let [equal, by_mass] = [&vec![1.0; mass.len()][..], mass];
         let weights = match meeting {
-            MeetingPlace::CentreOfMass => by_mass,
-            MeetingPlace::Midpoint => alike,
+            MeetingPoint::CentreOfMass => by_mass,
+            MeetingPoint::Midpoint => equal,
         };
-        let places = self.blend(weights, &state.positions, |place, _| place);
+        let positions = self.blend(weights, &state.positions, |position, _| position);
         let velocities = self.blend(by_mass, &state.velocities, |_, velocity| velocity);
-        (places, velocities)
+        (positions, velocities)
     }
 
-    /// The state of the new structure, at places [m] and velocities [m/s] from [`Transfer::motion`].
+    /// The state of the new structure, with the positions [m] and velocities [m/s] of [`Transfer::motion`].
     pub fn state(
         &self,
         (old, former): (&State, &Model),
@@ -143,15 +143,15 @@ impl Transfer {
         let mass = former.cloth_mass();
         let samples = self.samples((old, former), model);
         let cloth = ClothMemory {
-            places: match old.cloth.places.is_empty() {
+            positions: match old.cloth.positions.is_empty() {
                 true => Vec::new(),
-                false => self.blend(&mass, &old.cloth.places, |place, _| place),
+                false => self.blend(&mass, &old.cloth.positions, |position, _| position),
             },
-            held: self.friction(&old.cloth.held),
-            // Layers may lie on the wrong side of what an edit has put there.
+            friction: self.friction(&old.cloth.friction),
+            // An edit may have added cloth on the wrong side of a layer: the next detection searches the full reach.
             layer_reach: None,
-            drawn: self.recovery(&old.cloth.drawn),
-            crossed_for: self.crossed_for(&old.cloth.crossed_for),
+            recovery_directions: self.recovery_directions(&old.cloth.recovery_directions),
+            crossing_counts: self.crossing_counts(&old.cloth.crossing_counts),
         };
         State {
             memory: self.memory(&old.memory, &mass, &samples.successors),
@@ -169,32 +169,33 @@ impl Transfer {
         }
     }
 
-    /// Vectors of the former vertices for the new ones: of those that became one that of the held one, else the
-    /// mean by their weights; of an object that starts `start` of its place and velocity.
+    /// A vector for each new vertex from those of the former ones: the vector of the prescribed vertex among its
+    /// origins, else their weighted mean; for an object that starts, `start` of position and velocity.
     fn blend(&self, weights: &[f64], of: &[Vec3], start: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<Vec3> {
-        let one = |origin: &Origin| match origin {
-            Origin::Start(place, velocity) => start(*place, *velocity),
-            Origin::Vertices(_, Some(held)) => of[*held as usize],
+        let vector = |origin: &Origin| match origin {
+            Origin::Start(position, velocity) => start(*position, *velocity),
+            Origin::Vertices(_, Some(leader)) => of[*leader as usize],
             Origin::Vertices(from, None) => match from[..] {
                 [only] => of[only as usize],
                 _ => mean(from, weights, of),
             },
         };
-        self.origins.iter().map(one).collect()
+        self.origins.iter().map(vector).collect()
     }
 
-    /// Friction of contacts whose features both are still there.
-    fn friction(&self, held: &[ContactFrictionState]) -> Vec<ContactFrictionState> {
-        let carried = held.iter().filter_map(|one| {
-            let mut vertices = one.pair.vertices();
+    /// Friction of the contacts whose features both still exist.
+    fn friction(&self, friction: &[ContactFrictionState]) -> Vec<ContactFrictionState> {
+        let carried = friction.iter().filter_map(|former| {
+            let mut vertices = former.pair.vertices();
             for vertex in &mut vertices {
                 *vertex = self.successors[*vertex as usize]?;
             }
             let distinct = (0..4).all(|k| !vertices[..k].contains(&vertices[k]));
-            let mut slip = one.slip;
-            let pair = match one.pair {
+            let mut slip = former.slip;
+            let pair = match former.pair {
                 FeaturePair::VertexFace(_) => FeaturePair::VertexFace(vertices),
-                // Ends of edges and edges are in order; the gap of exchanged edges has the other sign.
+                // The ends of an edge are in order, and so are the edges of a pair; slip changes sign with their
+                // order.
                 FeaturePair::EdgeEdge([..]) => {
                     let [a, b, c, d] = vertices;
                     let [first, second] = [[a.min(b), a.max(b)], [c.min(d), c.max(d)]];
@@ -205,45 +206,49 @@ impl Transfer {
                     FeaturePair::EdgeEdge([a, b, c, d])
                 }
             };
-            distinct.then_some(ContactFrictionState { pair, slip, ..*one })
+            distinct.then_some(ContactFrictionState {
+                pair,
+                slip,
+                ..*former
+            })
         });
         let mut carried: Vec<ContactFrictionState> = carried.collect();
-        carried.sort_by_key(|one| one.pair);
-        carried.dedup_by_key(|one| one.pair);
+        carried.sort_by_key(|contact| contact.pair);
+        carried.dedup_by_key(|contact| contact.pair);
         carried
     }
 
-    fn recovery(&self, drawn: &[RecoveryDirection]) -> Vec<RecoveryDirection> {
-        let carried = drawn.iter().filter_map(|one| {
-            let vertex = self.successors[one.vertex as usize]?;
-            Some(RecoveryDirection { vertex, ..*one })
+    fn recovery_directions(&self, directions: &[RecoveryDirection]) -> Vec<RecoveryDirection> {
+        let carried = directions.iter().filter_map(|former| {
+            let vertex = self.successors[former.vertex as usize]?;
+            Some(RecoveryDirection { vertex, ..*former })
         });
         let mut carried: Vec<RecoveryDirection> = carried.collect();
-        carried.sort_by_key(|one| one.vertex);
-        carried.dedup_by_key(|one| one.vertex);
+        carried.sort_by_key(|entry| entry.vertex);
+        carried.dedup_by_key(|entry| entry.vertex);
         carried
     }
 
-    fn crossed_for(&self, crossed: &[u32]) -> Vec<u32> {
-        if crossed.is_empty() {
+    fn crossing_counts(&self, counts: &[u32]) -> Vec<u32> {
+        if counts.is_empty() {
             return Vec::new();
         }
-        let one = |origin: &Origin| match origin {
+        let count = |origin: &Origin| match origin {
             Origin::Start(..) => 0,
             Origin::Vertices(from, _) => {
-                let looks = from.iter().map(|&v| crossed[v as usize]);
-                looks.max().unwrap_or(0)
+                let counts = from.iter().map(|&v| counts[v as usize]);
+                counts.max().unwrap_or(0)
             }
         };
-        self.origins.iter().map(one).collect()
+        self.origins.iter().map(count).collect()
     }
 
     fn internal_strain(&self, old: &[InternalStrain], models: [&Model; 2]) -> Vec<InternalStrain> {
-        let one = |(new, former): (usize, &Option<u32>)| {
-            let kept = former.filter(|&old| has_same_diagonal(models, [old, new as u32]));
-            kept.map_or_else(InternalStrain::default, |t| old[t as usize])
+        let strain = |(new, former): (usize, &Option<u32>)| {
+            let same = former.filter(|&old| has_same_diagonal(models, [old, new as u32]));
+            same.map_or_else(InternalStrain::default, |t| old[t as usize])
         };
-        self.triangles.iter().enumerate().map(one).collect()
+        self.triangles.iter().enumerate().map(strain).collect()
     }
 
     fn memory(&self, memory: &Memory, mass: &[f64], samples: &[Option<u32>]) -> Memory {
@@ -253,7 +258,9 @@ impl Transfer {
                 velocities,
                 step,
             } => Memory::Previous {
-                positions: self.blend(mass, positions, |place, velocity| place - velocity * *step),
+                positions: self.blend(mass, positions, |position, velocity| {
+                    position - velocity * *step
+                }),
                 velocities: self.blend(mass, velocities, |_, velocity| velocity),
                 step: *step,
             },
@@ -264,12 +271,13 @@ impl Transfer {
                 carried.dedup();
                 Memory::of_buried(carried.into_iter())
             }
-            // A way to rest begins anew under another structure.
+            // Pseudo-transient continuation and relaxation start again under another structure.
             Memory::Nothing | Memory::Rest(_) | Memory::Relaxation(_) => Memory::Nothing,
         }
     }
 
-    /// Contact samples: those of the new vertices, and those within triangles that are still there.
+    /// The contact samples of the new vertices, and of the former samples within triangles those whose triangle still
+    /// exists.
     fn samples(&self, (old, former): (&State, &Model), model: &Model) -> CarriedSamples {
         let mut carried = CarriedSamples {
             all: model.rest.samples.to_vec(),
@@ -291,24 +299,24 @@ impl Transfer {
                     of.collect()
                 }
             };
-            let mut sticks = Sticking::default();
+            let mut merged_anchor = MergedAnchor::default();
             for former in from {
                 let before = &old.samples[former];
                 sample.extra_offset = sample.extra_offset.max(before.extra_offset);
-                // A divided vertex takes its share of the force along.
+                // A divided vertex takes a share of the force by area.
                 let share = (sample.area / before.area).min(1.0);
-                sticks.add(old.anchors[former], share * old.normal_forces[former]);
+                merged_anchor.add(old.anchors[former], share * old.normal_forces[former]);
                 carried.successors[former] = Some(index as u32);
             }
-            carried.anchors.push(sticks.anchor());
-            carried.normal_forces.push(sticks.force);
+            carried.anchors.push(merged_anchor.anchor());
+            carried.normal_forces.push(merged_anchor.force);
         }
-        self.carry_within((old, former), model, &mut carried);
+        self.carry_triangle_samples((old, former), model, &mut carried);
         carried
     }
 
-    /// Carries the samples within triangles.
-    fn carry_within(
+    /// Appends the former samples within triangles that still exist.
+    fn carry_triangle_samples(
         &self,
         (old, former): (&State, &Model),
         model: &Model,
@@ -341,8 +349,8 @@ impl Transfer {
     }
 }
 
-/// Whether a triangle has the same corners in two models, merged vertices taken for one: its cap was exchanged in both
-/// or in neither.
+/// Whether the diagonal of a triangle's quadrilateral was exchanged (a cap) in both models or in neither, so that the
+/// triangle has the same corners in both.
 fn has_same_diagonal(models: [&Model; 2], triangles: [u32; 2]) -> bool {
     let [old, new] = [0, 1].map(|k| {
         let (model, t) = (models[k], triangles[k] as usize);
@@ -351,7 +359,7 @@ fn has_same_diagonal(models: [&Model; 2], triangles: [u32; 2]) -> bool {
     old == new
 }
 
-/// Contact samples of the new structure, with what is remembered of them.
+/// Contact samples of the new structure with their friction memory.
 struct CarriedSamples {
     all: Vec<ContactSample>,
     anchors: Vec<Option<Vec3>>,
@@ -360,9 +368,9 @@ struct CarriedSamples {
     successors: Vec<Option<u32>>,
 }
 
-/// The anchors of samples that become one, weighted by their normal forces.
+/// The friction anchor of merged samples: the mean of theirs, weighted by their normal forces.
 #[derive(Default)]
-struct Sticking {
+struct MergedAnchor {
     only: Option<Vec3>,
     count: usize,
     weighted: Vec3,
@@ -370,7 +378,7 @@ struct Sticking {
     force: f64,
 }
 
-impl Sticking {
+impl MergedAnchor {
     fn add(&mut self, anchor: Option<Vec3>, force: f64) {
         self.force += force;
         if let Some(anchor) = anchor {
@@ -389,7 +397,7 @@ impl Sticking {
     }
 }
 
-/// The mean of vectors at some vertices by their weights; without any, by number.
+/// The weighted mean of the vectors at some vertices; the plain mean where all weights are zero.
 fn mean(from: &[u32], weights: &[f64], of: &[Vec3]) -> Vec3 {
     let whole: f64 = from.iter().map(|&v| weights[v as usize]).sum();
     let weight = |v: u32| {

@@ -1,10 +1,10 @@
-//! Where the vertices and triangles of the objects' own meshes are in the one cloth that is simulated.
+//! The map from the vertices and triangles of the objects' meshes to those of the merged cloth.
 
 use super::{MeshVertex, ObjectId, World};
 use crate::merge::{keeps_corners, merge_map};
 use std::ops::Range;
 
-/// The vertices and triangles of one object among those of all cloths, not yet merged.
+/// The ranges of one object's vertices and triangles in the concatenation of all cloths, before merging.
 #[derive(Clone, Debug)]
 struct ClothSpan {
     object: ObjectId,
@@ -12,21 +12,22 @@ struct ClothSpan {
     triangles: Range<u32>,
 }
 
-/// From the objects' own meshes to the merged cloth and back.
+/// The map from the objects' meshes to the merged cloth and back. The unmerged number of a vertex or triangle is that
+/// in the concatenation of all cloths.
 #[derive(Clone, Debug, Default)]
 pub struct VertexMap {
     /// In order of the objects.
     spans: Vec<ClothSpan>,
-    /// Merged vertex of each vertex of the objects' meshes, laid end to end.
+    /// The merged vertex of each unmerged one.
     pub target: Vec<u32>,
-    /// How many merged vertices there are.
+    /// Number of merged vertices.
     pub count: usize,
-    /// For each triangle of the merged cloth the one of the objects' meshes, laid end to end.
+    /// The unmerged triangle of each merged one.
     pub triangles: Vec<u32>,
 }
 
 impl VertexMap {
-    /// Of the deformable objects of a world.
+    /// The map of the deformable objects of a world.
     pub(super) fn new(world: &World) -> Self {
         let mut spans = Vec::new();
         let mut corners: Vec<[u32; 3]> = Vec::new();
@@ -52,8 +53,8 @@ impl VertexMap {
             Some([a?, b?])
         });
         let (target, count) = merge_map(vertices as usize, pairs);
-        let stays = |t: &u32| keeps_corners(corners[*t as usize], &target);
-        map.triangles = (0..corners.len() as u32).filter(stays).collect();
+        let keeps = |t: &u32| keeps_corners(corners[*t as usize], &target);
+        map.triangles = (0..corners.len() as u32).filter(keeps).collect();
         (map.target, map.count) = (target, count);
         map
     }
@@ -63,31 +64,31 @@ impl VertexMap {
         found.ok().map(|at| &self.spans[at])
     }
 
-    /// The place of a vertex among those of all cloths, laid end to end.
+    /// The unmerged number of a vertex; none where the object is no cloth or has no such vertex.
     fn unmerged(&self, vertex: MeshVertex) -> Option<u32> {
         let span = self.span(vertex.object)?;
         let v = span.vertices.start + vertex.vertex;
         span.vertices.contains(&v).then_some(v)
     }
 
-    /// The merged vertex that a vertex of an object's mesh is; none where the object is no cloth.
+    /// The merged vertex of a vertex of an object's mesh; none where the object is no cloth.
     pub fn vertex(&self, vertex: MeshVertex) -> Option<u32> {
         self.unmerged(vertex).map(|v| self.target[v as usize])
     }
 
-    /// The merged vertices of an object, in the order of its mesh; none where it is no cloth.
+    /// The merged vertices of an object in the order of its mesh; none where it is no cloth.
     pub fn vertices_of(&self, object: ObjectId) -> Option<&[u32]> {
         let span = self.span(object)?;
         let own = span.vertices.start as usize..span.vertices.end as usize;
         Some(&self.target[own])
     }
 
-    /// Objects that are cloth, in order.
+    /// The deformable objects, in order.
     pub fn objects(&self) -> impl Iterator<Item = ObjectId> + '_ {
         self.spans.iter().map(|span| span.object)
     }
 
-    /// The object and its own number of a triangle laid end to end.
+    /// The object of an unmerged triangle, and the triangle's number in the object's mesh.
     pub(super) fn triangle(&self, unmerged: u32) -> Option<(ObjectId, u32)> {
         let at = (self.spans).partition_point(|span| span.triangles.end <= unmerged);
         let span = self.spans.get(at)?;

@@ -95,7 +95,7 @@ impl ClothContacts {
         };
         let (memory, x) = (&state.cloth, &state.positions);
         (self.detector).detect(system, memory, x, &reach, &mut self.contacts);
-        self.contacts.remember(state);
+        self.contacts.remember_crossings(state);
         let slip_time = MAX_SLIP / self.slip_speed(&state.velocities);
         let min_time = f64::from(self.min_substeps()) * substep;
         self.valid_for = Some(travel_time.min(slip_time).max(min_time));
@@ -138,7 +138,7 @@ impl ClothContacts {
             x: &self.before,
             moves: &mut self.displacements,
             velocities: &mut state.velocities,
-            lightness: &self.inverse_masses,
+            inverse_mass: &self.inverse_masses,
             span,
         };
         let exemptions = &self.contacts.exemptions;

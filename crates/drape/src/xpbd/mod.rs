@@ -402,7 +402,7 @@ impl Xpbd {
             state.anchors[at] = (contact.lambda_normal > 0.0).then(|| {
                 let stiffness = 0.5 * system.contact.stiffness * state.samples[at].area;
                 let lambda_tangent = Vec3::from(contact.lambda_tangent.map(f64::from)) * kappa;
-                state.samples[at].place(&state.positions) + lambda_tangent / stiffness
+                state.samples[at].position(&state.positions) + lambda_tangent / stiffness
             });
         }
         XpbdReport {

@@ -178,7 +178,7 @@ impl Regions {
     pub fn move_frames(&mut self, system: &System, origin: Vec3, time: f64) {
         for region in self.all_mut() {
             for &[constraint, frame] in &region.frames {
-                let to = system.control.frames[frame as usize].place(time) - origin;
+                let to = system.control.frames[frame as usize].target(time) - origin;
                 let end = AttachmentEnd::Fixed([0, 1, 2].map(|k| to[k] as f32));
                 region.attachments[constraint as usize].to = end;
             }
