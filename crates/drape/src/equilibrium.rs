@@ -32,7 +32,7 @@ impl Prediction {
 
     /// Energy above the new equilibrium in the quadratic model [J]: half the square of Newton's decrement.
     pub fn energy(&self) -> f64 {
-        self.step.promised
+        self.step.predicted_decrease
     }
 
     /// Share of the Newton step that is left by step truncation, the longest displacement and the line search, 0..=1.
@@ -59,7 +59,7 @@ impl Equilibrium {
 
     /// Number of symbolic factorisations so far.
     pub fn structures(&self) -> usize {
-        self.workspace.structures()
+        self.workspace.symbolic_factorisations()
     }
 
     /// Net force over weight after the last step.

@@ -3,7 +3,7 @@
 //! method then finishes.
 
 use crate::collision::Tally;
-use crate::xpbd::{ClothWatch, Span};
+use crate::xpbd::{ClothContacts, Substeps};
 use crate::{DrapeError, State, System, Xpbd};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
@@ -30,7 +30,7 @@ pub struct KineticDamping {
 #[derive(Default)]
 pub struct SwingWorkspace {
     xpbd: Option<Xpbd>,
-    cloth: ClothWatch,
+    cloth: ClothContacts,
 }
 
 impl SwingWorkspace {
@@ -46,7 +46,7 @@ impl SwingWorkspace {
 
     /// Clears the contacts and their search structures.
     pub fn forget_contacts(&mut self) {
-        self.cloth.forget_all();
+        self.cloth.reset();
     }
 }
 
@@ -128,7 +128,7 @@ impl KineticDamping {
         state: &mut State,
         workspace: &mut SwingWorkspace,
     ) -> Result<(), DrapeError> {
-        let span = Span {
+        let substeps = Substeps {
             substep: self.substep,
             count: ROUND,
             drag: DRAG,
@@ -136,11 +136,11 @@ impl KineticDamping {
         let before = state.clone();
         let SwingWorkspace { xpbd, cloth } = workspace;
         let xpbd = xpbd.get_or_insert_with(|| Xpbd::for_state(system, state));
-        let report = match xpbd.advance_touching(system, state, cloth, &span) {
+        let report = match xpbd.advance_with_cloth_contact(system, state, cloth, &substeps) {
             Ok(report) => report,
             Err(error) => {
                 *state = before;
-                cloth.forget();
+                cloth.invalidate();
                 return Err(error);
             }
         };

@@ -1,12 +1,12 @@
-//! SIMD vectors of the width that the processor has, detected at run time, with gather and scatter of points.
+//! Vectors as wide as the processor has, found at run time, and how points get into them.
 //!
-//! A point is four floats in memory (x, y, z and its inverse mass), so that one load fetches it; shuffles in registers
-//! transpose sixteen points to four vectors.
+//! A point is four floats in memory (x, y, z and its inverse mass), so that one load fetches it;
+//! sixteen of them are turned into four vectors by shuffles in registers.
 
 use pulp::Simd;
 use pulp::bytemuck::cast;
 
-/// A point: x, y, z [m] relative to an origin, and its inverse mass [1/kg] where it is used.
+/// A point: x, y, z [m] relative to some origin, and its inverse mass [1/kg] where that counts.
 pub type Point = [f32; 4];
 
 /// Constraints solved side by side.
@@ -23,16 +23,16 @@ impl Row {
         Self([value; LANES])
     }
 
-    /// The lanes of one part: parts are as wide as the processor's vectors.
+    /// The lanes of one lane group: a group is as wide as the processor's vectors.
     #[inline(always)]
-    pub fn part<S: Simd>(&self, part: usize) -> S::f32s {
-        S::as_simd_f32s(&self.0).0[part]
+    pub fn lane_group<S: Simd>(&self, lane_group: usize) -> S::f32s {
+        S::as_simd_f32s(&self.0).0[lane_group]
     }
 
-    /// Writes the lanes of one part.
+    /// Sets the lanes of one lane group.
     #[inline(always)]
-    pub fn set_part<S: Simd>(&mut self, part: usize, value: S::f32s) {
-        S::as_mut_simd_f32s(&mut self.0).0[part] = value;
+    pub fn set_lane_group<S: Simd>(&mut self, lane_group: usize, value: S::f32s) {
+        S::as_mut_simd_f32s(&mut self.0).0[lane_group] = value;
     }
 }
 
@@ -41,51 +41,56 @@ impl Row {
 #[repr(C, align(64))]
 pub struct Corner(pub [u32; LANES]);
 
-/// The corner of consecutive points.
+/// The corner of points that lie side by side.
 const SIDE_BY_SIDE: Corner = Corner([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
 
-/// Number of parts of a batch: parts are as wide as the processor's vectors.
+/// Number of lane groups in a batch.
 #[inline(always)]
-pub const fn parts<S: Simd>() -> usize {
+pub const fn lane_groups<S: Simd>() -> usize {
     LANES / S::F32_LANES
 }
 
-/// The point of a lane in a part.
+/// The point that a lane of a lane group refers to.
 #[inline(always)]
-fn at<S: Simd>(points: &[Point], corner: &Corner, part: usize, lane: usize) -> Point {
-    points[corner.0[part * S::F32_LANES + lane] as usize]
+fn at<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, lane: usize) -> Point {
+    points[corner.0[lane_group * S::F32_LANES + lane] as usize]
 }
 
-/// Loads the points of one corner for one part: x, y, z and inverse mass.
+/// Loads the points of one corner for one lane group: x, y, z and inverse mass.
 ///
-/// All functions on vectors are inlined by force, without closures: a function that is not inlined into the one
-/// compiled for the processor's instruction set is compiled for the baseline set.
+/// Everything that works on vectors is inlined by force, closures are avoided: a function that is
+/// not inlined into the one compiled for the processor is compiled without its vectors.
 #[inline(always)]
-pub fn gather<S: Simd>(simd: S, points: &[Point], corner: &Corner, part: usize) -> [S::f32s; 4] {
-    // Slot l of register r holds lane 4 l + r, so that the shuffle returns lanes in order.
+pub fn gather<S: Simd>(
+    simd: S,
+    points: &[Point],
+    corner: &Corner,
+    lane_group: usize,
+) -> [S::f32s; 4] {
+    // Slot l of register r holds lane 4 l + r: the shuffle then leaves lanes in their order.
     if S::F32_LANES == 16 {
         simd.deinterleave_shfl_f32s([
-            four::<S>(points, corner, part, 0),
-            four::<S>(points, corner, part, 1),
-            four::<S>(points, corner, part, 2),
-            four::<S>(points, corner, part, 3),
+            four::<S>(points, corner, lane_group, 0),
+            four::<S>(points, corner, lane_group, 1),
+            four::<S>(points, corner, lane_group, 2),
+            four::<S>(points, corner, lane_group, 3),
         ])
     } else if S::F32_LANES == 8 {
         simd.deinterleave_shfl_f32s([
-            two::<S>(points, corner, part, 0),
-            two::<S>(points, corner, part, 1),
-            two::<S>(points, corner, part, 2),
-            two::<S>(points, corner, part, 3),
+            two::<S>(points, corner, lane_group, 0),
+            two::<S>(points, corner, lane_group, 1),
+            two::<S>(points, corner, lane_group, 2),
+            two::<S>(points, corner, lane_group, 3),
         ])
     } else if S::F32_LANES == 4 {
         simd.deinterleave_shfl_f32s([
-            cast::<Point, S::f32s>(at::<S>(points, corner, part, 0)),
-            cast::<Point, S::f32s>(at::<S>(points, corner, part, 1)),
-            cast::<Point, S::f32s>(at::<S>(points, corner, part, 2)),
-            cast::<Point, S::f32s>(at::<S>(points, corner, part, 3)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, lane_group, 0)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, lane_group, 1)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, lane_group, 2)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, lane_group, 3)),
         ])
     } else {
-        let [x, y, z, w] = at::<S>(points, corner, part, 0);
+        let [x, y, z, w] = at::<S>(points, corner, lane_group, 0);
         [
             simd.splat_f32s(x),
             simd.splat_f32s(y),
@@ -97,46 +102,51 @@ pub fn gather<S: Simd>(simd: S, points: &[Point], corner: &Corner, part: usize) 
 
 /// Register `r` of sixteen lanes.
 #[inline(always)]
-fn four<S: Simd>(points: &[Point], corner: &Corner, part: usize, r: usize) -> S::f32s {
+fn four<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, r: usize) -> S::f32s {
     cast::<[Point; 4], S::f32s>([
-        at::<S>(points, corner, part, r),
-        at::<S>(points, corner, part, 4 + r),
-        at::<S>(points, corner, part, 8 + r),
-        at::<S>(points, corner, part, 12 + r),
+        at::<S>(points, corner, lane_group, r),
+        at::<S>(points, corner, lane_group, 4 + r),
+        at::<S>(points, corner, lane_group, 8 + r),
+        at::<S>(points, corner, lane_group, 12 + r),
     ])
 }
 
 /// Register `r` of eight lanes.
 #[inline(always)]
-fn two<S: Simd>(points: &[Point], corner: &Corner, part: usize, r: usize) -> S::f32s {
+fn two<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, r: usize) -> S::f32s {
     cast::<[Point; 2], S::f32s>([
-        at::<S>(points, corner, part, r),
-        at::<S>(points, corner, part, 4 + r),
+        at::<S>(points, corner, lane_group, r),
+        at::<S>(points, corner, lane_group, 4 + r),
     ])
 }
 
-/// Loads one part of sixteen consecutive points.
+/// Loads one lane group of sixteen consecutive points.
 #[inline(always)]
-pub fn load<S: Simd>(simd: S, points: &[Point; LANES], part: usize) -> [S::f32s; 4] {
-    gather(simd, points, &SIDE_BY_SIDE, part)
+pub fn load<S: Simd>(simd: S, points: &[Point; LANES], lane_group: usize) -> [S::f32s; 4] {
+    gather(simd, points, &SIDE_BY_SIDE, lane_group)
 }
 
-/// Stores one part of sixteen consecutive points.
+/// Stores points that lie side by side.
 #[inline(always)]
-pub fn store<S: Simd>(simd: S, points: &mut [Point; LANES], part: usize, values: [S::f32s; 4]) {
-    scatter(simd, points, &SIDE_BY_SIDE, part, values);
+pub fn store<S: Simd>(
+    simd: S,
+    points: &mut [Point; LANES],
+    lane_group: usize,
+    values: [S::f32s; 4],
+) {
+    scatter(simd, points, &SIDE_BY_SIDE, lane_group, values);
 }
 
-/// Stores the points of one corner for one part.
+/// Stores the points of one corner for one lane group.
 #[inline(always)]
 pub fn scatter<S: Simd>(
     simd: S,
     points: &mut [Point],
     corner: &Corner,
-    part: usize,
+    lane_group: usize,
     values: [S::f32s; 4],
 ) {
-    let first = part * S::F32_LANES;
+    let first = lane_group * S::F32_LANES;
     if S::F32_LANES == 16 {
         let registers = simd.interleave_shfl_f32s(values);
         for r in 0..4 {
@@ -235,12 +245,12 @@ mod tests {
         type Output = ();
 
         fn with_simd<S: Simd>(self, simd: S) {
-            for part in 0..parts::<S>() {
-                let point = gather(simd, self.from, self.corner, part);
+            for lane_group in 0..lane_groups::<S>() {
+                let point = gather(simd, self.from, self.corner, lane_group);
                 let [x, y, z, w] = point;
                 let sum = simd.add_f32s(simd.add_f32s(x, y), simd.add_f32s(z, w));
-                self.sums.set_part::<S>(part, sum);
-                scatter(simd, self.to, self.corner, part, point);
+                self.sums.set_lane_group::<S>(lane_group, sum);
+                scatter(simd, self.to, self.corner, lane_group, point);
             }
         }
     }

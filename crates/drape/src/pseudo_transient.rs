@@ -163,14 +163,14 @@ impl PseudoTransientContinuation {
             };
             let report = workspace.solve(system, state, &inertia, &newton);
             self.memory.linear_iterations += report.linear_iterations;
-            if report.sound && state.first_not_finite().is_none() {
+            if report.succeeded && state.first_not_finite().is_none() {
                 let enough = self.settings.residual * weight_norm(system);
                 let limits = ChordLimits {
                     steps: CHORDS,
                     tolerance: CHORD_END * enough,
                     longest_move: self.settings.longest_move,
                 };
-                workspace.follow_on(system, state, &inertia, limits);
+                workspace.chord_steps(system, state, &inertia, limits);
                 workspace.contacts.refresh(system, state, &state.positions);
                 if workspace.eliminate(system, state, enough) {
                     workspace.contacts.refresh(system, state, &state.positions);

@@ -38,7 +38,7 @@ pub fn step_in_time(
         for _ in 0..pieces {
             let h = settings.step / f64::from(pieces);
             report = implicit_euler(system, state, workspace, settings, h);
-            if !report.sound || state.first_not_finite().is_some() {
+            if !report.succeeded || state.first_not_finite().is_some() {
                 if halvings == STEP_HALVINGS {
                     let vertex = state.first_not_finite();
                     *state = start;

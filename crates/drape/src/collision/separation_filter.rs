@@ -14,7 +14,7 @@ use super::closest_vectors::{
 };
 use super::leaf_aabbs::{Hits, origin};
 use super::surface_view::SurfaceView;
-use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, parts};
+use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, lane_groups};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -171,17 +171,19 @@ impl WithSimd for FilterRun<'_> {
             match self.kind {
                 PairKind::VertexFace(triangles) => {
                     let corners = vertex_face_corners(triangles, hits);
-                    for part in 0..parts::<S>() {
-                        let flags =
-                            (self.filter).separated_vertex_faces(simd, &corners, &distance, part);
-                        separated.set_part::<S>(part, flags);
+                    for lane_group in 0..lane_groups::<S>() {
+                        let flags = (self.filter)
+                            .separated_vertex_faces(simd, &corners, &distance, lane_group);
+                        separated.set_lane_group::<S>(lane_group, flags);
                     }
                 }
                 PairKind::EdgeEdge(edges) => {
                     let corners = edge_edge_corners(edges, hits);
-                    for part in 0..parts::<S>() {
-                        let flags = self.filter.separated_edges(simd, &corners, &distance, part);
-                        separated.set_part::<S>(part, flags);
+                    for lane_group in 0..lane_groups::<S>() {
+                        let flags = self
+                            .filter
+                            .separated_edges(simd, &corners, &distance, lane_group);
+                        separated.set_lane_group::<S>(lane_group, flags);
                     }
                 }
             }
@@ -227,14 +229,14 @@ fn positions<S: Simd>(
     simd: S,
     points: &[Point],
     corners: &[Corner; 4],
-    part: usize,
+    lane_group: usize,
 ) -> [Triple<S::f32s>; 4] {
     let [a, b, c, d] = corners;
     [
-        xyz(gather(simd, points, a, part)),
-        xyz(gather(simd, points, b, part)),
-        xyz(gather(simd, points, c, part)),
-        xyz(gather(simd, points, d, part)),
+        xyz(gather(simd, points, a, lane_group)),
+        xyz(gather(simd, points, b, lane_group)),
+        xyz(gather(simd, points, c, lane_group)),
+        xyz(gather(simd, points, d, lane_group)),
     ]
 }
 
@@ -257,14 +259,17 @@ impl SeparationFilter {
         simd: S,
         corners: &[Corner; 4],
         distance: &Row,
-        part: usize,
+        lane_group: usize,
     ) -> S::f32s {
-        let p = positions(simd, &self.from, corners, part);
+        let p = positions(simd, &self.from, corners, lane_group);
         let n = vertex_to_face(simd, &p);
-        let gap = simd.mul_f32s(distance.part::<S>(part), simd.sqrt_f32s(dot(simd, n, n)));
+        let gap = simd.mul_f32s(
+            distance.lane_group::<S>(lane_group),
+            simd.sqrt_f32s(dot(simd, n, n)),
+        );
         let mut separated = face_is_beyond(simd, &p, n, gap);
         if let Some(to) = &self.to {
-            let p = positions(simd, to, corners, part);
+            let p = positions(simd, to, corners, lane_group);
             separated = simd.and_m32s(separated, face_is_beyond(simd, &p, n, gap));
         }
         flag(simd, separated)
@@ -278,15 +283,18 @@ impl SeparationFilter {
         simd: S,
         corners: &[Corner; 4],
         distance: &Row,
-        part: usize,
+        lane_group: usize,
     ) -> S::f32s {
-        let p = positions(simd, &self.from, corners, part);
+        let p = positions(simd, &self.from, corners, lane_group);
         let (n, passing) = edge_to_edge(simd, &p, self.farthest);
-        let gap = simd.mul_f32s(distance.part::<S>(part), simd.sqrt_f32s(dot(simd, n, n)));
+        let gap = simd.mul_f32s(
+            distance.lane_group::<S>(lane_group),
+            simd.sqrt_f32s(dot(simd, n, n)),
+        );
         let separated = edge_is_beyond(simd, &p, n, gap);
         let discarded = match &self.to {
             Some(to) => {
-                let p = positions(simd, to, corners, part);
+                let p = positions(simd, to, corners, lane_group);
                 simd.and_m32s(separated, edge_is_beyond(simd, &p, n, gap))
             }
             None => simd.or_m32s(separated, passing),

@@ -226,7 +226,7 @@ impl GarmentRun {
     /// Number of symbolic factorisations and constraint layouts in the present stage: one, and one for each change of
     /// the model.
     pub fn structures(&self) -> usize {
-        self.swing_workspace.builds() + self.workspace.structures()
+        self.swing_workspace.builds() + self.workspace.symbolic_factorisations()
     }
 
     /// Shortcomings so far, in plain words.

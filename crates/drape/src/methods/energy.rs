@@ -1,34 +1,34 @@
-//! The energy a cloth has, and the most it can have: what tells a result from rubbish.
+//! The energy of a cloth and upper bounds of it, by which unstable results are detected.
 
 use crate::{Inertia, State, System, Workspace};
 
-/// No part of a cloth moves faster [m/s]: the speed of sound in the stiffest fibres (aramid,
-/// drawn polyethylene), which no wave in it exceeds.
-const FASTEST: f64 = 1e4;
+/// Largest physically possible speed of a vertex [m/s]: the speed of sound in the stiffest fibres (aramid, drawn
+/// polyethylene).
+const MAX_SPEED: f64 = 1e4;
 
-/// How far the energy may lie above its physical bound. The energy of a symplectic method swings
-/// by (1 + hw/2) / (1 - hw/2): 1000 is reached at 0.999 of the limit. What is unstable passes it a
-/// few substeps later than it would pass 1.
-const SWING: f64 = 1e3;
+/// Factor of the physical bound that the energy may reach. The energy of a symplectic method oscillates by the factor
+/// (1 + hw/2) / (1 - hw/2), which is 1000 at 0.999 of the stability limit. An unstable method exceeds the larger
+/// bound only a few substeps later.
+const OSCILLATION: f64 = 1e3;
 
-/// Speed of the whole cloth whose energy is counted as rounding [m/s].
-const STILL: f64 = 1e-3;
+/// Speed [m/s] of the whole cloth whose kinetic energy is allowed for rounding errors.
+const ROUNDING_SPEED: f64 = 1e-3;
 
-/// Measures energies; its memory is sized once.
+/// Measures the energy before and after a step; its buffers are sized once.
 #[derive(Default)]
-pub struct EnergyWatch {
+pub struct EnergyMonitor {
     zeros: Vec<f64>,
     before: f64,
     after: f64,
 }
 
-impl EnergyWatch {
-    /// Notes the energy before a step.
+impl EnergyMonitor {
+    /// Records the energy before a step.
     pub fn start(&mut self, system: &System, state: &State, workspace: &mut Workspace) {
         self.before = self.energy(system, state, workspace);
     }
 
-    /// Whether the energy after `step` [s] is one the cloth can have.
+    /// Whether the energy after `step` [s] is below the bound for the energy before it.
     pub fn is_possible(
         &mut self,
         system: &System,
@@ -41,15 +41,15 @@ impl EnergyWatch {
         self.after <= bound
     }
 
-    /// The energy that [`Self::is_possible`] found last [J].
+    /// The energy that [`Self::is_possible`] measured last [J].
     pub fn last(&self) -> f64 {
         self.after
     }
 
-    /// Energy of motion, strain, elastics and contact [J].
+    /// Kinetic energy and that of strain, elastics and contact, without weight [J].
     pub fn energy(&mut self, system: &System, state: &State, workspace: &mut Workspace) -> f64 {
         self.zeros.resize(system.vertex_count(), 0.0);
-        let nothing = Inertia {
+        let no_inertia = Inertia {
             weight: &self.zeros,
             target: &state.positions,
         };
@@ -62,23 +62,23 @@ impl EnergyWatch {
             .zip(&system.rest.mass)
             .map(|(x, m)| m * system.control.gravity.dot(x))
             .sum();
-        workspace.potential(system, &state.positions, &nothing)
+        workspace.potential(system, &state.positions, &no_inertia)
             + gravity
             + state.kinetic_energy(system)
     }
 }
 
-/// The energy that a cloth can have come by since its run began: what it had then, what its weight and
-/// the air can have added, and what was done to it between steps.
-pub struct EnergyAccount {
-    /// When the last step ended [s], and with what energy [J]. A state of another time begins anew.
+/// An upper bound of the energy of a cloth over a run: its energy at the start of the run plus the most that weight,
+/// air and changes between steps can have added.
+pub struct EnergyBudget {
+    /// Time [s] and energy [J] at the end of the last step. A state of another time starts a new run.
     time: f64,
     after: f64,
-    /// What the cloth can have come by until then [J].
+    /// The bound at that time [J].
     possible: f64,
 }
 
-impl Default for EnergyAccount {
+impl Default for EnergyBudget {
     fn default() -> Self {
         Self {
             time: f64::NAN,
@@ -88,9 +88,9 @@ impl Default for EnergyAccount {
     }
 }
 
-impl EnergyAccount {
-    /// The energy that can be there before a step from `time` [s], when `before` [J] is: bodies and
-    /// pins that were moved since the last step may have added to it.
+impl EnergyBudget {
+    /// The bound before a step from `time` [s] with energy `before` [J]: solids and pins that were moved since the
+    /// last step may have added energy.
     pub fn start(&self, time: f64, before: f64) -> f64 {
         if time == self.time {
             self.possible + (before - self.after).max(0.0)
@@ -99,7 +99,7 @@ impl EnergyAccount {
         }
     }
 
-    /// Notes a step that ended at `time` [s] with `after` [J], where `possible` [J] were.
+    /// Records a step that ended at `time` [s] with energy `after` and bound `possible` [J].
     pub fn end(&mut self, time: f64, after: f64, possible: f64) {
         *self = Self {
             time,
@@ -109,7 +109,7 @@ impl EnergyAccount {
     }
 }
 
-/// Energy of motion, strain, weight, elastics and contact [J]; places count from the origin.
+/// Kinetic energy and that of strain, elastics, contact and weight [J], heights counted from the origin.
 pub fn whole_energy(system: &System, state: &State, workspace: &mut Workspace) -> f64 {
     let weight = |(x, m): (&toile_geometry::Vec3, &f64)| m * system.control.gravity.dot(x);
     let gravity: f64 = state
@@ -118,18 +118,17 @@ pub fn whole_energy(system: &System, state: &State, workspace: &mut Workspace) -
         .zip(&system.rest.mass)
         .map(weight)
         .sum();
-    EnergyWatch::default().energy(system, state, workspace) - gravity
+    EnergyMonitor::default().energy(system, state, workspace) - gravity
 }
 
-/// The energy that a method may show after `step` [s]: [`possible_energy`], and room for the swing
-/// of symplectic methods.
+/// The largest energy of a stable method after `step` [s]: [`possible_energy`] times the factor by which that of
+/// symplectic methods oscillates [J].
 pub fn energy_bound(system: &System, before: f64, step: f64) -> f64 {
-    SWING * possible_energy(system, before, step)
+    OSCILLATION * possible_energy(system, before, step)
 }
 
-/// The most energy of motion, strain, elastics and contact [J] that a cloth with `before` [J] of it
-/// can have after `step` [s]. All potentials but gravity's are above zero, so this energy H obeys
-/// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
+/// Upper bound of the energy H without weight after `step` [s], when it was `before` [J]. All potentials but gravity's
+/// are above zero, so dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
 pub fn possible_energy(system: &System, before: f64, step: f64) -> f64 {
     let mass: f64 = system
         .rest
@@ -145,19 +144,20 @@ pub fn possible_energy(system: &System, before: f64, step: f64) -> f64 {
         .iter()
         .map(|m| m.density)
         .fold(f64::INFINITY, f64::min);
-    let push = system.control.gravity.norm() + system.control.air.largest_acceleration(lightest);
-    let root = before.max(0.0).sqrt() + push * (0.5 * mass).sqrt() * step;
-    root * root + 0.5 * mass * STILL * STILL
+    let acceleration =
+        system.control.gravity.norm() + system.control.air.largest_acceleration(lightest);
+    let root = before.max(0.0).sqrt() + acceleration * (0.5 * mass).sqrt() * step;
+    root * root + 0.5 * mass * ROUNDING_SPEED * ROUNDING_SPEED
 }
 
-/// Whether a vertex can move at a speed [m/s].
+/// Whether a speed of a vertex [m/s] is physically possible; false for NaN.
 pub fn is_possible_speed(speed: f64) -> bool {
-    speed <= FASTEST
+    speed <= MAX_SPEED
 }
 
-/// The first vertex faster than anything can be, or not finite.
-pub fn runaway(state: &State) -> Option<usize> {
-    let possible = |speed: f64| speed <= FASTEST * FASTEST;
+/// The first vertex whose speed is not physically possible or not finite.
+pub fn first_impossible_speed(state: &State) -> Option<usize> {
+    let possible = |speed: f64| speed <= MAX_SPEED * MAX_SPEED;
     state
         .velocities
         .iter()
@@ -165,7 +165,7 @@ pub fn runaway(state: &State) -> Option<usize> {
 }
 
 /// The vertex with the highest speed, and the speed [m/s].
-pub fn fastest(state: &State) -> (usize, f64) {
+pub fn fastest_vertex(state: &State) -> (usize, f64) {
     let mut best = (0, 0.0);
     for (v, velocity) in state.velocities.iter().enumerate() {
         let squared = velocity.norm_squared();

@@ -1,8 +1,8 @@
-//! What the explicit methods share: substeps, forces, the check that nothing has blown up.
+//! Explicit methods: substeps, forces, and the detection of instability, common to all schemes.
 //!
 //! Every explicit method evaluates accelerations a(x, v) = f(x, v) / m from the net force f and
 //! extrapolates. All forces of the model act: membrane, bending, elastics, gravity, contact as the
-//! penalty k d of depth d with a dashpot, friction by return mapping to anchors that slide once a substep. Drag
+//! penalty k d of depth d with a dashpot, friction by return mapping with anchors updated once a substep. Drag
 //! acts as -c v on the acceleration.
 //!
 //! Stability: a vibration of angular frequency w, undamped, stays bounded while h w is below the
@@ -11,7 +11,7 @@
 //! stiffness / density: at 1e6 N/m3 and 0.2 kg/m2 the substep must stay below 2 / 2236 s = 0.89 ms
 //! however soft the cloth is, and below 0.73 ms by its dashpot.
 
-use super::energy::{EnergyWatch, fastest, runaway};
+use super::energy::{EnergyMonitor, fastest_vertex, first_impossible_speed};
 use super::frequency::{FrequencySearch, damped_contact_frequency};
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, State, System, Workspace};
@@ -22,14 +22,14 @@ pub trait Scheme: Default + Send {
     /// Its name, for errors.
     const STAGE: &'static str;
 
-    /// Largest stable h w of an undamped vibration; for a method that has none, the one its
-    /// substeps are counted by.
+    /// Largest stable h w of an undamped vibration, from which automatic substeps follow; a nominal one for a
+    /// scheme that is never stable.
     const LIMIT: f64;
 
-    /// Prepares for the substeps of `h` [s] of one step.
+    /// Prepares for a step of substeps of `h` [s].
     fn begin(&mut self, _model: &System, _state: &State, _workspace: &mut Workspace, _h: f64) {}
 
-    /// Moves positions and velocities on by `h` [s], and the friction anchors.
+    /// Advances positions, velocities and friction anchors by `h` [s].
     fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64);
 }
 
@@ -39,18 +39,18 @@ pub struct Explicit<S> {
     substeps: Option<u32>,
     workspace: Workspace,
     search: FrequencySearch,
-    watch: EnergyWatch,
+    energy: EnergyMonitor,
 }
 
-/// Share of the stability limit that automatic substeps use: what is left pays for cloth that
-/// stiffens as it stretches (10 % of stretch raises the frequency by 8 %).
-const SHARE: f64 = 0.9;
+/// Fraction of the stability limit that automatic substeps use: the margin covers the stiffening of stretched cloth
+/// (10 % of stretch raises the frequency by 8 %).
+const STABILITY_FRACTION: f64 = 0.9;
 
-/// Substeps of one step at the most: more is a mesh with slivers, not a simulation.
-const MOST_SUBSTEPS: f64 = 1e6;
+/// Most substeps of one step: only a mesh with sliver triangles asks for more, and that is an error.
+const MAX_SUBSTEPS: f64 = 1e6;
 
-/// Net force on every vertex: all forces of the model at a state, zero at pins [N], for a substep
-/// of `h` [s].
+/// Net force on every vertex at a state [N], zero at pins: all forces of the model, with contact dashpots for a
+/// substep of `h` [s].
 pub fn forces<'a>(
     system: &System,
     state: &State,
@@ -60,8 +60,8 @@ pub fn forces<'a>(
     workspace.force_in_motion(system, state, h)
 }
 
-/// The same, and slides the friction anchors to where the cloth is now. Once a substep.
-pub fn forces_and_settle<'a>(
+/// [`forces`], and updates the friction anchors for the present positions. Called once a substep.
+pub fn forces_and_update_friction<'a>(
     system: &System,
     state: &mut State,
     workspace: &'a mut Workspace,
@@ -76,18 +76,18 @@ pub fn forces_and_settle<'a>(
 }
 
 impl<S: Scheme> Explicit<S> {
-    /// With the settings' substeps; automatic ones when not given.
+    /// With the settings' substeps, or automatic ones where not given.
     pub fn new(settings: &MethodSettings) -> Self {
         Self {
             scheme: S::default(),
             substeps: settings.substeps,
             workspace: Workspace::default(),
             search: FrequencySearch::default(),
-            watch: EnergyWatch::default(),
+            energy: EnergyMonitor::default(),
         }
     }
 
-    /// Substeps a step is cut into: as given, or what the largest frequency at this state asks.
+    /// Number of substeps of a step: as given, or by the stability limit for the largest frequency at this state.
     fn substep_count(
         &mut self,
         system: &System,
@@ -101,8 +101,8 @@ impl<S: Scheme> Explicit<S> {
         let (longest, vertex) = self
             .search
             .stable_step(system, state, &mut self.workspace, limits);
-        let substeps = (step / (SHARE * longest)).ceil();
-        if substeps > MOST_SUBSTEPS || !substeps.is_finite() {
+        let substeps = (step / (STABILITY_FRACTION * longest)).ceil();
+        if substeps > MAX_SUBSTEPS || !substeps.is_finite() {
             return Err(DrapeError::TooStiff {
                 stage: S::STAGE,
                 vertex,
@@ -142,20 +142,20 @@ impl<S: Scheme> Method for Explicit<S> {
                 *v = Vec3::zeros();
             }
         }
-        self.watch.start(system, state, &mut self.workspace);
+        self.energy.start(system, state, &mut self.workspace);
         let end = state.time + step;
         self.scheme.begin(system, state, &mut self.workspace, h);
         for _ in 0..substeps {
             self.scheme.substep(system, state, &mut self.workspace, h);
-            if let Some(vertex) = runaway(state) {
+            if let Some(vertex) = first_impossible_speed(state) {
                 return Err(blown_up(S::STAGE, state, vertex, h));
             }
         }
         if !self
-            .watch
+            .energy
             .is_possible(system, state, &mut self.workspace, step)
         {
-            return Err(blown_up(S::STAGE, state, fastest(state).0, h));
+            return Err(blown_up(S::STAGE, state, fastest_vertex(state).0, h));
         }
         state.time = end;
         Ok(StepReport {

@@ -1,11 +1,11 @@
-//! The fastest vibration of a model, which bounds the substep of every explicit method.
+//! The largest angular frequency of a model, which bounds the substep of every explicit method.
 
 use crate::laws::contact::RESTITUTION_DAMPING;
 use crate::laws::membrane::Curvature;
 use crate::{ContactSample, Inertia, State, System, Workspace};
 use toile_geometry::Vec3;
 
-/// Private memory of the search, sized once for a model.
+/// Lanczos iteration for the largest frequency, with its private memory.
 #[derive(Default)]
 pub struct FrequencySearch {
     zeros: Vec<f64>,
@@ -16,32 +16,30 @@ pub struct FrequencySearch {
     next: Vec<Vec3>,
 }
 
-/// What a search found.
+/// The vibration of the largest frequency.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fastest {
+pub struct FastestMode {
     /// Angular frequency [rad/s].
     pub frequency: f64,
-    /// The vertex that takes the largest part in it.
+    /// The vertex of largest amplitude.
     pub vertex: usize,
 }
 
-/// Iterations of a search asked for by name: the largest frequency is then right to 1e-6 on the
-/// meshes tried.
-const THOROUGH: usize = 160;
+/// Lanczos iterations of [`largest_frequency`]: relative error 1e-6 on the meshes tried.
+const ACCURATE_ITERATIONS: usize = 160;
 
-/// Iterations of a search before every step of an explicit method: right to a few per mille.
-const QUICK: usize = 30;
+/// Lanczos iterations before every step of an explicit method: relative error of a few per mille.
+const STEP_ITERATIONS: usize = 30;
 
 /// The largest angular frequency of the free vertices about a state [rad/s]: the square root of
 /// the largest eigenvalue of M^-1 K, K the positive semidefinite Hessian of membrane, bending,
-/// elastics and the contacts that press at that state. At rest it is exact.
+/// elastics and the loaded contacts at that state. At equilibrium K is the exact Hessian.
 ///
-/// Found by Lanczos iteration (Lanczos 1950): power iteration that keeps all its vectors' products
-/// and so converges quadratically faster. Cost: about 160 products with K.
+/// By Lanczos iteration (Lanczos 1950). Cost: about 160 products with K.
 pub fn largest_frequency(system: &System, state: &State) -> f64 {
     let mut workspace = Workspace::default();
     FrequencySearch::default()
-        .run(system, state, &mut workspace, THOROUGH)
+        .run(system, state, &mut workspace, ACCURATE_ITERATIONS)
         .frequency
 }
 
@@ -69,31 +67,31 @@ pub fn contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
         .sqrt()
 }
 
-/// The same as explicit methods feel it: a dashpot of zeta evaluated at the old velocity lowers the
-/// limit of h w from 2 to 2 (sqrt(1 + zeta^2) - zeta).
+/// [`contact_frequency`] raised for the contact dashpot [rad/s]: a dashpot of damping ratio zeta, evaluated at the old
+/// velocity, lowers the limit of h w from 2 to 2 (sqrt(1 + zeta^2) - zeta).
 pub fn damped_contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
     let zeta = RESTITUTION_DAMPING;
     contact_frequency(system, samples) * (zeta.hypot(1.0) + zeta)
 }
 
 impl FrequencySearch {
-    /// Searches with a fixed start and at most `iterations` products with K; the result is a
-    /// lower bound that is within a few per mille after 30.
+    /// Lanczos iteration about a state without viscosity, with a fixed start vector and at most `iterations` products
+    /// with K. The frequency is a lower bound, within a few per mille after 30.
     pub fn run(
         &mut self,
         system: &System,
         state: &State,
         workspace: &mut Workspace,
         iterations: usize,
-    ) -> Fastest {
+    ) -> FastestMode {
         workspace.increment.begin_static(system, state);
         self.search(system, state, workspace, iterations)
     }
 
-    /// A substep of w h = `limit` undamped, shortened for viscosity [s]: with the damping ratio
-    /// xi of the fastest vibration, h = limit / w (sqrt(1 + xi^2) - xi), the limit of a leapfrog
-    /// whose damping lags (Belytschko, Liu and Moran 2000, section 6.2). `extra` is a frequency to
-    /// be added, as of contact.
+    /// The largest stable substep [s] and the vertex of largest amplitude: w h = `limit` without damping, and with
+    /// the damping ratio xi of the fastest vibration h = limit / w (sqrt(1 + xi^2) - xi), the limit of a leapfrog
+    /// whose damping force is evaluated at the lagging velocity (Belytschko, Liu and Moran 2000, section 6.2).
+    /// `extra` is the frequency [rad/s] of contact, added in squares.
     pub fn stable_step(
         &mut self,
         system: &System,
@@ -101,20 +99,23 @@ impl FrequencySearch {
         workspace: &mut Workspace,
         [limit, extra]: [f64; 2],
     ) -> (f64, usize) {
-        let still = self.run(system, state, workspace, QUICK);
-        let w = still.frequency.hypot(extra);
+        let undamped = self.run(system, state, workspace, STEP_ITERATIONS);
+        let w = undamped.frequency.hypot(extra);
         let mut ratio = 0.0;
         if w > 0.0
             && (system.materials.have_viscous_stretch() || system.rest.viscous_bending.is_some())
         {
             // K + w C has the eigenvalue w^2 + 2 xi w^2 for the same vibration.
             workspace.increment.begin_step(system, state, w);
-            let damped = self.search(system, state, workspace, QUICK).frequency;
-            ratio = (damped * damped - still.frequency * still.frequency).max(0.0) / (2.0 * w * w);
+            let damped = self
+                .search(system, state, workspace, STEP_ITERATIONS)
+                .frequency;
+            ratio = (damped * damped - undamped.frequency * undamped.frequency).max(0.0)
+                / (2.0 * w * w);
             workspace.increment.begin_static(system, state);
         }
         let shortened = (1.0 + ratio * ratio).sqrt() - ratio;
-        (limit / w * shortened, still.vertex)
+        (limit / w * shortened, undamped.vertex)
     }
 
     fn search(
@@ -123,7 +124,7 @@ impl FrequencySearch {
         state: &State,
         workspace: &mut Workspace,
         iterations: usize,
-    ) -> Fastest {
+    ) -> FastestMode {
         let n = system.vertex_count();
         self.fit(system);
         workspace.fit(system);
@@ -168,7 +169,7 @@ impl FrequencySearch {
             }
             diagonal.push(alpha);
             beta = normalise(&mut self.next);
-            // Below rounding the space is exhausted.
+            // A zero vector up to rounding: the Krylov space is exhausted.
             if beta <= 1e-12 * alpha.abs() {
                 break;
             }
@@ -177,12 +178,13 @@ impl FrequencySearch {
             std::mem::swap(&mut self.present, &mut self.next);
         }
         let eigenvalue = largest_eigenvalue(&diagonal, &off_diagonal);
-        Fastest {
+        FastestMode {
             frequency: eigenvalue.max(0.0).sqrt(),
-            vertex: largest_part(&self.present),
+            vertex: largest_component(&self.present),
         }
     }
 
+    /// Sizes the vectors for a model and sets the start vector.
     fn fit(&mut self, system: &System) {
         let n = system.vertex_count();
         self.zeros.resize(n, 0.0);
@@ -206,15 +208,15 @@ impl FrequencySearch {
         );
         for (v, q) in self.present.iter_mut().enumerate() {
             if !system.prescribed.pinned[v] {
-                *q = Vec3::from_fn(|axis, _| scatter((3 * v + axis) as u64));
+                *q = Vec3::from_fn(|axis, _| pseudo_random((3 * v + axis) as u64));
             }
         }
     }
 }
 
-/// A number in -1..1 that looks random but is fixed (the mixing function of SplitMix64, Steele,
-/// Lea and Flood 2014): a start vector that is orthogonal to no vibration.
-pub(super) fn scatter(index: u64) -> f64 {
+/// A pseudo-random number in -1..1 by the mixing function of SplitMix64 (Steele, Lea and Flood 2014): components of a
+/// start vector that is, for practical purposes, orthogonal to no vibration.
+pub(super) fn pseudo_random(index: u64) -> f64 {
     let mut z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -222,7 +224,7 @@ pub(super) fn scatter(index: u64) -> f64 {
     (z >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Makes a vector one long; returns its length before.
+/// Normalises a vector to length 1 and returns its former length.
 fn normalise(q: &mut [Vec3]) -> f64 {
     let length = q.iter().map(Vec3::norm_squared).sum::<f64>().sqrt();
     if length > 0.0 {
@@ -233,7 +235,8 @@ fn normalise(q: &mut [Vec3]) -> f64 {
     length
 }
 
-fn largest_part(q: &[Vec3]) -> usize {
+/// The index of the longest vector.
+fn largest_component(q: &[Vec3]) -> usize {
     let mut best = (0, -1.0);
     for (v, q) in q.iter().enumerate() {
         if q.norm_squared() > best.1 {
@@ -284,7 +287,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_chain_has_its_known_largest_eigenvalue() {
+    fn the_largest_eigenvalue_of_a_chain_is_that_of_its_closed_form() {
         // The matrix 2, -1 of order n has the eigenvalues 2 - 2 cos(k pi / (n + 1)).
         let n = 12;
         let got = largest_eigenvalue(&vec![2.0; n], &vec![-1.0; n - 1]);

@@ -1,17 +1,17 @@
-//! The guard round every method: bad states are refused, failed steps undone, results checked.
+//! The guard around every method: states that are not finite are refused, failed steps undone, results checked.
 
 use crate::incremental_potential::relax;
 use crate::method::{Method, StepReport};
 use crate::{DrapeError, State, System};
 
-/// A method whose steps either end finite or leave the state as it was.
+/// A method whose steps either end with a finite state or leave the state unchanged.
 pub struct Guarded<M> {
     method: M,
     start: State,
 }
 
 impl<M: Method + 'static> Guarded<M> {
-    /// Puts the guard round a method.
+    /// Wraps a method.
     pub fn boxed(method: M) -> Box<dyn Method> {
         Box::new(Self {
             method,

@@ -1,33 +1,34 @@
-//! What the implicit methods share: one potential a step, some way to lower it, halving.
+//! Implicit methods: one potential a step, a minimiser, and the division of steps that fail, common to all rules.
 //!
-//! Each is a rule that turns a step into a minimum of
+//! Each method is a rule of time integration, by which a step is a minimum of
 //! Phi(x) = E(x) + sum_i w_i/2 |x_i - y_i|^2, w_i = b m_i,
-//! (see [`Workspace`]), and a solver that lowers Phi. A step that fails is undone and taken in
-//! two, four ... pieces.
+//! (see [`Workspace`]), and a solver that minimises Phi. A step that fails is undone and repeated in two, four ...
+//! pieces.
 
-use super::energy::{EnergyAccount, EnergyWatch, fastest, possible_energy, runaway};
+use super::energy::{
+    EnergyBudget, EnergyMonitor, fastest_vertex, first_impossible_speed, possible_energy,
+};
 use crate::measure::weight_norm;
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::{ContactSample, DrapeError, Inertia, NewtonReport, State, System, Workspace};
 use std::marker::PhantomData;
 use toile_geometry::Vec3;
 
-/// Longest move of a vertex in one iteration near solid surfaces [m].
+/// Longest displacement of a vertex in one iteration of Newton and quasi-Newton methods where there are solids [m].
 pub const LONGEST_MOVE: f64 = 0.05;
 
-/// A rule of time integration, as a minimum and what follows from it.
+/// A rule of time integration: the potential that a step minimises, and the new state from the minimum.
 pub trait TimeRule: Send {
-    /// How many times the most energy that a cloth can have it may show after a whole step: that of
-    /// the step before or of the whole run, whichever is less. None for rules that damp: they gain
-    /// no energy from step to step.
-    const MOST_ENERGY: Option<f64> = None;
+    /// Largest energy after a step over its physical bound, that for the step or that for the whole run, whichever is
+    /// less. None for rules with numerical damping, which gain no energy from step to step.
+    const MAX_ENERGY_FACTOR: Option<f64> = None;
 
-    /// How long after the start of the step its unknown lies [s].
-    fn reach(h: f64) -> f64 {
+    /// Time from the start of the step to the unknown positions [s].
+    fn unknown_time(h: f64) -> f64 {
         h
     }
 
-    /// Substeps a step of `step` [s] is cut into where the settings say nothing.
+    /// Number of substeps of a step of `step` [s] where the settings give none.
     fn substeps(_model: &System, _samples: &[ContactSample], _step: f64) -> u32 {
         1
     }
@@ -35,24 +36,23 @@ pub trait TimeRule: Send {
     /// Inertia's weight per mass b [1/s2].
     fn weight(system: &System, state: &State, h: f64) -> f64;
 
-    /// Where inertia alone would take each vertex, into `target` [m].
-    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>);
+    /// Sets the inertial target y of each vertex [m].
+    fn set_target(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>);
 
-    /// Turns the minimum in `state.positions` into the new positions and velocities; `before`
-    /// holds the old ones.
+    /// Computes the new positions and velocities from the minimum in `state.positions`; `before` is the old state.
     fn finish(before: &State, state: &mut State, h: f64);
 }
 
 /// When a solver stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Iterations at the most.
+    /// Most iterations.
     pub iterations: usize,
     /// Norm of the gradient [N].
     pub tolerance: f64,
 }
 
-/// What a solver is to lower.
+/// The potential of a step and the limits of its solver.
 pub struct Problem<'a> {
     /// The model.
     pub system: &'a System,
@@ -60,13 +60,13 @@ pub struct Problem<'a> {
     pub inertia: Inertia<'a>,
     /// Weight per mass [1/s2]: the weights are this times the masses.
     pub weight: f64,
-    /// When to stop.
+    /// Limits of the solver.
     pub limits: Limits,
 }
 
 impl Problem<'_> {
-    /// Longest move of a vertex in one iteration [m]: `near` where there are solid surfaces, whose
-    /// contact is found within 10 mm only, so that a longer one may pass through a limb.
+    /// Longest displacement of a vertex in one iteration [m]: `near` where there are solids, since contact is detected
+    /// within 10 mm only and a longer step may pass through a limb; otherwise infinite.
     pub fn longest_move(&self, near: f64) -> f64 {
         if self.system.colliders.is_empty() {
             f64::INFINITY
@@ -76,7 +76,7 @@ impl Problem<'_> {
     }
 }
 
-/// A way to lower Phi.
+/// A minimiser of Phi.
 pub trait Solver: Default + Send {
     /// The method's name, for errors.
     const STAGE: &'static str;
@@ -84,11 +84,11 @@ pub trait Solver: Default + Send {
     /// Iterations and tolerance where the settings give none.
     const LIMITS: Limits;
 
-    /// Whether a step counts only when the minimum was reached.
+    /// Whether a step without convergence counts as failed.
     const CONVERGES: bool;
 
-    /// Lowers Phi from `state.positions` and leaves the result there.
-    fn lower(
+    /// Minimises Phi, starting from `state.positions`, and stores the result there.
+    fn minimise(
         &mut self,
         problem: &Problem,
         state: &mut State,
@@ -107,27 +107,27 @@ pub struct Implicit<R, S> {
     target: Vec<Vec3>,
     before: State,
     start: State,
-    watch: EnergyWatch,
-    account: EnergyAccount,
+    energy: EnergyMonitor,
+    budget: EnergyBudget,
 }
 
-/// Halvings of a step before it is an error.
-const HALVINGS: u32 = 6;
+/// Most halvings of a step that fails, before it is an error.
+const MAX_HALVINGS: u32 = 6;
 
-/// Gradient over weight up to which a minimum counts as reached although the tolerance is not:
-/// rounding alone leaves more than the tolerance in very stiff cloth.
-const REACHED: f64 = 1e-3;
+/// Gradient over weight below which a solve counts as converged even above the tolerance: in very stiff cloth the
+/// rounding error of the gradient exceeds the tolerance.
+const CONVERGED_RESIDUAL: f64 = 1e-3;
 
-/// Why a piece of a step was given up.
+/// Cause of the failure of a piece of a step.
 enum Failure {
-    /// A vertex left the finite or the possible.
-    Runaway(usize),
-    /// The potential could not be lowered, or its minimum was not reached.
-    Stuck,
+    /// A vertex with a speed that is not finite or not physically possible, or too much energy.
+    Unstable(usize),
+    /// The potential could not be lowered, or the solver did not converge.
+    NotConverged,
 }
 
 impl<R: TimeRule, S: Solver> Implicit<R, S> {
-    /// With what the settings leave open at the solver's defaults.
+    /// With the settings, and the solver's defaults where they give none.
     pub fn new(settings: &MethodSettings) -> Self {
         Self {
             rule: PhantomData,
@@ -142,13 +142,13 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             target: Vec::new(),
             before: State::default(),
             start: State::default(),
-            watch: EnergyWatch::default(),
-            account: EnergyAccount::default(),
+            energy: EnergyMonitor::default(),
+            budget: EnergyBudget::default(),
         }
     }
 
-    /// One step of `h` [s], in pieces where it fails whole.
-    fn whole(
+    /// Advances by `h` [s]: as one step, or in up to 64 pieces where that fails.
+    fn advance_in_pieces(
         &mut self,
         system: &System,
         state: &mut State,
@@ -156,18 +156,18 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         total: &mut StepReport,
     ) -> Result<(), DrapeError> {
         self.start.clone_from(state);
-        let mut failure = Failure::Stuck;
-        'halving: for halvings in 0..=HALVINGS {
+        let mut failure = Failure::NotConverged;
+        'halving: for halvings in 0..=MAX_HALVINGS {
             let pieces = 1u32 << halvings;
             for _ in 0..pieces {
-                match self.piece(system, state, h / f64::from(pieces)) {
+                match self.advance_piece(system, state, h / f64::from(pieces)) {
                     Ok(report) => {
                         total.iterations += report.iterations;
                         total.linear_iterations += report.linear_iterations;
                     }
-                    Err(why) => {
-                        failure = why;
-                        if halvings < HALVINGS {
+                    Err(cause) => {
+                        failure = cause;
+                        if halvings < MAX_HALVINGS {
                             state.clone_from(&self.start);
                         }
                         continue 'halving;
@@ -180,19 +180,20 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         Err(self.error(system, state, failure, h))
     }
 
-    fn piece(
+    /// Advances by one piece of `h` [s].
+    fn advance_piece(
         &mut self,
         system: &System,
         state: &mut State,
         h: f64,
     ) -> Result<NewtonReport, Failure> {
         self.before.clone_from(state);
-        self.watch.start(system, state, &mut self.workspace);
+        self.energy.start(system, state, &mut self.workspace);
         let weight = R::weight(system, state, h);
         self.weights.clear();
         self.weights
             .extend(system.rest.mass.iter().map(|m| m * weight));
-        R::aim(system, state, h, &mut self.target);
+        R::set_target(system, state, h, &mut self.target);
         for (v, target) in self.target.iter_mut().enumerate() {
             if system.prescribed.pinned[v] {
                 *target = state.positions[v];
@@ -207,23 +208,30 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             weight,
             limits: self.limits,
         };
-        let rate = 1.0 / R::reach(h);
+        let rate = 1.0 / R::unknown_time(h);
         self.workspace.increment.begin_step(system, state, rate);
-        let report = self.solver.lower(&problem, state, &mut self.workspace);
+        let report = self.solver.minimise(&problem, state, &mut self.workspace);
         self.workspace.increment.begin_static(system, state);
         R::finish(&self.before, state, h);
-        if let Some(vertex) = state.first_not_finite().or_else(|| runaway(state)) {
-            return Err(Failure::Runaway(vertex));
+        if let Some(vertex) = state
+            .first_not_finite()
+            .or_else(|| first_impossible_speed(state))
+        {
+            return Err(Failure::Unstable(vertex));
         }
-        let reached = report.gradient <= self.limits.tolerance.max(REACHED * weight_norm(system));
-        if !report.sound || S::CONVERGES && !reached {
-            return Err(Failure::Stuck);
+        let converged = report.gradient
+            <= self
+                .limits
+                .tolerance
+                .max(CONVERGED_RESIDUAL * weight_norm(system));
+        if !report.succeeded || S::CONVERGES && !converged {
+            return Err(Failure::NotConverged);
         }
         let workspace = &mut self.workspace;
-        if !self.watch.is_possible(system, state, workspace, h) {
-            return Err(Failure::Runaway(fastest(state).0));
+        if !self.energy.is_possible(system, state, workspace, h) {
+            return Err(Failure::Unstable(fastest_vertex(state).0));
         }
-        // `is_possible` found the contacts of the new positions.
+        // `is_possible` has detected the contacts at the new positions.
         self.workspace.contacts.remember_step(system, state);
         state.time += h;
         Ok(report)
@@ -232,16 +240,16 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
     fn error(&mut self, system: &System, state: &State, failure: Failure, h: f64) -> DrapeError {
         let stage = S::STAGE;
         match failure {
-            Failure::Runaway(vertex) if state.velocities[vertex].iter().all(|x| x.is_finite()) => {
+            Failure::Unstable(vertex) if state.velocities[vertex].iter().all(|x| x.is_finite()) => {
                 DrapeError::BlownUp {
                     stage,
                     vertex,
                     speed: state.velocities[vertex].norm(),
-                    substep: h / f64::from(1u32 << HALVINGS),
+                    substep: h / f64::from(1u32 << MAX_HALVINGS),
                 }
             }
-            Failure::Runaway(vertex) => DrapeError::NotFinite { stage, vertex },
-            Failure::Stuck => DrapeError::NoProgress {
+            Failure::Unstable(vertex) => DrapeError::NotFinite { stage, vertex },
+            Failure::NotConverged => DrapeError::NoProgress {
                 stage,
                 residual: crate::measure::residual(system, &self.start, &mut self.workspace),
             },
@@ -250,9 +258,9 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
 }
 
 impl<R: TimeRule, S: Solver> Implicit<R, S> {
-    /// Whether cloth was in cloth or on the wrong side of a layer at the last look: the pulls that
-    /// lead it out belong to no potential and may add any energy.
-    fn leads_out(&self) -> bool {
+    /// Whether cloth crossed cloth, or lay on the wrong side of a layer, at the last detection: recovery forces have no
+    /// potential and may add any amount of energy.
+    fn is_recovering(&self) -> bool {
         let tally = &self.workspace.contacts.cloth.tally;
         tally.crossings[2] > 0 || tally.astray[2] > 0
     }
@@ -266,35 +274,35 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         step: f64,
     ) -> Result<StepReport, DrapeError> {
         state.follow_samples();
-        // A step must not depend on what was found before it.
+        // A step must depend on the state alone, not on pairs detected before it.
         self.workspace.forget_pairs();
         let mut total = StepReport::default();
         let end = state.time + step;
-        let before = R::MOST_ENERGY.map(|_| {
-            let before = self.watch.energy(system, state, &mut self.workspace);
-            [before, self.account.start(state.time, before)]
+        let before = R::MAX_ENERGY_FACTOR.map(|_| {
+            let before = self.energy.energy(system, state, &mut self.workspace);
+            [before, self.budget.start(state.time, before)]
         });
-        let mut led = self.leads_out();
+        let mut recovering = self.is_recovering();
         let automatic = || R::substeps(system, &state.samples, step);
         let substeps = self.substeps.unwrap_or_else(automatic).max(1);
         for _ in 0..substeps {
-            self.whole(system, state, step / f64::from(substeps), &mut total)?;
-            led |= self.leads_out();
+            self.advance_in_pieces(system, state, step / f64::from(substeps), &mut total)?;
+            recovering |= self.is_recovering();
         }
-        if let (Some(times), Some(before)) = (R::MOST_ENERGY, before) {
+        if let (Some(factor), Some(before)) = (R::MAX_ENERGY_FACTOR, before) {
             let [in_step, mut in_run] = before.map(|before| possible_energy(system, before, step));
-            let (after, possible) = (self.watch.last(), in_step.min(in_run));
-            if led {
+            let (after, possible) = (self.energy.last(), in_step.min(in_run));
+            if recovering {
                 in_run = after;
-            } else if after > times * possible {
+            } else if after > factor * possible {
                 return Err(DrapeError::EnergyGrew {
                     stage: S::STAGE,
-                    vertex: fastest(state).0,
+                    vertex: fastest_vertex(state).0,
                     energy: after,
                     possible,
                 });
             }
-            self.account.end(end, after, in_run);
+            self.budget.end(end, after, in_run);
         }
         state.time = end;
         Ok(total)

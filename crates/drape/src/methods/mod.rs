@@ -27,8 +27,8 @@ use implicit::{Implicit, Solver};
 use newton_solver::{Newton, OneSolve};
 
 impl MethodKind {
-    /// Iterations in a (sub)step at the most where the settings give none; nothing for explicit
-    /// methods, which have none, and for those that look for rest, whose iterations are their steps.
+    /// Most iterations in a (sub)step where the settings give none; none for explicit methods, which do not iterate,
+    /// and for equilibrium methods, whose iterations are their steps.
     pub fn most_iterations(self) -> Option<usize> {
         match self {
             Self::ImplicitEuler => Some(Newton::<false>::LIMITS.iterations),
@@ -51,7 +51,7 @@ impl MethodKind {
 }
 
 impl MethodSettings {
-    /// The method, its memory still empty.
+    /// A new method without memory of a run.
     pub fn build(&self) -> Box<dyn Method> {
         match self.kind {
             MethodKind::ForwardEuler => {
@@ -67,8 +67,8 @@ impl MethodSettings {
                 Guarded::boxed(Explicit::<runge_kutta::RungeKutta4>::new(self))
             }
             MethodKind::PatchVerlet => {
-                let general = Explicit::<velocity_verlet::VelocityVerlet>::new(self);
-                Guarded::boxed(PatchVerlet::new(self, Box::new(general)))
+                let fallback = Explicit::<velocity_verlet::VelocityVerlet>::new(self);
+                Guarded::boxed(PatchVerlet::new(self, Box::new(fallback)))
             }
             MethodKind::SemiImplicitEuler => {
                 Guarded::boxed(Implicit::<rules::Euler, OneSolve>::new(self))

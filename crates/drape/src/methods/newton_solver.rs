@@ -1,4 +1,4 @@
-//! Lowering the potential by Newton's method: to its minimum, or by one linear solve.
+//! Minimisers by Newton's method: to convergence, or by one linear solve.
 
 use super::implicit::{LONGEST_MOVE, Limits, Problem, Solver};
 use crate::laws::membrane::Curvature;
@@ -11,7 +11,7 @@ const LINEAR: LinearSolver = LinearSolver::Iterative(PcgLimits {
     iterations: 1000,
 });
 
-/// By factorisation, iterating where the matrix cannot be factorised.
+/// By factorisation, and by conjugate gradients where the matrix cannot be factorised.
 const FACTORISED: LinearSolver = LinearSolver::Direct {
     otherwise: PcgLimits {
         tolerance: 1e-6,
@@ -19,13 +19,12 @@ const FACTORISED: LinearSolver = LinearSolver::Direct {
     },
 };
 
-/// Product of the fastest vibration and the step beyond which systems are factorised: conjugate
-/// gradients take about twice as many iterations, and thirty cost as much as a factorisation of a
-/// thousand vertices.
-const STIFF: f64 = 15.0;
+/// Largest product h w, w the largest frequency, at which systems are solved by conjugate gradients: they take about
+/// twice as many iterations, and thirty cost as much as a factorisation of a thousand vertices.
+const MAX_ITERATIVE_STEP: f64 = 15.0;
 
-/// Whether steps with inertia's weight per mass `weight` [1/s2] are long for the model's fastest
-/// vibrations, judged by one triangle after the other: w^2 = C |a|^2 3 / rho.
+/// Whether steps with inertia's weight per mass `weight` [1/s2] are stiff: whether h w exceeds [`MAX_ITERATIVE_STEP`],
+/// by the frequencies of single triangles, w^2 = C |a|^2 3 / rho.
 fn is_stiff(system: &System, weight: f64) -> bool {
     system
         .topology
@@ -38,20 +37,22 @@ fn is_stiff(system: &System, weight: f64) -> bool {
             (0..3).any(|i| {
                 let stiffness = c11 * element.warp[i].powi(2) + c22 * element.weft[i].powi(2);
                 element.area * stiffness
-                    > STIFF * STIFF * weight * system.rest.mass[corners[i] as usize]
+                    > MAX_ITERATIVE_STEP
+                        * MAX_ITERATIVE_STEP
+                        * weight
+                        * system.rest.mass[corners[i] as usize]
             })
         })
 }
 
-/// Relative tolerance of a step that is never corrected: what the solve leaves is lost momentum,
-/// 1e-7 of it a step. A caller's own tolerance [N] may ask for less, down to rounding.
-const ONE_SOLVE: [f64; 2] = [1e-14, 1e-8];
+/// Least and usual relative tolerance of the single linear solve, whose error is lost momentum, 1e-7 of it a step. A
+/// tolerance of the settings [N] lowers it down to the least, which is rounding.
+const ONE_SOLVE_TOLERANCE: [f64; 2] = [1e-14, 1e-8];
 
-/// Newton's method with line search to the minimum: see [`Workspace::solve`].
+/// Newton's method with line search: see [`Workspace::solve`].
 ///
-/// Rules that extrapolate from the minimum (midpoint, BDF2) are `STRICT`: a step counts only when
-/// it was reached. Implicit Euler ends at the minimum itself: a step cut short lost more energy
-/// than it should, and is still sound.
+/// Rules that extrapolate from the minimum (midpoint, BDF2) are `STRICT`: a step without convergence fails. Implicit
+/// Euler ends at the minimum itself: without convergence a step only loses more energy than it should.
 #[derive(Default)]
 pub struct Newton<const STRICT: bool>;
 
@@ -63,7 +64,7 @@ impl<const STRICT: bool> Solver for Newton<STRICT> {
     };
     const CONVERGES: bool = STRICT;
 
-    fn lower(
+    fn minimise(
         &mut self,
         problem: &Problem,
         state: &mut State,
@@ -89,9 +90,8 @@ impl<const STRICT: bool> Solver for Newton<STRICT> {
 ///
 /// With dv = dx/h - v this is (M + h^2 K) dv = h (f(x) - h K v), semi-implicit Euler as in
 /// Baraff and Witkin 1998, equation 6, solved like theirs by conjugate gradients preconditioned by
-/// the 3x3 diagonal blocks, pins held exactly. K is the positive semidefinite Hessian. What the
-/// solve cannot see (kinks, large rotation in one step) is not corrected; a step whose energy
-/// rises out of bounds is halved, as theirs is.
+/// the 3x3 diagonal blocks, with exact pins. K is the positive semidefinite Hessian. Nonlinear errors (kinks,
+/// large rotations in one step) are not corrected; a step whose energy exceeds its bound is halved, as theirs is.
 #[derive(Default)]
 pub struct OneSolve;
 
@@ -103,7 +103,7 @@ impl Solver for OneSolve {
     };
     const CONVERGES: bool = false;
 
-    fn lower(
+    fn minimise(
         &mut self,
         problem: &Problem,
         state: &mut State,
@@ -120,17 +120,17 @@ impl Solver for OneSolve {
             Curvature::CONVEX,
         );
         let gradient = dot(&workspace.gradient, &workspace.gradient).sqrt();
-        let [rounding, usual] = ONE_SOLVE;
-        let asked = problem.limits.tolerance;
+        let [rounding, usual] = ONE_SOLVE_TOLERANCE;
+        let tolerance = problem.limits.tolerance;
         let linear = LinearSolver::Iterative(PcgLimits {
-            tolerance: if asked > 0.0 && gradient > 0.0 {
-                (asked / gradient).clamp(rounding, usual)
+            tolerance: if tolerance > 0.0 && gradient > 0.0 {
+                (tolerance / gradient).clamp(rounding, usual)
             } else {
                 usual
             },
             iterations: 1000,
         });
-        workspace.turn_gradient();
+        workspace.negate_gradient();
         let linear_iterations = workspace.solve_linear(system, linear);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {
             *x += d;
@@ -140,7 +140,7 @@ impl Solver for OneSolve {
             linear_iterations,
             gradient,
             fraction: 1.0,
-            sound: gradient.is_finite(),
+            succeeded: gradient.is_finite(),
             ..NewtonReport::default()
         }
     }

@@ -1,11 +1,12 @@
-//! The way to rest by pseudo-transient continuation.
+//! Equilibrium by pseudo-transient continuation, as a method.
 
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::{
     DrapeError, Memory, PseudoTransientContinuation, RestSettings, State, System, Workspace,
 };
 
-/// The way to rest: see [`PseudoTransientContinuation`]. How it stands is remembered in the state.
+/// Pseudo-transient continuation to equilibrium: see [`PseudoTransientContinuation`]. Its progress is stored in the
+/// memory of the state.
 pub struct Rest {
     settings: RestSettings,
     run: PseudoTransientContinuation,
@@ -13,7 +14,7 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// With what the settings leave open at its defaults.
+    /// With the settings, and its defaults where they give none.
     pub fn new(settings: &MethodSettings) -> Self {
         let settings = RestSettings {
             residual: settings.tolerance.unwrap_or(1e-3),

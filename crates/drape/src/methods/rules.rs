@@ -1,4 +1,4 @@
-//! Rules of implicit time integration: what inertia pulls to, how hard, and what follows.
+//! Rules of implicit time integration: the inertial target y, its weight b, and the new state from the minimum.
 //!
 //! c is the drag of the air per mass, a(x) = -grad E(x) / m.
 
@@ -17,7 +17,7 @@ impl TimeRule for Euler {
         (1.0 + system.control.air_drag * h) / (h * h)
     }
 
-    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
+    fn set_target(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
         let reach = h / (1.0 + system.control.air_drag * h);
         target.clear();
         target.extend(
@@ -41,40 +41,40 @@ impl TimeRule for Euler {
 }
 
 /// Implicit midpoint: x_m = (x + x') / 2, v_m = (x' - x) / h, v' = v + h (a(x_m) - c v_m). Order 2,
-/// keeps linear momentum exactly and angular momentum to the solver's tolerance, does not damp
+/// conserves linear momentum exactly and angular momentum to the solver's tolerance, has no numerical damping
 /// (Hairer, Lubich and Wanner 2006, II.1). The unknown is x_m: b = (4 + 2 c h) / h^2,
 /// y = x + (h/2) v / (1 + c h/2), then x' = 2 x_m - x and v' = 2 v_m - v.
 ///
-/// Contact is met at x_m alone: cloth may end a step inside a body without having been pushed, and
-/// then leaves it with energy it never had. Where there are bodies, automatic substeps therefore
-/// resolve the contact: h w <= 1, w^2 = stiffness / density.
+/// Contact forces act at x_m alone: a step may end inside a solid without a contact force in it, and the next one
+/// then gains energy from contact. Where there are solids, automatic substeps therefore resolve the contact:
+/// h w <= 1, w^2 = stiffness / density.
 pub struct Midpoint;
 
-/// Automatic substeps at the most: a frame takes 40.
-const MOST_SUBSTEPS: f64 = 1000.0;
+/// Most automatic substeps; a frame takes 40.
+const MAX_SUBSTEPS: f64 = 1000.0;
 
 impl TimeRule for Midpoint {
-    /// It keeps the energy of a vibration exactly and that of bent and stretched cloth nearly. Where
-    /// steps do not resolve the vibration it gains: twentyfold a frame in cloth that a body was put
-    /// over, a tenth a frame in cloth drawn to four times its length.
-    const MOST_ENERGY: Option<f64> = Some(10.0);
+    /// The rule conserves the energy of a linear vibration exactly and that of bent and stretched cloth nearly. Where
+    /// steps do not resolve the vibration it gains energy: a factor of twenty a frame in cloth that a solid was put
+    /// over, a tenth a frame in cloth stretched to four times its length.
+    const MAX_ENERGY_FACTOR: Option<f64> = Some(10.0);
 
-    fn reach(h: f64) -> f64 {
+    fn unknown_time(h: f64) -> f64 {
         0.5 * h
     }
 
     fn substeps(system: &System, samples: &[ContactSample], step: f64) -> u32 {
         (step * contact_frequency(system, samples))
             .ceil()
-            .min(MOST_SUBSTEPS) as u32
+            .min(MAX_SUBSTEPS) as u32
     }
 
     fn weight(system: &System, _state: &State, h: f64) -> f64 {
         (4.0 + 2.0 * system.control.air_drag * h) / (h * h)
     }
 
-    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
-        Euler::aim(system, state, 0.5 * h, target);
+    fn set_target(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
+        Euler::set_target(system, state, 0.5 * h, target);
     }
 
     fn finish(before: &State, state: &mut State, h: f64) {
@@ -98,10 +98,10 @@ impl TimeRule for Midpoint {
 /// before it, is implicit Euler's (the formula is stable up to r = 1 + sqrt 2).
 pub struct Bdf2;
 
-/// The longest step in steps before it that the two-step formula takes.
-const LONGEST_RATIO: f64 = 2.0;
+/// Largest ratio of a step to the one before it for the two-step formula.
+const MAX_RATIO: f64 = 2.0;
 
-/// The coefficients a0, a1, a2 with the state before; none for a first step.
+/// The coefficients a0, a1, a2 and the previous state; none for a first step or one beyond the largest ratio.
 fn two_step<'a>(memory: &'a Memory, count: usize, h: f64) -> Option<Before<'a>> {
     let Memory::Previous {
         positions,
@@ -112,13 +112,14 @@ fn two_step<'a>(memory: &'a Memory, count: usize, h: f64) -> Option<Before<'a>> 
         return None;
     };
     let r = h / step;
-    (positions.len() == count && velocities.len() == count && r <= LONGEST_RATIO).then(|| Before {
+    (positions.len() == count && velocities.len() == count && r <= MAX_RATIO).then(|| Before {
         coefficients: [(1.0 + 2.0 * r) / (1.0 + r), -(1.0 + r), r * r / (1.0 + r)],
         positions,
         velocities,
     })
 }
 
+/// The previous state of the two-step formula, and its coefficients.
 struct Before<'a> {
     coefficients: [f64; 3],
     positions: &'a [Vec3],
@@ -136,9 +137,9 @@ impl TimeRule for Bdf2 {
         }
     }
 
-    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
+    fn set_target(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
         let Some(before) = two_step(&state.memory, state.positions.len(), h) else {
-            return Euler::aim(system, state, h, target);
+            return Euler::set_target(system, state, h, target);
         };
         let [a0, a1, a2] = before.coefficients;
         let reach = h / (a0 * (a0 + system.control.air_drag * h));

@@ -1,6 +1,6 @@
-//! Velocity Verlet: order 2, keeps energy for ever below its limit.
+//! Velocity Verlet: order 2, bounded energy error for all time below the stability limit.
 
-use super::explicit::{Scheme, forces, forces_and_settle};
+use super::explicit::{Scheme, forces, forces_and_update_friction};
 use crate::{State, System, Workspace};
 use toile_geometry::Vec3;
 
@@ -25,21 +25,21 @@ impl Scheme for VelocityVerlet {
 
     fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
         let half = 0.5 * h;
-        let keep = 1.0 - system.control.air_drag * half;
+        let decay = 1.0 - system.control.air_drag * half;
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
         for ((x, v), (f, m)) in moving.zip(self.force.iter().zip(&system.rest.mass)) {
-            *v = *v * keep + f * (half / m);
+            *v = *v * decay + f * (half / m);
             *x += *v * h;
         }
-        let slowing = 1.0 / (1.0 + system.control.air_drag * half);
+        let drag_factor = 1.0 / (1.0 + system.control.air_drag * half);
         self.force
-            .copy_from_slice(forces_and_settle(system, state, workspace, h));
+            .copy_from_slice(forces_and_update_friction(system, state, workspace, h));
         for (v, (f, m)) in state
             .velocities
             .iter_mut()
             .zip(self.force.iter().zip(&system.rest.mass))
         {
-            *v = (*v + f * (half / m)) * slowing;
+            *v = (*v + f * (half / m)) * drag_factor;
         }
     }
 }

@@ -1,33 +1,33 @@
-//! Steps with the matrix of the last Newton step: its factor is the metric of L-BFGS (Nocedal 1980; that
-//! one matrix serves many steps: Kelley 1995, chapter 5). A solve costs a tenth of a factorisation, and
-//! cloth that buckles changes few entries of the Hessian at a time.
+//! Chord steps (Kelley 1995, chapter 5): steps that reuse the factor of the last Newton step, here as the initial
+//! metric of L-BFGS (Nocedal 1980). A solve costs a tenth of a factorisation, and cloth that buckles changes few
+//! entries of the Hessian at a time.
 
 use super::{Inertia, Workspace};
 use crate::pairs::Pairs;
 use crate::{State, System};
 use toile_sparse::dot;
 
-/// A step of which the line search takes less than this is the last: the matrix is no longer that of the
-/// cloth.
-const CUT: f64 = 0.1;
+/// Chord steps end when the line search takes less than this fraction of one: the factor no longer approximates
+/// the Hessian.
+const MIN_FRACTION: f64 = 0.1;
 
-/// How far chord steps go.
+/// When chord steps end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ChordLimits {
-    /// Steps at the most.
+    /// Most steps.
     pub steps: usize,
     /// Stop when the gradient's norm is below this [N].
     pub tolerance: f64,
-    /// Longest move of any vertex in one step [m].
+    /// Longest displacement of any vertex in one step [m].
     pub longest_move: f64,
 }
 
 impl Workspace {
-    /// Lowers the potential further with the matrix factorised last; friction follows after each step, so
-    /// that points creep to rest while the matrix serves. Contacts with surfaces are found before each
-    /// step, those of cloth with cloth once; tangled cloth, whose way out is found anew after every move,
-    /// is left alone. Returns the steps taken.
-    pub(crate) fn follow_on(
+    /// Lowers the potential further with the matrix factorised last. Friction anchors are updated after each
+    /// step, so that points at the limit of friction creep to rest on one factor. Contacts with solids are
+    /// detected before each step, those of cloth with cloth once. Tangled cloth takes no chord step: its recovery
+    /// direction has to be computed anew after every displacement. Returns the number of steps taken.
+    pub(crate) fn chord_steps(
         &mut self,
         system: &System,
         state: &mut State,
@@ -46,21 +46,21 @@ impl Workspace {
                 self.contacts
                     .refresh_surfaces(system, state, &state.positions);
             }
-            let share = self.chord(system, state, inertia, &mut pairs, limits);
-            steps += usize::from(share > 0.0);
-            if share < CUT {
+            let fraction = self.chord_step(system, state, inertia, &mut pairs, limits);
+            steps += usize::from(fraction > 0.0);
+            if fraction < MIN_FRACTION {
                 break;
             }
         }
-        if steps > 0 && !self.hold_back(system, state, start.positions.clone()) {
+        if steps > 0 && !self.truncate_or_undo(system, state, start.positions.clone()) {
             *state = start;
             return 0;
         }
         steps
     }
 
-    /// One step with the contacts in hand; the share of it that was taken.
-    fn chord(
+    /// One step with the contacts detected last; returns the fraction of it that the line search took.
+    fn chord_step(
         &mut self,
         system: &System,
         state: &mut State,
@@ -81,17 +81,17 @@ impl Workspace {
         pairs.descent_direction(&mut self.direction, |q, r| {
             solved = direct.solve_again(q, r);
         });
-        self.turn_gradient();
+        self.negate_gradient();
         if !solved || dot(&self.gradient, &self.direction) <= 0.0 {
             return 0.0;
         }
-        self.limit_moves(limits.longest_move);
-        let share = self.line_search(system, &state.positions, inertia);
-        if share > 0.0 {
+        self.truncate_length(limits.longest_move);
+        let fraction = self.line_search(system, &state.positions, inertia);
+        if fraction > 0.0 {
             std::mem::swap(&mut state.positions, &mut self.trial);
             self.contacts.remember_step(system, state);
         }
-        share
+        fraction
     }
 }
 
@@ -108,8 +108,8 @@ mod tests {
         longest_move: 0.015,
     };
 
-    /// A rumpled sheet after one Newton step of a pseudo step of 0.1 s: chord steps, and what is left of the
-    /// net force before and after them.
+    /// A rumpled sheet after one Newton step of a pseudo step of 0.1 s: the number of chord steps, and the
+    /// residual before and after them.
     fn after_newton(direct: bool) -> (usize, [f64; 2]) {
         let (system, rest, mut workspace) = hung();
         let mut state = rest;
@@ -142,17 +142,17 @@ mod tests {
         assert!(
             workspace
                 .solve(&system, &mut state, &inertia, &settings)
-                .sound
+                .succeeded
         );
         let before = residual(&system, &state, &mut workspace);
         let start = state.positions.clone();
-        let steps = workspace.follow_on(&system, &mut state, &inertia, LIMITS);
+        let steps = workspace.chord_steps(&system, &mut state, &inertia, LIMITS);
         assert_eq!(steps == 0, state.positions == start);
         (steps, [before, residual(&system, &state, &mut workspace)])
     }
 
     #[test]
-    fn one_matrix_serves_many_steps() {
+    fn one_factor_is_used_for_many_steps() {
         let (steps, [before, after]) = after_newton(true);
         assert!(
             steps > 10 && after < 0.1 * before,
@@ -161,12 +161,12 @@ mod tests {
     }
 
     #[test]
-    fn without_a_matrix_nothing_moves() {
+    fn without_a_factor_no_step_is_taken() {
         assert_eq!(after_newton(false).0, 0);
     }
 
     #[test]
-    fn numbers_that_are_none_are_left_alone() {
+    fn no_step_is_taken_from_a_nan_state() {
         let (system, mut state, mut workspace) = hung();
         let inertia = Inertia {
             weight: &vec![1.0; system.vertex_count()],
@@ -174,7 +174,7 @@ mod tests {
         };
         state.positions[800].x = f64::NAN;
         assert_eq!(
-            workspace.follow_on(&system, &mut state, &inertia, LIMITS),
+            workspace.chord_steps(&system, &mut state, &inertia, LIMITS),
             0
         );
     }

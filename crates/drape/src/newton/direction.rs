@@ -1,5 +1,5 @@
-//! The direction of a Newton step: the linear solve, the kinks of contact it runs into, and how far
-//! it may go.
+//! The direction of a Newton step: the linear solve, the prediction of contact kinks, and the truncation of the
+//! step.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::System;
@@ -9,20 +9,20 @@ use toile_geometry::Vec3;
 use toile_sparse::LinearSystem;
 use toile_sparse::dot;
 
-/// Times a direction is found anew because points come back from the limit of friction.
-const FORESIGHTS: usize = 2;
+/// Most times that a direction is computed anew because it crosses kinks of contact.
+const MAX_KINK_PREDICTIONS: usize = 2;
 
 impl Workspace {
-    /// Turns the sign of the gradient: the right side of the linear system.
-    pub(crate) fn turn_gradient(&mut self) {
+    /// Negates the gradient: it becomes the right side of the linear system.
+    pub(crate) fn negate_gradient(&mut self) {
         for g in &mut self.gradient {
             *g = -*g;
         }
     }
 
-    /// Finds the Newton direction, `gradient` holding its negative: with the Hessian asked for, or the
-    /// next with less of the destabilising curvature that is positive definite; then anew with the
-    /// kinks of contact that it runs into.
+    /// Computes the Newton direction; `gradient` contains the negative gradient. Uses the Hessian of
+    /// `settings.curvature`, or the next one with less destabilising curvature that is positive definite. Where
+    /// the direction crosses kinks of contact it is computed anew with those points as sticking or touching.
     pub(super) fn find_direction(
         &mut self,
         system: &System,
@@ -38,14 +38,14 @@ impl Workspace {
         }
         report.curvature = settings.curvature;
         self.solve_with(system, x, inertia, settings, report);
-        for _ in 0..FORESIGHTS {
-            let promises = 0.5 * dot(&self.gradient, &self.direction);
-            if !(self.contacts).foresee(x, &self.direction, promises) {
+        for _ in 0..MAX_KINK_PREDICTIONS {
+            let predicted_decrease = 0.5 * dot(&self.gradient, &self.direction);
+            if !(self.contacts).predict_kinks(x, &self.direction, predicted_decrease) {
                 break;
             }
             self.force.clone_from(&self.gradient);
             self.trial.clone_from(&self.direction);
-            self.contacts.pull_down(system, x, &mut self.gradient);
+            (self.contacts).add_landing_pull(system, x, &mut self.gradient);
             self.solve_with(system, x, inertia, settings, report);
             std::mem::swap(&mut self.force, &mut self.gradient);
             if dot(&self.gradient, &self.direction) <= 0.0 {
@@ -55,8 +55,8 @@ impl Workspace {
         }
     }
 
-    /// Solves with the Hessian of `report.curvature`, or with the next that is positive definite; the
-    /// convex one always is.
+    /// Solves with the Hessian of `report.curvature`, or with the next one that is positive definite; the convex
+    /// one always is.
     fn solve_with(
         &mut self,
         system: &System,
@@ -76,8 +76,8 @@ impl Workspace {
         report.linear_iterations += self.solve_linear(system, settings.linear);
     }
 
-    /// Solves for the Newton direction, `gradient` holding its negative; returns the iterations
-    /// taken.
+    /// Solves for the Newton direction; `gradient` contains the negative gradient. Returns the iterations of the
+    /// linear solver, zero for a factorisation.
     pub(crate) fn solve_linear(&mut self, system: &System, limits: LinearSolver) -> usize {
         let limits = match limits {
             LinearSolver::Iterative(limits) => limits,
@@ -93,7 +93,7 @@ impl Workspace {
             bending: self.increment.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
-            touching: &self.touching,
+            touching: &self.cloth_contact_blocks,
         };
         self.jacobi
             .refresh(&system.prescribed.pinned, |row| hessian.diagonal(row));
@@ -106,16 +106,16 @@ impl Workspace {
             .solve(&system, &mut self.jacobi, limits, &mut self.direction)
     }
 
-    /// Solves for `gradient` by factorisation; false when the matrix is not positive definite.
+    /// Solves for the right side `gradient` by factorisation; false where the matrix is not positive definite.
     fn solve_directly(&mut self, system: &System) -> bool {
-        let fits = |direct: &Direct| direct.fits(system, &self.touching);
+        let fits = |direct: &Direct| direct.fits(system, &self.cloth_contact_blocks);
         let direct = match self.direct.take().filter(fits) {
             Some(direct) => self.direct.insert(direct),
             None => {
-                let near = self.contacts.cloth.couples();
-                self.structures += 1;
+                let cloth_pairs = self.contacts.cloth.couples();
+                self.symbolic_factorisations += 1;
                 self.direct
-                    .insert(Direct::new(system, &system.topology.layout, &near))
+                    .insert(Direct::new(system, &system.topology.layout, &cloth_pairs))
             }
         };
         let hessian = Hessian {
@@ -123,50 +123,50 @@ impl Workspace {
             bending: self.increment.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
-            touching: &self.touching,
+            touching: &self.cloth_contact_blocks,
         };
         direct.solve(&hessian, &self.gradient, &mut self.direction)
     }
 
-    /// Shortens the whole direction so that no vertex moves farther than `longest` [m].
-    pub(super) fn limit_moves(&mut self, longest: f64) {
-        let most = self.longest_direction();
-        if most > longest {
-            let scale = longest / most;
+    /// Scales the direction so that no vertex moves farther than `longest` [m].
+    pub(super) fn truncate_length(&mut self, longest: f64) {
+        let length = self.longest_displacement();
+        if length > longest {
+            let scale = longest / length;
             for d in &mut self.direction {
                 *d *= scale;
             }
         }
     }
 
-    /// Shortens the direction where cloth would pass through cloth: vertex by vertex, or, where that
-    /// would no longer lower the potential, as a whole.
+    /// Truncates the direction where cloth would pass through cloth: vertex by vertex, or uniformly where the
+    /// truncated direction would no longer be one of descent.
     pub(super) fn truncate_by_contact(&mut self, system: &System, x: &[Vec3]) {
         if system.contact.cloth_offset <= 0.0 {
             return;
         }
         self.trial.clone_from(&self.direction);
-        let held = (self.contacts).truncate_moves(system, x, &mut self.direction);
-        // `gradient` holds its negative after the linear solve.
-        if held == 0 || dot(&self.gradient, &self.direction) > 0.0 {
+        let truncated = (self.contacts).truncate_moves(system, x, &mut self.direction);
+        // `gradient` contains the negative gradient after the linear solve.
+        if truncated == 0 || dot(&self.gradient, &self.direction) > 0.0 {
             return;
         }
-        let share = |(whole, cut): (&Vec3, &Vec3)| {
-            let length = whole.norm();
+        let fraction = |(full, truncated): (&Vec3, &Vec3)| {
+            let length = full.norm();
             if length > 0.0 {
-                cut.norm() / length
+                truncated.norm() / length
             } else {
                 1.0
             }
         };
-        let least = self
+        let smallest = self
             .trial
             .iter()
             .zip(&self.direction)
-            .map(share)
+            .map(fraction)
             .fold(1.0, f64::min);
-        for (d, whole) in self.direction.iter_mut().zip(&self.trial) {
-            *d = whole * least;
+        for (d, full) in self.direction.iter_mut().zip(&self.trial) {
+            *d = full * smallest;
         }
     }
 }

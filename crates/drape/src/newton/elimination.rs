@@ -1,10 +1,9 @@
-//! Nonlinear elimination (Lanzkron, Rose and Wilkes 1996; Cai and Li 2011): where few vertices hold
-//! most of the net force, they and what lies round them are brought to rest first, the rest of the
-//! cloth held.
+//! Nonlinear elimination (Lanzkron, Rose and Wilkes 1996; Cai and Li 2011): where few vertices bear most of the
+//! net force, the regions around them are brought to equilibrium first, with the remaining cloth fixed.
 //!
-//! Near rest cloth buckles in one spot after the other, and a spot that buckles takes Newton's
-//! method several steps, each a factorisation of the whole matrix cut short by a line search over
-//! all the cloth. Here they are steps of a submodel, and the cloth elsewhere does not wait for them.
+//! Near equilibrium cloth buckles in one spot after the other. Each takes Newton's method several steps, and on
+//! the whole cloth each of these costs a factorisation of the whole matrix, with a line search that shortens the
+//! step everywhere. Here they are steps of a submodel.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::laws::membrane::Curvature;
@@ -16,29 +15,30 @@ use std::collections::BTreeMap;
 use toile_geometry::Vec3;
 use toile_sparse::dot;
 
-/// Share of the sum of squared forces that regions grow round.
-const HELD: f64 = 0.8;
-/// Edges that regions grow by.
-const RINGS: usize = 6;
-/// Share of all vertices that regions may take; beyond it the force counts as spread.
-const SPREAD: f64 = 0.5;
-/// Times that regions are looked for, since one that comes to rest moves its rim's forces.
+/// Share of the sum of squared net forces that the seed vertices of the regions bear.
+const SEED_FORCE_SHARE: f64 = 0.8;
+/// Rings of neighbours by which regions grow around their seeds.
+const REGION_RINGS: usize = 6;
+/// Largest share of all vertices in regions; beyond it the force is not localised and nothing is eliminated.
+const MAX_REGION_SHARE: f64 = 0.5;
+/// Passes of elimination: a region at equilibrium changes the forces on its rim, so that regions are determined
+/// anew.
 const PASSES: usize = 3;
-/// A region is at rest at this share of its first force, of the force outside all regions, or of what
-/// is enough.
-const CALM: f64 = 0.05;
-const CALM_OUTSIDE: f64 = 0.3;
-const CALM_ENOUGH: f64 = 0.5;
-/// Newton iterations of a region at the most, and its longest move in them all [m].
-const ITERATIONS: usize = 25;
+/// Tolerances of a region: the largest of these shares of its own first net force, of the net force outside all
+/// regions, and of the tolerance for the whole cloth.
+const OF_FIRST_FORCE: f64 = 0.05;
+const OF_FORCE_OUTSIDE: f64 = 0.3;
+const OF_TOLERANCE: f64 = 0.5;
+/// Most Newton iterations of a region, and its longest displacement in all of them [m].
+const MAX_ITERATIONS: usize = 25;
 const LONGEST_MOVE: f64 = 5e-3;
 
 impl Workspace {
-    /// Brings regions to rest that hold most of the net force, until it is `enough` [N] or spread
-    /// over the cloth. The contacts in hand must be those of the state. Cloth that is tangled is left
-    /// alone: what draws it out is found anew after every move. Returns whether anything moved;
-    /// contacts are then to be found anew.
-    pub(crate) fn eliminate(&mut self, system: &System, state: &mut State, enough: f64) -> bool {
+    /// Brings the regions that bear most of the net force to equilibrium, until the net force is below
+    /// `tolerance` [N] or not localised. The contacts must have been detected at the state. Tangled cloth is left
+    /// as it is: its recovery direction has to be computed anew after every displacement. Returns whether a vertex
+    /// moved; contacts must then be detected again.
+    pub(crate) fn eliminate(&mut self, system: &System, state: &mut State, tolerance: f64) -> bool {
         if !self.increment.are_of_stretch() || !self.contacts.cloth.is_in_order() {
             return false;
         }
@@ -49,48 +49,49 @@ impl Workspace {
             self.contacts.refresh_surfaces(system, state, x);
             self.fill_gradient(system, x, None);
             let total = dot(&self.gradient, &self.gradient);
-            if total.is_nan() || total <= enough * enough {
+            if total.is_nan() || total <= tolerance * tolerance {
                 break;
             }
             let regions = self.regions(system, total);
-            let held = regions.iter().flatten().map(|&v| self.gradient[v as usize]);
-            let outside = (total - held.map(|g| g.norm_squared()).sum::<f64>()).max(0.0);
-            let calm = (CALM_OUTSIDE * outside.sqrt()).max(CALM_ENOUGH * enough);
-            let calm = calm / (regions.len() as f64).sqrt();
-            // Cloth in order has no pulls.
-            let touching = &self.contacts.cloth.contacts;
+            let inside = regions.iter().flatten().map(|&v| self.gradient[v as usize]);
+            let outside = (total - inside.map(|g| g.norm_squared()).sum::<f64>()).max(0.0);
+            let region_tolerance =
+                (OF_FORCE_OUTSIDE * outside.sqrt()).max(OF_TOLERANCE * tolerance);
+            let region_tolerance = region_tolerance / (regions.len() as f64).sqrt();
+            // Cloth without tangles has no recovery forces besides its contacts.
+            let cloth_contacts = &self.contacts.cloth.contacts;
             let submodels: Vec<SubModel> = regions
                 .par_iter()
                 .filter_map(|own| {
-                    let mut submodel = SubModel::new(system, state, touching, own);
-                    bring_to_rest(&mut submodel, calm).then_some(submodel)
+                    let mut submodel = SubModel::new(system, state, cloth_contacts, own);
+                    solve_region(&mut submodel, region_tolerance).then_some(submodel)
                 })
                 .collect();
             if submodels.is_empty() {
                 break;
             }
             moved = true;
-            for (v, place) in submodels.iter().flat_map(SubModel::own_positions) {
-                state.positions[v as usize] = place;
+            for (v, position) in submodels.iter().flat_map(SubModel::own_positions) {
+                state.positions[v as usize] = position;
             }
         }
-        moved && self.hold_back(system, state, start)
+        moved && self.truncate_or_undo(system, state, start)
     }
 
-    /// Bounds what was moved so that no cloth passes through cloth, and takes it all back where the
-    /// potential is then higher than before. Returns whether anything stays moved.
-    pub(super) fn hold_back(
+    /// Truncates the displacements since `start` so that no cloth passes through cloth, and undoes all of them
+    /// where the potential is then not lower than at `start`. Returns whether the displacements stand.
+    pub(super) fn truncate_or_undo(
         &mut self,
         system: &System,
         state: &mut State,
         start: Vec<Vec3>,
     ) -> bool {
-        let ways = state.positions.iter().zip(&start).map(|(x, s)| x - s);
-        let mut ways: Vec<Vec3> = ways.collect();
-        if (self.contacts).truncate_moves(system, &start, &mut ways) == 0 {
+        let displacements = state.positions.iter().zip(&start).map(|(x, s)| x - s);
+        let mut displacements: Vec<Vec3> = displacements.collect();
+        if (self.contacts).truncate_moves(system, &start, &mut displacements) == 0 {
             return true;
         }
-        for ((x, s), d) in state.positions.iter_mut().zip(&start).zip(&ways) {
+        for ((x, s), d) in state.positions.iter_mut().zip(&start).zip(&displacements) {
             *x = s + d;
         }
         self.contacts.refresh_surfaces(system, state, &start);
@@ -100,56 +101,59 @@ impl Workspace {
         };
         let [before, after] =
             [&start, &state.positions].map(|x| self.potential(system, x, &inertia));
-        let lower = after < before;
-        if !lower {
+        let decreased = after < before;
+        if !decreased {
             state.positions = start;
         }
-        lower
+        decreased
     }
 
-    /// Regions of free vertices, each ascending, round those that hold most of the force; `total`
-    /// is the sum of its squares. No two share a term of the potential. None where the force is
-    /// spread over the cloth.
+    /// Regions of free vertices around those that bear most of the net force; `total` is the sum of its squares
+    /// [N2]. Vertices of a region are in ascending order, and no two regions share a term of the potential. Empty
+    /// where the force is not localised.
     fn regions(&self, system: &System, total: f64) -> Vec<Vec<u32>> {
         let squares: Vec<f64> = self.gradient.iter().map(Vec3::norm_squared).collect();
         let mut ring: Vec<u32> = (0..squares.len() as u32).collect();
         ring.sort_by(|&a, &b| squares[b as usize].total_cmp(&squares[a as usize]));
-        let mut held = 0.0;
+        let mut borne = 0.0;
         let count = ring.iter().take_while(|&&v| {
-            let more = held < HELD * total;
-            held += squares[v as usize];
-            more
+            let is_seed = borne < SEED_FORCE_SHARE * total;
+            borne += squares[v as usize];
+            is_seed
         });
         ring.truncate(count.count());
-        let most = (SPREAD * squares.len() as f64) as usize;
+        let limit = (MAX_REGION_SHARE * squares.len() as f64) as usize;
         let mut inside = vec![false; squares.len()];
-        let mut all = Vec::new();
-        for _ in 0..=RINGS {
+        let mut members = Vec::new();
+        for _ in 0..=REGION_RINGS {
             ring.retain(|&v| !std::mem::replace(&mut inside[v as usize], true));
-            all.extend_from_slice(&ring);
-            if all.len() > most {
+            members.extend_from_slice(&ring);
+            if members.len() > limit {
                 return Vec::new();
             }
             let next = (ring.iter()).flat_map(|&v| system.topology.pattern.row_columns(v as usize));
             ring = next.copied().collect();
         }
-        let bent = all.iter().flat_map(|&v| {
+        let bending_pairs = members.iter().flat_map(|&v| {
             let columns = system.rest.bending.row_entries(v as usize).0;
             columns.iter().map(move |&u| [v, u])
         });
-        let sewn = system.couplings.ends();
-        let touching = self.contacts.cloth.couples();
-        let edges = all.iter().flat_map(|&v| {
+        let coupling_pairs = system.couplings.ends();
+        let contact_pairs = self.contacts.cloth.couples();
+        let edges = members.iter().flat_map(|&v| {
             let columns = system.topology.pattern.row_columns(v as usize);
             columns.iter().map(move |&u| [v, u])
         });
-        let pairs = bent.chain(edges).chain(sewn).chain(touching);
+        let pairs = bending_pairs
+            .chain(edges)
+            .chain(coupling_pairs)
+            .chain(contact_pairs);
         let coupled = pairs.filter(|pair| pair.iter().all(|&v| inside[v as usize]));
         let (region_of, _) = merge_map(squares.len(), coupled);
-        all.retain(|&v| !system.prescribed.pinned[v as usize]);
-        all.sort_unstable();
+        members.retain(|&v| !system.prescribed.pinned[v as usize]);
+        members.sort_unstable();
         let mut regions: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for v in all {
+        for v in members {
             let region = regions.entry(region_of[v as usize]).or_default();
             region.push(v);
         }
@@ -157,13 +161,14 @@ impl Workspace {
     }
 }
 
-/// Lowers the potential of a submodel until its net force is `calm` [N] or a small share of the first.
-/// Contacts of cloth with cloth stay as they were found. Returns whether anything moved.
-fn bring_to_rest(submodel: &mut SubModel, calm: f64) -> bool {
+/// Minimises the potential of a region until its net force is below `tolerance` [N] or a small share of its first
+/// one. Contacts of cloth with cloth are those of the whole cloth and are not detected anew. Returns whether a
+/// vertex moved.
+fn solve_region(submodel: &mut SubModel, tolerance: f64) -> bool {
     let SubModel {
         system,
         state,
-        touching,
+        touching: cloth_contacts,
         ..
     } = submodel;
     let mut workspace = Workspace::default();
@@ -176,7 +181,7 @@ fn bring_to_rest(submodel: &mut SubModel, calm: f64) -> bool {
     };
     let mut settings = NewtonSettings {
         iterations: 1,
-        tolerance: calm,
+        tolerance,
         longest_move: LONGEST_MOVE,
         curvature: Curvature::EXACT,
         linear: LinearSolver::Direct {
@@ -187,16 +192,16 @@ fn bring_to_rest(submodel: &mut SubModel, calm: f64) -> bool {
         },
     };
     let mut report = NewtonReport::default();
-    while report.iterations < ITERATIONS && settings.longest_move > 0.0 {
+    while report.iterations < MAX_ITERATIONS && settings.longest_move > 0.0 {
         workspace
             .contacts
             .refresh_surfaces(system, state, &state.positions);
-        workspace.contacts.cloth.contacts.clone_from(touching);
+        workspace.contacts.cloth.contacts.clone_from(cloth_contacts);
         if !workspace.iterate(system, state, &inertia, &settings, &mut report) {
             break;
         }
         if report.iterations == 1 {
-            settings.tolerance = calm.max(CALM * report.gradient);
+            settings.tolerance = tolerance.max(OF_FIRST_FORCE * report.gradient);
         }
         settings.curvature = report.next_curvature();
         settings.longest_move -= report.moved;
@@ -241,7 +246,7 @@ pub(super) mod tests {
         (system, state, workspace)
     }
 
-    /// Pushes the vertices within 20 mm of one out of the sheet and together.
+    /// Moves the vertices within 20 mm of one out of the sheet and towards each other.
     fn dent(state: &mut State, vertex: usize) {
         let centre = state.positions[vertex];
         for x in &mut state.positions {
@@ -253,7 +258,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn dents_are_brought_to_rest_and_the_cloth_round_them_stays() {
+    fn dents_reach_equilibrium_and_the_cloth_elsewhere_does_not_move() {
         let (system, rest, mut workspace) = hung();
         let mut state = rest.clone();
         let spots = [10 * 41 + 8, 28 * 41 + 32];
@@ -281,13 +286,13 @@ pub(super) mod tests {
             assert!(near[0].min(near[1]) < 0.25 || now == before);
             assert!((now - rest).norm() < 1e-3);
         }
-        // What is enough is left alone.
-        let enough = 2.0 * left * crate::measure::weight_norm(&system);
-        assert!(!workspace.eliminate(&system, &mut state, enough));
+        // Below the tolerance nothing is done.
+        let tolerance = 2.0 * left * crate::measure::weight_norm(&system);
+        assert!(!workspace.eliminate(&system, &mut state, tolerance));
     }
 
     #[test]
-    fn force_spread_over_the_cloth_is_left_to_newton_and_so_are_numbers_that_are_none() {
+    fn a_force_that_is_not_localised_and_nan_states_are_left_as_they_are() {
         let (system, rest, mut workspace) = hung();
         let mut state = rest.clone();
         for (v, x) in state.positions.iter_mut().enumerate().skip(41) {

@@ -1,4 +1,4 @@
-//! A state as its potential is expanded there: for comparing one build of the program with another.
+//! The potential about a state to second order: recorded to compare builds of the program.
 
 use super::{Inertia, Workspace};
 use crate::collision::ClothContact;
@@ -10,9 +10,9 @@ use toile_geometry::Vec3;
 pub struct Expansion {
     /// Energy of strain, elastics, contact and weight [J], heights counted from the origin.
     pub energy: f64,
-    /// Its gradient by the place of each vertex [N], zero at pins.
+    /// Its gradient by the position of each vertex [N], zero at pins.
     pub gradient: Vec<Vec3>,
-    /// Its Hessian times each of the vectors given [N], pins not heeded.
+    /// Products of its Hessian with the given vectors [N]; rows and columns of pins are included.
     pub products: Vec<Vec<Vec3>>,
     /// Contacts with solid surfaces.
     pub surface: Vec<Contact>,
@@ -21,8 +21,8 @@ pub struct Expansion {
 }
 
 impl Workspace {
-    /// Expands the potential of a state that stands still. `curvature` says how much of the part that can
-    /// make the Hessian indefinite is in it.
+    /// Expands the static potential about a state, velocities left out. `curvature` is the fraction of the
+    /// destabilising curvature in the Hessian.
     pub fn expand(
         &mut self,
         system: &System,

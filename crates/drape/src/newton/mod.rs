@@ -7,10 +7,10 @@
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
 mod chord;
+mod contact_kinks;
 mod direction;
 mod elimination;
 mod expansion;
-mod foresight;
 mod prediction;
 
 pub(crate) use chord::ChordLimits;
@@ -29,29 +29,28 @@ use toile_geometry::Vec3;
 use toile_sparse::dot;
 use toile_sparse::{BlockJacobi, Pcg, PcgLimits};
 
-/// What holds vertices to where inertia would take them.
+/// The inertial term sum w/2 |x - y|^2 of the potential.
 pub struct Inertia<'a> {
-    /// Weight of each vertex [N/m].
+    /// Weight w of each vertex [N/m].
     pub weight: &'a [f64],
-    /// Where it is drawn to [m].
+    /// Inertial target y of each vertex [m].
     pub target: &'a [Vec3],
 }
 
-/// How a solve goes about it.
+/// Settings of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
-    /// Newton iterations at the most.
+    /// Most Newton iterations.
     pub iterations: usize,
     /// Stop when the gradient's norm is below this [N].
     pub tolerance: f64,
-    /// Longest move of any vertex in one iteration [m].
+    /// Longest displacement of any vertex in one iteration [m].
     pub longest_move: f64,
     /// Limits of the linear solver.
     pub linear: LinearSolver,
-    /// Which Hessian is tried first, then ones with less of the destabilising curvature until one is
-    /// positive definite. The convex one is always safe, the exact one converges quadratically near
-    /// rest and leaves saddles at once. Only factorisation can tell whether it is positive definite:
-    /// an iterative solver always takes the convex one.
+    /// The Hessian tried first; ones with less destabilising curvature follow until one is positive definite. The
+    /// convex one always is; the exact one converges quadratically near equilibrium and leaves saddle points at
+    /// once. Only a factorisation detects indefiniteness: an iterative solver always uses the convex one.
     pub curvature: Curvature,
 }
 
@@ -60,15 +59,15 @@ pub struct NewtonSettings {
 pub enum LinearSolver {
     /// By conjugate gradients: best while inertia is large.
     Iterative(PcgLimits),
-    /// By factorisation: best near rest, where the system is ill-conditioned; iterative where the
-    /// matrix cannot be factorised.
+    /// By factorisation: best near equilibrium, where the system is ill-conditioned. Falls back to conjugate
+    /// gradients where the matrix cannot be factorised.
     Direct {
-        /// Limits of the iteration then.
+        /// Limits of these conjugate gradients.
         otherwise: PcgLimits,
     },
 }
 
-/// How a solve went.
+/// The outcome of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NewtonReport {
     /// Iterations taken.
@@ -77,26 +76,25 @@ pub struct NewtonReport {
     pub linear_iterations: usize,
     /// Norm of the gradient when the last iteration started [N].
     pub gradient: f64,
-    /// Longest move of any vertex in the last iteration [m].
+    /// Longest displacement of any vertex in the last iteration [m].
     pub moved: f64,
-    /// Share of the last Newton step that the line search took.
+    /// Fraction of the last Newton step that the line search took.
     pub fraction: f64,
-    /// What the Hessian that the last direction came from kept of the destabilising curvature.
+    /// Destabilising curvature in the Hessian of the last direction.
     pub curvature: Curvature,
     /// Whether every number stayed finite and the potential could be lowered.
-    pub sound: bool,
+    pub succeeded: bool,
 }
 
-/// A direction of which the line search takes less than this is as bad as none.
-const CUT: f64 = 0.2;
+/// Line search fraction above which a step counts as good, and the next Hessian takes more destabilising curvature.
+const GOOD_FRACTION: f64 = 0.2;
 
 impl NewtonReport {
-    /// What the next Hessian should keep of the destabilising curvature: more after a step that went
-    /// well, less after one whose matrix was not positive definite or whose direction had to be cut.
-    /// With too little of it cloth that is about to buckle creeps away from its saddle by a few per
-    /// cent a step.
+    /// Destabilising curvature for the next Hessian: more after a good step, less after one whose direction had to
+    /// be shortened by the line search. With too little, cloth that is about to buckle leaves its saddle point by
+    /// only a few per cent a step.
     pub fn next_curvature(&self) -> Curvature {
-        if self.fraction > CUT {
+        if self.fraction > GOOD_FRACTION {
             self.curvature.more()
         } else {
             self.curvature.less()
@@ -118,30 +116,32 @@ pub struct Workspace {
     diagonal: Vec<Matrix3<f64>>,
     blocks: Vec<Matrix3<f64>>,
     secants: Vec<f64>,
-    touching: Couplings,
+    cloth_contact_blocks: Couplings,
     pcg: Pcg,
     jacobi: BlockJacobi,
     direct: Option<Direct>,
-    structures: usize,
+    symbolic_factorisations: usize,
 }
 
 /// Elements handled by one task.
 const CHUNK: usize = 256;
 
-/// Sufficient decrease asked of the line search (Armijo's constant; Nocedal and Wright 2006, 3.1).
-const DECREASE: f64 = 1e-4;
+/// Armijo's constant: least decrease over that of the linear model that the line search accepts (Nocedal and
+/// Wright 2006, 3.1).
+const ARMIJO: f64 = 1e-4;
 
-/// Halvings before the line search gives up: the step is then below a thousandth.
-const HALVINGS: usize = 12;
+/// Most trial steps of the line search, each half of the last.
+const MAX_TRIALS: usize = 12;
 
 impl Workspace {
-    /// How often the structure of a factorisation was worked out.
-    pub fn structures(&self) -> usize {
-        self.structures
+    /// Number of symbolic factorisations so far.
+    pub fn symbolic_factorisations(&self) -> usize {
+        self.symbolic_factorisations
     }
 
-    /// Vertices of cloths that may touch, as the structure of the factor was worked out for them: the order of
-    /// elimination follows, and with it what rounding leaves. None while there is none for a model.
+    /// Pairs of vertices that cloth contacts may couple, for which the symbolic factorisation was made, sorted. They
+    /// determine the elimination order and with it the rounding errors, so that a checkpoint contains them. None
+    /// without a factor for the model.
     pub(crate) fn eliminated_pairs(&self, model: &Model) -> Option<Vec<[u32; 2]>> {
         let direct = self.direct.as_ref().filter(|direct| direct.is_of(model))?;
         let mut pairs = direct.touching().to_vec();
@@ -150,13 +150,13 @@ impl Workspace {
         Some(pairs)
     }
 
-    /// Works out the structure that [`Self::eliminated_pairs`] told of.
+    /// Makes the symbolic factorisation for the pairs of a checkpoint, see [`Self::eliminated_pairs`].
     pub(crate) fn eliminate_pairs(&mut self, system: &System, pairs: &[[u32; 2]]) {
-        self.structures += 1;
+        self.symbolic_factorisations += 1;
         self.direct = Some(Direct::new(system, &system.topology.layout, pairs));
     }
 
-    /// Forgets which pairs of cloth were near, and the places they took in the matrix.
+    /// Clears the pairs of near cloth, and the factor whose structure contains them.
     pub(crate) fn forget_pairs(&mut self) {
         self.contacts.forget_cloth();
         if !self.contacts.cloth.is_empty() {
@@ -164,6 +164,7 @@ impl Workspace {
         }
     }
 
+    /// Sizes the buffers for a model.
     pub(crate) fn fit(&mut self, system: &System) {
         let n = system.vertex_count();
         self.gradient.resize(n, Vec3::zeros());
@@ -179,8 +180,8 @@ impl Workspace {
         self.secants.resize(system.elastic_count(), 0.0);
     }
 
-    /// Net force on every vertex at the state's positions, inertia left out, zero at pins [N].
-    /// Contact and friction (inside its cone) are part of it.
+    /// Net force on every vertex at the state's positions, zero at pins [N]: all forces but inertia, contact and
+    /// friction (within its cone) included.
     pub fn net_force(&mut self, system: &System, state: &State) -> &[Vec3] {
         self.fit(system);
         self.increment.begin_static(system, state);
@@ -192,8 +193,8 @@ impl Workspace {
         &self.gradient
     }
 
-    /// The same with the forces that depend on velocity, viscosity and the drag of the air on
-    /// triangles, taken at the state's velocities [N]. Drag per mass is left to the caller.
+    /// [`Self::net_force`] plus the forces at the state's velocities [N]: viscosity, the air on triangles, and the
+    /// dashpots of contacts for a substep `h` [s]. Drag per mass is left to the caller.
     pub(crate) fn force_in_motion(&mut self, system: &System, state: &State, h: f64) -> &[Vec3] {
         self.net_force(system, state);
         add_forces_of_motion(system, state, &mut self.gradient);
@@ -206,13 +207,13 @@ impl Workspace {
         &self.gradient
     }
 
-    /// What [`Self::net_force`] found last.
+    /// The result of the last call of [`Self::net_force`] or [`Self::force_in_motion`] [N].
     pub(crate) fn last_force(&self) -> &[Vec3] {
         &self.gradient
     }
 
-    /// Lowers the potential from the state's positions and leaves the result there. Velocities,
-    /// anchors and time are left to the caller.
+    /// Minimises the potential, starting from the state's positions, and stores the result there. Velocities,
+    /// friction anchors and time are left to the caller.
     pub fn solve(
         &mut self,
         system: &System,
@@ -222,7 +223,7 @@ impl Workspace {
     ) -> NewtonReport {
         self.fit(system);
         let mut report = NewtonReport {
-            sound: true,
+            succeeded: true,
             fraction: 1.0,
             ..NewtonReport::default()
         };
@@ -235,7 +236,8 @@ impl Workspace {
         report
     }
 
-    /// One iteration with the contacts in hand; false when there was none to take or it failed.
+    /// One iteration with the contacts detected last; false where the gradient is below the tolerance or no step
+    /// lowers the potential.
     fn iterate(
         &mut self,
         system: &System,
@@ -246,25 +248,25 @@ impl Workspace {
     ) -> bool {
         self.fill_gradient(system, &state.positions, Some(inertia));
         report.gradient = dot(&self.gradient, &self.gradient).sqrt();
-        report.sound = report.gradient.is_finite();
-        if !report.sound || report.gradient <= settings.tolerance {
+        report.succeeded = report.gradient.is_finite();
+        if !report.succeeded || report.gradient <= settings.tolerance {
             return false;
         }
         report.iterations += 1;
-        self.turn_gradient();
+        self.negate_gradient();
         self.find_direction(system, &state.positions, inertia, settings, report);
-        self.limit_moves(settings.longest_move);
+        self.truncate_length(settings.longest_move);
         self.truncate_by_contact(system, &state.positions);
         report.fraction = self.line_search(system, &state.positions, inertia);
-        report.sound = report.fraction > 0.0;
-        if report.sound {
+        report.succeeded = report.fraction > 0.0;
+        if report.succeeded {
             std::mem::swap(&mut state.positions, &mut self.trial);
-            report.moved = self.longest_direction() * report.fraction;
+            report.moved = self.longest_displacement() * report.fraction;
         }
-        report.sound
+        report.succeeded
     }
 
-    /// Potential at some positions, with the contact planes as they are [J].
+    /// Potential at positions `x`, with the contact planes detected last [J].
     pub(crate) fn potential(&self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
         let elements: Vec<f64> = system
             .topology
@@ -286,9 +288,9 @@ impl Workspace {
             .map(|chunk| {
                 let mut energy = 0.0;
                 for v in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
-                    let off = x[v] - inertia.target[v];
+                    let difference = x[v] - inertia.target[v];
                     energy += system.rest.bending.row_energy(v, x)
-                        + 0.5 * inertia.weight[v] * off.norm_squared()
+                        + 0.5 * inertia.weight[v] * difference.norm_squared()
                         - system.rest.mass[v] * system.control.gravity.dot(&x[v]);
                 }
                 energy
@@ -299,8 +301,8 @@ impl Workspace {
             energy += elastic.law.energy(elastic.gap(x));
         }
         for contact in &self.contacts.active {
-            let place = contact.point.position(x);
-            energy += contact.law.energy(&contact.plane, place);
+            let position = contact.point.position(x);
+            energy += contact.law.energy(&contact.plane, position);
         }
         for contact in self.contacts.cloth.all() {
             energy += contact.law.energy(&contact.plane, contact.between(x));
@@ -308,7 +310,7 @@ impl Workspace {
         energy + self.increment.energy(system, x)
     }
 
-    /// Gradient of the potential at `x`; zero at pins.
+    /// Computes the gradient of the potential at `x` [N], zero at pins; without `inertia` the static one.
     pub(crate) fn fill_gradient(&mut self, system: &System, x: &[Vec3], inertia: Option<&Inertia>) {
         let terms = &self.increment;
         let each = self.corner_gradients.par_iter_mut().enumerate();
@@ -360,8 +362,9 @@ impl Workspace {
         }
     }
 
-    /// The Hessian of the potential at `x` with a share of its destabilising curvature: positive semidefinite with
-    /// [`Curvature::CONVEX`], else perhaps indefinite. Bending is left out: it is constant and stays in the model.
+    /// Computes the Hessian of the potential at `x` with a fraction of its destabilising curvature: positive
+    /// semidefinite with [`Curvature::CONVEX`], otherwise possibly indefinite. Bending is not included: it is
+    /// constant and part of the model.
     pub(crate) fn fill_hessian(
         &mut self,
         system: &System,
@@ -383,9 +386,9 @@ impl Workspace {
         }
         for contact in &self.contacts.active {
             let sample = &contact.point;
-            let place = sample.position(x);
-            let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, place);
-            hessian -= contact.law.missing_curvature(&contact.plane, place) * curvature.0;
+            let position = sample.position(x);
+            let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, position);
+            hessian -= contact.law.missing_curvature(&contact.plane, position) * curvature.0;
             match sample.triangle {
                 None => self.diagonal[sample.vertices[0] as usize] += hessian,
                 Some(t) => {
@@ -397,7 +400,7 @@ impl Workspace {
                 }
             }
         }
-        self.couple(x);
+        self.add_cloth_contact_hessian(x);
         system
             .topology
             .pattern
@@ -405,8 +408,8 @@ impl Workspace {
     }
 
     /// Adds the Hessian of contacts of cloth with cloth.
-    fn couple(&mut self, x: &[Vec3]) {
-        self.touching.clear();
+    fn add_cloth_contact_hessian(&mut self, x: &[Vec3]) {
+        self.cloth_contact_blocks.clear();
         for contact in self.contacts.cloth.all() {
             let (_, _, hessian) = contact.law.evaluate(&contact.plane, contact.between(x));
             if hessian == Matrix3::zeros() {
@@ -418,32 +421,33 @@ impl Workspace {
                 for j in 0..i {
                     let share = w * contact.weights[j];
                     if share != 0.0 {
-                        self.touching.add(v, contact.vertices[j], hessian * share);
+                        self.cloth_contact_blocks
+                            .add(v, contact.vertices[j], hessian * share);
                     }
                 }
             }
         }
-        self.touching.sort(x.len());
+        self.cloth_contact_blocks.sort(x.len());
     }
 
-    /// The Hessian filled last.
+    /// The Hessian computed last.
     pub(crate) fn hessian<'a>(&'a self, system: &'a System) -> Hessian<'a> {
         Hessian {
             system,
             bending: self.increment.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
-            touching: &self.touching,
+            touching: &self.cloth_contact_blocks,
         }
     }
 
-    /// One row of the Hessian filled last times a vector.
+    /// The product of one row of the Hessian computed last with a vector.
     pub(crate) fn hessian_row(&self, system: &System, row: usize, p: &[Vec3]) -> Vec3 {
         self.hessian(system).row_times(row, p)
     }
 
-    /// The triangles' and elastics' rows of the Hessian filled last: columns and blocks, bending
-    /// left out.
+    /// One row of the Hessian computed last as columns and blocks, without bending and without the off-diagonal
+    /// blocks of elastics and cloth contacts, which are stored separately.
     pub(crate) fn hessian_blocks<'a>(
         &'a self,
         system: &'a System,
@@ -452,21 +456,21 @@ impl Workspace {
         system.topology.pattern.row_entries(row, &self.blocks)
     }
 
-    /// Halves the direction until the potential falls enough; the new positions are in `trial`.
-    /// Returns the share taken, 0 when none lowers the potential.
+    /// Backtracking line search: halves the step until the potential satisfies Armijo's condition; the new
+    /// positions are in `trial`. Returns the fraction of the direction taken, 0 where none is accepted.
     fn line_search(&mut self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
         let start = self.potential(system, x, inertia);
-        // `gradient` holds its negative.
+        // `gradient` contains the negative gradient.
         let slope = -dot(&self.gradient, &self.direction);
         let mut fraction = 1.0;
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_TRIALS {
             for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.direction) {
                 *trial = x + d * fraction;
             }
             let energy = self.potential(system, &self.trial, inertia);
-            // Below rounding of the potential itself nothing can be told apart: take the step.
-            let noise = 1e-13 * start.abs().max(1.0);
-            if energy <= start + DECREASE * fraction * slope + noise {
+            // A change below the rounding error of the potential counts as a decrease.
+            let rounding = 1e-13 * start.abs().max(1.0);
+            if energy <= start + ARMIJO * fraction * slope + rounding {
                 return fraction;
             }
             fraction *= 0.5;
@@ -474,8 +478,8 @@ impl Workspace {
         0.0
     }
 
-    /// Longest move of a vertex in the direction [m].
-    fn longest_direction(&self) -> f64 {
+    /// Longest displacement of a vertex in the direction [m].
+    fn longest_displacement(&self) -> f64 {
         let squares = self.direction.iter().map(Vec3::norm_squared);
         squares.fold(0.0, f64::max).sqrt()
     }

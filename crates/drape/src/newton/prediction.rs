@@ -1,13 +1,13 @@
-//! Where cloth at rest goes when its rest shapes change, to first order: one step with the matrix factorised
-//! last (sensitivity of an equilibrium; Umetani, Kaufman, Igarashi and Grinspun 2011).
+//! First-order prediction of an equilibrium under changed rest shapes: one step with the matrix factorised last
+//! (sensitivity of an equilibrium; Umetani, Kaufman, Igarashi and Grinspun 2011).
 //!
-//! At rest g(x; q) = 0 for the net force g at places x and rest shapes q. With other shapes q'
+//! At equilibrium g(x; q) = 0 for the gradient g at positions x and rest shapes q. With other shapes q'
 //! ```text
 //! dx = -H^-1 g(x; q'),    2 E = g . H^-1 g
 //! ```
-//! is a chord step of Newton's method: the force is that of the new shapes, the matrix still that of the old.
-//! E [J], half the square of Newton's decrement, is what the step promises to lower the potential by, and
-//! says how far off the new rest is.
+//! is a chord step of Newton's method: the gradient is that of the new shapes, the matrix still that of the old.
+//! E [J], half the squared Newton decrement, is the predicted decrease of the potential and measures the distance
+//! to the new equilibrium.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, PcgLimits, Workspace};
 use crate::laws::membrane::Curvature;
@@ -15,22 +15,22 @@ use crate::{State, System};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
 
-/// A first-order step towards another rest.
+/// A first-order step towards another equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FirstOrder {
-    /// Where the vertices come to lie [m].
+    /// Predicted positions of the vertices [m].
     pub positions: Vec<Vec3>,
-    /// What the whole step promised to lower the potential by [J].
-    pub promised: f64,
-    /// Share of the step that was taken.
+    /// Decrease of the potential that the quadratic model predicts for the full step [J].
+    pub predicted_decrease: f64,
+    /// Fraction of the step that was taken.
     pub share: f64,
 }
 
 impl Workspace {
-    /// The step from a state at rest under other rest shapes, shortened where cloth would pass through cloth,
-    /// where a vertex would go farther than `longest_move` [m], and where the potential would not fall. Where
-    /// no matrix was factorised yet, that of the state is, under a pseudo step of `pseudo_step` [s]. None where
-    /// numbers are not finite.
+    /// The first-order step from an equilibrium under other rest shapes; it is shortened where cloth would pass
+    /// through cloth, where a vertex would move farther than `longest_move` [m], and where the potential would not
+    /// decrease. Where no factor is available, the matrix of the state is factorised, with the inertia of a
+    /// pseudo step of `pseudo_step` [s]. None where a number is not finite.
     pub(crate) fn first_order(
         &mut self,
         system: &System,
@@ -49,7 +49,7 @@ impl Workspace {
             weight: &weight,
             target: x,
         };
-        self.turn_gradient();
+        self.negate_gradient();
         let last = self.direct.as_mut().filter(|direct| direct.is_of(system));
         let solved = last.is_some_and(|last| last.solve_again(&self.gradient, &mut self.direction));
         if !solved || dot(&self.gradient, &self.direction) <= 0.0 {
@@ -67,11 +67,11 @@ impl Workspace {
             };
             self.find_direction(system, x, &inertia, &settings, &mut NewtonReport::default());
         }
-        let promised = 0.5 * dot(&self.gradient, &self.direction);
-        if !promised.is_finite() {
+        let predicted_decrease = 0.5 * dot(&self.gradient, &self.direction);
+        if !predicted_decrease.is_finite() {
             return None;
         }
-        self.limit_moves(longest_move);
+        self.truncate_length(longest_move);
         self.truncate_by_contact(system, x);
         let share = self.line_search(system, x, &inertia);
         let positions = match share > 0.0 {
@@ -80,7 +80,7 @@ impl Workspace {
         };
         Some(FirstOrder {
             positions,
-            promised,
+            predicted_decrease,
             share,
         })
     }

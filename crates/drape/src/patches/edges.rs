@@ -1,26 +1,27 @@
-//! The edges of a patch in an order in which neighbours of neighbours lie side by side.
+//! Numbering of a patch's edges: the edges of consecutive vertices get consecutive numbers wherever the mesh
+//! allows it, so that eight of them are loaded at once.
 
 use super::octets::WIDTH;
 use std::collections::BTreeMap;
 
-/// Edges between vertices that lie as far apart in the patch, one after the other, are a chain;
-/// from so many on it keeps a place for every vertex it passes.
-const CHAIN: usize = WIDTH;
+/// A chain is a sequence of edges {v, v + stride} of one stride with increasing v. Chains of at least so many
+/// edges are numbered by their vertices, edge {v, v + stride} as start + v, with unused numbers at the gaps;
+/// the edges of shorter chains are numbered singly.
+const MIN_CHAIN_LENGTH: usize = WIDTH;
 
-/// Vertices without such an edge that a chain passes over.
-const GAP: u32 = WIDTH as u32;
+/// Largest difference between the first vertices of two consecutive edges of a chain.
+const MAX_CHAIN_GAP: u32 = WIDTH as u32;
 
-/// Edges by their numbers. In a chain the numbers run with the vertices, so that what is side by
-/// side for vertices is so for edges too.
+/// Edges by their numbers. Within a chain consecutive vertices have edges of consecutive numbers.
 #[derive(Default)]
 pub struct Edges {
-    /// The ends of each, the lower first; nothing where no edge is.
+    /// The vertices of each edge, the lower first; none where the number is unused.
     pub ends: Vec<Option<[u32; 2]>>,
     numbers: BTreeMap<[u32; 2], u32>,
 }
 
 impl Edges {
-    /// Of triangles.
+    /// The edges of triangles.
     pub fn new(triangles: impl Iterator<Item = [u32; 3]>) -> Self {
         let mut sorted: Vec<(u32, u32)> = triangles
             .flat_map(|[a, b, c]| [[a, b], [a, c], [b, c]])
@@ -28,34 +29,34 @@ impl Edges {
             .collect();
         sorted.sort_unstable();
         sorted.dedup();
-        let follows = |a: &(u32, u32), b: &(u32, u32)| a.0 == b.0 && b.1 - a.1 <= GAP;
+        let follows = |a: &(u32, u32), b: &(u32, u32)| a.0 == b.0 && b.1 - a.1 <= MAX_CHAIN_GAP;
         let mut edges = Self::default();
         let mut single = Vec::new();
         for chain in sorted.chunk_by(follows) {
-            if chain.len() < CHAIN {
+            if chain.len() < MIN_CHAIN_LENGTH {
                 single.extend_from_slice(chain);
                 continue;
             }
             let start = edges.ends.len().next_multiple_of(WIDTH) as u32;
-            for &(apart, low) in chain {
-                edges.put(start + low - chain[0].1, [low, low + apart]);
+            for &(stride, low) in chain {
+                edges.insert(start + low - chain[0].1, [low, low + stride]);
             }
         }
-        single.sort_unstable_by_key(|&(apart, low)| (low, apart));
+        single.sort_unstable_by_key(|&(stride, low)| (low, stride));
         let start = edges.ends.len().next_multiple_of(WIDTH) as u32;
-        for (&(apart, low), number) in single.iter().zip(start..) {
-            edges.put(number, [low, low + apart]);
+        for (&(stride, low), number) in single.iter().zip(start..) {
+            edges.insert(number, [low, low + stride]);
         }
         edges
     }
 
-    fn put(&mut self, number: u32, ends: [u32; 2]) {
+    fn insert(&mut self, number: u32, ends: [u32; 2]) {
         self.ends.resize(number as usize, None);
         self.ends.push(Some(ends));
         self.numbers.insert(ends, number);
     }
 
-    /// The number of the edge between two vertices; every side of a triangle has one.
+    /// The number of the edge between two vertices; none where no triangle has that edge.
     pub fn number(&self, a: u32, b: u32) -> Option<u32> {
         self.numbers.get(&[a.min(b), a.max(b)]).copied()
     }

@@ -1,9 +1,9 @@
-//! Vectors that fill a register.
+//! Vectors of R3 padded to a register.
 
 use toile_geometry::Vec3;
 
-/// A vector with a fourth component that stays zero, so that it fills a register and never lies
-/// across two cache lines.
+/// A vector of R3 with a fourth component that stays zero: it fills a 256-bit register and is aligned to it, so
+/// that it never crosses a cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
 pub struct Lane([f64; 4]);
@@ -34,7 +34,7 @@ impl Lane {
         [x, y, z]
     }
 
-    /// This plus `s` times another.
+    /// self + s b.
     #[inline(always)]
     pub fn add_scaled(self, b: Self, s: f64) -> Self {
         let (a, b) = (self.0, b.0);
@@ -46,28 +46,28 @@ impl Lane {
         ])
     }
 
-    /// This less another.
+    /// self - b.
     #[inline(always)]
     pub fn minus(self, b: Self) -> Self {
         let (a, b) = (self.0, b.0);
         Self([a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]])
     }
 
-    /// This plus another.
+    /// self + b.
     #[inline(always)]
     pub fn plus(self, b: Self) -> Self {
         let (a, b) = (self.0, b.0);
         Self([a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]])
     }
 
-    /// `s` times this.
+    /// s times self.
     #[inline(always)]
     pub fn scaled(self, s: f64) -> Self {
         let a = self.0;
         Self([a[0] * s, a[1] * s, a[2] * s, a[3] * s])
     }
 
-    /// The inner product with another.
+    /// The inner product self . b.
     #[inline(always)]
     pub fn dot(self, b: Self) -> f64 {
         let (a, b) = (self.0, b.0);

@@ -1,31 +1,32 @@
-//! Frequencies that bound the substeps.
+//! Bounds on the largest angular frequency of a cloth, by which substeps are chosen.
 
 use crate::methods::largest_frequency;
 use crate::{State, System};
 use nalgebra::Matrix3;
 
-/// Squared stretch up to which a layout counts as isometric to the cloth at rest.
+/// Largest deviation of the principal squared stretches from 1 at which a layout counts as isometric to the
+/// rest shapes.
 const ISOMETRIC: f64 = 0.02;
 
-/// What Lanczos iteration may fall short of the largest frequency, as a share.
-const SHORT: f64 = 2e-3;
+/// Relative bound on the error of the Lanczos iteration, which approaches the largest frequency from below.
+const LANCZOS_ERROR: f64 = 2e-3;
 
-/// The fastest vibration of the cloth while no triangle is strained [rad/s], with the principal
-/// squared stretches of the layout: by Lanczos iteration where the layout is nearly isometric to
-/// the rest shapes, and otherwise by bounds that no layout changes.
-pub fn frequency_at_rest(system: &System, [most, least]: [f64; 2]) -> f64 {
+/// A bound on the largest angular frequency of the unstrained cloth [rad/s], given the largest and smallest
+/// principal squared stretch of its layout: by Lanczos iteration about the layout where that is nearly isometric
+/// to the rest shapes, otherwise by bounds that do not depend on the layout.
+pub fn frequency_at_rest(system: &System, [largest, smallest]: [f64; 2]) -> f64 {
     let bound = stiffest(system).0.hypot(soft_frequency(system));
-    if most < 1.0 + ISOMETRIC && least > 1.0 - ISOMETRIC {
+    if largest < 1.0 + ISOMETRIC && smallest > 1.0 - ISOMETRIC {
         let layout = State::at_rest(system, system.topology.layout.clone());
-        // Squeezing lowers the frequency by the root of the square.
-        bound.min((1.0 + SHORT) * largest_frequency(system, &layout) / least.sqrt())
+        // In compression the frequency falls as the stretch, the root of the squared one.
+        bound.min((1.0 + LANCZOS_ERROR) * largest_frequency(system, &layout) / smallest.sqrt())
     } else {
         bound
     }
 }
 
-/// The fastest vibration of any single triangle on its share of the masses [rad/s], which bounds
-/// that of the whole (Irons and Treharne 1971), and a vertex of that triangle.
+/// The largest angular frequency of any single triangle on its share of the masses [rad/s], which bounds that of
+/// the whole cloth (Irons and Treharne 1971), and a vertex of that triangle.
 ///
 /// With strain B u, energy A C : strain strain / 2 and density rho, w^2 is the largest eigenvalue
 /// of 3/rho L^T (B B^T) L, C = L L^T.
@@ -53,7 +54,7 @@ pub fn stiffest(system: &System) -> (f64, usize) {
     (best.0.sqrt(), best.1)
 }
 
-/// A bound on the fastest vibration by bending and elastics [rad/s]: the largest row sum of
+/// A bound on the largest angular frequency due to bending and elastics [rad/s]: the largest row sum of
 /// |K| / m (Gershgorin 1931).
 pub fn soft_frequency(system: &System) -> f64 {
     (0..system.vertex_count())
@@ -67,9 +68,9 @@ pub fn soft_frequency(system: &System) -> f64 {
         .sqrt()
 }
 
-/// By how much a squared stretch r raises the membrane's frequencies at the most. The material
-/// part of the Hessian grows by r. The geometric part is the stress, at most (1 + nu) C (r - 1)/2
-/// in biaxial stretch, where C is what the material part has at rest.
+/// The largest factor by which a squared stretch r raises the frequencies of the membrane. The material
+/// stiffness grows by the factor r. The geometric stiffness is the stress, at most (1 + nu) C (r - 1)/2 in
+/// biaxial stretch, C being the material stiffness at rest.
 pub fn stiffening(r: f64) -> f64 {
     (2.0 * r - 1.0).sqrt()
 }
@@ -111,7 +112,7 @@ mod tests {
         let exact = largest_frequency(&system, &State::at_rest(&system, mesh.positions.clone()));
         let (bound, _) = stiffest(&system);
         assert!(bound >= exact && bound < 1.6 * exact, "{bound} {exact}");
-        // A layout that is squeezed tells nothing about the cloth at rest.
+        // About a compressed layout the frequency of the cloth at rest cannot be measured.
         let squeezed = frequency_at_rest(&system, [1.0, 0.5]);
         assert!((squeezed - bound).abs() < 1e-9 * bound);
         let flat = frequency_at_rest(&system, [1.0, 1.0]);

@@ -4,16 +4,16 @@ use crate::laws::membrane::MembraneElement;
 
 /// The membrane of one triangle by its edges x1 - x0, x2 - x0 and x2 - x1: with q their squared
 /// lengths less those at rest, Green strain is linear in q, so the energy is q.Kq / 4 with a
-/// constant 3x3 K, and t = Kq are tensions: an edge from a to b has gradients t (b - a) by b and
-/// the opposite by a.
+/// constant 3x3 matrix K, and t = Kq are tensions: an edge from a to b adds t (b - a) to the gradient at b
+/// and the opposite at a.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeMembrane {
     /// Squared lengths at rest [m2].
     pub rest: [f64; 3],
     /// K [N/m3].
     pub stiffness: [[f64; 3]; 3],
-    /// What principal stretch follows from: three weights of q [1/m2] and the inverse of four
-    /// times the squared area [1/m4].
+    /// Coefficients of the principal stretches: three weights of q [1/m2] and the inverse of four times
+    /// the squared area [1/m4].
     pub shape: [f64; 4],
 }
 
@@ -23,7 +23,7 @@ impl EdgeMembrane {
         let [_, w1, w2] = element.warp;
         let [_, z1, z2] = element.weft;
         let [_, d1, d2] = element.rest();
-        // Rows: E_uu, E_vv, gamma by q; 2 d1.d2 is the sum of the first two less the third.
+        // Derivatives of E_uu, E_vv, gamma by q; 2 d1.d2 is the sum of the first two less the third.
         let mixed = 0.5 * (w1 * z2 + w2 * z1);
         let u = [0.5 * w1 * (w1 + w2), 0.5 * w2 * (w1 + w2), -0.5 * w1 * w2];
         let v = [0.5 * z1 * (z1 + z2), 0.5 * z2 * (z1 + z2), -0.5 * z1 * z2];

@@ -7,21 +7,22 @@
 //! Tuckerman, Berne and Martyna 1992, section II). Order 2, symplectic without drag and friction,
 //! momentum exact, stable while h w < 2 for the fastest vibration w.
 //!
-//! Left to itself it takes h = 0.95 * 2 / w with w that at rest, raised by the largest stretch of
-//! any triangle; a stretch that grew beyond what the substeps allow undoes them and takes more.
+//! Without given substeps it takes h = 0.95 * 2 / w, where w is the frequency at rest raised by the largest
+//! stretch of any triangle; when the stretch grows beyond the stability limit of the substeps taken, they are
+//! undone and repeated with more.
 //!
-//! It is fast because the cloth is cut into patches with halos, each moved by one task for several
-//! substeps; vertices and edges are worked on eight at a time, in an order in which their neighbours
-//! lie side by side; the membrane is evaluated as tensions of edges; and contact planes are measured
+//! It is fast because the cloth is cut into patches with halos, each advanced by one task for several
+//! substeps; vertices and edges are computed eight at a time, in an order in which most of their neighbours
+//! have consecutive indices; the membrane is evaluated as tensions of edges; and contact planes are detected
 //! every half to whole millisecond only. A frame costs vertices x substeps, the substeps growing as 1 / edge:
-//! for light, soft cloth that is less than any implicit step, and without its damping.
+//! for light, soft cloth that is less than any implicit step costs, and without numerical damping.
 //!
-//! Bending in longer steps than the membrane's (impulses, Tuckerman et al.) was measured and left
-//! out: with two substeps to an impulse the rest of a hung cloth is 4e-2 of its weight off balance,
-//! with four 0.6, for the membrane rings between impulses.
+//! Bending in longer steps than the membrane's (impulses, Tuckerman et al.) was measured and left out: the
+//! membrane rings between impulses, and the net force on a hung cloth stays at 4e-2 of its weight with two
+//! substeps to an impulse, at 0.6 with four.
 //!
-//! Where a model has what this does not treat (stretch that hardens or has a limit, viscosity,
-//! kept folds, moving air, contact inside triangles), the step is velocity Verlet's.
+//! A model with a feature that patches do not support (stretch that hardens or has a limit, viscosity,
+//! persistent folds, moving air, contact samples inside triangles) is advanced by velocity Verlet.
 
 mod edges;
 mod lane;
@@ -29,11 +30,11 @@ mod limits;
 mod membrane;
 mod octets;
 mod patch;
+mod patch_contacts;
 mod rows;
 mod sheet;
 mod stretch;
 mod tensions;
-mod touch;
 
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::methods::{energy_bound, is_possible_speed};
@@ -42,40 +43,40 @@ use lane::Lane;
 use limits::stiffening;
 use sheet::Sheet;
 
-/// Patch Verlet with its memory.
+/// Patch Verlet with its private memory.
 pub struct PatchVerlet {
     substeps: Option<u32>,
     sheet: Option<Sheet>,
-    general: Box<dyn Method>,
+    fallback: Box<dyn Method>,
 }
 
 const STAGE: &str = "patch Verlet";
 
-/// Share of the stability limit 2/w that automatic substeps use; what is left pays for stretch
-/// that grows between two looks at it.
-const SHARE: f64 = 0.95;
+/// Fraction of the stability limit 2/w that automatic substeps use; the margin covers the growth of the stretch
+/// between two checks.
+const STABILITY_FRACTION: f64 = 0.95;
 
-/// Share of the limit beyond which substeps are undone.
-const MOST_SHARE: f64 = 0.99;
+/// Fraction of the stability limit above which substeps are undone.
+const MAX_STABILITY_FRACTION: f64 = 0.99;
 
-/// Times a stretch of time is begun anew with more substeps.
-const TRIES: usize = 8;
+/// Most attempts at an interval, each with more substeps.
+const MAX_ATTEMPTS: usize = 8;
 
-/// Longest time between two looks at the stretch [s]: cloth that is drawn at 3 m/s over 0.2 m
-/// gains 0.03 of stretch.
-const LOOK_STEP: f64 = 2e-3;
+/// Longest time between two checks of the stretch [s]: cloth of 0.2 m pulled at 3 m/s stretches by 0.03
+/// meanwhile.
+const STRETCH_CHECK_STEP: f64 = 2e-3;
 
-/// Substeps of one step at the most: more is a mesh with slivers, not a simulation.
-const MOST_SUBSTEPS: f64 = 1e6;
+/// Most substeps of one step: only a mesh with sliver triangles asks for more, and that is an error.
+const MAX_SUBSTEPS: f64 = 1e6;
 
 impl PatchVerlet {
-    /// With the settings' substeps, or those the cloth asks for when not given; `general` is what
-    /// stands in for models that are not plain.
-    pub fn new(settings: &MethodSettings, general: Box<dyn Method>) -> Self {
+    /// With the settings' substeps, or automatic ones where not given; `fallback` advances the models that patches
+    /// do not support.
+    pub fn new(settings: &MethodSettings, fallback: Box<dyn Method>) -> Self {
         Self {
             substeps: settings.substeps,
             sheet: None,
-            general,
+            fallback,
         }
     }
 
@@ -128,15 +129,16 @@ impl Method for PatchVerlet {
         step: f64,
     ) -> Result<StepReport, DrapeError> {
         if is_plain(system, &state.samples) {
-            // Inside the pool, so that its threads need not be called again for every substep.
+            // Within the thread pool: entering it once spares waking its threads for every run of substeps.
             rayon::scope(|_| self.advance_patches(system, state, step))
         } else {
-            self.general.advance(system, state, step)
+            self.fallback.advance(system, state, step)
         }
     }
 }
 
-/// Takes a step in as many substeps as the stretch asks for, looked at again and again.
+/// Advances by a step in as many substeps as stability needs at the present stretch, which is checked every
+/// interval; returns the number of substeps taken, the undone ones included.
 fn take_automatic(sheet: &mut Sheet, system: &System, step: f64) -> Result<usize, DrapeError> {
     let longest = 2.0 / sheet.frequency;
     let too_stiff = |substeps: f64| DrapeError::TooStiff {
@@ -144,20 +146,20 @@ fn take_automatic(sheet: &mut Sheet, system: &System, step: f64) -> Result<usize
         vertex: limits::stiffest(system).1,
         substeps,
     };
-    let least = step / (SHARE * longest);
-    if least.is_nan() || least > MOST_SUBSTEPS {
-        return Err(too_stiff(least));
+    let fewest = step / (STABILITY_FRACTION * longest);
+    if fewest.is_nan() || fewest > MAX_SUBSTEPS {
+        return Err(too_stiff(fewest));
     }
-    let parts = (step / LOOK_STEP).ceil().max(1.0);
-    let length = step / parts;
+    let intervals = (step / STRETCH_CHECK_STEP).ceil().max(1.0);
+    let length = step / intervals;
     let mut taken = 0;
     let mut stretch = sheet.stretch()[0];
-    for _ in 0..parts as usize {
+    for _ in 0..intervals as usize {
         sheet.save();
-        for attempt in 1..=TRIES {
-            let wanted = length * stiffening(stretch) / (SHARE * longest);
-            let count = wanted.ceil().max(1.0);
-            if wanted.is_nan() || count > MOST_SUBSTEPS {
+        for attempt in 1..=MAX_ATTEMPTS {
+            let needed = length * stiffening(stretch) / (STABILITY_FRACTION * longest);
+            let count = needed.ceil().max(1.0);
+            if needed.is_nan() || count > MAX_SUBSTEPS {
                 let (vertex, speed) = sheet.fastest();
                 return Err(blown_up(vertex, speed, length / count));
             }
@@ -165,16 +167,16 @@ fn take_automatic(sheet: &mut Sheet, system: &System, step: f64) -> Result<usize
             sheet.advance(system, h, count as usize);
             taken += count as usize;
             let reached = sheet.stretch()[0];
-            let sound = h * stiffening(reached) <= MOST_SHARE * longest;
-            // What broke away tells how far it went, not how far it would have gone.
-            stretch = match sound {
+            let is_stable = h * stiffening(reached) <= MAX_STABILITY_FRACTION * longest;
+            // The stretch reached by an unstable run is not that of the motion: its use is bounded.
+            stretch = match is_stable {
                 true => reached,
                 false => reached.min(3.0 * stretch).max(1.5 * stretch),
             };
-            if sound {
+            if is_stable {
                 break;
             }
-            if attempt == TRIES {
+            if attempt == MAX_ATTEMPTS {
                 let (vertex, speed) = sheet.fastest();
                 return Err(blown_up(vertex, speed, h));
             }
@@ -200,7 +202,7 @@ fn blown_up(vertex: usize, speed: f64, substep: f64) -> DrapeError {
     }
 }
 
-/// Whether nothing acts but what patches treat.
+/// Whether a model has only features that patches support.
 fn is_plain(system: &System, samples: &[ContactSample]) -> bool {
     system.materials.laws.iter().all(|law| law.is_linear())
         && !system.materials.have_viscous_stretch()

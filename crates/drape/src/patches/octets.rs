@@ -1,76 +1,77 @@
-//! Numbers worked on eight at a time, in vectors as wide as the processor has.
+//! Groups of eight numbers, computed in vectors as wide as the processor has: a group is one or more lane groups,
+//! each one vector.
 
 use super::Lane;
 use pulp::Simd;
 
-/// Numbers of a group.
+/// Numbers in a group.
 pub const WIDTH: usize = 8;
 
-/// Numbers before the first of an array and after the last: they stay zero, so that a run may
-/// reach beyond the ends.
+/// Zeros before the first and after the last number of a padded array, so that a run of eight may reach beyond
+/// the ends.
 pub const PAD: usize = WIDTH;
 
-/// One number for each of a group.
+/// The eight numbers of a group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub struct Octet(pub [f64; WIDTH]);
 
 impl Octet {
-    /// Those of one part; parts are as wide as the processor's vectors.
+    /// The numbers of one lane group: it is as wide as the processor's vectors.
     #[inline(always)]
-    pub fn part<S: Simd>(&self, part: usize) -> S::f64s {
-        S::as_simd_f64s(&self.0).0[part]
+    pub fn lane_group<S: Simd>(&self, lane_group: usize) -> S::f64s {
+        S::as_simd_f64s(&self.0).0[lane_group]
     }
 }
 
-/// Parts of a group.
+/// Number of lane groups in a group.
 #[inline(always)]
-pub const fn parts<S: Simd>() -> usize {
+pub const fn lane_groups<S: Simd>() -> usize {
     WIDTH / S::F64_LANES
 }
 
-/// Groups that hold so many numbers.
+/// Number of groups that hold `count` numbers.
 pub fn groups(count: usize) -> usize {
     count.div_ceil(WIDTH)
 }
 
-/// An array for so many numbers, all zero; number `k` stands at `PAD + k`.
+/// A padded array of `count` zeros; number `k` stands at index `PAD + k`.
 pub fn padded(count: usize) -> Vec<f64> {
     vec![0.0; PAD + WIDTH * groups(count) + WIDTH]
 }
 
-/// Where a part of a group begins in a padded array.
+/// Index of the first number of a lane group in a padded array.
 #[inline(always)]
-pub fn place<S: Simd>(group: usize, part: usize) -> usize {
-    PAD + group * WIDTH + part * S::F64_LANES
+pub fn lane_group_start<S: Simd>(group: usize, lane_group: usize) -> usize {
+    PAD + group * WIDTH + lane_group * S::F64_LANES
 }
 
-/// Loads what lies side by side.
+/// Loads consecutive numbers from index `at` on.
 #[inline(always)]
 pub fn load<S: Simd>(from: &[f64], at: usize) -> S::f64s {
     S::as_simd_f64s(&from[at..at + S::F64_LANES]).0[0]
 }
 
-/// Stores side by side.
+/// Stores consecutive numbers from index `at` on.
 #[inline(always)]
 pub fn store<S: Simd>(to: &mut [f64], at: usize, values: S::f64s) {
     S::as_mut_simd_f64s(&mut to[at..at + S::F64_LANES]).0[0] = values;
 }
 
-/// Places of a padded array that eight operands of a group lie at, in no order.
-pub type Places = [u32; WIDTH];
+/// Indices of the eight operands of a group in a padded array.
+pub type Indices = [u32; WIDTH];
 
-/// Loads what lies in no order, a part of the group.
+/// Loads the operands of one lane group by their indices.
 #[inline(always)]
-pub fn gather<S: Simd>(from: &[f64], places: &Places, part: usize) -> S::f64s {
+pub fn gather<S: Simd>(from: &[f64], indices: &Indices, lane_group: usize) -> S::f64s {
     let mut lanes = Octet::default();
     for k in 0..S::F64_LANES {
-        lanes.0[k] = from[places[part * S::F64_LANES + k] as usize];
+        lanes.0[k] = from[indices[lane_group * S::F64_LANES + k] as usize];
     }
-    lanes.part::<S>(0)
+    lanes.lane_group::<S>(0)
 }
 
-/// Loads points that lie side by side.
+/// Loads consecutive points from index `at` on.
 #[inline(always)]
 pub fn load_points<S: Simd>(from: [&[f64]; 3], at: usize) -> [S::f64s; 3] {
     [
@@ -80,17 +81,21 @@ pub fn load_points<S: Simd>(from: [&[f64]; 3], at: usize) -> [S::f64s; 3] {
     ]
 }
 
-/// Loads points that lie in no order.
+/// Loads the points of one lane group by their indices.
 #[inline(always)]
-pub fn gather_points<S: Simd>(from: [&[f64]; 3], places: &Places, part: usize) -> [S::f64s; 3] {
+pub fn gather_points<S: Simd>(
+    from: [&[f64]; 3],
+    indices: &Indices,
+    lane_group: usize,
+) -> [S::f64s; 3] {
     [
-        gather::<S>(from[0], places, part),
-        gather::<S>(from[1], places, part),
-        gather::<S>(from[2], places, part),
+        gather::<S>(from[0], indices, lane_group),
+        gather::<S>(from[1], indices, lane_group),
+        gather::<S>(from[2], indices, lane_group),
     ]
 }
 
-/// Adds so many times some points to a sum of them.
+/// sum += by * points.
 #[inline(always)]
 pub fn add_scaled<S: Simd>(simd: S, sum: &mut [S::f64s; 3], by: S::f64s, points: [S::f64s; 3]) {
     for (sum, x) in sum.iter_mut().zip(points) {
@@ -98,19 +103,19 @@ pub fn add_scaled<S: Simd>(simd: S, sum: &mut [S::f64s; 3], by: S::f64s, points:
     }
 }
 
-/// Where the eight operands of a group lie in a padded array.
+/// The eight operands of a group in a padded array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Take {
-    /// Side by side from here on: on a regular mesh neighbours lie like that.
+pub enum Operands {
+    /// Consecutive from this index on, as most are on a regular mesh.
     Run(u32),
-    /// Each where this entry of a table says.
-    Each(u32),
+    /// At indices that are an entry of a table.
+    Scattered(u32),
 }
 
-impl Take {
-    /// For lanes that take these places of a padded array; the others take anything when it is a
-    /// run, and zero otherwise.
-    pub fn new(lanes: [Option<u32>; WIDTH], scattered: &mut Vec<Places>) -> Self {
+impl Operands {
+    /// The operands of lanes with the given indices. An unused lane loads any number of a run, and index 0 of a
+    /// scattered entry, where a padded array is zero.
+    pub fn new(lanes: [Option<u32>; WIDTH], scattered: &mut Vec<Indices>) -> Self {
         let mut starts = (0u32..)
             .zip(lanes)
             .filter_map(|(lane, at)| Some(at? - lane));
@@ -119,29 +124,31 @@ impl Take {
             return Self::Run(first);
         }
         scattered.push(lanes.map(|at| at.unwrap_or(0)));
-        Self::Each(scattered.len() as u32 - 1)
+        Self::Scattered(scattered.len() as u32 - 1)
     }
 
-    /// Loads a part of the group.
+    /// Loads the numbers of one lane group.
     #[inline(always)]
-    pub fn load<S: Simd>(self, from: &[f64], scattered: &[Places], part: usize) -> S::f64s {
+    pub fn load<S: Simd>(self, from: &[f64], scattered: &[Indices], lane_group: usize) -> S::f64s {
         match self {
-            Self::Run(start) => load::<S>(from, start as usize + part * S::F64_LANES),
-            Self::Each(entry) => gather::<S>(from, &scattered[entry as usize], part),
+            Self::Run(start) => load::<S>(from, start as usize + lane_group * S::F64_LANES),
+            Self::Scattered(entry) => gather::<S>(from, &scattered[entry as usize], lane_group),
         }
     }
 
-    /// Loads points.
+    /// Loads the points of one lane group.
     #[inline(always)]
     pub fn points<S: Simd>(
         self,
         from: [&[f64]; 3],
-        scattered: &[Places],
-        part: usize,
+        scattered: &[Indices],
+        lane_group: usize,
     ) -> [S::f64s; 3] {
         match self {
-            Self::Run(start) => load_points::<S>(from, start as usize + part * S::F64_LANES),
-            Self::Each(entry) => gather_points::<S>(from, &scattered[entry as usize], part),
+            Self::Run(start) => load_points::<S>(from, start as usize + lane_group * S::F64_LANES),
+            Self::Scattered(entry) => {
+                gather_points::<S>(from, &scattered[entry as usize], lane_group)
+            }
         }
     }
 }
@@ -153,14 +160,14 @@ pub struct Points {
 }
 
 impl Points {
-    /// So many, all zero.
+    /// `count` zero vectors.
     pub fn new(count: usize) -> Self {
         Self {
             axes: [0; 3].map(|_| padded(count)),
         }
     }
 
-    /// The arrays, of one length, so that an index is checked once.
+    /// The arrays of x, y and z, sliced to one length so that an index is checked once.
     #[inline(always)]
     pub fn axes(&self) -> [&[f64]; 3] {
         let [x, y, z] = &self.axes;
@@ -168,7 +175,7 @@ impl Points {
         [&x[..length], &y[..length], &z[..length]]
     }
 
-    /// The arrays, to be changed.
+    /// The arrays of x, y and z, mutable.
     #[inline(always)]
     pub fn axes_mut(&mut self) -> [&mut [f64]; 3] {
         let [x, y, z] = &mut self.axes;
@@ -176,14 +183,14 @@ impl Points {
         [&mut x[..length], &mut y[..length], &mut z[..length]]
     }
 
-    /// One of them.
+    /// The vector with index `at`.
     #[inline(always)]
     pub fn get(&self, at: usize) -> Lane {
         let [x, y, z] = self.axes();
         Lane::new(x[PAD + at], y[PAD + at], z[PAD + at])
     }
 
-    /// Puts one.
+    /// Sets the vector with index `at`.
     #[inline(always)]
     pub fn set(&mut self, at: usize, value: Lane) {
         let [a, b, c] = value.coordinates();
@@ -191,7 +198,7 @@ impl Points {
         (x[PAD + at], y[PAD + at], z[PAD + at]) = (a, b, c);
     }
 
-    /// Adds to one.
+    /// Adds to the vector with index `at`.
     #[inline(always)]
     pub fn add(&mut self, at: usize, value: Lane) {
         self.set(at, self.get(at).plus(value));

@@ -1,67 +1,67 @@
-//! A patch: vertices that one task moves on its own for several substeps, with a halo round them.
+//! A patch: vertices that one task advances by several substeps without communication, with a halo around
+//! them.
 //!
-//! A ring is what the forces at the last one's vertices look at: their bending rows and triangles.
-//! What a halo vertex lacks spoils one ring a substep, so a halo of k rings leaves the patch's own
-//! vertices exact for k substeps. Patches
-//! then need to meet only once every k substeps, and stay in the fast memory of their core
-//! meanwhile. Rings that are spoiled already are not moved any more.
+//! Ring r + 1 of the halo holds the vertices on which the forces at ring r depend, by bending rows and by
+//! triangles. The outermost ring lacks forces, and each substep makes one more ring wrong, so a halo of k rings
+//! leaves the vertices that the patch owns exact for k substeps. Patches exchange halos only once every k
+//! substeps and stay in the cache of their core meanwhile. A ring that is wrong already is not advanced.
 
 use super::Lane;
-use super::octets::{PAD, Points, load, padded, parts, place, store};
+use super::octets::{PAD, Points, lane_group_start, lane_groups, load, padded, store};
+use super::patch_contacts::PatchContact;
 use super::rows::{Rows, rounding};
-use super::tensions::{Ground, Tensions, within};
-use super::touch::Touching;
+use super::tensions::{PatchTopology, Tensions, groups_by_ring};
 use crate::{Elastic, ElasticEnd, System};
 use pulp::Simd;
 
-/// Vertices moved by one task.
+/// Vertices advanced by one task.
 pub struct Patch {
-    /// Its vertices in the model, in its own order.
+    /// The number in the model of each of its vertices.
     pub vertices: Vec<u32>,
-    /// Contacts of its vertices, by their places in it; those at vertices that others look at, and those at
-    /// its halo.
-    touching: Vec<Touching>,
-    shown: Vec<u32>,
-    watched: Vec<u32>,
-    /// Largest and smallest principal squared stretch when last measured.
+    /// Contacts of its vertices, by their indices in the patch.
+    contacts: Vec<PatchContact>,
+    /// Indices of the contacts at border vertices and at halo vertices.
+    border_contacts: Vec<u32>,
+    halo_contacts: Vec<u32>,
+    /// Largest and smallest principal squared stretch when last measured \[1\].
     pub stretch: [f64; 2],
-    /// Energy of motion, stretch and bending [J] when last measured, of what it owns.
+    /// Kinetic, membrane and bending energy of the vertices and edges that it owns, when last measured [J].
     pub energy: f64,
     positions: Points,
     velocities: Points,
     gradient: Points,
-    moved: Points,
-    /// Where each vertex of the model lies in it; [`NOWHERE`] outside.
+    next_positions: Points,
+    /// Index in the patch of each vertex of the model; [`OUTSIDE`] for the others.
     local: Vec<u32>,
-    /// The ring of each vertex; zero are those it owns.
+    /// The halo ring of each vertex; zero for vertices that it owns.
     ring: Vec<usize>,
-    /// Owned vertices that others look at, and whether each is one.
+    /// Owned vertices that lie in halos of other patches, and whether each vertex is one.
     border: Vec<u32>,
     is_border: Vec<bool>,
     /// Vertices it does not own.
     halo: Vec<u32>,
-    /// Groups with a vertex within each ring.
+    /// For each ring the groups of eight with a vertex of at most that ring.
     groups: Vec<Vec<u32>>,
     /// Inverse masses [1/kg], zero where pinned.
     inverse_mass: Vec<f64>,
-    /// One where a vertex falls, zero where pinned.
-    falls: Vec<f64>,
+    /// Factor of gravity: one, zero where pinned.
+    gravity_factor: Vec<f64>,
     forces: Forces,
     elastics: Vec<Elastic>,
 }
 
-/// The stiffness of a patch.
+/// The elastic forces of a patch.
 struct Forces {
     bending: Rows,
     membrane: Tensions,
 }
 
-/// What acts for some substeps.
+/// Some substeps, and what acts in them besides the forces of the patch.
 #[derive(Clone, Copy)]
-pub struct Course {
+pub struct Substeps {
     /// Length of a substep [s].
     pub h: f64,
-    /// How many: no more than the halo has rings.
+    /// Number of substeps: at most the number of halo rings.
     pub count: usize,
     /// Gravity [m/s2].
     pub gravity: Lane,
@@ -69,19 +69,20 @@ pub struct Course {
     pub drag: f64,
 }
 
-const NOWHERE: u32 = u32::MAX;
+/// In place of the index of a vertex that is not in the patch.
+const OUTSIDE: u32 = u32::MAX;
 
 impl Patch {
     /// A patch that owns some vertices, with a halo of `rings` rings.
     ///
-    /// Its vertices stand in the order of the model, or first all even and then all odd ones,
-    /// whichever lets more operands lie side by side: on a grid with alternating diagonals every
-    /// other vertex is alike.
+    /// Its vertices are in the order of the model, or all even ones before all odd ones, whichever makes the
+    /// loads cheaper: on a grid with alternating diagonals every other vertex has the same stencil.
     pub fn new(system: &System, owned: Vec<u32>, rings: usize) -> Self {
-        let in_turn = with_halo(system, owned, rings);
-        let mut by_parity = in_turn.clone();
+        let in_model_order = with_halo(system, owned, rings);
+        let mut by_parity = in_model_order.clone();
         by_parity.sort_unstable_by_key(|&(v, _)| (v % 2, v));
-        let [first, second] = [in_turn, by_parity].map(|order| Self::in_order(system, &order));
+        let [first, second] =
+            [in_model_order, by_parity].map(|order| Self::in_order(system, &order));
         if second.forces.cost() < first.forces.cost() {
             second
         } else {
@@ -89,25 +90,25 @@ impl Patch {
         }
     }
 
-    /// A patch of some vertices with their rings.
+    /// A patch of some vertices, given with their rings.
     fn in_order(system: &System, order: &[(u32, usize)]) -> Self {
         let (vertices, ring): (Vec<u32>, Vec<usize>) = order.iter().copied().unzip();
         let count = vertices.len();
-        let mut local = vec![NOWHERE; system.vertex_count()];
-        let (mut inverse_mass, mut falls) = (padded(count), padded(count));
+        let mut local = vec![OUTSIDE; system.vertex_count()];
+        let (mut inverse_mass, mut gravity_factor) = (padded(count), padded(count));
         for (at, &v) in vertices.iter().enumerate() {
             local[v as usize] = at as u32;
             if !system.prescribed.pinned[v as usize] {
-                (inverse_mass[PAD + at], falls[PAD + at]) =
+                (inverse_mass[PAD + at], gravity_factor[PAD + at]) =
                     (1.0 / system.rest.mass[v as usize], 1.0);
             }
         }
-        let within_it = |v: u32| Some(local[v as usize]).filter(|&at| at != NOWHERE);
+        let index_of = |v: u32| Some(local[v as usize]).filter(|&at| at != OUTSIDE);
         let elastics = system.elastics().filter_map(|elastic| {
             Some(Elastic {
-                from: within_it(elastic.from)?,
+                from: index_of(elastic.from)?,
                 to: match elastic.to {
-                    ElasticEnd::Vertex(v) => ElasticEnd::Vertex(within_it(v)?),
+                    ElasticEnd::Vertex(v) => ElasticEnd::Vertex(index_of(v)?),
                     point => point,
                 },
                 law: elastic.law,
@@ -115,25 +116,25 @@ impl Patch {
         });
         let triangles: Vec<(usize, [u32; 3])> = (system.topology.triangles.iter().enumerate())
             .map(|(t, corners)| (t, corners.map(|v| local[v as usize])))
-            .filter(|(_, corners)| !corners.contains(&NOWHERE))
+            .filter(|(_, corners)| !corners.contains(&OUTSIDE))
             .collect();
         let rings = ring.iter().max().map_or(1, |most| most + 1);
         Self {
             elastics: elastics.collect(),
             forces: Forces {
-                bending: Rows::new(&bending_rows(system, &vertices, within_it)),
-                membrane: Tensions::new(&Ground {
+                bending: Rows::new(&bending_rows(system, &vertices, index_of)),
+                membrane: Tensions::new(&PatchTopology {
                     system,
                     triangles: &triangles,
                     ring: &ring,
                     vertices: &vertices,
                 }),
             },
-            groups: within(&ring, rings),
+            groups: groups_by_ring(&ring, rings),
             positions: Points::new(count),
             velocities: Points::new(count),
             gradient: Points::new(count),
-            moved: Points::new(count),
+            next_positions: Points::new(count),
             border: Vec::new(),
             is_border: vec![false; count],
             halo: (0u32..)
@@ -141,45 +142,46 @@ impl Patch {
                 .filter(|(_, ring)| **ring > 0)
                 .map(|(at, _)| at)
                 .collect(),
-            touching: Vec::new(),
-            shown: Vec::new(),
-            watched: Vec::new(),
+            contacts: Vec::new(),
+            border_contacts: Vec::new(),
+            halo_contacts: Vec::new(),
             stretch: [1.0; 2],
             energy: 0.0,
             inverse_mass,
-            falls,
+            gravity_factor,
             local,
             ring,
             vertices,
         }
     }
 
-    /// Whether a vertex, by its place in the patch, is its own.
+    /// Whether it owns the vertex with an index in the patch.
     pub fn owns(&self, at: usize) -> bool {
         self.ring[at] == 0
     }
 
-    /// Names the vertices that others look at: it hands them over when patches meet.
-    pub fn share(&mut self, looked_at: impl Fn(u32) -> bool) {
-        let places = 0..self.vertices.len();
-        let shared = places.filter(|&at| self.owns(at) && looked_at(self.vertices[at]));
-        self.border = shared.map(|at| at as u32).collect();
+    /// Sets the border: the owned vertices that lie in halos of other patches, which it hands over at an
+    /// exchange.
+    pub fn set_border(&mut self, is_in_halo: impl Fn(u32) -> bool) {
+        let indices = 0..self.vertices.len();
+        let border = indices.filter(|&at| self.owns(at) && is_in_halo(self.vertices[at]));
+        self.border = border.map(|at| at as u32).collect();
         for &at in &self.border {
             self.is_border[at as usize] = true;
         }
     }
 
-    /// The vertices of its halo, in the model.
+    /// The numbers in the model of its halo vertices.
     pub fn halo(&self) -> impl Iterator<Item = u32> {
         self.halo.iter().map(|&at| self.vertices[at as usize])
     }
 
-    /// Copies its vertices, and forgets its contacts.
+    /// Loads all its vertices and clears its contacts.
     pub fn load(&mut self, positions: &[Lane], velocities: &[Lane]) {
-        // Lanes without a vertex too: what blew up there would come back as zero times no number.
+        // Unused lanes too: a NaN left in one would reach sums as zero times NaN.
         let all = [
             &mut self.positions,
-            &mut self.moved,
+            &mut self.next_positions,
             &mut self.velocities,
             &mut self.gradient,
         ];
@@ -187,16 +189,13 @@ impl Patch {
             axis.fill(0.0);
         }
         self.forces.membrane.clear();
-        for contacts in [&mut self.shown, &mut self.watched] {
-            contacts.clear();
-        }
-        self.touching.clear();
+        self.clear_contacts();
         for at in 0..self.vertices.len() {
             self.load_vertex(at, positions, velocities);
         }
     }
 
-    /// Copies its halo.
+    /// Loads its halo.
     pub fn load_halo(&mut self, positions: &[Lane], velocities: &[Lane]) {
         for k in 0..self.halo.len() {
             self.load_vertex(self.halo[k] as usize, positions, velocities);
@@ -205,27 +204,27 @@ impl Patch {
 
     fn load_vertex(&mut self, at: usize, positions: &[Lane], velocities: &[Lane]) {
         let v = self.vertices[at] as usize;
-        // Into both: what is spoiled is not moved any more, but it is looked at.
+        // Into both buffers: a ring that is wrong is not advanced, but forces still read its positions.
         self.positions.set(at, positions[v]);
-        self.moved.set(at, positions[v]);
+        self.next_positions.set(at, positions[v]);
         self.velocities.set(at, velocities[v]);
     }
 
-    /// Vertices that it owns: their numbers in the model, and their places in it.
+    /// The vertices that it owns: their numbers in the model and their indices in the patch.
     pub fn owned(&self) -> impl Iterator<Item = (u32, u32)> {
         let all = (0u32..).zip(&self.vertices);
         let own = all.filter(|(at, _)| self.owns(*at as usize));
         own.map(|(at, &v)| (v, at))
     }
 
-    /// Position and velocity of a vertex, by its place.
+    /// Position [m] and velocity [m/s] of the vertex with an index in the patch.
     #[inline]
     pub fn vertex(&self, at: u32) -> (Lane, Lane) {
         let at = at as usize;
         (self.positions.get(at), self.velocities.get(at))
     }
 
-    /// Hands over what others look at.
+    /// Stores position and velocity of its border vertices.
     pub fn unload_border(&self, positions: &mut [Lane], velocities: &mut [Lane]) {
         for &at in &self.border {
             let v = self.vertices[at as usize] as usize;
@@ -233,65 +232,69 @@ impl Patch {
         }
     }
 
-    /// Takes over the contacts at its vertices.
-    pub fn load_contacts(&mut self, touching: &[Touching]) {
-        for contacts in [&mut self.shown, &mut self.watched] {
-            contacts.clear();
-        }
-        self.touching.clear();
-        for contact in touching {
+    fn clear_contacts(&mut self) {
+        self.contacts.clear();
+        self.border_contacts.clear();
+        self.halo_contacts.clear();
+    }
+
+    /// Loads the contacts at its vertices, of all that are near.
+    pub fn load_contacts(&mut self, near: &[PatchContact]) {
+        self.clear_contacts();
+        for contact in near {
             let at = self.local[contact.vertex as usize];
-            if at == NOWHERE {
+            if at == OUTSIDE {
                 continue;
             }
-            let mine = self.touching.len() as u32;
+            let index = self.contacts.len() as u32;
             if !self.owns(at as usize) {
-                self.watched.push(mine);
+                self.halo_contacts.push(index);
             } else if self.is_border[at as usize] {
-                self.shown.push(mine);
+                self.border_contacts.push(index);
             }
             let mut contact = *contact;
             contact.vertex = at;
-            self.touching.push(contact);
+            self.contacts.push(contact);
         }
     }
 
-    /// Takes over what contacts at its halo have become; the others it has.
-    pub fn renew_contacts(&mut self, touching: &[Touching]) {
-        for &k in &self.watched {
-            self.touching[k as usize].renew(touching);
+    /// Updates the friction state of the contacts at its halo, which other patches have advanced.
+    pub fn refresh_halo_contacts(&mut self, near: &[PatchContact]) {
+        for &k in &self.halo_contacts {
+            self.contacts[k as usize].refresh_from(near);
         }
     }
 
     /// Contacts at vertices that it owns.
-    pub fn own_contacts(&self) -> impl Iterator<Item = &Touching> {
-        let touching = self.touching.iter();
-        touching.filter(|contact| self.owns(contact.vertex as usize))
+    pub fn own_contacts(&self) -> impl Iterator<Item = &PatchContact> {
+        let contacts = self.contacts.iter();
+        contacts.filter(|contact| self.owns(contact.vertex as usize))
     }
 
-    /// Those that others look at.
-    pub fn border_contacts(&self) -> impl Iterator<Item = &Touching> {
-        self.shown.iter().map(|&k| &self.touching[k as usize])
+    /// Contacts at its border vertices.
+    pub fn border_contacts(&self) -> impl Iterator<Item = &PatchContact> {
+        let indices = self.border_contacts.iter();
+        indices.map(|&k| &self.contacts[k as usize])
     }
 
-    /// Moves the patch on under all its forces: drift half a step, kick, drift half a step
-    /// (Verlet), neighbouring half drifts joined.
-    pub fn advance(&mut self, course: Course) {
-        pulp::Arch::new().dispatch(Run {
+    /// Advances the patch under all its forces: drift half a step, kick, drift half a step (position Verlet);
+    /// the half drifts between two substeps are joined.
+    pub fn advance(&mut self, substeps: Substeps) {
+        pulp::Arch::new().dispatch(Advance {
             patch: self,
-            course,
+            substeps,
         });
     }
 
-    /// Measures the stretch of the triangles at what it owns.
+    /// Measures the principal squared stretches of the triangles at vertices that it owns.
     pub fn measure_stretch(&mut self) {
-        pulp::Arch::new().dispatch(Stretch { patch: self });
+        pulp::Arch::new().dispatch(MeasureStretch { patch: self });
     }
 
-    /// Measures the energy of what it owns: its vertices, and the triangles whose first corner is
-    /// one of them.
+    /// Measures the kinetic and bending energy of the vertices and the membrane energy of the edges that it
+    /// owns.
     pub fn measure_energy(&mut self) {
-        pulp::Arch::new().dispatch(Energy { patch: self });
+        pulp::Arch::new().dispatch(MeasureEnergy { patch: self });
     }
 
     #[inline(always)]
@@ -309,11 +312,11 @@ impl Patch {
 
     #[inline(always)]
     fn add_contacts(&mut self, ring: usize, h: f64) {
-        for contact in &mut self.touching {
+        for contact in &mut self.contacts {
             let at = contact.vertex as usize;
             if self.ring[at] <= ring {
                 let (x, v) = (self.positions.get(at), self.velocities.get(at));
-                let force = contact.press(x, v, 1.0 / self.inverse_mass[PAD + at], h);
+                let force = contact.update_force(x, v, 1.0 / self.inverse_mass[PAD + at], h);
                 self.gradient.add(at, force.scaled(-1.0));
             }
         }
@@ -336,60 +339,60 @@ impl Patch {
         }
     }
 
-    /// Adds stretch and bending, then v = ((1 - c h/2) v + h a) / (1 + c h/2) with drag c,
-    /// x = x + `drift` v; the gradient is cleared for the next.
+    /// Adds membrane and bending to the gradient, then v = ((1 - c h/2) v + h a) / (1 + c h/2) with drag c,
+    /// x = x + `drift` v, for all vertices up to a ring; clears the gradient for the next substep.
     #[inline(always)]
-    fn kick_and_drift<S: Simd>(&mut self, simd: S, ring: usize, course: Course, drift: f64) {
-        let half = 0.5 * course.drag * course.h;
-        let (keep, gain) = ((1.0 - half) / (1.0 + half), course.h / (1.0 + half));
-        let fall = course.gravity.scaled(gain).coordinates();
-        let fall = [0, 1, 2].map(|axis| simd.splat_f64s(fall[axis]));
-        let [keep, gain, drift] = [keep, -gain, drift].map(|k| simd.splat_f64s(k));
+    fn kick_and_drift<S: Simd>(&mut self, simd: S, ring: usize, substeps: Substeps, drift: f64) {
+        let half = 0.5 * substeps.drag * substeps.h;
+        let (decay, gain) = ((1.0 - half) / (1.0 + half), substeps.h / (1.0 + half));
+        let gravity = substeps.gravity.scaled(gain).coordinates();
+        let gravity = [0, 1, 2].map(|axis| simd.splat_f64s(gravity[axis]));
+        let [decay, gain, drift] = [decay, -gain, drift].map(|k| simd.splat_f64s(k));
         let x = self.positions.axes();
         let (v, g) = (self.velocities.axes_mut(), self.gradient.axes_mut());
-        let to = self.moved.axes_mut();
+        let next_x = self.next_positions.axes_mut();
         for &group in &self.groups[ring] {
-            for part in 0..parts::<S>() {
-                let at = place::<S>(group as usize, part);
-                let force = self.forces.gradient(simd, group as usize, part, x);
+            for lane_group in 0..lane_groups::<S>() {
+                let at = lane_group_start::<S>(group as usize, lane_group);
+                let force = self.forces.gradient(simd, group as usize, lane_group, x);
                 let inverse_mass = load::<S>(&self.inverse_mass, at);
-                let (falls, gain) = (
-                    load::<S>(&self.falls, at),
+                let (gravity_factor, gain) = (
+                    load::<S>(&self.gravity_factor, at),
                     simd.mul_f64s(gain, inverse_mass),
                 );
                 for axis in 0..3 {
                     let force = simd.add_f64s(force[axis], load::<S>(g[axis], at));
-                    let v_new = simd.mul_f64s(load::<S>(v[axis], at), keep);
-                    let v_new = simd.mul_add_f64s(fall[axis], falls, v_new);
+                    let v_new = simd.mul_f64s(load::<S>(v[axis], at), decay);
+                    let v_new = simd.mul_add_f64s(gravity[axis], gravity_factor, v_new);
                     let v_new = simd.mul_add_f64s(gain, force, v_new);
                     store::<S>(v[axis], at, v_new);
                     let x_new = simd.mul_add_f64s(v_new, drift, load::<S>(x[axis], at));
-                    store::<S>(to[axis], at, x_new);
+                    store::<S>(next_x[axis], at, x_new);
                     store::<S>(g[axis], at, simd.splat_f64s(0.0));
                 }
             }
         }
-        std::mem::swap(&mut self.positions, &mut self.moved);
+        std::mem::swap(&mut self.positions, &mut self.next_positions);
     }
 }
 
 impl Forces {
-    /// Numbers of runs that the loads of a substep are worth.
+    /// Cost of the loads of a substep, in loads of a run.
     fn cost(&self) -> usize {
         4 * self.bending.cost() + self.membrane.cost()
     }
 
-    /// The gradient of stretch and bending by a part of a group of vertices [N].
+    /// The gradient of membrane and bending energy at the vertices of one lane group [N].
     #[inline(always)]
     fn gradient<S: Simd>(
         &self,
         simd: S,
         group: usize,
-        part: usize,
+        lane_group: usize,
         x: [&[f64]; 3],
     ) -> [S::f64s; 3] {
-        let bending = self.bending.product_points(simd, group, part, x);
-        let membrane = self.membrane.gradient(simd, group, part, x);
+        let bending = self.bending.product_points(simd, group, lane_group, x);
+        let membrane = self.membrane.gradient(simd, group, lane_group, x);
         [
             simd.add_f64s(bending[0], membrane[0]),
             simd.add_f64s(bending[1], membrane[1]),
@@ -398,11 +401,11 @@ impl Forces {
     }
 }
 
-/// The rows of the bending matrix for some vertices; `local` says where a vertex of the model lies
-/// in the patch, and a row that looks outside it is left empty.
+/// The rows of the bending matrix for some vertices; `local` gives the index in the patch of a vertex of the
+/// model. A row with an entry outside the patch is left empty.
 ///
-/// The matrix stays symmetric, so momentum is kept, and the diagonal is minus the sum of the
-/// others, so that a shift of the cloth bends nothing.
+/// The rounded matrix is symmetric, which conserves momentum, and its rows sum to zero, so that a translation
+/// of the cloth has no bending force.
 fn bending_rows(
     system: &System,
     vertices: &[u32],
@@ -432,17 +435,24 @@ fn bending_rows(
     vertices.iter().map(row).collect()
 }
 
-/// Two pairs of largest and smallest as one; what is no number stays.
-pub fn wider([most, least]: [f64; 2], [high, low]: [f64; 2]) -> [f64; 2] {
-    let lost = most.is_nan() || least.is_nan();
+/// The largest and smallest of two pairs (largest, smallest); NaN in either pair gives NaN.
+pub fn merge_extremes([largest, smallest]: [f64; 2], [high, low]: [f64; 2]) -> [f64; 2] {
+    let nan = largest.is_nan() || smallest.is_nan();
     [
-        if high <= most || lost { most } else { high },
-        if low >= least || lost { least } else { low },
+        if high <= largest || nan {
+            largest
+        } else {
+            high
+        },
+        if low >= smallest || nan {
+            smallest
+        } else {
+            low
+        },
     ]
 }
 
-/// Some vertices and those that forces at them look at, `rings` times, each with its ring, in the
-/// order of the model.
+/// Some vertices with a halo of `rings` rings: each vertex with its ring, in the order of the model.
 fn with_halo(system: &System, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)> {
     let mut inside = vec![false; system.vertex_count()];
     for &v in &owned {
@@ -472,36 +482,43 @@ fn with_halo(system: &System, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)
     vertices
 }
 
-struct Run<'a> {
+struct Advance<'a> {
     patch: &'a mut Patch,
-    course: Course,
+    substeps: Substeps,
 }
 
-impl pulp::WithSimd for Run<'_> {
+impl pulp::WithSimd for Advance<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (patch, course) = (self.patch, self.course);
+        let (patch, substeps) = (self.patch, self.substeps);
         let outermost = patch.groups.len() - 1;
-        patch.drift(simd, 0.5 * course.h);
-        for left in (0..course.count).rev() {
-            let ring = left.min(outermost);
-            let drift = if left == 0 { 0.5 * course.h } else { course.h };
-            patch.forces.membrane.measure(simd, ring, &patch.positions);
-            patch.forces.membrane.draw(simd, ring);
-            patch.add_contacts(ring, course.h);
+        patch.drift(simd, 0.5 * substeps.h);
+        for remaining in (0..substeps.count).rev() {
+            let ring = remaining.min(outermost);
+            let drift = if remaining == 0 {
+                0.5 * substeps.h
+            } else {
+                substeps.h
+            };
+            patch
+                .forces
+                .membrane
+                .update_strains(simd, ring, &patch.positions);
+            patch.forces.membrane.update_tensions(simd, ring);
+            patch.add_contacts(ring, substeps.h);
             patch.add_elastics();
-            patch.kick_and_drift(simd, ring, course, drift);
+            patch.kick_and_drift(simd, ring, substeps, drift);
         }
     }
 }
 
-struct Stretch<'a> {
+struct MeasureStretch<'a> {
     patch: &'a mut Patch,
 }
 
-impl pulp::WithSimd for Stretch<'_> {
+impl pulp::WithSimd for MeasureStretch<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -511,11 +528,11 @@ impl pulp::WithSimd for Stretch<'_> {
     }
 }
 
-struct Energy<'a> {
+struct MeasureEnergy<'a> {
     patch: &'a mut Patch,
 }
 
-impl pulp::WithSimd for Energy<'_> {
+impl pulp::WithSimd for MeasureEnergy<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -524,12 +541,13 @@ impl pulp::WithSimd for Energy<'_> {
         patch.energy = patch.forces.membrane.energy(simd, &patch.positions);
         let x = patch.positions.axes();
         for &group in &patch.groups[0] {
-            for part in 0..parts::<S>() {
-                let at = place::<S>(group as usize, part);
-                let bending = patch
-                    .forces
-                    .bending
-                    .product_points(simd, group as usize, part, x);
+            for lane_group in 0..lane_groups::<S>() {
+                let at = lane_group_start::<S>(group as usize, lane_group);
+                let bending =
+                    patch
+                        .forces
+                        .bending
+                        .product_points(simd, group as usize, lane_group, x);
                 for (axis, bending) in patch.gradient.axes_mut().into_iter().zip(bending) {
                     store::<S>(axis, at, bending);
                 }
@@ -538,7 +556,7 @@ impl pulp::WithSimd for Energy<'_> {
         for at in 0..patch.vertices.len() {
             if patch.ring[at] == 0 {
                 let v = patch.velocities.get(at);
-                if patch.falls[PAD + at] > 0.0 {
+                if patch.gravity_factor[PAD + at] > 0.0 {
                     patch.energy += 0.5 * v.dot(v) / patch.inverse_mass[PAD + at];
                 }
                 patch.energy += 0.5 * patch.gradient.get(at).dot(patch.positions.get(at));

@@ -1,24 +1,25 @@
-//! Sparse constant matrices for groups of rows, the values of groups that are alike kept once.
+//! Sparse constant matrices stored by groups of eight rows; groups with equal values share them.
 
 use super::octets::{
-    Octet, PAD, Places, WIDTH, add_scaled, gather, gather_points, load, load_points,
+    Indices, Octet, PAD, WIDTH, add_scaled, gather, gather_points, load, load_points,
 };
 use pulp::Simd;
 use std::collections::BTreeMap;
 
-/// A constant matrix. A group of eight rows has entries: a value for every row and where its
-/// eight operands lie.
+/// A constant sparse matrix. An entry of a group of eight rows is a value for each row and the eight operands:
+/// consecutive (a run) or at indices.
 #[derive(Default)]
 pub struct Rows {
     groups: Vec<Group>,
-    /// Where operands that lie side by side begin.
+    /// First index of the operands of each run.
     runs: Vec<u32>,
-    /// Where others lie.
-    scattered: Vec<Places>,
+    /// Indices of the operands of the other entries.
+    scattered: Vec<Indices>,
+    /// Values of the entries of groups, in each those of its runs first.
     values: Vec<Octet>,
 }
 
-/// Where the entries of a group end, and where its values begin: of its runs, then of the others.
+/// Ends of the entries of a group in [`Rows::runs`] and [`Rows::scattered`], and the start of its values.
 #[derive(Clone, Copy, Default)]
 struct Group {
     runs: u32,
@@ -26,35 +27,35 @@ struct Group {
     values: u32,
 }
 
-/// What a load in no order costs in loads of runs.
+/// Cost of a load by indices, in loads of a run.
 const SCATTERED_COST: usize = 6;
 
-/// Entries of a row, a run, or a lane: a place, or a lane, and a value.
+/// Entries of a row or of a lane (index, value), or of a run (lane, value).
 type Entries = Vec<(u32, f64)>;
 
 impl Rows {
     /// From the columns and values of each row.
     pub fn new(rows: &[Entries]) -> Self {
-        let mut made = Self::default();
-        let mut known: BTreeMap<Vec<u64>, u32> = BTreeMap::new();
+        let mut matrix = Self::default();
+        let mut known_values: BTreeMap<Vec<u64>, u32> = BTreeMap::new();
         for group in rows.chunks(WIDTH) {
-            let values = made.add_entries(group);
+            let values = matrix.add_entries(group);
             let numbers = values.iter().flat_map(|octet: &Octet| octet.0);
             let bits = numbers.map(f64::to_bits).collect();
-            let at = *known.entry(bits).or_insert_with(|| {
-                made.values.extend_from_slice(&values);
-                (made.values.len() - values.len()) as u32
+            let at = *known_values.entry(bits).or_insert_with(|| {
+                matrix.values.extend_from_slice(&values);
+                (matrix.values.len() - values.len()) as u32
             });
-            made.groups.push(Group {
-                runs: made.runs.len() as u32,
-                scattered: made.scattered.len() as u32,
+            matrix.groups.push(Group {
+                runs: matrix.runs.len() as u32,
+                scattered: matrix.scattered.len() as u32,
                 values: at,
             });
         }
-        made
+        matrix
     }
 
-    /// Adds the entries of a group; their values.
+    /// Adds the entries of a group and returns their values.
     fn add_entries(&mut self, group: &[Entries]) -> Vec<Octet> {
         let mut runs: BTreeMap<u32, Entries> = BTreeMap::new();
         for (lane, row) in (0u32..).zip(group) {
@@ -63,13 +64,13 @@ impl Rows {
                 runs.entry(start).or_default().push((lane, value));
             }
         }
-        let least = least_run(runs.values().map(|run| run.iter().map(|&(lane, _)| lane)));
+        let min_run = cheapest_min_run(runs.values().map(|run| run.iter().map(|&(lane, _)| lane)));
         let mut values = Vec::new();
-        let mut left: [Entries; WIDTH] = Default::default();
+        let mut scattered: [Entries; WIDTH] = Default::default();
         for (&start, run) in &runs {
-            if run.len() < least {
+            if run.len() < min_run {
                 for &(lane, value) in run {
-                    left[lane as usize].push((start + lane, value));
+                    scattered[lane as usize].push((start + lane, value));
                 }
                 continue;
             }
@@ -80,23 +81,23 @@ impl Rows {
             self.runs.push(start);
             values.push(octet);
         }
-        for k in 0..left.iter().map(Vec::len).max().unwrap_or(0) {
-            let lanes = left
+        for k in 0..scattered.iter().map(Vec::len).max().unwrap_or(0) {
+            let lanes = scattered
                 .each_ref()
                 .map(|row| row.get(k).copied().unwrap_or_default());
-            self.scattered.push(lanes.map(|(place, _)| place));
+            self.scattered.push(lanes.map(|(index, _)| index));
             values.push(Octet(lanes.map(|(_, value)| value)));
         }
         values
     }
 
-    /// Numbers of runs that a product's loads are worth.
+    /// Cost of the loads of a product, in loads of a run.
     pub fn cost(&self) -> usize {
         self.runs.len() + SCATTERED_COST * self.scattered.len()
     }
 
     #[inline(always)]
-    fn entries(&self, group: usize) -> (&[u32], &[Places], &[Octet]) {
+    fn entries(&self, group: usize) -> (&[u32], &[Indices], &[Octet]) {
         let before = match group {
             0 => Group::default(),
             _ => self.groups[group - 1],
@@ -112,69 +113,72 @@ impl Rows {
         (runs, scattered, values)
     }
 
-    /// A part of a group of rows times numbers.
+    /// The product of one lane group of rows with a vector of numbers.
     #[inline(always)]
-    pub fn product<S: Simd>(&self, simd: S, group: usize, part: usize, x: &[f64]) -> S::f64s {
+    pub fn product<S: Simd>(&self, simd: S, group: usize, lane_group: usize, x: &[f64]) -> S::f64s {
         let (runs, scattered, values) = self.entries(group);
         let (run_values, values) = values.split_at(runs.len());
-        let first = part * S::F64_LANES;
+        let first = lane_group * S::F64_LANES;
         let mut sum = simd.splat_f64s(0.0);
         for (start, value) in runs.iter().zip(run_values) {
             let x = load::<S>(x, *start as usize + first);
-            sum = simd.mul_add_f64s(value.part::<S>(part), x, sum);
+            sum = simd.mul_add_f64s(value.lane_group::<S>(lane_group), x, sum);
         }
-        for (places, value) in scattered.iter().zip(values) {
-            let x = gather::<S>(x, places, part);
-            sum = simd.mul_add_f64s(value.part::<S>(part), x, sum);
+        for (indices, value) in scattered.iter().zip(values) {
+            let x = gather::<S>(x, indices, lane_group);
+            sum = simd.mul_add_f64s(value.lane_group::<S>(lane_group), x, sum);
         }
         sum
     }
 
-    /// A part of a group of rows times points.
+    /// The product of one lane group of rows with a vector of points.
     #[inline(always)]
     pub fn product_points<S: Simd>(
         &self,
         simd: S,
         group: usize,
-        part: usize,
+        lane_group: usize,
         x: [&[f64]; 3],
     ) -> [S::f64s; 3] {
         let (runs, scattered, values) = self.entries(group);
         let (run_values, values) = values.split_at(runs.len());
-        let first = part * S::F64_LANES;
+        let first = lane_group * S::F64_LANES;
         let mut sum = [simd.splat_f64s(0.0); 3];
         for (start, value) in runs.iter().zip(run_values) {
             let x = load_points::<S>(x, *start as usize + first);
-            add_scaled(simd, &mut sum, value.part::<S>(part), x);
+            add_scaled(simd, &mut sum, value.lane_group::<S>(lane_group), x);
         }
-        for (places, value) in scattered.iter().zip(values) {
-            let x = gather_points::<S>(x, places, part);
-            add_scaled(simd, &mut sum, value.part::<S>(part), x);
+        for (indices, value) in scattered.iter().zip(values) {
+            let x = gather_points::<S>(x, indices, lane_group);
+            add_scaled(simd, &mut sum, value.lane_group::<S>(lane_group), x);
         }
         sum
     }
 }
 
-/// The length from which on runs are worth it, given the lanes of each that could be made: what
-/// shorter ones hold is taken in no order, one of each lane at a time.
-pub fn least_run<L: Iterator<Item = u32>>(runs: impl Iterator<Item = L>) -> usize {
+/// The least length of a run at which the loads of a group cost least, given the lanes of each possible run.
+/// The operands of shorter runs are loaded by indices, one of each lane at a time.
+pub fn cheapest_min_run<L: Iterator<Item = u32>>(runs: impl Iterator<Item = L>) -> usize {
     let lanes: Vec<Vec<u32>> = runs.map(Iterator::collect).collect();
-    let cost = |least: usize| {
-        let mut left = [0; WIDTH];
-        let mut made = 0;
+    let cost = |min_run: usize| {
+        let mut scattered = [0; WIDTH];
+        let mut run_count = 0;
         for run in &lanes {
-            if run.len() < least {
-                run.iter().for_each(|&lane| left[lane as usize] += 1);
+            if run.len() < min_run {
+                run.iter().for_each(|&lane| scattered[lane as usize] += 1);
             } else {
-                made += 1;
+                run_count += 1;
             }
         }
-        made + SCATTERED_COST * left.into_iter().max().unwrap_or(0)
+        run_count + SCATTERED_COST * scattered.into_iter().max().unwrap_or(0)
     };
-    (1..=WIDTH).min_by_key(|&least| cost(least)).unwrap_or(1)
+    (1..=WIDTH)
+        .min_by_key(|&min_run| cost(min_run))
+        .unwrap_or(1)
 }
 
-/// Rounds to 2^-44 of the largest, which makes the rows of a regular mesh alike to the last bit.
+/// Rounds to a multiple of 2^-44 times the largest value (to a power of two), so that equal rows of a regular mesh
+/// are equal to the last bit and share their values.
 pub fn rounding(largest: f64) -> impl Fn(f64) -> f64 {
     let quantum = (largest.log2().floor() - 44.0).exp2();
     let quantum = quantum.max(f64::MIN_POSITIVE);
@@ -183,7 +187,7 @@ pub fn rounding(largest: f64) -> impl Fn(f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::octets::{groups, padded, parts, place};
+    use super::super::octets::{groups, lane_group_start, lane_groups, padded};
     use super::*;
 
     struct Multiply<'a> {
@@ -199,9 +203,13 @@ mod tests {
         fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
             let mut to = padded(self.count);
             for group in 0..groups(self.count) {
-                for part in 0..parts::<S>() {
-                    let values = self.rows.product(simd, group, part, self.x);
-                    super::super::octets::store::<S>(&mut to, place::<S>(group, part), values);
+                for lane_group in 0..lane_groups::<S>() {
+                    let values = self.rows.product(simd, group, lane_group, self.x);
+                    super::super::octets::store::<S>(
+                        &mut to,
+                        lane_group_start::<S>(group, lane_group),
+                        values,
+                    );
                 }
             }
             to[PAD..PAD + self.count].to_vec()
@@ -229,13 +237,13 @@ mod tests {
             row
         };
         let rows: Vec<Vec<(u32, f64)>> = (0..count).map(row).collect();
-        let made = Rows::new(&rows);
+        let matrix = Rows::new(&rows);
         let mut x = padded(count);
         for k in 0..count {
             x[PAD + k] = (0.3 * k as f64).sin();
         }
         let multiply = || Multiply {
-            rows: &made,
+            rows: &matrix,
             x: &x,
             count,
         };
@@ -251,8 +259,8 @@ mod tests {
             }
         }
         assert!(
-            made.values.len() < made.runs.len() + made.scattered.len(),
-            "alike ones are kept once"
+            matrix.values.len() < matrix.runs.len() + matrix.scattered.len(),
+            "equal groups share their values"
         );
     }
 }

@@ -1,32 +1,33 @@
-//! The cloth as the method works on it: what is worked out once for a model, and the moving parts.
+//! The cloth cut into patches: patches, contacts and frequency built once for a model, and the state.
 
 use super::Lane;
 use super::limits;
-use super::patch::{Course, Patch, wider};
-use super::touch::{Touch, Touching};
+use super::patch::{Patch, Substeps, merge_extremes};
+use super::patch_contacts::{PatchContact, PatchContacts};
 use crate::methods::damped_contact_frequency;
 use crate::{Attachments, Model, State, System};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Rings of a patch's halo, two edges wide each: it lasts as many substeps.
-const RINGS: usize = 4;
+/// Rings of a patch's halo, each two edges wide: patches exchange halos after as many substeps.
+const HALO_RINGS: usize = 4;
 
-/// The same for a small cloth, of which a wide halo would be a large part.
-const FEW_RINGS: usize = 2;
+/// Rings of the halo in a small cloth, whose patches are hardly larger than a wide halo.
+const SMALL_CLOTH_HALO_RINGS: usize = 2;
 
-/// Vertices below which a cloth is small.
-const SMALL: usize = 2500;
+/// A cloth of fewer vertices has the smaller halo.
+const SMALL_CLOTH: usize = 2500;
 
-/// Vertices from which on a cloth is cut into patches: below, the halo and waking a second core cost
-/// more than it brings (a hung square of 1089 takes 1.9 ms a frame whole and 2.4 in two).
-const CUT_FROM: usize = 2000;
+/// A cloth of fewer vertices is one patch: halo and synchronisation cost more than a second core saves (a hung
+/// square of 1089 takes 1.9 ms a frame as one patch and 2.4 as two).
+const MIN_VERTICES_TO_CUT: usize = 2000;
 
-/// Vertices of a patch at the most: two megabytes of positions, velocities and triangles.
-const PATCH: usize = 12_000;
+/// Largest number of vertices of a patch: two megabytes of positions, velocities and triangles, which fit the
+/// cache of a core.
+const MAX_PATCH_VERTICES: usize = 12_000;
 
-/// Vertices taken back by one task.
-const UNLOADED: usize = 2048;
+/// Vertices of one task that copies from the patches.
+const UNLOAD_CHUNK: usize = 2048;
 
 /// A cloth cut into patches.
 pub struct Sheet {
@@ -34,11 +35,11 @@ pub struct Sheet {
     pub frequency: f64,
     key: Key,
     patches: Vec<Patch>,
-    /// The patch that owns each vertex, and its place there.
-    home: Vec<[u32; 2]>,
-    /// Width of their halos.
+    /// For each vertex the patch that owns it and its index there.
+    owner: Vec<[u32; 2]>,
+    /// Rings of their halos.
     rings: usize,
-    touch: Touch,
+    contacts: PatchContacts,
     positions: Vec<Lane>,
     velocities: Vec<Lane>,
     saved: Saved,
@@ -58,12 +59,12 @@ struct Saved {
 }
 
 impl Sheet {
-    /// A sheet for a model, cut as suits two cores.
+    /// A sheet for a model: one patch, or at least two of up to 12,000 vertices.
     pub fn new(system: &System) -> Self {
         let count = match system.vertex_count() {
             // An elastic between two vertices may cross from any patch to any other.
-            n if n < CUT_FROM || !system.couplings.all.is_empty() => 1,
-            n => n.div_ceil(PATCH).max(2),
+            n if n < MIN_VERTICES_TO_CUT || !system.couplings.all.is_empty() => 1,
+            n => n.div_ceil(MAX_PATCH_VERTICES).max(2),
         };
         Self::cut_into(system, count)
     }
@@ -72,24 +73,24 @@ impl Sheet {
     fn cut_into(system: &System, count: usize) -> Self {
         let rings = match count {
             1 => 0,
-            _ if system.vertex_count() < SMALL => FEW_RINGS,
-            _ => RINGS,
+            _ if system.vertex_count() < SMALL_CLOTH => SMALL_CLOTH_HALO_RINGS,
+            _ => HALO_RINGS,
         };
         let mut patches: Vec<Patch> = cut(system, count)
             .into_par_iter()
             .map(|owned| Patch::new(system, owned, rings))
             .collect();
-        let mut looked_at = vec![false; system.vertex_count()];
+        let mut is_in_halo = vec![false; system.vertex_count()];
         for v in patches.iter().flat_map(|patch| patch.halo()) {
-            looked_at[v as usize] = true;
+            is_in_halo[v as usize] = true;
         }
         for patch in &mut patches {
-            patch.share(|v| looked_at[v as usize]);
+            patch.set_border(|v| is_in_halo[v as usize]);
         }
-        let mut home = vec![[0; 2]; system.vertex_count()];
+        let mut owner = vec![[0; 2]; system.vertex_count()];
         for (patch, number) in patches.iter().zip(0..) {
             for (v, at) in patch.owned() {
-                home[v as usize] = [number, at];
+                owner[v as usize] = [number, at];
             }
         }
         let mut sheet = Self {
@@ -99,9 +100,9 @@ impl Sheet {
                 attachments: system.control.attachments.clone(),
             },
             patches,
-            home,
+            owner,
             rings,
-            touch: Touch::default(),
+            contacts: PatchContacts::default(),
             positions: Vec::new(),
             velocities: Vec::new(),
             saved: Saved::default(),
@@ -110,12 +111,12 @@ impl Sheet {
             system,
             &State::at_rest(system, system.topology.layout.clone()),
         );
-        let inner = limits::frequency_at_rest(system, sheet.stretch());
-        sheet.frequency = inner.hypot(damped_contact_frequency(system, &system.rest.samples));
+        let elastic = limits::frequency_at_rest(system, sheet.stretch());
+        sheet.frequency = elastic.hypot(damped_contact_frequency(system, &system.rest.samples));
         sheet
     }
 
-    /// Whether it is a sheet of this model still.
+    /// Whether it was built from a model with the same cloth, couplings, contact and attachments.
     pub fn fits(&self, system: &System) -> bool {
         let key = &self.key;
         key.model.has_cloth_of(system)
@@ -125,7 +126,7 @@ impl Sheet {
             && key.attachments.is(&system.control.attachments)
     }
 
-    /// Takes over a state.
+    /// Loads a state and detects its contacts.
     pub fn start(&mut self, system: &System, state: &State) {
         self.positions.clear();
         self.positions
@@ -136,129 +137,135 @@ impl Sheet {
             velocities.map(|(v, &pinned)| if pinned { Lane::default() } else { (*v).into() }),
         );
         self.load();
-        self.touch.start(system, state);
-        let time = self.touch.interval;
-        (self.touch).look(system, &self.positions, &self.velocities, time);
+        self.contacts.start(system, state);
+        let time = self.contacts.interval;
+        (self.contacts).detect(system, &self.positions, &self.velocities, time);
     }
 
-    /// Gives every patch its part.
+    /// Loads positions and velocities into every patch.
     fn load(&mut self) {
         let (positions, velocities) = (&self.positions, &self.velocities);
         let patches = self.patches.par_iter_mut();
         patches.for_each(|patch| patch.load(positions, velocities));
     }
 
-    /// Hands the state over.
+    /// Stores positions, velocities and friction in a state.
     pub fn finish(&self, state: &mut State) {
         let vector = |&l: &Lane| Vec3::from(l);
         state.positions.clear();
         state.positions.extend(self.positions.iter().map(vector));
         state.velocities.clear();
         state.velocities.extend(self.velocities.iter().map(vector));
-        self.touch.finish(state);
+        self.contacts.finish(state);
     }
 
-    /// Keeps the present state to come back to.
+    /// Saves the present state for [`Self::restore`].
     pub fn save(&mut self) {
         self.saved.positions.clone_from(&self.positions);
         self.saved.velocities.clone_from(&self.velocities);
-        self.touch.remember(&mut self.saved.contacts);
+        self.contacts.save(&mut self.saved.contacts);
     }
 
-    /// Comes back to the state kept.
+    /// Restores the state saved last.
     pub fn restore(&mut self) {
         self.positions.clone_from(&self.saved.positions);
         self.velocities.clone_from(&self.saved.velocities);
-        self.touch.recall(&self.saved.contacts);
+        self.contacts.restore(&self.saved.contacts);
         self.load();
     }
 
-    /// Moves on by `count` substeps of `h` [s].
+    /// Advances by `count` substeps of `h` [s].
     pub fn advance(&mut self, system: &System, h: f64, count: usize) {
-        let most = match self.patches.len() {
+        let between_exchanges = match self.patches.len() {
             1 => count,
             _ => self.rings,
         };
-        let touches = !system.colliders.is_empty();
-        // Substeps until the next look.
-        let mut seen = if touches { 0 } else { count };
-        let mut left = count;
-        while left > 0 {
-            let looks = seen == 0;
-            if looks {
-                let substeps = |touch: &Touch| ((touch.interval / h) as usize).clamp(1, left);
-                seen = substeps(&self.touch);
+        let has_solids = !system.colliders.is_empty();
+        // Substeps until the next detection of contacts.
+        let mut until_detection = if has_solids { 0 } else { count };
+        let mut remaining = count;
+        while remaining > 0 {
+            let detects = until_detection == 0;
+            if detects {
+                let substeps = |contacts: &PatchContacts| {
+                    ((contacts.interval / h) as usize).clamp(1, remaining)
+                };
+                until_detection = substeps(&self.contacts);
                 let (x, v) = (&self.positions, &self.velocities);
-                self.touch.look(system, x, v, h * seen as f64);
-                // What was found may ask for the next look sooner.
-                seen = seen.min(substeps(&self.touch));
+                self.contacts
+                    .detect(system, x, v, h * until_detection as f64);
+                // The detection may have shortened its interval.
+                until_detection = until_detection.min(substeps(&self.contacts));
             }
-            let now = seen.min(most);
-            left -= now;
-            seen -= now;
-            let course = Course {
+            let run = until_detection.min(between_exchanges);
+            remaining -= run;
+            until_detection -= run;
+            let substeps = Substeps {
                 h,
-                count: now,
+                count: run,
                 gravity: system.control.gravity.into(),
                 drag: system.control.air_drag,
             };
-            self.on_patches(|patch, touching| {
-                match looks {
-                    true => patch.load_contacts(touching),
-                    false => patch.renew_contacts(touching),
+            self.for_patches(|patch, near| {
+                match detects {
+                    true => patch.load_contacts(near),
+                    false => patch.refresh_halo_contacts(near),
                 }
-                patch.advance(course);
+                patch.advance(substeps);
             });
-            // All are looked at for contact, and at the end.
-            match seen == 0 {
+            // A detection needs all vertices, and so does the caller at the end.
+            match until_detection == 0 {
                 true => self.unload(),
                 false => self.unload_borders(),
             }
         }
     }
 
-    /// Takes back all vertices and contacts.
+    /// Copies all vertices and contacts from the patches.
     fn unload(&mut self) {
         let patches = &self.patches;
-        let all = (&mut self.positions, &mut self.velocities, &self.home).into_par_iter();
-        all.with_min_len(UNLOADED)
+        let vertices = (&mut self.positions, &mut self.velocities, &self.owner).into_par_iter();
+        vertices
+            .with_min_len(UNLOAD_CHUNK)
             .for_each(|(x, v, &[patch, at])| (*x, *v) = patches[patch as usize].vertex(at));
         for contact in patches.iter().flat_map(Patch::own_contacts) {
-            self.touch.take_back(contact);
+            self.contacts.store(contact);
         }
     }
 
-    /// Takes back what patches look at of one another.
+    /// Copies border vertices and their contacts from the patches, for the halos of the others.
     fn unload_borders(&mut self) {
         for patch in &self.patches {
             patch.unload_border(&mut self.positions, &mut self.velocities);
             for contact in patch.border_contacts() {
-                self.touch.show(contact);
+                self.contacts.store_near(contact);
             }
         }
     }
 
-    /// Lets every patch work on its part of the cloth.
-    fn on_patches(&mut self, work: impl Fn(&mut Patch, &[Touching]) + Sync) {
+    /// Loads the halo of every patch and then runs `work` on it, with the near contacts.
+    fn for_patches(&mut self, work: impl Fn(&mut Patch, &[PatchContact]) + Sync) {
         let (positions, velocities) = (&self.positions, &self.velocities);
-        let touching = &self.touch.near;
+        let near = &self.contacts.near;
         self.patches.par_iter_mut().for_each(|patch| {
             patch.load_halo(positions, velocities);
-            work(patch, touching);
+            work(patch, near);
         });
     }
 
-    /// Largest and smallest principal squared stretch; the largest is 1 or more, the smallest 1 or
-    /// less, and both are no numbers where a place is none.
+    /// Largest and smallest principal squared stretch \[1\]; the largest is at least 1, the smallest at most 1,
+    /// and both are NaN where a position is.
     pub fn stretch(&mut self) -> [f64; 2] {
-        self.on_patches(|patch, _| patch.measure_stretch());
+        self.for_patches(|patch, _| patch.measure_stretch());
         let patches = self.patches.iter();
-        patches.fold([1.0; 2], |most, patch| wider(most, patch.stretch))
+        patches.fold([1.0; 2], |extremes, patch| {
+            merge_extremes(extremes, patch.stretch)
+        })
     }
 
     /// Energy of motion, strain, elastics and contact [J].
     pub fn energy(&mut self) -> f64 {
-        self.on_patches(|patch, _| patch.measure_energy());
+        self.for_patches(|patch, _| patch.measure_energy());
         let own: f64 = self.patches.iter().map(|patch| patch.energy).sum();
         let between = self
             .key
@@ -270,15 +277,15 @@ impl Sheet {
                 let [from, to] = [from, to].map(|v| self.positions[v as usize]);
                 law.energy(from.minus(to).into())
             });
-        let to_places = self.key.attachments.all().iter().map(|one| {
+        let to_points = self.key.attachments.all().iter().map(|one| {
             let from = self.positions[one.vertex as usize];
             one.law.energy(from.minus(one.place.into()).into())
         });
-        let elastics = between.chain(to_places);
-        own + self.touch.energy(&self.positions) + elastics.sum::<f64>()
+        let elastics = between.chain(to_points);
+        own + self.contacts.energy(&self.positions) + elastics.sum::<f64>()
     }
 
-    /// The fastest vertex and its speed [m/s]; one whose speed is no number before all.
+    /// The fastest vertex and its speed [m/s]; the first one whose speed is NaN, if any.
     pub fn fastest(&self) -> (usize, f64) {
         let mut best = (0, 0.0);
         for (at, v) in self.velocities.iter().enumerate() {
@@ -294,12 +301,12 @@ impl Sheet {
     }
 }
 
-/// Cuts a cloth into `count` sets of nearly equal size: the next slices along the longest axis, or
-/// in the order of the vertices where that severs hardly more triangles, since it leaves whole
-/// rows of a grid in one patch. Within a set the vertices keep their order.
+/// Cuts a cloth into `count` sets of nearly equal size: slices along the longest axis of the layout, or slices of
+/// the order of the model where that severs at most a quarter more triangles, since it leaves whole rows of a
+/// grid in one patch. The vertices of a set are in the order of the model.
 fn cut(system: &System, count: usize) -> Vec<Vec<u32>> {
-    let in_turn: Vec<u32> = (0..system.vertex_count() as u32).collect();
-    let size = in_turn.len().div_ceil(count).max(1);
+    let in_model_order: Vec<u32> = (0..system.vertex_count() as u32).collect();
+    let size = in_model_order.len().div_ceil(count).max(1);
     let bounds = system
         .topology
         .layout
@@ -309,7 +316,7 @@ fn cut(system: &System, count: usize) -> Vec<Vec<u32>> {
         });
     let axis = bounds.map_or(0, |(low, high)| (high - low).imax());
     let key = |v: u32| system.topology.layout[v as usize][axis];
-    let mut along = in_turn.clone();
+    let mut along = in_model_order.clone();
     along.sort_by(|&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
     let severed = |order: &[u32]| {
         let mut slice = vec![0; order.len()];
@@ -323,8 +330,8 @@ fn cut(system: &System, count: usize) -> Vec<Vec<u32>> {
             .map(|t| t.map(|v| slice[v as usize]));
         corners.filter(|[a, b, c]| a != b || a != c).count()
     };
-    let order = match 4 * severed(&in_turn) <= 5 * severed(&along) {
-        true => in_turn,
+    let order = match 4 * severed(&in_model_order) <= 5 * severed(&along) {
+        true => in_model_order,
         false => along,
     };
     let sorted = |slice: &[u32]| {
@@ -390,14 +397,14 @@ mod tests {
         let run = |count: usize| {
             let mut sheet = Sheet::cut_into(&system, count);
             sheet.start(&system, &state);
-            // Patches meet between looks, too.
+            // Patches exchange halos between detections, too.
             sheet.advance(&system, 1e-4, 50);
             sheet
         };
         let (whole, cut) = (run(1), run(4));
         assert_eq!(cut.patches.len(), 4);
-        assert!(whole.touch.near.len() > 100);
-        // Sums in another order: rounding, grown by the motion.
+        assert!(whole.contacts.near.len() > 100);
+        // The sums are in another order: rounding errors, amplified by the motion.
         for (a, b) in whole.positions.iter().zip(&cut.positions) {
             let off = (Vec3::from(*a) - Vec3::from(*b)).norm();
             assert!(off < 1e-10, "{off:e}");
@@ -405,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn looks_are_nearer_where_cloth_slides_over_what_is_curved() {
+    fn detection_is_more_frequent_where_cloth_slides_over_a_curved_surface() {
         for (curved, expected) in [(0.0, 1e-3), (50.0, 5e-4)] {
             let (mut system, mut state) = falling();
             system = system.with(|builder| {
@@ -421,12 +428,12 @@ mod tests {
             });
             let mut sheet = Sheet::cut_into(&system, 2);
             sheet.start(&system, &state);
-            assert_eq!(sheet.touch.interval, 5e-4, "nothing is known yet");
+            assert_eq!(sheet.contacts.interval, 5e-4, "before the first detection");
             let (mut longest, mut pressed) = (0.0f64, false);
             for _ in 0..8 {
                 sheet.advance(&system, 1e-4, 10);
-                pressed |= sheet.touch.near.iter().any(Touching::presses);
-                longest = longest.max(sheet.touch.interval);
+                pressed |= sheet.contacts.near.iter().any(PatchContact::is_pressed);
+                longest = longest.max(sheet.contacts.interval);
             }
             assert!(pressed);
             assert_eq!(longest, expected, "{curved}");
@@ -434,8 +441,8 @@ mod tests {
     }
 
     #[test]
-    fn a_halo_holds_all_that_forces_look_at() {
-        // At the corners of a square cut crosswise bending looks three edges far.
+    fn a_halo_contains_the_stencils_of_all_forces() {
+        // With alternating diagonals a bending row reaches over three edges.
         let mut mesh = grid(16, 0.16, 0.0);
         for (quad, pair) in mesh.triangles.chunks_exact_mut(2).enumerate() {
             if (quad % 16 + quad / 16) % 2 == 1 {
@@ -479,7 +486,7 @@ mod tests {
         let mut highest = f64::MIN;
         let mut sheet = Sheet::cut_into(&system, 2);
         for _ in 0..40 {
-            // As after a checkpoint: nothing but the state remembers.
+            // As after a checkpoint: the state is all that is carried over.
             sheet.start(&system, &state);
             sheet.advance(&system, 1e-4, 50);
             sheet.finish(&mut state);
@@ -491,20 +498,20 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_seen_wherever_it_stands() {
+    fn a_nan_position_is_reported_at_any_vertex() {
         let (system, mut state) = falling();
         let mut sheet = Sheet::cut_into(&system, 3);
         for at in [0, 300, 624] {
-            let kept = std::mem::replace(&mut state.positions[at].y, f64::NAN);
+            let saved = std::mem::replace(&mut state.positions[at].y, f64::NAN);
             sheet.start(&system, &state);
             let found = sheet.stretch();
             assert!(found.iter().all(|stretch| stretch.is_nan()), "{at}");
-            state.positions[at].y = kept;
+            state.positions[at].y = saved;
         }
     }
 
     #[test]
-    fn what_blew_up_leaves_nothing_behind_when_it_is_undone() {
+    fn restoring_after_a_blow_up_leaves_no_trace_of_it() {
         let (system, state) = falling();
         let run = |blow_up: bool| {
             let mut sheet = Sheet::cut_into(&system, 3);

@@ -1,45 +1,45 @@
-//! Principal stretch of triangles from the strains of their edges.
+//! Principal stretches of triangles from the strains of their edges.
 
-use super::octets::{Octet, PAD, Places, Take, WIDTH, parts};
+use super::octets::{Indices, Octet, Operands, PAD, WIDTH, lane_groups};
 use pulp::Simd;
 use std::collections::BTreeMap;
 
-/// Groups of triangles.
+/// Triangles in groups of eight.
 pub struct Stretches {
-    /// Where the strains of their edges lie, and their shapes.
-    takes: Vec<([Take; 3], u32)>,
-    scattered: Vec<Places>,
-    /// Shapes of groups, those that are alike kept once.
+    /// For each group the strains of the three edges, and the index of its shapes.
+    groups: Vec<([Operands; 3], u32)>,
+    scattered: Vec<Indices>,
+    /// Shape coefficients of groups; equal groups share them.
     shapes: Vec<[Octet; 4]>,
 }
 
-/// Triangles of one kind that lie side by side for a run to be made of them.
-const LEAST_RUN: usize = 4;
+/// Least number of triangles with equal edge offsets, within eight consecutive edge numbers, that make a group
+/// whose strains are loaded as runs.
+const MIN_RUN: usize = 4;
 
 type Triangle = ([u32; 3], [f64; 4]);
 
 impl Stretches {
-    /// Of triangles: the numbers of their edges and what stretch follows from
-    /// ([`super::membrane::EdgeMembrane::shape`]).
+    /// From the edge numbers and shape coefficients ([`super::membrane::EdgeMembrane::shape`]) of triangles.
     pub fn new(triangles: impl Iterator<Item = Triangle>) -> Self {
         let mut sorted: Vec<Triangle> = triangles.collect();
-        // Those come together whose edges lie alike.
+        // Sorts triangles with equal edge offsets together.
         let kind = |&([a, b, c], _): &Triangle| (b.wrapping_sub(a), c.wrapping_sub(a), a);
         sorted.sort_unstable_by_key(kind);
-        let mut made = Self {
-            takes: Vec::new(),
+        let mut stretches = Self {
+            groups: Vec::new(),
             scattered: Vec::new(),
             shapes: Vec::new(),
         };
-        let mut known = BTreeMap::new();
+        let mut known_shapes = BTreeMap::new();
         let mut single = Vec::new();
         let mut rest = &sorted[..];
         while let Some(first) = rest.first() {
-            let (apart, more, start) = kind(first);
-            let run = rest.partition_point(|t| kind(t) < (apart, more, start + WIDTH as u32));
+            let (second, third, start) = kind(first);
+            let run = rest.partition_point(|t| kind(t) < (second, third, start + WIDTH as u32));
             let (group, after) = rest.split_at(run);
             rest = after;
-            if group.len() < LEAST_RUN {
+            if group.len() < MIN_RUN {
                 single.extend_from_slice(group);
                 continue;
             }
@@ -47,71 +47,75 @@ impl Stretches {
             for triangle in group {
                 lanes[(triangle.0[0] - start) as usize] = Some(*triangle);
             }
-            made.add(lanes, &mut known);
+            stretches.add(lanes, &mut known_shapes);
         }
         for group in single.chunks(WIDTH) {
             let mut lanes = [None; WIDTH];
             for (lane, triangle) in lanes.iter_mut().zip(group) {
                 *lane = Some(*triangle);
             }
-            made.add(lanes, &mut known);
+            stretches.add(lanes, &mut known_shapes);
         }
-        made
+        stretches
     }
 
-    fn add(&mut self, lanes: [Option<Triangle>; WIDTH], known: &mut BTreeMap<Vec<u64>, u32>) {
-        let takes = [0, 1, 2].map(|side| {
-            let places = lanes.map(|lane| lane.map(|(sides, _)| sides[side] + PAD as u32));
-            Take::new(places, &mut self.scattered)
+    fn add(
+        &mut self,
+        lanes: [Option<Triangle>; WIDTH],
+        known_shapes: &mut BTreeMap<Vec<u64>, u32>,
+    ) {
+        let strains = [0, 1, 2].map(|side| {
+            let indices = lanes.map(|lane| lane.map(|(sides, _)| sides[side] + PAD as u32));
+            Operands::new(indices, &mut self.scattered)
         });
         let shape =
             [0, 1, 2, 3].map(|k| Octet(lanes.map(|lane| lane.map_or(0.0, |(_, shape)| shape[k]))));
         let bits = shape.iter().flat_map(|octet| octet.0).map(f64::to_bits);
-        let at = *known.entry(bits.collect()).or_insert_with(|| {
+        let at = *known_shapes.entry(bits.collect()).or_insert_with(|| {
             self.shapes.push(shape);
             self.shapes.len() as u32 - 1
         });
-        self.takes.push((takes, at));
+        self.groups.push((strains, at));
     }
 
-    /// Largest and smallest principal squared stretch by the strains of edges [m2], no less and no
-    /// more than 1; no numbers where a strain is none. They are eigenvalues of the present metric
-    /// by the one at rest: 1 + u +- root(u^2 - det).
+    /// Largest and smallest principal squared stretch, from the strains of edges [m2]; the largest is at least
+    /// 1, the smallest at most 1, and both are NaN where a strain is. They are eigenvalues of the deformed
+    /// metric relative to the one at rest: 1 + u +- root(u^2 - det).
     ///
-    /// A triangle folded onto a line counts too: warp and weft then pull the same way, and the
-    /// square is up to 2.
+    /// A triangle folded onto a line counts too: warp and weft are then parallel, and the squared stretch is up
+    /// to 2.
     #[inline(always)]
     pub fn extremes<S: Simd>(&self, simd: S, strain: &[f64]) -> [f64; 2] {
         let (zero, quarter) = (simd.splat_f64s(0.0), simd.splat_f64s(0.25));
-        let (mut most, mut least, mut lost) = (zero, zero, zero);
-        for (takes, shape) in &self.takes {
+        let (mut largest, mut smallest, mut nan) = (zero, zero, zero);
+        for (strains, shape) in &self.groups {
             let shape = &self.shapes[*shape as usize];
-            for part in 0..parts::<S>() {
+            for lane_group in 0..lane_groups::<S>() {
                 let q = [
-                    takes[0].load::<S>(strain, &self.scattered, part),
-                    takes[1].load::<S>(strain, &self.scattered, part),
-                    takes[2].load::<S>(strain, &self.scattered, part),
+                    strains[0].load::<S>(strain, &self.scattered, lane_group),
+                    strains[1].load::<S>(strain, &self.scattered, lane_group),
+                    strains[2].load::<S>(strain, &self.scattered, lane_group),
                 ];
-                let u = simd.mul_f64s(q[0], shape[0].part::<S>(part));
-                let u = simd.mul_add_f64s(q[1], shape[1].part::<S>(part), u);
-                let u = simd.mul_add_f64s(q[2], shape[2].part::<S>(part), u);
+                let u = simd.mul_f64s(q[0], shape[0].lane_group::<S>(lane_group));
+                let u = simd.mul_add_f64s(q[1], shape[1].lane_group::<S>(lane_group), u);
+                let u = simd.mul_add_f64s(q[2], shape[2].lane_group::<S>(lane_group), u);
                 // Twice the change of d1.d2.
                 let mixed = simd.sub_f64s(simd.add_f64s(q[0], q[1]), q[2]);
                 let mixed = simd.mul_f64s(quarter, simd.mul_f64s(mixed, mixed));
                 let det = simd.sub_f64s(simd.mul_f64s(q[0], q[1]), mixed);
-                let det = simd.mul_f64s(det, shape[3].part::<S>(part));
+                let det = simd.mul_f64s(det, shape[3].lane_group::<S>(lane_group));
                 let root = simd.sub_f64s(simd.mul_f64s(u, u), det);
                 let root = simd.sqrt_f64s(simd.max_f64s(root, zero));
-                most = simd.max_f64s(most, simd.add_f64s(u, root));
-                least = simd.min_f64s(least, simd.sub_f64s(u, root));
-                lost = simd.add_f64s(lost, simd.mul_f64s(u, zero));
+                largest = simd.max_f64s(largest, simd.add_f64s(u, root));
+                smallest = simd.min_f64s(smallest, simd.sub_f64s(u, root));
+                nan = simd.add_f64s(nan, simd.mul_f64s(u, zero));
             }
         }
-        // Zero, or no number.
-        let lost = simd.reduce_sum_f64s(lost);
+        // Zero, or NaN where a strain is: maxima and minima ignore NaN.
+        let nan = simd.reduce_sum_f64s(nan);
         [
-            1.0 + lost + simd.reduce_max_f64s(most),
-            1.0 + lost + simd.reduce_min_f64s(least),
+            1.0 + nan + simd.reduce_max_f64s(largest),
+            1.0 + nan + simd.reduce_min_f64s(smallest),
         ]
     }
 }

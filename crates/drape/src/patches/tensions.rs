@@ -6,132 +6,134 @@
 use super::edges::Edges;
 use super::membrane::EdgeMembrane;
 use super::octets::{
-    PAD, Places, Points, Take, WIDTH, add_scaled, gather, gather_points, load, load_points, padded,
-    parts, place, store,
+    Indices, Operands, PAD, Points, WIDTH, add_scaled, gather, gather_points, lane_group_start,
+    lane_groups, load, load_points, padded, store,
 };
-use super::rows::{Rows, least_run, rounding};
+use super::rows::{Rows, cheapest_min_run, rounding};
 use super::stretch::Stretches;
 use crate::System;
 use pulp::Simd;
 use std::collections::BTreeMap;
 
-/// The membrane of the triangles of a patch.
+/// The membrane of the triangles of a patch, by its edges.
 pub struct Tensions {
-    /// Where the ends of the edges of each group lie.
-    ends: Vec<[Take; 2]>,
+    /// First and second end of the edges of each group.
+    ends: Vec<[Operands; 2]>,
     /// Squared lengths at rest [m2].
     rest: Vec<f64>,
-    /// Squared lengths less those at rest [m2].
+    /// Strains: squared lengths less those at rest [m2].
     strain: Vec<f64>,
     /// Tensions [N/m].
     tension: Vec<f64>,
-    /// Tensions by strains.
+    /// The matrix of tensions by strains [N/m3].
     stiffness: Rows,
-    /// A fourth where the patch answers for the edge's energy.
-    counted: Vec<f64>,
-    /// Groups whose strain, and whose tension, forces within each ring look at.
-    strained: Vec<Vec<u32>>,
-    tense: Vec<Vec<u32>>,
-    /// Where the entries of each group of vertices begin, in `runs` and in `others`; one more than
-    /// there are groups.
+    /// Weight of strain times tension in the energy: 1/4 where the patch owns the edge, else 0.
+    energy_weight: Vec<f64>,
+    /// For each ring the groups of edges whose strains, and those whose tensions, the forces at vertices up to
+    /// that ring depend on.
+    strain_groups: Vec<Vec<u32>>,
+    tension_groups: Vec<Vec<u32>>,
+    /// First entry of each group of vertices in `runs` and in `others`, and the end.
     start: Vec<[u32; 2]>,
-    /// Where the other ends of their edges, and the edges, lie side by side.
+    /// Entries of consecutive numbers: first index of the other ends of edges, and of the edges.
     runs: Vec<[u32; 2]>,
-    /// Where they lie otherwise.
-    others: Vec<[Places; 2]>,
-    /// Ends that lie in no order.
-    scattered: Vec<Places>,
+    /// Entries by indices: the other ends of edges, and the edges.
+    others: Vec<[Indices; 2]>,
+    /// Table of the entries of `ends` that are no run.
+    scattered: Vec<Indices>,
     stretches: Stretches,
 }
 
-/// What tensions are made from: a patch's vertices in their order.
-pub struct Ground<'a> {
+/// The triangles and vertices of a patch, in the patch's numbering of vertices.
+pub struct PatchTopology<'a> {
     /// The model.
     pub system: &'a System,
-    /// Its triangles that lie in the patch, with their corners there.
+    /// The triangles all of whose corners are in the patch: index in the model, corners in the patch.
     pub triangles: &'a [(usize, [u32; 3])],
-    /// The ring of each vertex, zero for those the patch owns.
+    /// The halo ring of each vertex; zero for vertices that the patch owns.
     pub ring: &'a [usize],
-    /// The vertices in the model.
+    /// The number of each vertex in the model.
     pub vertices: &'a [u32],
 }
 
 impl Tensions {
-    /// The membrane on some ground.
-    pub fn new(ground: &Ground) -> Self {
-        let Ground { system, ring, .. } = *ground;
-        let edges = Edges::new(ground.triangles.iter().map(|&(_, corners)| corners));
+    /// The membrane of a patch.
+    pub fn new(patch: &PatchTopology) -> Self {
+        let PatchTopology { system, ring, .. } = *patch;
+        let edges = Edges::new(patch.triangles.iter().map(|&(_, corners)| corners));
         let slots = edges.ends.len();
-        let laws: Vec<Law> = ground
+        let triangles: Vec<TriangleEdges> = patch
             .triangles
             .iter()
-            .map(|t| law(system, &edges, t))
+            .map(|t| triangle_edges(system, &edges, t))
             .collect();
-        let values = laws.iter().flat_map(|law| law.membrane.stiffness);
+        let values = triangles
+            .iter()
+            .flat_map(|triangle| triangle.membrane.stiffness);
         let largest = values
             .flatten()
             .fold(f64::MIN_POSITIVE, |m, k| m.max(k.abs()));
         let round = rounding(largest);
         let mut rows = vec![BTreeMap::new(); slots];
         let mut rest = padded(slots);
-        // What forces within a ring look at: innermost vertex of an edge's triangles, of an edge.
-        let mut looked = vec![[usize::MAX; 2]; slots];
-        for (law, (_, corners)) in laws.iter().zip(ground.triangles) {
+        // For each edge the innermost ring of a vertex of its triangles, and of its own two ends.
+        let mut innermost_ring = vec![[usize::MAX; 2]; slots];
+        for (triangle, (_, corners)) in triangles.iter().zip(patch.triangles) {
             let innermost = corners.map(|c| ring[c as usize]).into_iter().min();
             for i in 0..3 {
-                let at = law.sides[i] as usize;
-                rest[PAD + at] = law.membrane.rest[i];
-                looked[at][0] = looked[at][0].min(innermost.unwrap_or(0));
+                let at = triangle.sides[i] as usize;
+                rest[PAD + at] = triangle.membrane.rest[i];
+                innermost_ring[at][0] = innermost_ring[at][0].min(innermost.unwrap_or(0));
                 for j in 0..3 {
-                    *rows[at].entry(law.sides[j]).or_insert(0.0) +=
-                        round(law.membrane.stiffness[i][j]);
+                    *rows[at].entry(triangle.sides[j]).or_insert(0.0) +=
+                        round(triangle.membrane.stiffness[i][j]);
                 }
             }
         }
-        let mut counted = padded(slots);
+        let mut energy_weight = padded(slots);
         for (number, ends) in edges.iter() {
             let at = number as usize;
             let [a, b] = ends.map(|end| end as usize);
-            looked[at][1] = ring[a].min(ring[b]);
-            let answers = if ground.vertices[a] < ground.vertices[b] {
+            innermost_ring[at][1] = ring[a].min(ring[b]);
+            let first = if patch.vertices[a] < patch.vertices[b] {
                 a
             } else {
                 b
             };
-            counted[PAD + at] = if ring[answers] == 0 { 0.25 } else { 0.0 };
+            energy_weight[PAD + at] = if ring[first] == 0 { 0.25 } else { 0.0 };
         }
         let rows: Vec<Vec<(u32, f64)>> = rows
             .into_iter()
             .map(|row| row.into_iter().collect())
             .collect();
         let rings = ring.iter().max().map_or(1, |most| most + 1);
-        let [strained, tense] = [0, 1].map(|what| {
-            let of: Vec<usize> = looked.iter().map(|looked| looked[what]).collect();
-            within(&of, rings)
+        let [strain_groups, tension_groups] = [0, 1].map(|which| {
+            let of: Vec<usize> = innermost_ring.iter().map(|rings| rings[which]).collect();
+            groups_by_ring(&of, rings)
         });
-        let mut made = Self {
+        let mut tensions = Self {
             ends: Vec::new(),
             rest,
             strain: padded(slots),
             tension: padded(slots),
             stiffness: Rows::new(&rows),
-            counted,
-            strained,
-            tense,
+            energy_weight,
+            strain_groups,
+            tension_groups,
             start: vec![[0; 2]],
             runs: Vec::new(),
             others: Vec::new(),
             scattered: Vec::new(),
-            stretches: Stretches::new(laws.iter().zip(ground.triangles).filter_map(
-                |(law, (_, corners))| {
+            stretches: Stretches::new(triangles.iter().zip(patch.triangles).filter_map(
+                |(triangle, (_, corners))| {
                     let inside = corners.iter().any(|&c| ring[c as usize] == 0);
-                    inside.then_some((law.sides, law.membrane.shape))
+                    inside.then_some((triangle.sides, triangle.membrane.shape))
                 },
             )),
         };
-        made.add_ends(&edges);
-        made.add_pulls(&edges, ground.vertices.len());
-        made
+        tensions.add_ends(&edges);
+        tensions.add_vertex_edges(&edges, patch.vertices.len());
+        tensions
     }
 
     fn add_ends(&mut self, edges: &Edges) {
@@ -141,19 +143,19 @@ impl Tensions {
                 for (lane, ends) in lanes.iter_mut().zip(group) {
                     *lane = ends.map(|ends| ends[end] + PAD as u32);
                 }
-                Take::new(lanes, &mut self.scattered)
+                Operands::new(lanes, &mut self.scattered)
             }));
         }
     }
 
-    fn add_pulls(&mut self, edges: &Edges, vertices: usize) {
+    fn add_vertex_edges(&mut self, edges: &Edges, vertices: usize) {
         let mut around = vec![Vec::new(); vertices];
         for (number, [a, b]) in edges.iter() {
             around[a as usize].push([b, number]);
             around[b as usize].push([a, number]);
         }
-        let no_edge = |place: u32| {
-            let number = (place as usize).checked_sub(PAD);
+        let is_unused = |index: u32| {
+            let number = (index as usize).checked_sub(PAD);
             number.is_none_or(|n| edges.ends.get(n).is_none_or(Option::is_none))
         };
         for group in around.chunks(WIDTH) {
@@ -164,25 +166,26 @@ impl Tensions {
                     runs.entry(start).or_default().push(lane);
                 }
             }
-            let least = least_run(runs.values().map(|lanes| lanes.iter().copied()));
-            let mut left = [const { Vec::new() }; WIDTH];
+            let min_run = cheapest_min_run(runs.values().map(|lanes| lanes.iter().copied()));
+            let mut scattered = [const { Vec::new() }; WIDTH];
             for (&start, lanes) in &runs {
-                // The others take the tension of no edge.
-                let free = (0..WIDTH as u32)
+                // The tension of an unused edge number is zero, so that lanes without an edge add nothing.
+                let unused = (0..WIDTH as u32)
                     .filter(|lane| !lanes.contains(lane))
-                    .all(|lane| no_edge(start[1] + lane));
-                if free && lanes.len() >= least {
+                    .all(|lane| is_unused(start[1] + lane));
+                if unused && lanes.len() >= min_run {
                     self.runs.push(start);
                 } else {
                     for &lane in lanes {
-                        left[lane as usize].push(start.map(|at| at + lane));
+                        scattered[lane as usize].push(start.map(|at| at + lane));
                     }
                 }
             }
-            for k in 0..left.iter().map(Vec::len).max().unwrap_or(0) {
-                self.others.push([0, 1].map(|what| {
-                    left.each_ref()
-                        .map(|row| row.get(k).map_or(0, |pair| pair[what]))
+            for k in 0..scattered.iter().map(Vec::len).max().unwrap_or(0) {
+                self.others.push([0, 1].map(|which| {
+                    scattered
+                        .each_ref()
+                        .map(|row| row.get(k).map_or(0, |pair| pair[which]))
                 }));
             }
             self.start
@@ -190,33 +193,33 @@ impl Tensions {
         }
     }
 
-    /// Numbers of runs that its loads are worth.
+    /// Cost of the loads of one evaluation, in loads of a run.
     pub fn cost(&self) -> usize {
         let runs = self.stiffness.cost() + 6 * self.ends.len() + 4 * self.runs.len();
         runs + 2 * WIDTH * self.scattered.len() + 4 * WIDTH * self.others.len()
     }
 
-    /// Forgets strains and tensions: what blew up must not be looked at again.
+    /// Sets strains and tensions to zero: values that are not finite must not reach later sums.
     pub fn clear(&mut self) {
         self.strain.fill(0.0);
         self.tension.fill(0.0);
     }
 
-    /// Measures the strains that forces within a ring look at.
+    /// Computes the strains on which the forces at vertices up to a ring depend.
     #[inline(always)]
-    pub fn measure<S: Simd>(&mut self, simd: S, ring: usize, x: &Points) {
+    pub fn update_strains<S: Simd>(&mut self, simd: S, ring: usize, x: &Points) {
         let x = x.axes();
-        for &group in &self.strained[ring] {
+        for &group in &self.strain_groups[ring] {
             let [a, b] = self.ends[group as usize];
-            for part in 0..parts::<S>() {
-                let a = a.points::<S>(x, &self.scattered, part);
-                let b = b.points::<S>(x, &self.scattered, part);
+            for lane_group in 0..lane_groups::<S>() {
+                let a = a.points::<S>(x, &self.scattered, lane_group);
+                let b = b.points::<S>(x, &self.scattered, lane_group);
                 let d = [
                     simd.sub_f64s(b[0], a[0]),
                     simd.sub_f64s(b[1], a[1]),
                     simd.sub_f64s(b[2], a[2]),
                 ];
-                let at = place::<S>(group as usize, part);
+                let at = lane_group_start::<S>(group as usize, lane_group);
                 let sum = simd.mul_f64s(d[0], d[0]);
                 let sum = simd.mul_add_f64s(d[1], d[1], sum);
                 let sum = simd.mul_add_f64s(d[2], d[2], sum);
@@ -226,32 +229,36 @@ impl Tensions {
         }
     }
 
-    /// Works out the tensions that forces within a ring look at, from the strains.
+    /// Computes from the strains the tensions on which the forces at vertices up to a ring depend.
     #[inline(always)]
-    pub fn draw<S: Simd>(&mut self, simd: S, ring: usize) {
-        for &group in &self.tense[ring] {
-            for part in 0..parts::<S>() {
+    pub fn update_tensions<S: Simd>(&mut self, simd: S, ring: usize) {
+        for &group in &self.tension_groups[ring] {
+            for lane_group in 0..lane_groups::<S>() {
                 let sum = self
                     .stiffness
-                    .product(simd, group as usize, part, &self.strain);
-                store::<S>(&mut self.tension, place::<S>(group as usize, part), sum);
+                    .product(simd, group as usize, lane_group, &self.strain);
+                store::<S>(
+                    &mut self.tension,
+                    lane_group_start::<S>(group as usize, lane_group),
+                    sum,
+                );
             }
         }
     }
 
-    /// The gradient of the membrane's energy by a part of a group of vertices [N].
+    /// The gradient of the membrane's energy at the vertices of one lane group [N].
     #[inline(always)]
     pub fn gradient<S: Simd>(
         &self,
         simd: S,
         group: usize,
-        part: usize,
+        lane_group: usize,
         x: [&[f64]; 3],
     ) -> [S::f64s; 3] {
         let mut sum = [simd.splat_f64s(0.0); 3];
         let mut total = simd.splat_f64s(0.0);
         let [[runs, others], [end, others_end]] = [self.start[group], self.start[group + 1]];
-        let first = part * S::F64_LANES;
+        let first = lane_group * S::F64_LANES;
         for [other, edge] in &self.runs[runs as usize..end as usize] {
             let t = load::<S>(&self.tension, *edge as usize + first);
             let other = load_points::<S>(x, *other as usize + first);
@@ -259,12 +266,12 @@ impl Tensions {
             total = simd.add_f64s(total, t);
         }
         for [other, edge] in &self.others[others as usize..others_end as usize] {
-            let t = gather::<S>(&self.tension, edge, part);
-            let other = gather_points::<S>(x, other, part);
+            let t = gather::<S>(&self.tension, edge, lane_group);
+            let other = gather_points::<S>(x, other, lane_group);
             add_scaled(simd, &mut sum, t, other);
             total = simd.add_f64s(total, t);
         }
-        let at = place::<S>(group, part);
+        let at = lane_group_start::<S>(group, lane_group);
         [
             simd.sub_f64s(simd.mul_f64s(total, load::<S>(x[0], at)), sum[0]),
             simd.sub_f64s(simd.mul_f64s(total, load::<S>(x[1], at)), sum[1]),
@@ -272,41 +279,48 @@ impl Tensions {
         ]
     }
 
-    /// Largest and smallest principal squared stretch of the triangles at what the patch owns.
+    /// Largest and smallest principal squared stretch of the triangles at vertices that the patch owns.
     #[inline(always)]
     pub fn stretch<S: Simd>(&mut self, simd: S, x: &Points) -> [f64; 2] {
-        self.measure(simd, 0, x);
+        self.update_strains(simd, 0, x);
         self.stretches.extremes(simd, &self.strain)
     }
 
-    /// Energy of the edges the patch answers for [J].
+    /// Energy of the edges that the patch owns [J]: those whose vertex of the lower number it owns.
     #[inline(always)]
     pub fn energy<S: Simd>(&mut self, simd: S, x: &Points) -> f64 {
-        self.measure(simd, 0, x);
-        self.draw(simd, 0);
-        let pairs = self.strain.iter().zip(&self.tension).zip(&self.counted);
-        let terms =
-            pairs.map(|((q, t), counted)| if *counted > 0.0 { counted * q * t } else { 0.0 });
+        self.update_strains(simd, 0, x);
+        self.update_tensions(simd, 0);
+        let pairs = self
+            .strain
+            .iter()
+            .zip(&self.tension)
+            .zip(&self.energy_weight);
+        let terms = pairs.map(|((q, t), weight)| if *weight > 0.0 { weight * q * t } else { 0.0 });
         terms.sum()
     }
 }
 
-/// A triangle's law and the numbers of its edges.
-struct Law {
+/// The membrane of a triangle and the numbers of its edges.
+struct TriangleEdges {
     membrane: EdgeMembrane,
     sides: [u32; 3],
 }
 
-fn law(system: &System, edges: &Edges, &(t, [a, b, c]): &(usize, [u32; 3])) -> Law {
-    let law = system.materials.law(t).stiffness;
-    Law {
-        membrane: EdgeMembrane::new(&system.rest.elements[t], law),
+fn triangle_edges(
+    system: &System,
+    edges: &Edges,
+    &(t, [a, b, c]): &(usize, [u32; 3]),
+) -> TriangleEdges {
+    let stiffness = system.materials.law(t).stiffness;
+    TriangleEdges {
+        membrane: EdgeMembrane::new(&system.rest.elements[t], stiffness),
         sides: [[a, b], [a, c], [b, c]].map(|[a, b]| edges.number(a, b).unwrap_or_default()),
     }
 }
 
-/// Groups with anything that is looked at from within each ring, given the ring of each number.
-pub fn within(of: &[usize], rings: usize) -> Vec<Vec<u32>> {
+/// For each ring the groups with a number of at most that ring, given the ring of each number.
+pub fn groups_by_ring(of: &[usize], rings: usize) -> Vec<Vec<u32>> {
     let group_rings: Vec<usize> = of
         .chunks(WIDTH)
         .map(|group| group.iter().copied().min().unwrap_or(usize::MAX))

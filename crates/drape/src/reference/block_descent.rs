@@ -11,26 +11,25 @@ use toile_geometry::Vec3;
 
 /// Vertex block descent (Chen, Liu, Yang and Yuksel 2024).
 ///
-/// For every vertex i in turn, with the others held: H_i dx_i = f_i, x_i += dx_i, where
+/// For every vertex i in turn, with the others fixed: H_i dx_i = f_i, x_i += dx_i, where
 /// f_i = -b m_i (x_i - y_i) - grad_i E and H_i = b m_i I + the 3x3 block of the positive
 /// semidefinite Hessian there (their equations 8 and 9). Vertices of one colour share no triangle,
-/// bending stencil or elastic, so a colour is solved at once with the same result in any order.
+/// bending stencil or elastic, so a colour is solved in parallel with the same result in any order.
 /// Sweeps start from the lowest of x, y and y + g/b (their section 3.7 in one test).
 ///
 /// With `CHEBYSHEV` each sweep k is followed by x_k = o_k (x_k - x_k-2) + x_k-2, o_1 = 1,
-/// o_2 = 2 / (2 - r^2), o_k+1 = 4 / (4 - r^2 o_k), r = 0.95 (Wang 2015; their section 3.8), left
-/// out at vertices that touch a surface and given up when the potential rises.
+/// o_2 = 2 / (2 - r^2), o_k+1 = 4 / (4 - r^2 o_k), r = 0.95 (Wang 2015; their section 3.8), not at
+/// vertices in contact, and not after the potential has risen.
 ///
-/// Converges linearly, slowly where stiffness is large against b m: a stiff cloth at a long step is
-/// left softer than it is. What sweeps move least is a piece as a whole; so each unpinned piece is
-/// shifted by its own Newton step before the sweeps, every eight of them and after them
-/// ([`Pieces::shift`]; not in the paper), which keeps linear momentum. Angular momentum is kept only
-/// as far as the sweeps converged.
+/// Converges linearly, and slowly where stiffness is large against b m: the result is then that of a softer cloth.
+/// Sweeps converge most slowly for the translation of a whole piece; so each unpinned piece is translated by its
+/// own Newton step before the sweeps, after every eight of them and at the end ([`Pieces::shift`]; not in the
+/// paper), which conserves linear momentum. Angular momentum is conserved only as far as the sweeps converge.
 #[derive(Default)]
 pub struct BlockDescent<const CHEBYSHEV: bool> {
     colours: Colours,
     pieces: Pieces,
-    touching: Touching,
+    contacts: VertexContacts,
     results: Vec<(Vec3, f64)>,
     before: Vec<Vec3>,
     two_before: Vec<Vec3>,
@@ -38,28 +37,28 @@ pub struct BlockDescent<const CHEBYSHEV: bool> {
     lagged: Vec<Vec3>,
 }
 
-/// Contacts by the vertices they act on.
+/// Active contacts by the vertices on which they act.
 #[derive(Default)]
-struct Touching {
+struct VertexContacts {
+    /// First entry of each vertex, and the end.
     start: Vec<u32>,
+    /// Index of the contact, and weight of the vertex.
     entries: Vec<(u32, f64)>,
 }
 
-/// Estimate of the sweeps' spectral radius.
+/// Estimated spectral radius of a sweep.
 const RADIUS: f64 = 0.95;
 
-/// Sweeps between two shifts of the pieces, and between two checks that an accelerated descent
-/// still descends.
-const CHECK: usize = 8;
+/// Sweeps between two translations of pieces, and between two checks that accelerated sweeps lower the potential.
+const CHECK_INTERVAL: usize = 8;
 
-/// Longest move of a vertex near solid surfaces in one sweep [m]: twice what contact is found
-/// within.
+/// Longest displacement of a vertex in one sweep where there are solids [m]: twice the detection range of contact.
 const LONGEST_MOVE: f64 = 0.02;
 
-/// Vertices of one colour handled by one task.
+/// Vertices of one colour per task.
 const CHUNK: usize = 128;
 
-impl Touching {
+impl VertexContacts {
     fn gather(&mut self, system: &System, contacts: &Contacts) {
         self.start.clear();
         self.start.resize(system.vertex_count() + 1, 0);
@@ -97,7 +96,7 @@ impl Touching {
 }
 
 impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
-    /// Force on one vertex and the block of the Hessian there.
+    /// Negative gradient on one vertex [N] and the diagonal block of the Hessian there [N/m].
     fn local(
         &self,
         problem: &Problem,
@@ -118,15 +117,15 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
             system.topology.corner_start[v] as usize..system.topology.corner_start[v + 1] as usize;
         for &corner in &system.topology.corners[uses] {
             let (t, i) = (corner as usize / 3, corner as usize % 3);
-            let places = system.topology.triangles[t].map(|u| x[u as usize]);
-            let (g, h) = system.rest.elements[t].corner(&terms.law(system, t), places, i);
+            let positions = system.topology.triangles[t].map(|u| x[u as usize]);
+            let (g, h) = system.rest.elements[t].corner(&terms.law(system, t), positions, i);
             gradient += g;
             hessian += h;
             if system.control.air.acts() {
                 let mut blocks = [Matrix3::zeros(); 6];
                 terms.add_hessian(t, &mut blocks);
                 let starts = system.topology.triangles[t].map(|u| self.before[u as usize]);
-                let moved = places.iter().sum::<Vec3>() - starts.iter().sum::<Vec3>();
+                let moved = positions.iter().sum::<Vec3>() - starts.iter().sum::<Vec3>();
                 gradient += blocks[0] * moved;
                 hessian += blocks[0];
             }
@@ -137,32 +136,33 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
             gradient += gap * secant;
             hessian += Matrix3::identity() * secant;
         }
-        for &(at, w) in self.touching.of(v) {
+        for &(at, w) in self.contacts.of(v) {
             let contact = &workspace.contacts.active[at as usize];
-            let place = contact.point.position(x);
-            let (_, g, h) = contact.law.evaluate(&contact.plane, place);
+            let position = contact.point.position(x);
+            let (_, g, h) = contact.law.evaluate(&contact.plane, position);
             gradient += g * w;
             hessian += h * (w * w);
         }
         (-gradient, hessian)
     }
 
-    /// Gradient of folds and air where the sweep starts, less what [`Self::local`] finds itself of
-    /// it: their part that is linear about there.
-    fn lag(&mut self, system: &System, workspace: &Workspace) {
+    /// Computes the lagged gradient: that of internal strain, viscous folds and air at the start of the sweep, minus
+    /// the terms linear in the displacement since, which [`Self::local`] adds.
+    fn update_lagged(&mut self, system: &System, workspace: &Workspace) {
         self.lagged.clear();
-        let plain = system.rest.viscous_bending.is_none() && !system.materials.keep_strain();
-        if plain && !system.control.air.acts() {
+        let without_internal_strain =
+            system.rest.viscous_bending.is_none() && !system.materials.keep_strain();
+        if without_internal_strain && !system.control.air.acts() {
             return;
         }
         let (terms, x) = (&workspace.increment, &self.before);
-        let (held, elastic) = (terms.bending(system), &system.rest.bending);
+        let (effective, elastic) = (terms.bending(system), &system.rest.bending);
         self.lagged
-            .extend((0..x.len()).map(|v| elastic.row_times(v, x) - held.row_times(v, x)));
+            .extend((0..x.len()).map(|v| elastic.row_times(v, x) - effective.row_times(v, x)));
         terms.add_gradient(system, x, &mut self.lagged);
     }
 
-    /// Every vertex once; returns the sum of the squared forces met [N2].
+    /// Solves every vertex once, colour by colour; returns the sum of the squared forces [N2].
     fn sweep(
         &mut self,
         problem: &Problem,
@@ -175,7 +175,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
             let vertices = self.colours.vertices(colour);
             let mut results = std::mem::take(&mut self.results);
             results.resize(vertices.len(), (Vec3::zeros(), 0.0));
-            let (this, places) = (&*self, &*x);
+            let (this, positions) = (&*self, &*x);
             results
                 .par_chunks_mut(CHUNK)
                 .zip(vertices.par_chunks(CHUNK))
@@ -185,7 +185,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
                             (Vec3::zeros(), 0.0)
                         } else {
                             let (force, hessian) =
-                                this.local(problem, workspace, places, v as usize);
+                                this.local(problem, workspace, positions, v as usize);
                             let step = hessian.cholesky().map(|c| c.solve(&force));
                             let step = step.unwrap_or_else(Vec3::zeros);
                             (step.cap_magnitude(longest), force.norm_squared())
@@ -201,40 +201,41 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         squares
     }
 
-    /// Puts the state at the lowest of where it is, where inertia takes it, and that with gravity.
-    fn start(&self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
+    /// Sets the state to the one of lowest potential among the present positions, the inertial target, and the target
+    /// displaced by gravity.
+    fn choose_start(&self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
         let system = problem.system;
         let farthest = problem.longest_move(LONGEST_MOVE);
-        let here = state.positions.clone();
-        let lowest = |workspace: &mut Workspace, state: &State, x: &[Vec3]| {
+        let present = state.positions.clone();
+        let potential = |workspace: &mut Workspace, state: &State, x: &[Vec3]| {
             workspace.contacts.refresh(system, state, x);
             workspace.potential(system, x, &problem.inertia)
         };
-        let mut best = lowest(workspace, state, &here);
+        let mut lowest = potential(workspace, state, &present);
         for fall in [Vec3::zeros(), system.control.gravity / problem.weight] {
-            let mut there = problem.inertia.target.to_vec();
+            let mut candidate = problem.inertia.target.to_vec();
             let mut longest = 0.0f64;
-            for (v, x) in there.iter_mut().enumerate() {
+            for (v, x) in candidate.iter_mut().enumerate() {
                 if !system.prescribed.pinned[v] {
                     *x += fall;
                 }
-                longest = longest.max((*x - here[v]).norm());
+                longest = longest.max((*x - present[v]).norm());
             }
             if longest > farthest {
                 continue;
             }
-            let energy = lowest(workspace, state, &there);
-            if energy < best {
-                best = energy;
-                state.positions = there;
+            let energy = potential(workspace, state, &candidate);
+            if energy < lowest {
+                lowest = energy;
+                state.positions = candidate;
             }
         }
     }
 
-    /// Over-relaxes the vertices that touch nothing.
+    /// Chebyshev over-relaxation of the vertices without contact.
     fn accelerate(&self, factor: f64, x: &mut [Vec3]) {
         for (v, x) in x.iter_mut().enumerate() {
-            if self.touching.of(v).is_empty() {
+            if self.contacts.of(v).is_empty() {
                 *x = self.two_before[v] + (*x - self.two_before[v]) * factor;
             }
         }
@@ -249,7 +250,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
     };
     const CONVERGES: bool = false;
 
-    fn lower(
+    fn minimise(
         &mut self,
         problem: &Problem,
         state: &mut State,
@@ -261,10 +262,10 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
             self.pieces.fit(system);
         }
         let first = state.positions.clone();
-        self.start(problem, state, workspace);
+        self.choose_start(problem, state, workspace);
         let longest = problem.longest_move(LONGEST_MOVE);
         let mut report = NewtonReport {
-            sound: true,
+            succeeded: true,
             fraction: 1.0,
             ..NewtonReport::default()
         };
@@ -272,12 +273,12 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         let mut accelerating = CHEBYSHEV;
         self.best.clone_from(&state.positions);
         for sweep in 0..problem.limits.iterations {
-            if sweep % CHECK == 0 {
+            if sweep % CHECK_INTERVAL == 0 {
                 self.pieces.shift(problem, state, workspace);
             }
             workspace.contacts.refresh(system, state, &state.positions);
-            self.touching.gather(system, &workspace.contacts);
-            if accelerating && sweep % CHECK == 0 {
+            self.contacts.gather(system, &workspace.contacts);
+            if accelerating && sweep % CHECK_INTERVAL == 0 {
                 let now = workspace.potential(system, &state.positions, &problem.inertia);
                 if now > workspace.potential(system, &self.best, &problem.inertia) {
                     state.positions.clone_from(&self.best);
@@ -287,7 +288,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
             }
             self.two_before.clone_from(&self.before);
             self.before.clone_from(&state.positions);
-            self.lag(system, workspace);
+            self.update_lagged(system, workspace);
             let squares = self.sweep(problem, workspace, &mut state.positions, longest);
             report.iterations += 1;
             report.gradient = squares.sqrt();
@@ -308,7 +309,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         workspace.contacts.refresh(system, state, &state.positions);
         let before = workspace.potential(system, &first, &problem.inertia);
         let after = workspace.potential(system, &state.positions, &problem.inertia);
-        report.sound = after <= before + 1e-12 * before.abs().max(1.0);
+        report.succeeded = after <= before + 1e-12 * before.abs().max(1.0);
         report
     }
 }

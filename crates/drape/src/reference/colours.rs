@@ -2,30 +2,30 @@
 
 use crate::{Model, System};
 
-/// Vertices by colour, worked out once for a model.
+/// Vertices by colour, computed once for a model.
 #[derive(Default)]
 pub struct Colours {
     vertices: Vec<u32>,
     start: Vec<usize>,
-    /// The model they are of.
-    made_for: Option<Model>,
+    /// The model for which they were computed.
+    model: Option<Model>,
 }
 
 impl Colours {
-    /// Makes the colours those of a model; false when they already were.
+    /// Computes the colours of a model; false where they are up to date.
     pub fn fit(&mut self, system: &System) -> bool {
         let fits = |of: &Model| of.has_cloth_of(system) && of.has_couplings_of(system);
-        if self.made_for.as_ref().is_some_and(fits) {
+        if self.model.as_ref().is_some_and(fits) {
             return false;
         }
         let n = system.vertex_count();
-        self.made_for = Some(system.model.clone());
+        self.model = Some(system.model.clone());
         let mut pairs: Vec<Vec<u32>> = vec![Vec::new(); n];
         for [from, to] in system.couplings.ends() {
             pairs[from as usize].push(to);
             pairs[to as usize].push(from);
         }
-        // Greedy in the order of the vertices: the lowest colour no neighbour has.
+        // Greedy colouring in the order of the vertices: the lowest colour that no neighbour has.
         let mut colour_of = vec![u32::MAX; n];
         let mut taken: Vec<usize> = Vec::new();
         for v in 0..n {
@@ -73,7 +73,7 @@ mod tests {
     use toile_geometry::{TriangleMesh, Vec3};
 
     #[test]
-    fn no_two_of_a_colour_are_coupled() {
+    fn vertices_of_one_colour_are_not_coupled() {
         let mut mesh = TriangleMesh::default();
         for v in 0..100u32 {
             mesh.positions

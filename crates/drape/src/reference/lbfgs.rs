@@ -1,6 +1,6 @@
 //! L-BFGS that starts from the metric of projective dynamics.
 
-use super::descent::{Line, descend, search, shorten};
+use super::descent::{Line, descend, line_search, truncate_length};
 use super::metric::Metric;
 use crate::methods::implicit::{Limits, Problem, Solver};
 use crate::pairs::Pairs;
@@ -8,8 +8,8 @@ use crate::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 
 /// L-BFGS (Nocedal 1980) whose initial inverse Hessian is the inverse of the prefactored [`Metric`]
-/// (Liu, Bouaziz and Kavan 2017, section 5). Steps are searched along by halving; a pair is kept when
-/// s.y > 0.
+/// (Liu, Bouaziz and Kavan 2017, section 5). With a backtracking line search; a pair is stored
+/// where s.y > 0.
 #[derive(Default)]
 pub struct Lbfgs {
     metric: Metric,
@@ -17,11 +17,11 @@ pub struct Lbfgs {
     direction: Vec<Vec3>,
 }
 
-/// Pairs remembered.
+/// Number of stored pairs.
 const MEMORY: usize = 8;
 
 impl Lbfgs {
-    /// A step along the direction for the present gradient; the share of it that was taken.
+    /// A step in the L-BFGS direction for the present gradient; returns the fraction of it that was taken.
     fn step(
         &mut self,
         problem: &Problem,
@@ -33,13 +33,13 @@ impl Lbfgs {
         self.pairs.descent_direction(&mut self.direction, |q, r| {
             metric.solve(problem.system, q, r);
         });
-        shorten(problem, &mut self.direction);
+        truncate_length(problem, &mut self.direction);
         let line = Line {
             direction: &self.direction,
-            shares: usize::MAX,
+            max_trials: usize::MAX,
             energy,
         };
-        search(problem, state, workspace, line)
+        line_search(problem, state, workspace, line)
     }
 }
 
@@ -51,7 +51,7 @@ impl Solver for Lbfgs {
     };
     const CONVERGES: bool = false;
 
-    fn lower(
+    fn minimise(
         &mut self,
         problem: &Problem,
         state: &mut State,
@@ -66,14 +66,14 @@ impl Solver for Lbfgs {
         }
         let mut energy = None;
         descend(problem, state, workspace, |state, workspace, _| {
-            self.metric.press(problem, state, workspace);
+            self.metric.update_contacts(problem, state, workspace);
             let (x, gradient) = (&state.positions, &workspace.gradient);
             self.pairs.push(x, gradient, MEMORY);
-            let share = self.step(problem, state, workspace, &mut energy);
-            if share > 0.0 || self.pairs.is_empty() {
-                return share;
+            let fraction = self.step(problem, state, workspace, &mut energy);
+            if fraction > 0.0 || self.pairs.is_empty() {
+                return fraction;
             }
-            // The memory misleads: once more from the metric alone.
+            // The pairs give no descent direction: a second attempt with the metric alone.
             self.pairs.clear();
             self.step(problem, state, workspace, &mut energy)
         })

@@ -7,31 +7,31 @@ use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 use toile_sparse::factor::{Factor, Graph};
 
-/// A = b M + sum_t A_t (k_u a a^T + k_v b b^T) + bending + elastics, pins held.
+/// A = b M + sum_t A_t (k_u a a^T + k_v b b^T) + bending + elastics, with fixed pins.
 ///
 /// a and b are the weights of a triangle's tangents ([`crate::laws::membrane`]),
-/// k_u = max(C11 + C12 sqrt(C11/C22), 2 G) and k_v likewise: with them A is at no vector below the
-/// Hessian of the membrane at rest, since 2 C12 p q <= C12 (s p^2 + q^2 / s) and
+/// k_u = max(C11 + C12 sqrt(C11/C22), 2 G) and k_v with C22 in place of C11: A is then an upper bound of the Hessian
+/// of the membrane at rest, as a quadratic form, since 2 C12 p q <= C12 (s p^2 + q^2 / s) and
 /// (p + q)^2 <= 2 p^2 + 2 q^2.
 ///
-/// Contact changes with every step and is a thousand times stiffer than inertia w, so A does not
-/// hold it: what is solved with is S A^-1 S, with S = 1 along the surface and (w / (w + k))^1/2
-/// along the normal of a vertex that presses on it with stiffness k. For a piece that moves as a
-/// whole that is exact.
+/// Contact changes with every step and is a thousand times stiffer than inertia w, so A does not contain it. The metric
+/// is S A^-1 S instead, with S = 1 along the surface and (w / (w + k))^1/2 along the normal of a vertex in contact
+/// with stiffness k. For a piece that only translates this is exact.
 #[derive(Default)]
 pub struct Metric {
-    made: Option<Made>,
+    factorised: Option<Factorised>,
     right: Vec<Vec3>,
-    /// Vertices that press on something, its normal, and 1 less the scale along it.
-    pressing: Vec<(u32, Vec3, f64)>,
+    /// Vertices in contact, the normal of the surface, and 1 minus the scale along it.
+    contacts: Vec<(u32, Vec3, f64)>,
 }
 
-struct Made {
+/// The factor of A, and the data from which A was built.
+struct Factorised {
     factor: Factor<1>,
     key: Key,
 }
 
-/// What the matrix was made of.
+/// The data from which the matrix was built.
 struct Key {
     weight: f64,
     model: Model,
@@ -48,18 +48,18 @@ impl Key {
 }
 
 impl Metric {
-    /// Makes the metric that of a model with inertia's weight per mass `weight` [1/s2]; nothing to
-    /// do when it is. False when the matrix cannot be factorised.
+    /// Builds the metric of a model with inertia's weight per mass `weight` [1/s2] where it is not up to date. False
+    /// where the matrix cannot be factorised.
     pub fn fit(&mut self, system: &System, weight: f64) -> bool {
-        if let Some(made) = &self.made
-            && made.key.fits(system, weight)
+        if let Some(factorised) = &self.factorised
+            && factorised.key.fits(system, weight)
         {
             return true;
         }
         let matrix = stiffness(system);
         let rows = 0..system.vertex_count();
-        let structure = match self.made.take() {
-            Some(made) if same_structure(&made, system) => made.factor,
+        let structure = match self.factorised.take() {
+            Some(last) if same_structure(&last, system) => last.factor,
             _ => {
                 let pairs = rows.flat_map(|v| {
                     let columns = matrix.row_entries(v).0.iter();
@@ -95,7 +95,7 @@ impl Metric {
         if factor.factorise(fill).is_err() {
             return false;
         }
-        self.made = Some(Made {
+        self.factorised = Some(Factorised {
             factor,
             key: Key {
                 weight,
@@ -106,23 +106,23 @@ impl Metric {
         true
     }
 
-    /// Looks which vertices press on something.
-    pub fn press(&mut self, problem: &Problem, state: &State, workspace: &Workspace) {
-        self.pressing.clear();
+    /// Updates the list of vertices in contact.
+    pub fn update_contacts(&mut self, problem: &Problem, state: &State, workspace: &Workspace) {
+        self.contacts.clear();
         for contact in &workspace.contacts.active {
             let sample = &contact.point;
             let vertex = sample.vertices[0];
-            let place = sample.position(&state.positions);
-            if sample.triangle.is_none() && contact.plane.depth_of(place) > 0.0 {
+            let position = sample.position(&state.positions);
+            if sample.triangle.is_none() && contact.plane.depth_of(position) > 0.0 {
                 let inertia = problem.inertia.weight[vertex as usize];
                 let scale = (inertia / (inertia + contact.law.normal)).sqrt();
-                self.pressing
+                self.contacts
                     .push((vertex, contact.plane.normal, 1.0 - scale));
             }
         }
     }
 
-    /// x = S A^-1 S b, zero at pins; A must fit.
+    /// Computes x = S A^-1 S b, zero at pins; [`Self::fit`] must have succeeded.
     pub fn solve(&mut self, system: &System, b: &[Vec3], x: &mut [Vec3]) {
         self.right.clear();
         self.right.extend(
@@ -132,25 +132,25 @@ impl Metric {
                 },
             ),
         );
-        shrink(&self.pressing, &mut self.right);
-        if let Some(made) = &mut self.made {
-            made.factor.solve(&self.right, x);
+        scale_normal_components(&self.contacts, &mut self.right);
+        if let Some(factorised) = &mut self.factorised {
+            factorised.factor.solve(&self.right, x);
         }
-        shrink(&self.pressing, x);
+        scale_normal_components(&self.contacts, x);
     }
 }
 
-/// Scales the parts along the normals of pressing vertices.
-fn shrink(pressing: &[(u32, Vec3, f64)], vectors: &mut [Vec3]) {
-    for &(vertex, normal, less) in pressing {
+/// Multiplies vectors by S: scales their components along the normals of vertices in contact.
+fn scale_normal_components(contacts: &[(u32, Vec3, f64)], vectors: &mut [Vec3]) {
+    for &(vertex, normal, reduction) in contacts {
         let vector = &mut vectors[vertex as usize];
-        *vector -= normal * (less * vector.dot(&normal));
+        *vector -= normal * (reduction * vector.dot(&normal));
     }
 }
 
-/// Whether only numbers changed since the structure was worked out.
-fn same_structure(made: &Made, system: &System) -> bool {
-    let of = &made.key.model;
+/// Whether the sparsity structure is unchanged, so that the symbolic factorisation is valid.
+fn same_structure(last: &Factorised, system: &System) -> bool {
+    let of = &last.key.model;
     Arc::ptr_eq(&of.topology, &system.topology)
         && Arc::ptr_eq(&of.rest, &system.rest)
         && Arc::ptr_eq(&of.couplings, &system.couplings)

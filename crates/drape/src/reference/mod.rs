@@ -1,5 +1,5 @@
-//! Methods kept for comparison: no command and no view takes them unless they are asked for by name. Only
-//! the list of methods names them.
+//! Methods for comparison only: no command and no view uses them unless a user gives their name. Only the list of
+//! methods refers to them.
 
 pub mod block_descent;
 mod colours;

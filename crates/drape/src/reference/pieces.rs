@@ -1,27 +1,28 @@
-//! Pieces of cloth that hang together, and the shift of each as a whole that lowers the potential.
+//! Connected pieces of cloth, and the translation of each as a whole that lowers the potential.
 
 use crate::methods::implicit::Problem;
 use crate::{State, System, Workspace, merge_map};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
-/// The pieces of a model and what is summed over each.
+/// The connected pieces of a model, and the reduced system of each.
 #[derive(Default)]
 pub struct Pieces {
+    /// The piece of each vertex.
     label: Vec<u32>,
-    sums: Vec<Sum>,
+    systems: Vec<PieceSystem>,
 }
 
-/// A piece's gradient and Hessian for a shift of all of it.
+/// Gradient [N] and Hessian [N/m] of the potential for a translation of a piece.
 #[derive(Clone, Copy, Default)]
-struct Sum {
-    held: bool,
+struct PieceSystem {
+    has_pin: bool,
     gradient: Vec3,
     hessian: Matrix3<f64>,
 }
 
 impl Pieces {
-    /// Finds the pieces: vertices joined by triangles or elastics.
+    /// Determines the pieces: vertices connected by triangles or elastics.
     pub fn fit(&mut self, system: &System) {
         let sides = system
             .topology
@@ -30,42 +31,41 @@ impl Pieces {
             .flat_map(|&[a, b, c]| [[a, b], [b, c]]);
         let (label, count) = merge_map(system.vertex_count(), sides.chain(system.couplings.ends()));
         self.label = label;
-        self.sums = vec![Sum::default(); count];
+        self.systems = vec![PieceSystem::default(); count];
     }
 
-    /// Shifts every piece that nothing pins by its Newton step, -(sum H)^-1 (sum g): one step of
-    /// a two-level method with the translations as coarse level. Inside a piece only inertia,
-    /// contact and elastics to fixed places resist it, so it is exact where those are linear, and
-    /// linear momentum is kept however little the sweeps have converged. Undone where the potential
-    /// would rise.
+    /// Translates every piece without a pin by its Newton step, -(sum H)^-1 (sum g): one step of a two-level method
+    /// with translations as the coarse level. Only inertia, contact and elastics to fixed points resist a
+    /// translation, so the step is exact where those are linear, and linear momentum is conserved even where sweeps
+    /// have not converged. Undone where the potential would rise.
     pub fn shift(&mut self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
         let system = problem.system;
         workspace.contacts.refresh(system, state, &state.positions);
         workspace.fill_gradient(system, &state.positions, Some(&problem.inertia));
-        self.sums.fill(Sum::default());
+        self.systems.fill(PieceSystem::default());
         for (v, &label) in self.label.iter().enumerate() {
-            let sum = &mut self.sums[label as usize];
-            sum.held |= system.prescribed.pinned[v];
+            let sum = &mut self.systems[label as usize];
+            sum.has_pin |= system.prescribed.pinned[v];
             sum.gradient += workspace.gradient[v];
             sum.hessian += Matrix3::identity() * problem.inertia.weight[v];
         }
         for one in system.control.attachments.all() {
             let v = one.vertex as usize;
             let secant = one.law.secant(state.positions[v] - one.place);
-            self.sums[self.label[v] as usize].hessian += Matrix3::identity() * secant;
+            self.systems[self.label[v] as usize].hessian += Matrix3::identity() * secant;
         }
         for contact in &workspace.contacts.active {
             let sample = &contact.point;
             let (_, _, hessian) = contact
                 .law
                 .evaluate(&contact.plane, sample.position(&state.positions));
-            self.sums[self.label[sample.vertices[0] as usize] as usize].hessian += hessian;
+            self.systems[self.label[sample.vertices[0] as usize] as usize].hessian += hessian;
         }
         let before = workspace.potential(system, &state.positions, &problem.inertia);
         let mut trial = std::mem::take(&mut workspace.trial);
         trial.clone_from(&state.positions);
         for (x, &label) in trial.iter_mut().zip(&self.label) {
-            *x += self.sums[label as usize].step();
+            *x += self.systems[label as usize].step();
         }
         if workspace.potential(system, &trial, &problem.inertia) < before {
             std::mem::swap(&mut state.positions, &mut trial);
@@ -74,9 +74,10 @@ impl Pieces {
     }
 }
 
-impl Sum {
+impl PieceSystem {
+    /// The Newton step of the translation [m]; zero for a piece with a pin.
     fn step(&self) -> Vec3 {
-        if self.held {
+        if self.has_pin {
             return Vec3::zeros();
         }
         self.hessian

@@ -1,6 +1,6 @@
 //! Projective dynamics as descent in a constant metric, with Anderson acceleration.
 
-use super::descent::{Line, descend, search, shorten};
+use super::descent::{Line, descend, line_search, truncate_length};
 use super::metric::Metric;
 use crate::methods::implicit::{Limits, Problem, Solver};
 use crate::{NewtonReport, State, Workspace};
@@ -16,8 +16,8 @@ use toile_sparse::dot;
 ///
 /// Accelerated as in Peng et al. 2018: with f_k = G(x_k) - x_k and the last m differences
 /// df, dx, theta minimises |f_k - sum theta_j df_j|, and
-/// x_k+1 = x_k + f_k - sum theta_j (dx_j + df_j). Where that does not lower Phi the line-searched
-/// step along f_k is taken and the memory emptied.
+/// x_k+1 = x_k + f_k - sum theta_j (dx_j + df_j). Where that does not lower Phi, a line search along f_k is made
+/// instead and the differences are cleared.
 #[derive(Default)]
 pub struct Projective {
     metric: Metric,
@@ -28,46 +28,47 @@ pub struct Projective {
     history: VecDeque<Difference>,
 }
 
-/// Changes of place and of step between two iterations.
+/// Differences of positions and of steps between two iterations.
 struct Difference {
-    place: Vec<Vec3>,
+    position: Vec<Vec3>,
     step: Vec<Vec3>,
 }
 
-/// Differences remembered (their m).
+/// Number of stored differences, m in the paper.
 const MEMORY: usize = 5;
 
 impl Projective {
-    /// Remembers the present place and step.
-    fn remember(&mut self, x: &[Vec3]) {
-        let (mut place, mut step) = self.last.take().unwrap_or_default();
-        if place.len() == x.len() {
+    /// Stores the differences of present positions and step to the last ones.
+    fn store_difference(&mut self, x: &[Vec3]) {
+        let (mut position, mut step) = self.last.take().unwrap_or_default();
+        if position.len() == x.len() {
             let mut difference = if self.history.len() >= MEMORY {
                 self.history.pop_front()
             } else {
                 None
             }
             .unwrap_or(Difference {
-                place: Vec::new(),
+                position: Vec::new(),
                 step: Vec::new(),
             });
-            subtract(x, &place, &mut difference.place);
+            subtract(x, &position, &mut difference.position);
             subtract(&self.step, &step, &mut difference.step);
             self.history.push_back(difference);
         }
-        place.clear();
-        place.extend_from_slice(x);
+        position.clear();
+        position.extend_from_slice(x);
         step.clear();
         step.extend_from_slice(&self.step);
-        self.last = Some((place, step));
+        self.last = Some((position, step));
     }
 
-    fn forget(&mut self) {
+    /// Clears the differences.
+    fn clear_history(&mut self) {
         self.history.clear();
         self.last = None;
     }
 
-    /// The accelerated step into `accelerated`; false without memory.
+    /// Computes the accelerated step in `accelerated`; false where there are no differences or it is not finite.
     fn accelerate(&mut self) -> bool {
         let m = self.history.len();
         if m == 0 {
@@ -83,7 +84,7 @@ impl Projective {
             }
             right[i] = dot(&self.history[i].step, &self.step);
         }
-        // Nearly parallel differences: a trace of the identity keeps the system solvable.
+        // Nearly parallel differences: a small multiple of the identity makes the system regular.
         let trace = products.trace();
         for i in 0..m {
             products[(i, i)] += 1e-12 * trace;
@@ -93,7 +94,7 @@ impl Projective {
         };
         self.accelerated.clone_from(&self.step);
         for (difference, &theta) in self.history.iter().zip(theta.iter()) {
-            let changes = difference.place.iter().zip(&difference.step);
+            let changes = difference.position.iter().zip(&difference.step);
             for (out, (dx, df)) in self.accelerated.iter_mut().zip(changes) {
                 *out -= (dx + df) * theta;
             }
@@ -103,7 +104,7 @@ impl Projective {
             .all(|d| d.norm_squared().is_finite())
     }
 
-    /// One iteration from the gradient in the workspace; the share of the step taken.
+    /// One iteration with the gradient in the workspace; returns the fraction of the step taken.
     fn iterate(
         &mut self,
         problem: &Problem,
@@ -113,46 +114,46 @@ impl Projective {
     ) -> f64 {
         self.negative.clear();
         self.negative.extend(workspace.gradient.iter().map(|g| -g));
-        self.metric.press(problem, state, workspace);
+        self.metric.update_contacts(problem, state, workspace);
         self.metric
             .solve(problem.system, &self.negative, &mut self.step);
-        self.remember(&state.positions);
+        self.store_difference(&state.positions);
         if self.accelerate() {
             let mut direction = std::mem::take(&mut self.accelerated);
-            shorten(problem, &mut direction);
-            let share = search(
+            truncate_length(problem, &mut direction);
+            let fraction = line_search(
                 problem,
                 state,
                 workspace,
                 Line {
                     direction: &direction,
-                    shares: 1,
+                    max_trials: 1,
                     energy,
                 },
             );
             self.accelerated = direction;
-            if share > 0.0 {
-                return share;
+            if fraction > 0.0 {
+                return fraction;
             }
-            self.forget();
+            self.clear_history();
         }
         let mut step = std::mem::take(&mut self.step);
-        shorten(problem, &mut step);
-        let share = search(
+        truncate_length(problem, &mut step);
+        let fraction = line_search(
             problem,
             state,
             workspace,
             Line {
                 direction: &step,
-                shares: usize::MAX,
+                max_trials: usize::MAX,
                 energy,
             },
         );
         self.step = step;
-        if share < 1.0 {
-            self.forget();
+        if fraction < 1.0 {
+            self.clear_history();
         }
-        share
+        fraction
     }
 }
 
@@ -169,7 +170,7 @@ impl Solver for Projective {
     };
     const CONVERGES: bool = false;
 
-    fn lower(
+    fn minimise(
         &mut self,
         problem: &Problem,
         state: &mut State,
@@ -178,7 +179,7 @@ impl Solver for Projective {
         workspace.fit(problem.system);
         self.step
             .resize(problem.system.vertex_count(), Vec3::zeros());
-        self.forget();
+        self.clear_history();
         if !self.metric.fit(problem.system, problem.weight) {
             return NewtonReport::default();
         }

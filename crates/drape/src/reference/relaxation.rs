@@ -1,9 +1,9 @@
-//! Dynamic relaxation: to rest by letting the cloth swing and stopping it at every swing's peak.
+//! Dynamic relaxation: equilibrium by undamped motion that is stopped at every peak of the kinetic energy.
 
 use crate::laws::membrane::Curvature;
 use crate::measure::weight_norm;
 use crate::method::{Method, MethodSettings, StepReport};
-use crate::methods::explicit::forces_and_settle;
+use crate::methods::explicit::forces_and_update_friction;
 use crate::{DrapeError, Inertia, Memory, RelaxationMemory, State, System, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
@@ -11,49 +11,48 @@ use toile_sparse::dot;
 /// Dynamic relaxation with kinetic damping (Day 1965; Cundall 1976; Barnes 1999, section 3).
 ///
 /// Leapfrog with fictitious masses and a step of one iteration: v' = v + f(x) / m, x' = x + v',
-/// from standstill v' = f / (2 m). When the kinetic energy falls, the cloth has passed an
-/// equilibrium of its swing: it is put back to the peak, x - v'/2 + f / (2 m), and stopped.
+/// from standstill v' = f / (2 m). When the kinetic energy falls, the cloth has passed a
+/// minimum of its potential along the path: it is moved back to the peak, x - v'/2 + f / (2 m), and stopped.
 /// Masses m_i = sum_j |K_ij| / 4 (rows summed in absolute value, the worst of the three
 /// directions) times 1.2: by Gershgorin's theorem every frequency is then under 2 per iteration,
-/// and soft places move as fast as stiff ones. They are taken anew at every peak, contact in reach
-/// counted in full.
+/// and soft regions move as fast as stiff ones. Masses are computed anew at every peak, with the full stiffness of
+/// all contacts detected.
 ///
-/// One step is a swing, of 100 iterations at the most. An explicit method: each iteration costs a
-/// force evaluation, and it takes thousands, more as the mesh grows finer.
+/// One step is the motion up to a peak, at most 100 iterations. An explicit method: each iteration costs a force
+/// evaluation, and it takes thousands, the more the finer the mesh.
 pub struct Relaxation {
     tolerance: f64,
-    most: usize,
+    max_iterations: usize,
     run: Option<RelaxationMemory>,
     workspace: Workspace,
     zeros: Vec<f64>,
 }
 
-/// Iterations of one step at the most.
-const SWING: usize = 100;
+/// Most iterations of one step.
+const STEP_ITERATIONS: usize = 100;
 
-/// Iterations at the most where the settings give none.
-const MOST_ITERATIONS: usize = 100_000;
+/// Most iterations where the settings give none.
+const MAX_ITERATIONS: usize = 100_000;
 
-/// How much heavier the masses are than stability asks at the present shape: cloth stiffens as it
-/// stretches.
+/// Factor of the masses over the stability limit at the present positions: cloth stiffens as it stretches.
 const SAFETY: f64 = 1.2;
 
-/// Longest move of a vertex in one iteration [m]: the whole motion is slowed to it.
+/// Longest displacement of a vertex in one iteration [m]; a faster motion is slowed down as a whole.
 const LONGEST_MOVE: f64 = 5e-3;
 
 impl Relaxation {
-    /// With what the settings leave open at its defaults.
+    /// With the settings, and its defaults where they give none.
     pub fn new(settings: &MethodSettings) -> Self {
         Self {
             tolerance: settings.tolerance.unwrap_or(1e-3),
-            most: settings.iterations.unwrap_or(MOST_ITERATIONS),
+            max_iterations: settings.iterations.unwrap_or(MAX_ITERATIONS),
             run: None,
             workspace: Workspace::default(),
             zeros: Vec::new(),
         }
     }
 
-    /// The run the state remembers, or a new one.
+    /// The run in the memory of the state, or a new one.
     fn resume(&mut self, system: &System, state: &mut State) -> RelaxationMemory {
         let n = system.vertex_count();
         match std::mem::take(&mut state.memory) {
@@ -69,8 +68,8 @@ impl Relaxation {
         }
     }
 
-    /// Masses that keep every vibration stable at the state's positions.
-    fn weigh(&mut self, system: &System, state: &State, masses: &mut Vec<f64>) {
+    /// Computes masses for which every vibration about the state's positions is stable.
+    fn update_masses(&mut self, system: &System, state: &State, masses: &mut Vec<f64>) {
         let workspace = &mut self.workspace;
         self.zeros.resize(system.vertex_count(), 0.0);
         let inertia = Inertia {
@@ -112,24 +111,24 @@ impl Relaxation {
         }
     }
 
-    /// One iteration; true when it was the last of a swing.
+    /// One iteration; true where it ended at a peak or the tolerance is satisfied.
     fn iterate(&mut self, system: &System, state: &mut State, run: &mut RelaxationMemory) -> bool {
         if run.still {
             let mut masses = std::mem::take(&mut run.masses);
-            self.weigh(system, state, &mut masses);
+            self.update_masses(system, state, &mut masses);
             run.masses = masses;
         }
-        // No substep: nothing moves in time, and no push can throw the cloth.
-        let force = forces_and_settle(system, state, &mut self.workspace, 0.0);
+        // Iterations are not steps in time: with h = 0 the push on buried cloth is not limited.
+        let force = forces_and_update_friction(system, state, &mut self.workspace, 0.0);
         run.iterations += 1;
         run.residual = dot(force, force).sqrt() / weight_norm(system);
         if run.residual <= self.tolerance {
             return true;
         }
-        let share = if run.still { 0.5 } else { 1.0 };
+        let fraction = if run.still { 0.5 } else { 1.0 };
         let (mut kinetic, mut longest) = (0.0, 0.0f64);
         for ((v, f), m) in run.moves.iter_mut().zip(force).zip(&run.masses) {
-            *v += f * (share / m);
+            *v += f * (fraction / m);
             kinetic += 0.5 * m * v.norm_squared();
             longest = longest.max(v.norm_squared());
         }
@@ -145,10 +144,10 @@ impl Relaxation {
         }
         let longest = longest.sqrt();
         if longest > LONGEST_MOVE {
-            let slowing = LONGEST_MOVE / longest;
-            kinetic *= slowing * slowing;
+            let scale = LONGEST_MOVE / longest;
+            kinetic *= scale * scale;
             for v in &mut run.moves {
-                *v *= slowing;
+                *v *= scale;
             }
         }
         for (x, v) in state.positions.iter_mut().zip(&run.moves) {
@@ -171,7 +170,7 @@ impl Method for Relaxation {
         state.velocities.fill(Vec3::zeros());
         let mut run = self.resume(system, state);
         let first = run.iterations;
-        for _ in 0..SWING {
+        for _ in 0..STEP_ITERATIONS {
             if self.iterate(system, state, &mut run) {
                 break;
             }
@@ -191,9 +190,9 @@ impl Method for Relaxation {
     }
 
     fn finished(&self) -> bool {
-        self.run
-            .as_ref()
-            .is_some_and(|run| run.residual <= self.tolerance || run.iterations >= self.most)
+        self.run.as_ref().is_some_and(|run| {
+            run.residual <= self.tolerance || run.iterations >= self.max_iterations
+        })
     }
 
     fn residual(&self) -> Option<f64> {

@@ -1,6 +1,6 @@
 //! The classical Runge-Kutta method: order 4.
 
-use crate::methods::explicit::{Scheme, forces, forces_and_settle};
+use crate::methods::explicit::{Scheme, forces, forces_and_update_friction};
 use crate::{State, System, Workspace};
 use toile_geometry::Vec3;
 
@@ -13,13 +13,13 @@ use toile_geometry::Vec3;
 /// friction have kinks, across which the order falls to 1 or 2.
 #[derive(Default)]
 pub struct RungeKutta4 {
-    places: Vec<Vec3>,
-    speeds: Vec<Vec3>,
-    moved: Vec<Vec3>,
-    gained: Vec<Vec3>,
+    start_positions: Vec<Vec3>,
+    start_velocities: Vec<Vec3>,
+    velocity_sum: Vec<Vec3>,
+    acceleration_sum: Vec<Vec3>,
 }
 
-/// How far along its slope the next stage is taken, and the weight of the slope in the sum.
+/// For each stage the fraction of h at which the next stage is evaluated, and the weight of its slope in the sum.
 const STAGES: [(f64, f64); 4] = [
     (0.5, 1.0 / 6.0),
     (0.5, 1.0 / 3.0),
@@ -32,30 +32,30 @@ impl Scheme for RungeKutta4 {
     const LIMIT: f64 = 2.0 * std::f64::consts::SQRT_2;
 
     fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
-        self.places.clone_from(&state.positions);
-        self.speeds.clone_from(&state.velocities);
-        for sum in [&mut self.moved, &mut self.gained] {
+        self.start_positions.clone_from(&state.positions);
+        self.start_velocities.clone_from(&state.velocities);
+        for sum in [&mut self.velocity_sum, &mut self.acceleration_sum] {
             sum.clear();
             sum.resize(system.vertex_count(), Vec3::zeros());
         }
         for (stage, (along, weight)) in STAGES.into_iter().enumerate() {
             let force = if stage == 0 {
-                forces_and_settle(system, state, workspace, h)
+                forces_and_update_friction(system, state, workspace, h)
             } else {
                 forces(system, state, workspace, h)
             };
             for (i, f) in force.iter().enumerate() {
                 let v = state.velocities[i];
                 let acceleration = f / system.rest.mass[i] - v * system.control.air_drag;
-                self.moved[i] += v * weight;
-                self.gained[i] += acceleration * weight;
-                state.positions[i] = self.places[i] + v * (along * h);
-                state.velocities[i] = self.speeds[i] + acceleration * (along * h);
+                self.velocity_sum[i] += v * weight;
+                self.acceleration_sum[i] += acceleration * weight;
+                state.positions[i] = self.start_positions[i] + v * (along * h);
+                state.velocities[i] = self.start_velocities[i] + acceleration * (along * h);
             }
         }
-        for i in 0..self.places.len() {
-            state.positions[i] = self.places[i] + self.moved[i] * h;
-            state.velocities[i] = self.speeds[i] + self.gained[i] * h;
+        for i in 0..self.start_positions.len() {
+            state.positions[i] = self.start_positions[i] + self.velocity_sum[i] * h;
+            state.velocities[i] = self.start_velocities[i] + self.acceleration_sum[i] * h;
         }
     }
 }

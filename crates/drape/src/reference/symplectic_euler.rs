@@ -1,6 +1,6 @@
-//! Symplectic (semi-explicit) Euler: order 1, keeps energy for ever below its limit.
+//! Symplectic (semi-explicit) Euler: order 1, bounded energy error for all time below the stability limit.
 
-use crate::methods::explicit::{Scheme, forces_and_settle};
+use crate::methods::explicit::{Scheme, forces_and_update_friction};
 use crate::{State, System, Workspace};
 
 /// v' = (v + h f(x) / m) / (1 + c h),  x' = x + h v'
@@ -16,11 +16,11 @@ impl Scheme for SymplecticEuler {
     const LIMIT: f64 = 2.0;
 
     fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
-        let slowing = 1.0 / (1.0 + system.control.air_drag * h);
-        let force = forces_and_settle(system, state, workspace, h);
+        let drag_factor = 1.0 / (1.0 + system.control.air_drag * h);
+        let force = forces_and_update_friction(system, state, workspace, h);
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
         for ((x, v), (f, m)) in moving.zip(force.iter().zip(&system.rest.mass)) {
-            *v = (*v + f * (h / m)) * slowing;
+            *v = (*v + f * (h / m)) * drag_factor;
             *x += *v * h;
         }
     }

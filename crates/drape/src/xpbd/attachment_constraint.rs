@@ -1,4 +1,4 @@
-//! Elastics and attachments as constraints: the distance between two ends is pulled to zero.
+//! Elastics and attachments as constraints: the two ends are to coincide.
 
 use crate::lanes::Point;
 use crate::laws::elastic::ElasticLaw;
@@ -7,9 +7,9 @@ use crate::laws::elastic::ElasticLaw;
 /// its largest force as a bound on the multiplier.
 #[derive(Clone, Copy, Debug)]
 pub struct AttachmentConstraint {
-    /// The vertex it pulls, as an index into the points of the region.
+    /// The vertex at its first end, as an index into the points of the region.
     from: u32,
-    /// Where its other end is.
+    /// Its other end.
     pub to: AttachmentEnd,
     /// Stiffness k [N/m].
     stiffness: f32,
@@ -19,12 +19,12 @@ pub struct AttachmentConstraint {
     pub lambda: [f32; 3],
 }
 
-/// Where the other end of an elastic is.
+/// The other end of an elastic or attachment.
 #[derive(Clone, Copy, Debug)]
 pub enum AttachmentEnd {
-    /// At a vertex, as an index into the points of the region.
+    /// A vertex, as an index into the points of the region.
     Vertex(u32),
-    /// At a place that the constraint does not move [m].
+    /// A prescribed position, relative to the origin of the points [m].
     Fixed([f32; 3]),
 }
 

@@ -1,36 +1,38 @@
-//! Bending: a force where that is stable, constraints where it is not.
+//! Bending: an explicit force where that is stable, constraints otherwise.
 //!
 //! The energy is x . K x / 2 with a constant K that is the same for x, y and z. As a force it costs
-//! one row of K a vertex, but a substep h must keep h w_max < 2, w_max^2 the largest eigenvalue of
-//! W K. Where it does not, the force is filtered by a few more products with K ([`Filter`]); where
-//! that takes too many, and where constraints are iterated, each triangle's curvatures kappa = B x are constraints with compliance
-//! (A D)^-1: the 3x3 system B W B^T + (A D)^-1 / h^2 is constant, one for x, y and z, and is
+//! one row of K a vertex, but it is stable only for h w_max < 2, w_max^2 being the largest eigenvalue of
+//! W K. For larger substeps the force is filtered by a few more products with K ([`Filter`]). Where that takes too
+//! many products, and where constraints are iterated, the curvatures kappa = B x of each triangle are constraints
+//! with compliance (A D)^-1: the 3x3 system B W B^T + (A D)^-1 / h^2 is constant, one for x, y and z, and is
 //! inverted before the run (Macklin, Müller and Chentanez 2016, equation 18, for the block).
 
 use super::membrane::inverse_mass;
-use crate::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
+use crate::lanes::{
+    Corner, LANES, Point, Row, Triple, add_scaled, gather, lane_groups, scatter, sub,
+};
 use crate::{Material, System};
 use nalgebra::Matrix3;
 use pulp::Simd;
 
-/// K as rows over the slots of the vertices, without its diagonal: sixteen rows side by side, as
-/// many entries each as the longest has.
+/// The bending matrix K by rows over the slots of the vertices, without its diagonal. Sixteen rows make a block, with
+/// as many entries each as the longest of them (ELLPACK format).
 #[derive(Clone, Debug, Default)]
 pub struct BendingForce {
+    /// First entry of each block, and the end.
     start: Vec<u32>,
-    /// Slots of the other vertices.
+    /// Slots of the columns.
     columns: Vec<Corner>,
     /// Entries of K [N/m].
     values: Vec<Row>,
-    /// Bound of w_max [1/s].
+    /// Upper bound of w_max [rad/s].
     pub frequency: f64,
-    /// Entries that are not zero.
+    /// Number of entries that are not zero.
     pub count: usize,
 }
 
 impl BendingForce {
-    /// From the model; `vertex_of` names the vertex in each slot, `slot_of` the slot of each
-    /// vertex.
+    /// The matrix of a model; `vertex_of` is the vertex in each slot, `slot_of` the slot of each vertex.
     pub fn new(system: &System, vertex_of: &[Option<u32>], slot_of: &[u32]) -> Self {
         let mut force = Self {
             start: vec![0],
@@ -53,7 +55,7 @@ impl BendingForce {
                     .enumerate()
                 {
                     if first + at == force.columns.len() {
-                        // Idle lanes look at their own row.
+                        // An unused lane has a zero entry in its own column.
                         let own = |lane: usize| (block * LANES + lane) as u32;
                         force.columns.push(Corner(std::array::from_fn(own)));
                         force.values.push(Row::splat(0.0));
@@ -69,8 +71,8 @@ impl BendingForce {
         force
     }
 
-    /// K times points for the rows from `slot` on, a multiple of sixteen [N]: taken over differences
-    /// from `here`, the points of the rows themselves, because the rows of K sum to zero.
+    /// The product K x for the rows of one lane group from `slot` on, a multiple of sixteen [N]: summed over
+    /// differences from `here`, the points of the rows themselves, since the rows of K sum to zero.
     #[inline(always)]
     pub fn times<S: Simd>(
         &self,
@@ -78,7 +80,7 @@ impl BendingForce {
         slot: usize,
         points: &[Point],
         here: [S::f32s; 4],
-        part: usize,
+        lane_group: usize,
     ) -> Triple<S::f32s> {
         let [x, y, z, _] = here;
         let mut sum = [simd.splat_f32s(0.0); 3];
@@ -88,53 +90,54 @@ impl BendingForce {
             .iter()
             .zip(&self.values[entries])
         {
-            let there = gather(simd, points, column, part);
+            let there = gather(simd, points, column, lane_group);
             let d = sub(simd, [there[0], there[1], there[2]], [x, y, z]);
-            sum = add_scaled(simd, sum, d, value.part::<S>(part));
+            sum = add_scaled(simd, sum, d, value.lane_group::<S>(lane_group));
         }
         sum
     }
 }
 
-/// How bending is filtered where its force alone is not stable: the move of a substep is
-/// -q(h^2 W K) x instead of -h^2 W K x, with the polynomial
-/// q(z) = c (1 - T_s(w0 - w1 z / c) / T_s(w0)), q'(0) = 1, of s stages: slow modes feel their own
-/// stiffness, fast ones no more than is stable, rest is where it was and momentum is kept. The
-/// recursion is that of Runge-Kutta-Chebyshev methods (van der Houwen and Sommeijer 1980).
+/// A polynomial filter of the bending force where the force alone is not stable: the displacement of a substep is
+/// -q(h^2 W K) x instead of -h^2 W K x, with q(z) = c (1 - T_s(w0 - w1 z / c) / T_s(w0)), q'(0) = 1, in s stages.
+/// Slow modes have their own stiffness, fast ones at most the largest stable one; equilibria are unchanged and
+/// momentum is conserved. The recursion is that of Runge-Kutta-Chebyshev methods (van der Houwen and Sommeijer
+/// 1980).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Filter {
-    /// Numbers of each stage: d = mu d - nu d_before - kappa h^2 W K (x + d).
+    /// Coefficients mu, nu, kappa of each stage: d = mu d - nu d_before - kappa h^2 W K (x + d).
     pub stages: Vec<[f32; 3]>,
-    /// c, by which the last d is multiplied.
+    /// The factor c of the last d.
     pub factor: f32,
 }
 
-/// theta: the force is felt where points would be after so much of a substep, which takes energy out of
-/// bending as viscosity theta h does. Without it nothing does: bent cloth in a membrane of unfinished sweeps
-/// buzzes without end. Stable for q (1 + 2 theta) < 4.
+/// The lead theta: the bending force is evaluated at positions extrapolated by theta h, which damps bending as a
+/// viscosity in proportion to stiffness with time constant theta h. Without it bending is undamped, and the
+/// unconverged membrane sweeps feed it energy until the cloth vibrates permanently. Stable for q (1 + 2 theta) < 4.
 pub const LEAD: f64 = 0.4;
 
-/// Half of the largest q: q (1 + 2 theta) is up to 3.6.
+/// The factor c, half of the largest q: q (1 + 2 theta) is up to 3.6.
 const FILTER_HEIGHT: f64 = 1.0;
-/// How far q stays above zero between its bumps, over s^2.
+/// Damping of the Chebyshev polynomial: w0 - 1 times s^2. It makes q positive at its minima.
 const FILTER_DAMPING: f64 = 0.1;
-/// Most stages; beyond them bending is cheaper as constraints.
-const MOST_STAGES: usize = 16;
-/// h w_max up to which the force alone is used: q = (h w)^2 is then within what the filter keeps to.
-const PLAIN_LIMIT: f64 = 1.4;
+/// Most stages; with more, constraints are cheaper.
+const MAX_STAGES: usize = 16;
+/// Largest h w_max at which the force is not filtered: q = (h w)^2 is then at most 2, as with the filter.
+const UNFILTERED_LIMIT: f64 = 1.4;
 
 impl Filter {
-    /// The cheapest filter that is stable at h w_max; nothing when there is none.
+    /// The filter of fewest stages that is stable at `frequency_step` = h w_max; none where more than
+    /// [`MAX_STAGES`] are needed.
     pub fn new(frequency_step: f64) -> Option<Self> {
-        if frequency_step <= PLAIN_LIMIT {
+        if frequency_step <= UNFILTERED_LIMIT {
             return Some(Self::default());
         }
-        (2..=MOST_STAGES).find_map(|count| Self::of_stages(count, frequency_step))
+        (2..=MAX_STAGES).find_map(|count| Self::of_stages(count, frequency_step))
     }
 
     fn of_stages(count: usize, frequency_step: f64) -> Option<Self> {
         let w0 = 1.0 + FILTER_DAMPING / (count * count) as f64;
-        // T_j and its slope at w0.
+        // T_j and its derivative at w0.
         let (mut t, mut slope) = (vec![1.0, w0], vec![0.0, 1.0]);
         for j in 1..count {
             t.push(2.0 * w0 * t[j] - t[j - 1]);
@@ -147,7 +150,7 @@ impl Filter {
         let pace = w1 / FILTER_HEIGHT;
         let mut stages = vec![[0.0, 0.0, (pace / w0) as f32]];
         for j in 1..count {
-            // Before the first stage nothing has moved.
+            // Before the first stage the displacement is zero.
             let before = if j == 1 { 0.0 } else { t[j - 1] };
             let numbers = [2.0 * w0 * t[j], before, 2.0 * pace * t[j]];
             stages.push(numbers.map(|x| (x / t[j + 1]) as f32));
@@ -162,22 +165,22 @@ impl Filter {
 /// The curvatures of a triangle along the principal directions of its stiffness.
 #[derive(Clone, Debug)]
 pub struct Stencil {
-    /// Vertices taking part.
+    /// Vertices of the stencil.
     pub vertices: Vec<u32>,
     /// Weights of each in the three curvatures [1/m2].
     weights: Vec<[f64; 3]>,
-    /// A D [N m3].
+    /// Stiffnesses A D [N m3].
     stiffness: [f64; 3],
 }
 
-/// Least bending stiffness of a direction as a share of the largest: its compliance must be finite.
-const LEAST_SHARE: f64 = 1e-6;
+/// Least bending stiffness of a direction over the largest one: compliances must be finite.
+const MIN_STIFFNESS_RATIO: f64 = 1e-6;
 
-/// The curvature stencils of a model, those without stiffness left out.
+/// The curvature stencils of the triangles of a model that have a bending stiffness.
 pub fn stencils(system: &System) -> Vec<Stencil> {
-    let kept = system.rest.curvatures.iter();
+    let curvatures = system.rest.curvatures.iter();
     let all = match system.topology.bending {
-        Some(_) => kept.map(|stencil| (**stencil).clone()).collect(),
+        Some(_) => curvatures.map(|stencil| (**stencil).clone()).collect(),
         None => system.topology.stencils(&system.rest.shapes()),
     };
     let laws: Vec<_> = (system.materials.list.iter())
@@ -193,29 +196,29 @@ pub fn stencils(system: &System) -> Vec<Stencil> {
             stencils.push(Stencil {
                 vertices: stencil.vertices,
                 weights,
-                stiffness: stiffness.map(|d| area * d.max(LEAST_SHARE * largest)),
+                stiffness: stiffness.map(|d| area * d.max(MIN_STIFFNESS_RATIO * largest)),
             });
         }
     }
     stencils
 }
 
-/// Sixteen stencils of the same size without a shared vertex.
+/// Up to sixteen stencils of the same size without a shared vertex.
 #[derive(Clone, Debug)]
 pub struct BendingBatch {
     corners: Vec<Corner>,
     /// Weights of each corner in the three curvatures [1/m2].
     weights: Vec<[Row; 3]>,
-    /// Inverse of the system: 11, 22, 33, 12, 13, 23.
+    /// Inverse of B W B^T + (A D)^-1 kappa: 11, 22, 33, 12, 13, 23.
     inverse: [Row; 6],
-    /// (A D)^-1.
+    /// Compliances (A D)^-1 [1/(N m3)].
     compliance: [Row; 3],
-    /// B W B^T of each lane, and its compliance, in double precision.
+    /// B W B^T of each lane, and its compliances, in double precision.
     exact: Vec<(Matrix3<f64>, [f64; 3])>,
 }
 
-/// What a batch has summed up to in a substep: three curvatures for x, y and z.
-pub type Sums = [Triple<Row>; 3];
+/// XPBD multipliers of a batch over the substep: of three curvatures, for x, y and z each.
+pub type Multipliers = [Triple<Row>; 3];
 
 impl BendingBatch {
     /// A batch of up to sixteen stencils; `local` as for membranes.
@@ -247,12 +250,12 @@ impl BendingBatch {
         batch
     }
 
-    /// Stencils in it.
+    /// Number of stencils.
     pub fn len(&self) -> usize {
         self.exact.len()
     }
 
-    /// Inverts the systems for a substep.
+    /// Inverts the systems for a substep; `kappa` is (1 + drag h) / h^2 [1/s2].
     pub fn set_step(&mut self, kappa: f64) {
         for (lane, (matrix, compliance)) in self.exact.iter().enumerate() {
             let mut matrix = *matrix;
@@ -275,24 +278,24 @@ impl BendingBatch {
 pub fn solve<S: Simd>(
     simd: S,
     batches: &[BendingBatch],
-    mut sums: Option<&mut [Sums]>,
+    mut multipliers: Option<&mut [Multipliers]>,
     kappa: f32,
     points: &mut [Point],
 ) {
     for (at, batch) in batches.iter().enumerate() {
-        for part in 0..parts::<S>() {
-            let sums = sums.as_mut().map(|sums| &mut sums[at]);
-            solve_part(simd, batch, part, sums, kappa, points);
+        for lane_group in 0..lane_groups::<S>() {
+            let multipliers = multipliers.as_mut().map(|multipliers| &mut multipliers[at]);
+            solve_lane_group(simd, batch, lane_group, multipliers, kappa, points);
         }
     }
 }
 
 #[inline(always)]
-fn solve_part<S: Simd>(
+fn solve_lane_group<S: Simd>(
     simd: S,
     batch: &BendingBatch,
-    part: usize,
-    mut sums: Option<&mut Sums>,
+    lane_group: usize,
+    mut multipliers: Option<&mut Multipliers>,
     kappa: f32,
     points: &mut [Point],
 ) {
@@ -301,65 +304,76 @@ fn solve_part<S: Simd>(
     };
     let zero = simd.splat_f32s(0.0);
     let mut curvature = [[zero; 3]; 3];
-    let [x, y, z, _] = gather(simd, points, first, part);
+    let [x, y, z, _] = gather(simd, points, first, lane_group);
     let origin = [x, y, z];
     for (corner, weights) in batch.corners.iter().zip(&batch.weights).skip(1) {
-        let [x, y, z, _] = gather(simd, points, corner, part);
+        let [x, y, z, _] = gather(simd, points, corner, lane_group);
         let d = sub(simd, [x, y, z], origin);
         for k in 0..3 {
-            curvature[k] = add_scaled(simd, curvature[k], d, weights[k].part::<S>(part));
+            curvature[k] = add_scaled(
+                simd,
+                curvature[k],
+                d,
+                weights[k].lane_group::<S>(lane_group),
+            );
         }
     }
-    if let Some(sums) = &sums {
+    if let Some(multipliers) = &multipliers {
         for k in 0..3 {
-            let soft = simd.mul_f32s(batch.compliance[k].part::<S>(part), simd.splat_f32s(kappa));
-            let sum = triple::<S>(&sums[k], part);
+            let soft = simd.mul_f32s(
+                batch.compliance[k].lane_group::<S>(lane_group),
+                simd.splat_f32s(kappa),
+            );
+            let sum = triple::<S>(&multipliers[k], lane_group);
             curvature[k] = add_scaled(simd, curvature[k], sum, soft);
         }
     }
-    let t11 = batch.inverse[0].part::<S>(part);
-    let t22 = batch.inverse[1].part::<S>(part);
-    let t33 = batch.inverse[2].part::<S>(part);
-    let t12 = batch.inverse[3].part::<S>(part);
-    let t13 = batch.inverse[4].part::<S>(part);
-    let t23 = batch.inverse[5].part::<S>(part);
+    let t11 = batch.inverse[0].lane_group::<S>(lane_group);
+    let t22 = batch.inverse[1].lane_group::<S>(lane_group);
+    let t33 = batch.inverse[2].lane_group::<S>(lane_group);
+    let t12 = batch.inverse[3].lane_group::<S>(lane_group);
+    let t13 = batch.inverse[4].lane_group::<S>(lane_group);
+    let t23 = batch.inverse[5].lane_group::<S>(lane_group);
     let change = [
         mixed(simd, &curvature, [t11, t12, t13]),
         mixed(simd, &curvature, [t12, t22, t23]),
         mixed(simd, &curvature, [t13, t23, t33]),
     ];
-    if let Some(sums) = &mut sums {
+    if let Some(multipliers) = &mut multipliers {
         for k in 0..3 {
             for axis in 0..3 {
-                let sum = simd.sub_f32s(sums[k][axis].part::<S>(part), change[k][axis]);
-                sums[k][axis].set_part::<S>(part, sum);
+                let sum = simd.sub_f32s(
+                    multipliers[k][axis].lane_group::<S>(lane_group),
+                    change[k][axis],
+                );
+                multipliers[k][axis].set_lane_group::<S>(lane_group, sum);
             }
         }
     }
     for (corner, weights) in batch.corners.iter().zip(&batch.weights) {
-        let [x, y, z, w] = gather(simd, points, corner, part);
+        let [x, y, z, w] = gather(simd, points, corner, lane_group);
         let share = simd.sub_f32s(zero, w);
         let mut p = [x, y, z];
         for k in 0..3 {
-            let weight = simd.mul_f32s(share, weights[k].part::<S>(part));
+            let weight = simd.mul_f32s(share, weights[k].lane_group::<S>(lane_group));
             p = add_scaled(simd, p, change[k], weight);
         }
         let [x, y, z] = p;
-        scatter(simd, points, corner, part, [x, y, z, w]);
+        scatter(simd, points, corner, lane_group, [x, y, z, w]);
     }
 }
 
-/// Three rows of one part.
+/// The rows of x, y and z of one lane group.
 #[inline(always)]
-fn triple<S: Simd>(rows: &Triple<Row>, part: usize) -> Triple<S::f32s> {
+fn triple<S: Simd>(rows: &Triple<Row>, lane_group: usize) -> Triple<S::f32s> {
     [
-        rows[0].part::<S>(part),
-        rows[1].part::<S>(part),
-        rows[2].part::<S>(part),
+        rows[0].lane_group::<S>(lane_group),
+        rows[1].lane_group::<S>(lane_group),
+        rows[2].lane_group::<S>(lane_group),
     ]
 }
 
-/// The sum of three vectors with weights.
+/// The weighted sum of three vectors.
 #[inline(always)]
 fn mixed<S: Simd>(
     simd: S,
@@ -376,7 +390,7 @@ fn mixed<S: Simd>(
 mod tests {
     use super::*;
 
-    /// q of the filter for so much h w_max.
+    /// The polynomial q of the filter for h w_max = `limit`.
     fn filtered(limit: f64) -> impl Fn(f64) -> f64 {
         let filter = Filter::new(limit).expect("within the stages there are");
         move |z: f64| {
@@ -389,9 +403,9 @@ mod tests {
     }
 
     #[test]
-    fn bending_comes_to_rest_at_any_stiffness() {
+    fn bending_vibrations_decay_at_any_stiffness() {
         // v = v - q (x + theta v), x = x + v, with h = 1: the larger of the two roots.
-        let wanes = |q: f64| {
+        let check_decay = |q: f64| {
             let (trace, product) = (2.0 - q - q * LEAD, 1.0 - q * LEAD);
             let inner = 0.25 * trace * trace - product;
             let root = match inner < 0.0 {
@@ -402,15 +416,15 @@ mod tests {
         };
         for k in 1..=1000 {
             let z = 1e-3 * f64::from(k);
-            wanes(PLAIN_LIMIT * PLAIN_LIMIT * z);
+            check_decay(UNFILTERED_LIMIT * UNFILTERED_LIMIT * z);
             for limit in [1.6, 5.0, 20.0] {
-                wanes(filtered(limit)(limit * limit * z));
+                check_decay(filtered(limit)(limit * limit * z));
             }
         }
     }
 
     #[test]
-    fn a_filter_keeps_slow_modes_and_bounds_fast_ones() {
+    fn a_filter_preserves_slow_modes_and_bounds_fast_ones() {
         for limit in [1.6, 2.8, 5.0, 12.0, 20.0] {
             let q = filtered(limit);
             assert!((q(1e-4) / 1e-4 - 1.0).abs() < 1e-3, "{limit}");
@@ -419,7 +433,7 @@ mod tests {
                 assert!(q(z) > 0.0 && q(z) < 2.5, "{limit}: {z} {}", q(z));
             }
         }
-        assert!(Filter::new(1.0).expect("plain").is_plain());
+        assert!(Filter::new(1.0).expect("plain").is_identity());
         assert_eq!(Filter::new(1e3), None);
     }
 }

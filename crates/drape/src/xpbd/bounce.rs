@@ -1,64 +1,66 @@
-//! Restitution: what hits comes back with a share of its speed.
+//! Restitution: an impact leaves with a fraction e of its normal speed.
 //!
-//! Positions and velocities are corrected apart (Volino et al. 1996; Müller et al. 2020, section 3.6):
-//! contacts move points to where they belong, and the normal relative velocity after is -e times the
-//! one before, whatever speed that move would give. Contacts that share a point are gone through
-//! together, each by impulses along its normal that never pull.
+//! Positions and velocities are corrected separately (Volino et al. 1996; Müller et al. 2020, section 3.6):
+//! constraints correct positions, and the normal relative velocity after an impact is set to -e times the one
+//! before, whatever velocity the position correction implies. Contacts that share points are solved together by
+//! Gauss-Seidel sweeps of normal impulses, which are never attractive in sum.
 
 use super::contact::{ContactConstraint, ContactStencil, NO_SAMPLE};
 use super::particles::Particles;
 use crate::ContactSample;
 use crate::lanes::{LANES, Point};
 
-/// Rounds over contacts that share points.
-const ROUNDS: usize = 8;
+/// Gauss-Seidel sweeps over the impacts.
+const SWEEPS: usize = 8;
 
-/// Speeds below that of so many substeps of falling do not bounce: cloth at rest must not hum.
-const QUIET_SUBSTEPS: f32 = 2.0;
+/// Impacts slower than the free fall of so many substeps have no restitution, so that resting contacts do not
+/// vibrate.
+const RESTING_SUBSTEPS: f32 = 2.0;
 
-/// A contact that pressed in the substep.
-struct Hit {
+/// A contact with a normal impulse in the substep.
+struct Impact {
     slots: [u32; 4],
     weights: [f32; 4],
     normal: [f32; 3],
-    /// Sum of a^2 / m [1/kg].
-    yielding: f32,
+    /// Inverse effective mass along the normal: sum of a^2 / m over its points [1/kg].
+    inverse_mass: f32,
     /// Speed of the surface along the normal [m/s].
     surface_speed: f32,
-    /// Impulse so far [N s].
+    /// Accumulated normal impulse [N s].
     impulse: f32,
-    /// Share of the speed that comes back, where it is said.
-    share: Option<f32>,
-    /// Speed along the normal that it leaves with [m/s].
-    leaving: f32,
+    /// Coefficient of restitution e; none where no material gives one.
+    restitution: Option<f32>,
+    /// Normal relative speed after the impact [m/s].
+    target_speed: f32,
 }
 
-impl Hit {
-    /// From what a contact did, speed of the surface and impulse still times the substep.
+impl Impact {
+    /// From a contact of the substep; surface speed and impulse are still multiplied by the substep.
     fn new(
         particles: &Particles,
         (slots, weights): ([u32; 4], [f32; 4]),
         contact: &ContactConstraint,
-        share: Option<f32>,
+        restitution: Option<f32>,
     ) -> Option<Self> {
-        let each = slots.iter().zip(weights);
-        let yielding: f32 = each
+        let points = slots.iter().zip(weights);
+        let inverse_mass: f32 = points
             .map(|(&slot, a)| a * a * particles.start[slot as usize][3])
             .sum();
-        (contact.lambda_normal > 0.0 && yielding > 0.0).then(|| Self {
+        (contact.lambda_normal > 0.0 && inverse_mass > 0.0).then(|| Self {
             slots,
             weights,
             normal: contact.normal,
-            yielding,
+            inverse_mass,
             surface_speed: (0..3)
                 .map(|k| contact.normal[k] * contact.surface_displacement[k])
                 .sum(),
             impulse: contact.lambda_normal,
-            share,
-            leaving: 0.0,
+            restitution,
+            target_speed: 0.0,
         })
     }
 
+    /// Relative speed along the normal [m/s]; negative while approaching.
     fn speed(&self, velocity: &[Point]) -> f32 {
         let mut speed = -self.surface_speed;
         for (&slot, a) in self.slots.iter().zip(self.weights) {
@@ -68,8 +70,8 @@ impl Hit {
         speed
     }
 
-    /// Adds an impulse [N s] along the normal; `points` hold inverse masses.
-    fn push(&self, impulse: f32, points: &[Point], velocity: &mut [Point]) {
+    /// Applies an impulse [N s] along the normal; the inverse masses are those of `points`.
+    fn apply_impulse(&self, impulse: f32, points: &[Point], velocity: &mut [Point]) {
         for (&slot, a) in self.slots.iter().zip(self.weights) {
             let share = impulse * a * points[slot as usize][3];
             for k in 0..3 {
@@ -79,7 +81,7 @@ impl Hit {
     }
 }
 
-/// The numbers of a substep.
+/// Parameters of a substep.
 #[derive(Clone, Copy)]
 pub struct BounceStep {
     /// Substep [s].
@@ -88,74 +90,80 @@ pub struct BounceStep {
     pub gravity: f32,
 }
 
-/// Gives contacts that pressed in the substep the speed they leave with; `stencils` are runs of them
-/// with the slot that their points are numbered from.
+/// Sets the normal velocities after the impacts of a substep. `stencils` are lists of contacts with the first slot
+/// of their region, from which their points are numbered.
 pub fn bounce<'a>(
     samples: &[ContactSample],
     stencils: impl Iterator<Item = (usize, &'a [ContactStencil])>,
     particles: &mut Particles,
     step: BounceStep,
 ) {
-    let mut hits = Vec::new();
+    let mut impacts = Vec::new();
     for (block, contacts) in particles.contacts.iter().enumerate() {
-        for lane in contacts.pressed() {
+        for lane in contacts.loaded() {
             let contact = contacts.get(lane);
             let slot = (block * LANES + lane) as u32;
-            let one = ([slot; 4], [1.0, 0.0, 0.0, 0.0]);
-            hits.extend(Hit::new(
+            let point = ([slot; 4], [1.0, 0.0, 0.0, 0.0]);
+            impacts.extend(Impact::new(
                 particles,
-                one,
+                point,
                 &contact,
-                restitution(samples, &contact),
+                sample_restitution(samples, &contact),
             ));
         }
     }
-    let each = stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
-    for (first, stencil) in each.filter(|(_, stencil)| stencil.constraint.lambda_normal > 0.0) {
-        let share = match stencil.constraint.sample {
+    let stencils =
+        stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
+    for (first, stencil) in stencils.filter(|(_, stencil)| stencil.constraint.lambda_normal > 0.0) {
+        let restitution = match stencil.constraint.sample {
             NO_SAMPLE => stencil.restitution,
-            _ => restitution(samples, &stencil.constraint),
+            _ => sample_restitution(samples, &stencil.constraint),
         };
         let slots = stencil.vertices.map(|v| v + first as u32);
-        let four = (slots, stencil.weights);
-        hits.extend(Hit::new(particles, four, &stencil.constraint, share));
+        let points = (slots, stencil.weights);
+        impacts.extend(Impact::new(
+            particles,
+            points,
+            &stencil.constraint,
+            restitution,
+        ));
     }
     let Particles {
         start,
         velocity,
-        without,
+        velocity_without_contact,
         ..
     } = particles;
-    without.clone_from(velocity);
-    for hit in &mut hits {
-        hit.surface_speed /= step.step;
-        hit.impulse /= step.step;
-        hit.push(-hit.impulse, start, without);
+    velocity_without_contact.clone_from(velocity);
+    for impact in &mut impacts {
+        impact.surface_speed /= step.step;
+        impact.impulse /= step.step;
+        impact.apply_impulse(-impact.impulse, start, velocity_without_contact);
     }
-    let quiet = QUIET_SUBSTEPS * step.gravity * step.step;
-    hits.retain_mut(|hit| {
-        let before = hit.speed(without);
-        let Some(share) = hit.share else {
+    let resting_speed = RESTING_SUBSTEPS * step.gravity * step.step;
+    impacts.retain_mut(|impact| {
+        let before = impact.speed(velocity_without_contact);
+        let Some(restitution) = impact.restitution else {
             return false;
         };
-        hit.leaving = if before < -quiet {
-            -share * before
+        impact.target_speed = if before < -resting_speed {
+            -restitution * before
         } else {
             before.max(0.0)
         };
         true
     });
-    for _ in 0..ROUNDS {
-        for hit in &mut hits {
-            let wanted = (hit.leaving - hit.speed(velocity)) / hit.yielding;
-            let change = wanted.max(-hit.impulse);
-            hit.impulse += change;
-            hit.push(change, start, velocity);
+    for _ in 0..SWEEPS {
+        for impact in &mut impacts {
+            let correction = (impact.target_speed - impact.speed(velocity)) / impact.inverse_mass;
+            let change = correction.max(-impact.impulse);
+            impact.impulse += change;
+            impact.apply_impulse(change, start, velocity);
         }
     }
 }
 
-fn restitution(samples: &[ContactSample], contact: &ContactConstraint) -> Option<f32> {
+fn sample_restitution(samples: &[ContactSample], contact: &ContactConstraint) -> Option<f32> {
     let sample = samples.get(contact.sample as usize)?;
     sample.restitution.map(|e| e as f32)
 }

@@ -1,4 +1,4 @@
-//! Contact of cloth with cloth in substeps: found once in a few of them, kept as planes meanwhile.
+//! Contact of cloth with cloth in substeps: detected once in a few substeps, with fixed contact planes in between.
 
 use super::contact::{ContactConstraint, ContactStencil};
 use super::{Xpbd, XpbdReport, middle};
@@ -10,102 +10,103 @@ use crate::{DrapeError, State, System};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Some substeps.
+/// Some substeps of one size.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Span {
+pub(crate) struct Substeps {
     /// Substep [s].
     pub substep: f64,
-    /// How many.
+    /// Number of substeps.
     pub count: u32,
     /// Drag per mass [1/s].
     pub drag: f64,
 }
 
-/// How far the fastest vertex or surface is to go, at the speed that it has, before contacts are looked for
-/// anew [m]. Features that both go so far are found before they come as near as is kept.
-const FARTHEST: f64 = 2e-3;
+/// Largest displacement of a vertex or surface, at its present speed, between two detections [m]. Detection reaches
+/// twice as far beyond the offset, for two features that approach each other.
+const MAX_TRAVEL: f64 = 2e-3;
 
-/// How far each is taken to go at the least [m]: what moves pushes what does not.
-const LEAST_WAY: f64 = 5e-4;
+/// Least displacement that is assumed of any vertex [m]: one at rest may be pushed by another.
+const MIN_TRAVEL: f64 = 5e-4;
 
-/// How far those that press may move against each other meanwhile [m], and what share of them counts: their
-/// planes stay as they were found.
-const SHIFTS: f64 = 3e-4;
-const SHIFTING: f64 = 0.9;
+/// Largest relative displacement of the two sides of a loaded contact between two detections [m], since its plane is
+/// fixed meanwhile; and the quantile of loaded contacts that has to satisfy it.
+const MAX_SLIP: f64 = 3e-4;
+const SLIP_QUANTILE: f64 = 0.9;
 
-/// Longest time that contacts serve [s].
-const LONGEST: f64 = 1.0 / 60.0;
+/// Longest time between two detections [s].
+const MAX_INTERVAL: f64 = 1.0 / 60.0;
 
-/// Substeps between two looks, at the least; and where cloth crosses cloth, whose way out is to be found soon.
-const FEWEST: u32 = 5;
-const FEWEST_CROSSED: u32 = 4;
+/// Least number of substeps between two detections, and the same for tangled cloth, whose recovery directions change
+/// faster.
+const MIN_SUBSTEPS: u32 = 5;
+const MIN_SUBSTEPS_TANGLED: u32 = 4;
 
-/// Contacts of cloth with cloth as they were last found.
+/// The contacts of cloth with cloth detected last, and the time for which they are valid.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ClothWatch {
+pub(crate) struct ClothContacts {
     /// The contacts.
     pub contacts: ContactSet,
     detector: ContactDetector,
-    /// For how long they are to serve yet [s]; none before the first look.
-    serves: Option<f64>,
-    /// Positions before the last substeps [m], and how far they went.
+    /// Time until the next detection [s]; none where contacts have to be detected first.
+    valid_for: Option<f64>,
+    /// Positions before the last substeps [m], displacements in them [m], and inverse masses [1/kg].
     before: Vec<Vec3>,
-    moves: Vec<Vec3>,
-    inverse_mass: Vec<f64>,
+    displacements: Vec<Vec3>,
+    inverse_masses: Vec<f64>,
 }
 
-impl ClothWatch {
-    /// Looks anew at the next step.
-    pub fn forget(&mut self) {
-        self.serves = None;
+impl ClothContacts {
+    /// Marks the contacts as invalid: they are detected again at the next step.
+    pub fn invalidate(&mut self) {
+        self.valid_for = None;
     }
 
-    /// [`Self::forget`], and the search then depends on none before.
-    pub fn forget_all(&mut self) {
-        self.forget();
+    /// [`Self::invalidate`], and clears the detector, so that the next detection does not depend on earlier ones.
+    pub fn reset(&mut self) {
+        self.invalidate();
         self.detector.forget();
     }
 
-    /// Substeps before the next look, at the least.
-    fn fewest(&self) -> u32 {
+    /// Least number of substeps before the next detection.
+    fn min_substeps(&self) -> u32 {
         match self.contacts.is_in_order() {
-            true => FEWEST,
-            false => FEWEST_CROSSED,
+            true => MIN_SUBSTEPS,
+            false => MIN_SUBSTEPS_TANGLED,
         }
     }
 
-    /// Looks for contacts, which are to serve for a few substeps of so many seconds at the least.
-    fn look(&mut self, system: &System, state: &mut State, substep: f64) {
+    /// Detects the contacts and sets the time for which they are valid: at least a few substeps of `substep` [s].
+    fn detect(&mut self, system: &System, state: &mut State, substep: f64) {
         let offset = system.contact.cloth_offset;
-        let least = f64::from(FEWEST) * substep;
-        let speed = fastest(system, state, least);
-        let soon = (FARTHEST / speed).min(LONGEST);
-        let longest = soon.max(least);
+        let min_time = f64::from(MIN_SUBSTEPS) * substep;
+        let speed = largest_speed(system, state, min_time);
+        let travel_time = (MAX_TRAVEL / speed).min(MAX_INTERVAL);
+        let longest = travel_time.max(min_time);
         let fall = 0.5 * system.control.gravity.norm() * longest * longest;
         let reach = Reach {
-            max: offset + 2.0 * FARTHEST,
+            max: offset + 2.0 * MAX_TRAVEL,
             ahead: Some(Ahead {
                 velocities: &state.velocities,
                 offset,
                 pinned: &system.prescribed.pinned,
                 time: longest,
-                min_path: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
+                min_path: (speed * longest + fall).clamp(MIN_TRAVEL, MAX_TRAVEL),
             }),
         };
         let (memory, x) = (&state.cloth, &state.positions);
         (self.detector).detect(system, memory, x, &reach, &mut self.contacts);
         self.contacts.remember_crossings(state);
-        let shifts = SHIFTS / self.shifting(&state.velocities);
-        let least = f64::from(self.fewest()) * substep;
-        self.serves = Some(soon.min(shifts).max(least));
+        let slip_time = MAX_SLIP / self.slip_speed(&state.velocities);
+        let min_time = f64::from(self.min_substeps()) * substep;
+        self.valid_for = Some(travel_time.min(slip_time).max(min_time));
     }
 
-    /// Speed that most contacts which press, or pull out of a crossing, are slower than [m/s], one side seen
-    /// from the other.
-    fn shifting(&self, velocities: &[Vec3]) -> f64 {
+    /// The quantile [`SLIP_QUANTILE`] of the relative speeds of the two sides of loaded contacts and recovery
+    /// forces [m/s].
+    fn slip_speed(&self, velocities: &[Vec3]) -> f64 {
         let speed = |contact: &ClothContact| {
-            let four = contact.vertices.iter().zip(contact.weights);
-            let velocity: Vec3 = four.map(|(&v, w)| velocities[v as usize] * w).sum();
+            let corners = contact.vertices.iter().zip(contact.weights);
+            let velocity: Vec3 = corners.map(|(&v, w)| velocities[v as usize] * w).sum();
             velocity.norm()
         };
         let ContactSet {
@@ -113,49 +114,51 @@ impl ClothWatch {
         } = &self.contacts;
         let contacts = contacts.par_iter().chain(&recovery.pulls);
         let contacts = contacts.with_min_len(256);
-        let pressed = contacts.filter(|contact| contact.plane.depth > 0.0);
-        let mut speeds: Vec<f64> = pressed.map(speed).collect();
-        let at = (SHIFTING * speeds.len() as f64) as usize;
+        let loaded = contacts.filter(|contact| contact.plane.depth > 0.0);
+        let mut speeds: Vec<f64> = loaded.map(speed).collect();
+        let at = (SLIP_QUANTILE * speeds.len() as f64) as usize;
         match speeds.is_empty() {
             true => 0.0,
             false => *speeds.select_nth_unstable_by(at, f64::total_cmp).1,
         }
     }
 
-    /// Corrects the way of the last substeps, `span` [s] long, where cloth would have passed through cloth.
-    fn keep_apart(&mut self, system: &System, state: &mut State, span: f64) {
-        let ways = state.positions.iter().zip(&self.before);
-        self.moves.clear();
-        self.moves.extend(ways.map(|(x, from)| x - from));
+    /// Corrects the displacements of the last substeps, of `span` [s], where cloth would have passed through cloth
+    /// (continuous collision detection).
+    fn resolve_impacts(&mut self, system: &System, state: &mut State, span: f64) {
+        let displacements = state.positions.iter().zip(&self.before);
+        self.displacements.clear();
+        self.displacements
+            .extend(displacements.map(|(x, from)| x - from));
         let masses = system.rest.mass.iter().zip(&system.prescribed.pinned);
-        self.inverse_mass.clear();
-        self.inverse_mass
+        self.inverse_masses.clear();
+        self.inverse_masses
             .extend(masses.map(|(m, &pinned)| if pinned { 0.0 } else { 1.0 / m }));
         let mut motion = Motions {
             x: &self.before,
-            moves: &mut self.moves,
+            moves: &mut self.displacements,
             velocities: &mut state.velocities,
-            inverse_mass: &self.inverse_mass,
+            inverse_mass: &self.inverse_masses,
             span,
         };
         let exemptions = &self.contacts.exemptions;
         let impacts = (self.detector).resolve_impacts(system, exemptions, &mut motion);
         self.contacts.tally.count_impacts(impacts);
         if impacts != ImpactStats::default() {
-            let ends = self.before.iter().zip(&self.moves);
-            for (x, (from, way)) in state.positions.iter_mut().zip(ends) {
-                *x = from + way;
+            let ends = self.before.iter().zip(&self.displacements);
+            for (x, (from, displacement)) in state.positions.iter_mut().zip(ends) {
+                *x = from + displacement;
             }
         }
     }
 }
 
-/// Speed of what is fastest [m/s]: a vertex, one that is led, or a surface, in the next `soon` seconds or as
-/// long as contacts may serve.
-fn fastest(system: &System, state: &State, soon: f64) -> f64 {
+/// The largest speed of a vertex, of a prescribed vertex or of a solid [m/s]; those of prescribed motions are means
+/// over the next `min_time` [s] and over the longest interval between detections.
+fn largest_speed(system: &System, state: &State, min_time: f64) -> f64 {
     let of_cloth = state.velocities.iter().map(Vec3::norm);
-    let spans = [soon, LONGEST].into_iter();
-    let led = spans.flat_map(|span| {
+    let spans = [min_time, MAX_INTERVAL].into_iter();
+    let prescribed = spans.flat_map(|span| {
         let times = [state.time, state.time + span];
         let of_bodies = system.colliders.iter().filter_map(move |collider| {
             let [from, to] = times.map(|time| collider.pose(time));
@@ -167,63 +170,70 @@ fn fastest(system: &System, state: &State, soon: f64) -> f64 {
         });
         of_bodies.chain(of_grips)
     });
-    of_cloth.chain(led).fold(0.0, f64::max)
+    of_cloth.chain(prescribed).fold(0.0, f64::max)
 }
 
-/// How many of the substeps that are left go before the next look when contacts serve for so many, and so few
-/// at the least: shared out evenly.
-fn before_next(left: u32, serves: f64, fewest: u32) -> u32 {
-    let serves = (serves + 1e-6).floor().max(f64::from(fewest));
-    let looks = (f64::from(left) / serves).ceil().max(1.0);
-    let count = (f64::from(left) / looks).ceil() as u32;
-    count.max(fewest).min(left)
+/// The number of substeps until the next detection, of `remaining` ones, when contacts are valid for `valid_for`
+/// substeps: at least `fewest`, and such that the remaining substeps are divided evenly.
+fn substeps_before_detection(remaining: u32, valid_for: f64, fewest: u32) -> u32 {
+    let valid_for = (valid_for + 1e-6).floor().max(f64::from(fewest));
+    let detections = (f64::from(remaining) / valid_for).ceil().max(1.0);
+    let count = (f64::from(remaining) / detections).ceil() as u32;
+    count.max(fewest).min(remaining)
 }
 
 impl Xpbd {
     /// [`Xpbd::advance`] with contact of cloth with cloth, where the model has it.
-    pub(crate) fn advance_touching(
+    pub(crate) fn advance_with_cloth_contact(
         &mut self,
         system: &System,
         state: &mut State,
-        watch: &mut ClothWatch,
-        span: &Span,
+        cloth: &mut ClothContacts,
+        substeps: &Substeps,
     ) -> Result<XpbdReport, DrapeError> {
         if system.contact.cloth_offset <= 0.0 {
-            watch.forget();
-            return self.advance(system, state, span.substep, span.count, span.drag);
+            cloth.invalidate();
+            return self.advance(
+                system,
+                state,
+                substeps.substep,
+                substeps.count,
+                substeps.drag,
+            );
         }
-        if self.take_up(system, &state.samples) {
-            // The contacts in hand are gone.
-            watch.forget();
+        if self.rebuild_if_changed(system, &state.samples) {
+            // The constraints of the present contacts are gone.
+            cloth.invalidate();
         }
         let origin = middle(&state.positions);
         self.invalidate_surfaces();
-        let mut left = span.count;
+        let mut remaining = substeps.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
-        while left > 0 {
-            let least = f64::from(watch.fewest()) * span.substep;
-            if watch.serves.is_none_or(|serves| serves < least) {
-                watch.look(system, state, span.substep);
-                self.set_cloth_contacts(&watch.contacts, 2.0 * FARTHEST);
+        while remaining > 0 {
+            let min_time = f64::from(cloth.min_substeps()) * substeps.substep;
+            if cloth.valid_for.is_none_or(|time| time < min_time) {
+                cloth.detect(system, state, substeps.substep);
+                self.set_cloth_contacts(&cloth.contacts, 2.0 * MAX_TRAVEL);
             }
-            let serves = watch.serves.map_or(0.0, |serves| serves / span.substep);
-            let count = before_next(left, serves, watch.fewest());
-            watch.before.clone_from(&state.positions);
-            report = self.advance_about(system, state, origin, &Span { count, ..*span })?;
-            let time = span.substep * f64::from(count);
-            watch.keep_apart(system, state, time);
+            let valid_for = cloth.valid_for.map_or(0.0, |time| time / substeps.substep);
+            let count = substeps_before_detection(remaining, valid_for, cloth.min_substeps());
+            cloth.before.clone_from(&state.positions);
+            let run = Substeps { count, ..*substeps };
+            report = self.advance_about(system, state, origin, &run)?;
+            let time = run.substep * f64::from(count);
+            cloth.resolve_impacts(system, state, time);
             pieces = pieces.max(report.pieces);
-            watch.serves = watch.serves.map(|serves| serves - time);
-            left -= count;
+            cloth.valid_for = cloth.valid_for.map(|left| left - time);
+            remaining -= count;
         }
         report.pieces = pieces;
         Ok(report)
     }
 
-    /// Holds contacts of cloth with cloth from here on, in place of those held before: those that may give
-    /// way to their hard depth before the next look, `way` [m] ahead, as two.
-    fn set_cloth_contacts(&mut self, contacts: &ContactSet, way: f64) {
+    /// Replaces the constraints of contacts of cloth with cloth. A contact that can reach the depth of the harder
+    /// stiffness within a relative displacement of `travel` [m] is two constraints.
+    fn set_cloth_contacts(&mut self, contacts: &ContactSet, travel: f64) {
         let slot_of = &self.partition.slot_of;
         let slots = |contact: &ClothContact| contact.vertices.map(|v| slot_of[v as usize]);
         let stencil = |&(contact, is_hard): &(&ClothContact, bool), start: u32| {
@@ -245,14 +255,14 @@ impl Xpbd {
                 restitution: contact.restitution.map(|e| e as f32),
             }
         };
-        let each = contacts.all().flat_map(|contact| {
-            let hard = contact.plane.depth + way > contact.law.hard_from;
+        let constraints = contacts.all().flat_map(|contact| {
+            let hard = contact.plane.depth + travel > contact.law.hard_from;
             std::iter::once((contact, false)).chain(hard.then_some((contact, true)))
         });
-        let each: Vec<(&ClothContact, bool)> = each.collect();
+        let constraints: Vec<(&ClothContact, bool)> = constraints.collect();
         self.regions.set_cloth_contacts(
             &self.partition,
-            &each,
+            &constraints,
             |(contact, _)| slots(contact),
             stencil,
         );
@@ -302,9 +312,9 @@ mod tests {
     }
 
     #[test]
-    fn contacts_in_domains_across_cuts_and_alone_give_the_same_bytes_at_any_number_of_threads() {
+    fn cloth_contacts_in_every_kind_of_partition_give_the_same_bytes_at_any_number_of_threads() {
         let (system, start) = pleats_under_a_sheet();
-        let span = Span {
+        let substeps = Substeps {
             substep: 1.0 / 1200.0,
             count: 10,
             drag: 0.1,
@@ -317,21 +327,21 @@ mod tests {
                     ..XpbdSettings::default()
                 };
                 let mut solver = Xpbd::with_settings(&system, settings);
-                let (mut state, mut watch) = (start.clone(), ClothWatch::default());
+                let (mut state, mut cloth) = (start.clone(), ClothContacts::default());
                 solver
-                    .advance_touching(&system, &mut state, &mut watch, &span)
+                    .advance_with_cloth_contact(&system, &mut state, &mut cloth, &substeps)
                     .expect("sound");
-                let held = |region: &super::super::region::Region| region.cloth.len();
+                let count = |region: &super::super::region::Region| region.cloth.len();
                 let regions = &solver.regions;
-                let domains: Vec<usize> = regions.domains.iter().map(held).collect();
-                let cuts: Vec<usize> = regions.cuts.iter().map(held).collect();
-                let alone = held(&regions.global);
+                let domains: Vec<usize> = regions.domains.iter().map(count).collect();
+                let cuts: Vec<usize> = regions.cuts.iter().map(count).collect();
+                let global = count(&regions.global);
                 assert!(
-                    domains.iter().sum::<usize>() > 0 && cuts[0] > 0 && alone > 0,
-                    "{domains:?} {cuts:?} {alone}"
+                    domains.iter().sum::<usize>() > 0 && cuts[0] > 0 && global > 0,
+                    "{domains:?} {cuts:?} {global}"
                 );
-                let found = watch.contacts.all().count();
-                let all = domains.iter().chain(&cuts).sum::<usize>() + alone;
+                let found = cloth.contacts.all().count();
+                let all = domains.iter().chain(&cuts).sum::<usize>() + global;
                 assert!((found..=2 * found).contains(&all), "{all} of {found}");
                 state
             })
@@ -342,9 +352,9 @@ mod tests {
     }
 
     #[test]
-    fn substeps_are_shared_out_between_looks() {
-        for left in 1..=200 {
-            for serves in [
+    fn substeps_are_divided_evenly_between_detections() {
+        for remaining in 1..=200 {
+            for valid_for in [
                 0.0,
                 1.0,
                 4.9,
@@ -356,25 +366,28 @@ mod tests {
                 f64::INFINITY,
                 f64::NAN,
             ] {
-                let (mut rest, mut pieces) = (left, Vec::new());
+                let (mut rest, mut pieces) = (remaining, Vec::new());
                 while rest > 0 {
-                    pieces.push(before_next(rest, serves, FEWEST));
+                    pieces.push(substeps_before_detection(rest, valid_for, MIN_SUBSTEPS));
                     rest -= pieces[pieces.len() - 1];
                 }
                 let (last, before) = pieces.split_last().expect("one at the least");
-                let most = f64::from(FEWEST).max(serves + 1e-3);
+                let longest = f64::from(MIN_SUBSTEPS).max(valid_for + 1e-3);
                 assert!(
-                    pieces.iter().all(|&n| n > 0 && f64::from(n) <= most),
-                    "{left} {serves}"
+                    pieces.iter().all(|&n| n > 0 && f64::from(n) <= longest),
+                    "{remaining} {valid_for}"
                 );
                 assert!(
-                    before.iter().all(|&n| n >= FEWEST && n >= *last),
-                    "{left} {serves}"
+                    before.iter().all(|&n| n >= MIN_SUBSTEPS && n >= *last),
+                    "{remaining} {valid_for}"
                 );
             }
         }
-        assert_eq!(before_next(20, 20.0 * (1.0 - 1e-12), FEWEST), 20);
-        assert_eq!(before_next(40, 26.6, FEWEST), 20);
-        assert_eq!(before_next(20, 0.0, FEWEST_CROSSED), 4);
+        assert_eq!(
+            substeps_before_detection(20, 20.0 * (1.0 - 1e-12), MIN_SUBSTEPS),
+            20
+        );
+        assert_eq!(substeps_before_detection(40, 26.6, MIN_SUBSTEPS), 20);
+        assert_eq!(substeps_before_detection(20, 0.0, MIN_SUBSTEPS_TANGLED), 4);
     }
 }

@@ -1,24 +1,24 @@
 //! Contact and friction as constraints on single points of the cloth.
 //!
 //! A contact is the inequality C = n . sum a_i x_i - d >= 0 with compliance 1/k. Friction is
-//! position based (Müller et al. 2020, section 3.5): the tangential displacement since the substep
-//! began is taken back by an impulse of at most mu times the normal one, so a point that sticks does
-//! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
+//! position based (Müller et al. 2020, section 3.5): an impulse of at most mu times the normal one undoes the
+//! tangential displacement since the start of the substep, so that a sticking point does not creep. Contacts of
+//! cloth with cloth are stencils of the same form with other weights.
 
 use crate::lanes::Point;
 use crate::{ContactSample, Pose, System};
 use toile_geometry::Vec3;
 
-/// A plane that stands for the nearest surface and that a point may not cross, with its multipliers.
+/// The contact of a point with the tangent plane of the nearest surface, and its multipliers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct ContactConstraint {
     /// Outward unit normal; zero while no surface is near.
     pub normal: [f32; 3],
-    /// d [m].
+    /// The plane n . x = d of the offset surface: d [m].
     pub level: f32,
-    /// The point from which the surface was last queried [m].
-    pub place: [f32; 3],
+    /// Position of the point at the last query of the surface [m].
+    pub queried_at: [f32; 3],
     /// Square of the distance from there within which the plane is still valid [m2]; negative: query again.
     pub radius2: f32,
     /// 1 / k [m/N].
@@ -33,24 +33,25 @@ pub struct ContactConstraint {
     pub lambda_normal: f32,
     /// Multiplier of friction in the plane over the substep [N s2], at most `friction` times the normal one.
     pub lambda_tangent: [f32; 3],
-    /// How far the surface moves there in the substep [m].
+    /// Displacement of the surface at the point in the substep [m].
     pub surface_displacement: [f32; 3],
 }
 
-/// In place of a sample's number: the contact is none of a sample of the model.
+/// In place of a sample's number: the contact does not belong to a sample of the model.
 pub const NO_SAMPLE: u32 = u32::MAX;
 
-/// Fastest that a contact throws cloth out that it found inside a surface [m/s].
-const OUTWARD_SPEED: f32 = 1.0;
+/// Largest speed at which a contact moves cloth out of a solid [m/s].
+const MAX_OUTWARD_SPEED: f32 = 1.0;
 
-/// Least distance over which a plane is taken as valid, as a share of the offset: two millimetres along a
-/// limb of 30 mm radius the surface has left the plane by 0.07 mm.
+/// Least distance within which a plane is valid, over the offset: two millimetres along a limb of 30 mm radius
+/// the surface is 0.07 mm off the plane.
 const PLANE_REACH: f64 = 0.5;
 
-/// A plane is made when the surface is nearer than this many offsets.
+/// A plane is set where the surface is nearer than this many offsets.
 const REACH_IN_OFFSETS: f64 = 2.0;
 
-/// Below this gradient of the distance a point lies as near to two sides of a solid: no direction leads out.
+/// Least norm of the distance gradient: below it the point lies between two sides of a solid and the gradient is no
+/// outward normal.
 const FLAT_SLOPE: f64 = 0.05;
 
 impl ContactConstraint {
@@ -75,7 +76,7 @@ impl ContactConstraint {
         Self {
             normal: [0.0; 3],
             level: -1.0,
-            place: [0.0; 3],
+            queried_at: [0.0; 3],
             radius2: f32::INFINITY,
             compliance: 1.0,
             friction: 0.0,
@@ -87,15 +88,15 @@ impl ContactConstraint {
         }
     }
 
-    /// Lets the surface be queried again before the next use.
+    /// Marks the plane as invalid: the surface is queried again before the next use.
     pub fn invalidate(&mut self) {
         if self.sample != NO_SAMPLE {
             self.radius2 = -1.0;
         }
     }
 
-    /// Takes into account that surfaces move by up to `travel` [m] in a substep: a plane near a surface is
-    /// made again, and one far away is valid over a shorter distance.
+    /// Accounts for surfaces that move by up to `travel` [m] in a substep: a plane of a near surface becomes
+    /// invalid, and the distance within which no surface is met becomes shorter.
     pub fn expect_motion(&mut self, travel: f32) {
         if self.sample != NO_SAMPLE {
             self.radius2 = radius2_after_motion(self.radius2, travel, self.normal != [0.0; 3]);
@@ -105,17 +106,17 @@ impl ContactConstraint {
     /// Whether the surface has to be queried again for a point.
     #[inline(always)]
     pub fn is_stale(&self, point: [f32; 3]) -> bool {
-        let d = [0, 1, 2].map(|k| point[k] - self.place[k]);
+        let d = [0, 1, 2].map(|k| point[k] - self.queried_at[k]);
         let distance2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        // A point that is not a number compares false, and so is never queried.
+        // The comparison is false for NaN, so that no surface is queried there.
         distance2 > self.radius2
     }
 
-    /// Finds the nearest surface to a point and sets the plane that stands for it.
+    /// Queries the nearest surface to a point and sets its tangent plane.
     #[inline(never)]
     pub fn query_surface(&mut self, solid: &Solid, point: [f32; 3]) {
         let origin = solid.origin;
-        let place = origin + Vec3::from(point.map(f64::from));
+        let position = origin + Vec3::from(point.map(f64::from));
         let offset = f64::from(self.offset);
         let reach = crate::contact_settings::FIELD_REACH;
         let mut nearest: Option<(f64, Vec3)> = None;
@@ -128,12 +129,12 @@ impl ContactConstraint {
                 continue;
             }
             let poses = solid.poses.get(k).and_then(Option::as_ref);
-            if let Some(found) = collider.distance(poses.map(|[_, to]| to), place)
+            if let Some(found) = collider.distance(poses.map(|[_, to]| to), position)
                 && nearest.is_none_or(|(distance, _)| found.0 < distance)
             {
                 nearest = Some(found);
                 surface_displacement = poses.map_or(Vec3::zeros(), |[from, to]| {
-                    let own = to.undo(place);
+                    let own = to.undo(position);
                     to.apply(own) - from.apply(own)
                 });
             }
@@ -143,7 +144,7 @@ impl ContactConstraint {
             surface_displacement.y as f32,
             surface_displacement.z as f32,
         ];
-        self.place = point;
+        self.queried_at = point;
         self.normal = [0.0; 3];
         self.level = -1.0;
         let (distance, slope) = nearest.unwrap_or((reach, Vec3::zeros()));
@@ -152,7 +153,7 @@ impl ContactConstraint {
         let radius = (0.5 * gap).max(PLANE_REACH * offset).max(1e-5);
         self.radius2 = (radius * radius) as f32;
         if distance > REACH_IN_OFFSETS * offset && gap > 0.0 {
-            // The point touches nothing before it has crossed the whole gap.
+            // The point reaches the offset surface only after a displacement by the whole gap.
             self.radius2 = (gap * gap) as f32;
             return;
         }
@@ -165,8 +166,9 @@ impl ContactConstraint {
         self.level = (n.dot(&here) + offset - distance) as f32;
     }
 
-    /// Solves the contact for a point of inverse mass `weight` that is at `point` now and was at `start` when
-    /// the substep began. Returns the change of the multipliers: the point moves by `weight` times it.
+    /// Solves the contact for a point of inverse mass `weight` [1/kg] at `point`, whose position at the start of
+    /// the substep was `start`. Returns the change of the multipliers; the caller moves the point by `weight` times
+    /// it.
     #[inline(always)]
     pub fn solve(
         &mut self,
@@ -185,8 +187,8 @@ impl ContactConstraint {
         let compliance = self.compliance * step.kappa;
         let mut change = -(depth + compliance * self.lambda_normal) / (weight + compliance);
         let outward = dot(n, moved);
-        let most = (step.outward - outward).max(0.0) / weight;
-        change = change.min(most).max(-self.lambda_normal);
+        let limit = (step.outward - outward).max(0.0) / weight;
+        change = change.min(limit).max(-self.lambda_normal);
         self.lambda_normal += change;
         let slip = [0, 1, 2].map(|k| moved[k] - n[k] * outward);
         let free = [0, 1, 2].map(|k| self.lambda_tangent[k] - slip[k] / weight);
@@ -203,43 +205,43 @@ impl ContactConstraint {
     }
 }
 
-/// Square of the distance over which a plane is still valid [m2] after surfaces moved by up to `travel` [m].
+/// Square of the distance within which a plane is still valid [m2] after surfaces moved by up to `travel` [m];
+/// negative where it is invalid.
 pub fn radius2_after_motion(radius2: f32, travel: f32, near: bool) -> f32 {
-    let left = radius2.max(0.0).sqrt() - travel;
-    if near || left <= 0.0 {
+    let radius = radius2.max(0.0).sqrt() - travel;
+    if near || radius <= 0.0 {
         -1.0
     } else {
-        left * left
+        radius * radius
     }
 }
 
-/// The solid surfaces as they stand in a substep.
+/// The solids in a substep.
 #[derive(Clone, Copy)]
 pub struct Solid<'a> {
     /// The model.
     pub system: &'a System,
     /// The samples of the state.
     pub samples: &'a [ContactSample],
-    /// What the points' numbers are relative to [m].
+    /// Origin of the points' coordinates [m].
     pub origin: Vec3,
-    /// Where each collider that moves stands when the substep begins and when it ends; empty where
-    /// none moves.
+    /// Poses of each moving collider at the start and the end of the substep; empty where none moves.
     pub poses: &'a [Option<[Pose; 2]>],
 }
 
 impl Solid<'_> {
-    /// Whether there are any.
+    /// Whether there are any solids.
     pub fn has_surfaces(&self) -> bool {
         !self.system.colliders.is_empty()
     }
 }
 
-/// The numbers of a substep that contacts need.
+/// Parameters of a substep for contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactStep {
     /// (1 + drag h) / h^2 [1/s2].
     pub kappa: f32,
-    /// Farthest that a contact throws cloth out in the substep [m].
+    /// Largest displacement out of a solid in the substep [m].
     pub outward: f32,
 }
 
@@ -248,14 +250,13 @@ impl ContactStep {
     pub fn new(kappa: f32, step: f32) -> Self {
         Self {
             kappa,
-            outward: OUTWARD_SPEED * step,
+            outward: MAX_OUTWARD_SPEED * step,
         }
     }
 }
 
-/// A contact of a point that hangs on up to four vertices: a sample within a triangle, and what
-/// collision of cloth with cloth finds (a vertex and a face, or two edges, with weights that sum
-/// to zero).
+/// A contact of a point sum a_i x_i of up to four vertices: a sample within a triangle, or a contact of cloth with
+/// cloth (vertex and face, or two edges), whose weights sum to zero.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactStencil {
     /// The vertices, as indices into the points of the region.
@@ -264,12 +265,12 @@ pub struct ContactStencil {
     pub weights: [f32; 4],
     /// The plane and its multipliers.
     pub constraint: ContactConstraint,
-    /// Share of the speed of an impact that comes back, where no sample of the model says it.
+    /// Coefficient of restitution of a contact without a sample of the model.
     pub restitution: Option<f32>,
 }
 
 impl ContactStencil {
-    /// The point.
+    /// The point sum a_i x_i.
     #[inline(always)]
     pub fn point(&self, points: &[Point]) -> [f32; 3] {
         let mut sum = [0.0; 3];
@@ -282,8 +283,8 @@ impl ContactStencil {
     }
 }
 
-/// Solves contact stencils in order, `points` being where vertices are and `starts` where they were
-/// when the substep began.
+/// Solves contact stencils one after the other; `points` are the vertices, `starts` their positions at the start
+/// of the substep.
 pub fn solve_stencils(
     stencils: &mut [ContactStencil],
     points: &mut [Point],

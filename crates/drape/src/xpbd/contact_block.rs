@@ -4,12 +4,12 @@ use super::contact::{ContactConstraint, ContactStep, NO_SAMPLE, Solid, radius2_a
 use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
 use pulp::Simd;
 
-/// The contacts of sixteen vertices side by side; rows as in [`ContactConstraint`].
+/// The contacts of sixteen vertices, a lane each; fields as in [`ContactConstraint`].
 #[derive(Clone, Debug)]
 pub struct ContactBlock {
     normal: [Row; 3],
     level: Row,
-    place: [Row; 3],
+    queried_at: [Row; 3],
     radius2: Row,
     compliance: Row,
     friction: Row,
@@ -27,7 +27,7 @@ impl ContactBlock {
         let mut block = Self {
             normal: [zero; 3],
             level: zero,
-            place: [zero; 3],
+            queried_at: [zero; 3],
             radius2: zero,
             compliance: zero,
             friction: zero,
@@ -49,7 +49,7 @@ impl ContactBlock {
         ContactConstraint {
             normal: three(&self.normal),
             level: self.level.0[lane],
-            place: three(&self.place),
+            queried_at: three(&self.queried_at),
             radius2: self.radius2.0[lane],
             compliance: self.compliance.0[lane],
             friction: self.friction.0[lane],
@@ -61,8 +61,8 @@ impl ContactBlock {
         }
     }
 
-    /// Lanes whose contacts pressed in the substep.
-    pub fn pressed(&self) -> impl Iterator<Item = usize> + '_ {
+    /// Lanes whose contacts have a normal multiplier in the substep.
+    pub fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
         (0..LANES).filter(|&lane| self.lambda_normal.0[lane] > 0.0)
     }
 
@@ -70,7 +70,7 @@ impl ContactBlock {
     pub fn set(&mut self, lane: usize, contact: &ContactConstraint) {
         for k in 0..3 {
             self.normal[k].0[lane] = contact.normal[k];
-            self.place[k].0[lane] = contact.place[k];
+            self.queried_at[k].0[lane] = contact.queried_at[k];
             self.lambda_tangent[k].0[lane] = contact.lambda_tangent[k];
             self.surface_displacement[k].0[lane] = contact.surface_displacement[k];
         }
@@ -102,27 +102,27 @@ impl ContactBlock {
         }
     }
 
-    /// Multipliers start from zero.
+    /// Sets the multipliers to zero.
     pub fn clear(&mut self) {
         self.lambda_normal = Row::splat(0.0);
         self.lambda_tangent = [Row::splat(0.0); 3];
     }
 
-    /// Whether the surface has to be queried again for one of the points of a part of the lanes.
+    /// Whether the surface has to be queried again for one of the points of a lane group.
     #[inline(always)]
-    pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], part: usize) -> bool {
-        let [x, y, z, _] = load(simd, points, part);
-        let place = [
-            self.place[0].part::<S>(part),
-            self.place[1].part::<S>(part),
-            self.place[2].part::<S>(part),
+    pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> bool {
+        let [x, y, z, _] = load(simd, points, lane_group);
+        let queried_at = [
+            self.queried_at[0].lane_group::<S>(lane_group),
+            self.queried_at[1].lane_group::<S>(lane_group),
+            self.queried_at[2].lane_group::<S>(lane_group),
         ];
-        let d = sub(simd, [x, y, z], place);
-        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.part::<S>(part));
+        let d = sub(simd, [x, y, z], queried_at);
+        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.lane_group::<S>(lane_group));
         simd.reduce_max_f32s(beyond) > 0.0
     }
 
-    /// Queries the surfaces again for those of some lanes that need it.
+    /// Queries the surfaces again for the lanes of a range whose planes are stale.
     #[inline(never)]
     pub fn query_surfaces(
         &mut self,
@@ -141,7 +141,7 @@ impl ContactBlock {
     }
 }
 
-/// [`ContactConstraint::solve`] for one part of a block; moves the points.
+/// [`ContactConstraint::solve`] for one lane group of a block; moves the points.
 #[inline(always)]
 pub fn solve_block<S: Simd>(
     simd: S,
@@ -149,18 +149,21 @@ pub fn solve_block<S: Simd>(
     points: &mut [Point; LANES],
     starts: &[Point; LANES],
     step: &ContactStep,
-    part: usize,
+    lane_group: usize,
 ) {
-    let [x, y, z, weight] = load(simd, points, part);
-    let [x0, y0, z0, _] = load(simd, starts, part);
+    let [x, y, z, weight] = load(simd, points, lane_group);
+    let [x0, y0, z0, _] = load(simd, starts, lane_group);
     let n = [
-        contact.normal[0].part::<S>(part),
-        contact.normal[1].part::<S>(part),
-        contact.normal[2].part::<S>(part),
+        contact.normal[0].lane_group::<S>(lane_group),
+        contact.normal[1].lane_group::<S>(lane_group),
+        contact.normal[2].lane_group::<S>(lane_group),
     ];
     let zero = simd.splat_f32s(0.0);
-    let lambda_normal = contact.lambda_normal.part::<S>(part);
-    let depth = simd.sub_f32s(dot(simd, n, [x, y, z]), contact.level.part::<S>(part));
+    let lambda_normal = contact.lambda_normal.lane_group::<S>(lane_group);
+    let depth = simd.sub_f32s(
+        dot(simd, n, [x, y, z]),
+        contact.level.lane_group::<S>(lane_group),
+    );
     let touching = simd.or_m32s(
         simd.less_than_f32s(depth, zero),
         simd.less_than_f32s(zero, lambda_normal),
@@ -171,9 +174,9 @@ pub fn solve_block<S: Simd>(
         return;
     }
     let surface_displacement = [
-        contact.surface_displacement[0].part::<S>(part),
-        contact.surface_displacement[1].part::<S>(part),
-        contact.surface_displacement[2].part::<S>(part),
+        contact.surface_displacement[0].lane_group::<S>(lane_group),
+        contact.surface_displacement[1].lane_group::<S>(lane_group),
+        contact.surface_displacement[2].lane_group::<S>(lane_group),
     ];
     let moved = sub(
         simd,
@@ -181,7 +184,7 @@ pub fn solve_block<S: Simd>(
         surface_displacement,
     );
     let compliance = simd.mul_f32s(
-        contact.compliance.part::<S>(part),
+        contact.compliance.lane_group::<S>(lane_group),
         simd.splat_f32s(step.kappa),
     );
     let per_weight = simd.div_f32s(simd.splat_f32s(1.0), weight);
@@ -191,24 +194,26 @@ pub fn solve_block<S: Simd>(
         simd.add_f32s(weight, compliance),
     );
     let outward = dot(simd, n, moved);
-    let most = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
-    let most = simd.mul_f32s(simd.max_f32s(most, zero), per_weight);
+    let limit = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
+    let limit = simd.mul_f32s(simd.max_f32s(limit, zero), per_weight);
     let change = simd.max_f32s(
-        simd.min_f32s(change, most),
+        simd.min_f32s(change, limit),
         simd.sub_f32s(zero, lambda_normal),
     );
     let change = simd.select_f32s(active, change, zero);
     let lambda_normal = simd.add_f32s(lambda_normal, change);
-    contact.lambda_normal.set_part::<S>(part, lambda_normal);
+    contact
+        .lambda_normal
+        .set_lane_group::<S>(lane_group, lambda_normal);
     let slip = add_scaled(simd, moved, n, simd.sub_f32s(zero, outward));
     let lambda_tangent = [
-        contact.lambda_tangent[0].part::<S>(part),
-        contact.lambda_tangent[1].part::<S>(part),
-        contact.lambda_tangent[2].part::<S>(part),
+        contact.lambda_tangent[0].lane_group::<S>(lane_group),
+        contact.lambda_tangent[1].lane_group::<S>(lane_group),
+        contact.lambda_tangent[2].lane_group::<S>(lane_group),
     ];
     let free = add_scaled(simd, lambda_tangent, slip, simd.sub_f32s(zero, per_weight));
     let length = simd.sqrt_f32s(dot(simd, free, free));
-    let limit = simd.mul_f32s(contact.friction.part::<S>(part), lambda_normal);
+    let limit = simd.mul_f32s(contact.friction.lane_group::<S>(lane_group), lambda_normal);
     let share = simd.select_f32s(
         simd.less_than_f32s(limit, length),
         simd.div_f32s(limit, length),
@@ -218,9 +223,9 @@ pub fn solve_block<S: Simd>(
     for k in 0..3 {
         let new = simd.mul_f32s(free[k], share);
         let new = simd.select_f32s(active, new, lambda_tangent[k]);
-        contact.lambda_tangent[k].set_part::<S>(part, new);
+        contact.lambda_tangent[k].set_lane_group::<S>(lane_group, new);
         let total = simd.mul_add_e_f32s(n[k], change, simd.sub_f32s(new, lambda_tangent[k]));
         out[k] = simd.mul_add_e_f32s(weight, total, out[k]);
     }
-    store(simd, points, part, [out[0], out[1], out[2], weight]);
+    store(simd, points, lane_group, [out[0], out[1], out[2], weight]);
 }

@@ -1,18 +1,18 @@
-//! Sharing domains between cores: slices are halved down to single domains, each of which goes to
-//! whatever thread is free. Nothing depends on which.
+//! Work on domains in parallel: slices are halved recursively down to single domains, which are tasks of the thread
+//! pool. The result does not depend on which thread runs a task.
 
-use super::particles::{Bound, Free, Stage};
+use super::particles::{FilterSlices, FinishSlices, PredictSlices};
 use super::region::Region;
 use crate::lanes::{LANES, Point};
 
-/// Something that holds one slice or more of the slots of some domains.
+/// Slices over the slots of some domains, to be divided between tasks.
 pub trait Divide: Sized + Send {
-    /// Divides after some slots and some domains.
+    /// Divides after `slots` slots and `domains` domains.
     fn divide(self, slots: usize, domains: usize) -> (Self, Self);
 }
 
-/// Runs `work` for every domain with its index and its part of `all`; `starts` are the first slots
-/// of the domains, and the end.
+/// Runs `work` for every domain with its index and its slices of `all`; `starts` are the first slots of the domains,
+/// and the end.
 pub fn for_domains<T: Divide>(
     starts: &[usize],
     first: usize,
@@ -34,7 +34,7 @@ pub fn for_domains<T: Divide>(
     );
 }
 
-impl Divide for Free<'_> {
+impl Divide for PredictSlices<'_> {
     fn divide(self, slots: usize, _: usize) -> (Self, Self) {
         let (now, now_) = self.now.split_at_mut(slots);
         let (free, free_) = self.free.split_at_mut(slots);
@@ -57,7 +57,7 @@ impl Divide for Free<'_> {
     }
 }
 
-impl Divide for Bound<'_> {
+impl Divide for FinishSlices<'_> {
     fn divide(self, slots: usize, _: usize) -> (Self, Self) {
         let (start, start_) = self.start.split_at_mut(slots);
         let (ahead, ahead_) = self.ahead.split_at_mut(slots);
@@ -86,31 +86,34 @@ impl Divide for Bound<'_> {
     }
 }
 
-impl Divide for Stage<'_> {
+impl Divide for FilterSlices<'_> {
     fn divide(self, slots: usize, _: usize) -> (Self, Self) {
-        let (pull, pull_) = self.pull.split_at_mut(slots);
-        let (moves, moves_) = self.moves.split_at_mut(slots);
+        let (unfiltered, unfiltered_) = self.unfiltered.split_at_mut(slots);
+        let (filtered, filtered_) = self.filtered.split_at_mut(slots);
         (
-            Self { pull, moves },
             Self {
-                pull: pull_,
-                moves: moves_,
+                unfiltered,
+                filtered,
+            },
+            Self {
+                unfiltered: unfiltered_,
+                filtered: filtered_,
             },
         )
     }
 }
 
-/// The regions of some domains or cuts, and the points they move.
-pub struct Swept<'a> {
+/// The regions of some domains or cuts, and their points.
+pub struct SweepSlices<'a> {
     /// The regions.
     pub regions: &'a mut [Region],
     /// The points.
     pub now: &'a mut [Point],
-    /// Where the points were when the substep began.
+    /// Positions of the points at the start of the substep.
     pub start: &'a [Point],
 }
 
-impl Divide for Swept<'_> {
+impl Divide for SweepSlices<'_> {
     fn divide(self, slots: usize, domains: usize) -> (Self, Self) {
         let (regions, regions_) = self.regions.split_at_mut(domains);
         let (now, now_) = self.now.split_at_mut(slots);
@@ -130,13 +133,13 @@ impl Divide for Swept<'_> {
     }
 }
 
-/// The regions of some domains alone.
-pub struct Of<'a> {
+/// The regions of some domains.
+pub struct RegionSlices<'a> {
     /// The regions.
     pub regions: &'a mut [Region],
 }
 
-impl Divide for Of<'_> {
+impl Divide for RegionSlices<'_> {
     fn divide(self, _: usize, domains: usize) -> (Self, Self) {
         let (regions, regions_) = self.regions.split_at_mut(domains);
         (Self { regions }, Self { regions: regions_ })

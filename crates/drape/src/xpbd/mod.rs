@@ -7,18 +7,18 @@
 //! v = (v + h (g + f_bend(x0 + theta h v) / m)) / (1 + drag h),  x = x0 + h v
 //! for every constraint:  dlambda = -(J W J^T + alpha / h^2)^-1 (C + alpha / h^2 lambda)
 //!                        x = x + W J^T dlambda
-//! contacts and friction likewise
+//! contacts and friction: the same with inequalities
 //! v = (x - x0) / h
 //! ```
-//! Iterated to the end this is implicit Euler of the same potential that [`crate::Workspace`]
-//! minimises. Many substeps of one iteration are stable at any stiffness; what they leave unsolved
-//! acts as extra compliance of the order of h^2 / m.
+//! Iterated to convergence this is implicit Euler of the same potential that [`crate::Workspace`] minimises. Many
+//! substeps of one iteration are stable at any stiffness; the error of the single iteration acts as an additional
+//! compliance of the order of h^2 / m.
 //!
-//! Inner loops run in single precision on positions relative to the middle of the cloth, with what
-//! rounding leaves out of them carried along; the state outside is in double precision. Viscosity,
-//! kept strain and the air's forces on triangles do not act here; drag per mass does, and restitution.
+//! Inner loops run in single precision on positions relative to the middle of the cloth, with compensated
+//! summation; the state is in double precision. Viscosity, internal strain and the air's forces on triangles are
+//! not supported; drag per mass and restitution are.
 
-// Lanes and axes are gone through by index, so that loops unroll into vectors.
+// Loops over lanes and axes use indices, so that they unroll into vectors.
 #![allow(clippy::needless_range_loop)]
 
 mod attachment_constraint;
@@ -40,7 +40,7 @@ use crate::method::{Method, MethodSettings, StepReport};
 use crate::{ContactSample, DrapeError, Model, State, System};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
-pub(crate) use cloth::{ClothWatch, Span};
+pub(crate) use cloth::{ClothContacts, Substeps};
 use contact::{ContactConstraint, ContactStep, Solid};
 use membrane::{LawRow, inverse_mass};
 use particles::{MotionStep, Particles};
@@ -50,13 +50,13 @@ use std::sync::Arc;
 use toile_geometry::Vec3;
 use vertex_partition::VertexPartition;
 
-/// How constraints are solved.
+/// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct XpbdSettings {
-    /// Sweeps over all constraints in a substep. One is best spent with many substeps; with one
-    /// substep a step, hundreds are needed.
+    /// Sweeps over all constraints in a substep. One sweep with many substeps is most efficient; one substep a step
+    /// needs hundreds.
     pub iterations: u32,
-    /// Largest speed a vertex keeps [m/s].
+    /// Largest speed of a vertex; faster ones are slowed down to it [m/s].
     pub speed_limit: f64,
 }
 
@@ -70,10 +70,10 @@ impl Default for XpbdSettings {
     }
 }
 
-/// What some substeps took and left.
+/// The outcome of some substeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct XpbdReport {
-    /// Pieces each substep had to be cut into; 1 when none.
+    /// Pieces into which each substep was divided; 1 where it was taken whole.
     pub pieces: u32,
     /// Kinetic energy at the end [J].
     pub kinetic_energy: f64,
@@ -81,7 +81,7 @@ pub struct XpbdReport {
     pub fastest: f64,
 }
 
-/// Constraints of one sweep.
+/// Numbers of constraints of one sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConstraintCount {
     /// Triangles with three strains each.
@@ -90,14 +90,14 @@ pub struct ConstraintCount {
     pub bending: usize,
     /// Elastics, three rows each.
     pub elastics: usize,
-    /// Samples held against surfaces.
+    /// Contact samples.
     pub contacts: usize,
 }
 
-/// Halvings of a substep before it is an error.
-const STEP_HALVINGS: u32 = 6;
+/// Most halvings of a substep that fails, before it is an error.
+const MAX_STEP_HALVINGS: u32 = 6;
 
-/// XPBD on one model: its constraints in the order they are solved in, and private memory.
+/// XPBD on one model: its constraints in the order in which they are solved, and private memory.
 pub struct Xpbd {
     settings: XpbdSettings,
     partition: VertexPartition,
@@ -105,21 +105,21 @@ pub struct Xpbd {
     particles: Particles,
     bending: BendingForce,
     has_bending_constraints: bool,
-    /// Filter of the bending force; none where bending is constraints.
+    /// The filter of the bending force; none where bending is constraints.
     filter: Option<Filter>,
     laws: Vec<LawRow>,
-    /// The substep all is set up for [s], and its (1 + drag h) / h^2.
+    /// The substep for which filter and constraints are set up [s], and its (1 + drag h) / h^2 [1/s2].
     step: f64,
     kappa: f64,
     built_for: BuiltFor,
     domain_starts: Vec<usize>,
     contact_starts: Vec<usize>,
     cut_starts: Vec<usize>,
-    /// How often constraints were built.
+    /// Number of times that constraints were built.
     builds: usize,
 }
 
-/// What the constraints were built from.
+/// The model and the samples from which the constraints were built.
 struct BuiltFor {
     model: Model,
     samples: Arc<Vec<ContactSample>>,
@@ -149,7 +149,7 @@ impl Xpbd {
         Self::with_settings(system, XpbdSettings::default())
     }
 
-    /// Builds the constraints of a model, to be solved as given.
+    /// Builds the constraints of a model, with settings.
     pub fn with_settings(system: &System, settings: XpbdSettings) -> Self {
         Self::with_samples(system, &system.rest.samples, settings)
     }
@@ -159,7 +159,7 @@ impl Xpbd {
         Self::with_samples(system, &state.samples, XpbdSettings::default())
     }
 
-    /// The same for a state's samples.
+    /// Builds the constraints of a model and of contact samples, with settings.
     fn with_samples(
         system: &System,
         samples: &Arc<Vec<ContactSample>>,
@@ -200,12 +200,12 @@ impl Xpbd {
         }
     }
 
-    /// How often constraints were built: once, and for every other model.
+    /// Number of times that constraints were built: once, and again after each change of the model.
     pub fn builds(&self) -> usize {
         self.builds
     }
 
-    /// Constraints of one sweep at the last substep's size.
+    /// Numbers of constraints of one sweep at the size of the last substep.
     pub fn constraints(&self) -> ConstraintCount {
         let [membrane, bending] = self.regions.counts();
         ConstraintCount {
@@ -220,11 +220,11 @@ impl Xpbd {
         }
     }
 
-    /// Advances the state by `count` substeps of `substep` [s] under `drag` [1/s], a free velocity
-    /// falling by exp(-drag t). A model changed since the last call is taken up.
+    /// Advances the state by `count` substeps of `substep` [s] under `drag` per mass [1/s]: a free velocity decays as
+    /// exp(-drag t). Where the model has changed since the last call, constraints are built anew.
     ///
     /// # Errors
-    /// When a number is not finite at any size of substep; the state is then as it was.
+    /// When a number is not finite at any size of substep; the state is then unchanged.
     pub fn advance(
         &mut self,
         system: &System,
@@ -233,29 +233,28 @@ impl Xpbd {
         count: u32,
         drag: f64,
     ) -> Result<XpbdReport, DrapeError> {
-        self.take_up(system, &state.samples);
-        let span = Span {
+        self.rebuild_if_changed(system, &state.samples);
+        let substeps = Substeps {
             substep,
             count,
             drag,
         };
         let origin = middle(&state.positions);
         self.invalidate_surfaces();
-        self.advance_about(system, state, origin, &span)
+        self.advance_about(system, state, origin, &substeps)
     }
 
-    /// [`Xpbd::advance`] with numbers relative to `origin` [m], which what was looked up of surfaces is
-    /// too.
+    /// [`Xpbd::advance`] with coordinates relative to `origin` [m], to which the contact planes refer too.
     fn advance_about(
         &mut self,
         system: &System,
         state: &mut State,
         origin: Vec3,
-        &Span {
+        &Substeps {
             substep,
             count,
             drag,
-        }: &Span,
+        }: &Substeps,
     ) -> Result<XpbdReport, DrapeError> {
         if let Some(vertex) = state.first_not_finite() {
             let stage = "XPBD, before the step";
@@ -263,15 +262,15 @@ impl Xpbd {
         }
         state.follow_samples();
         let mut failed = 0;
-        for halvings in 0..=STEP_HALVINGS {
+        for halvings in 0..=MAX_STEP_HALVINGS {
             let pieces = 1u32 << halvings;
             if halvings > 0 {
                 self.invalidate_surfaces();
             }
             self.load(system, state, origin);
-            self.lead(system, state, substep * f64::from(count));
+            self.set_prescribed_velocities(system, state, substep * f64::from(count));
             let h = substep / f64::from(pieces);
-            let motion = Free {
+            let motion = SubstepSize {
                 h,
                 drag,
                 time: state.time,
@@ -293,8 +292,8 @@ impl Xpbd {
         })
     }
 
-    /// Builds the constraints anew where the model has changed; whether it has.
-    fn take_up(&mut self, system: &System, samples: &Arc<Vec<ContactSample>>) -> bool {
+    /// Builds the constraints anew where the model has changed; returns whether it has.
+    fn rebuild_if_changed(&mut self, system: &System, samples: &Arc<Vec<ContactSample>>) -> bool {
         let changed = !self.built_for.fits(system, samples);
         if changed {
             let builds = self.builds + 1;
@@ -304,7 +303,7 @@ impl Xpbd {
         changed
     }
 
-    /// Looks up surfaces anew.
+    /// Marks all contact planes as invalid, so that surfaces are queried again.
     fn invalidate_surfaces(&mut self) {
         for contact in &mut self.particles.contacts {
             contact.invalidate();
@@ -314,20 +313,20 @@ impl Xpbd {
         }
     }
 
-    /// Reads a state.
+    /// Loads a state into the particles, and the attachments of the control.
     fn load(&mut self, system: &System, state: &State, origin: Vec3) {
         let particles = &mut self.particles;
         for (slot, vertex) in self.partition.vertex_of.iter().enumerate() {
             let Some(v) = *vertex else {
                 continue;
             };
-            let place = state.positions[v as usize] - origin;
+            let position = state.positions[v as usize] - origin;
             let velocity = state.velocities[v as usize];
             let weight = inverse_mass(system, v);
             let mut start = [0.0, 0.0, 0.0, weight as f32];
             for k in 0..3 {
-                start[k] = place[k] as f32;
-                particles.low[slot][k] = (place[k] - f64::from(start[k])) as f32;
+                start[k] = position[k] as f32;
+                particles.low[slot][k] = (position[k] - f64::from(start[k])) as f32;
                 particles.velocity[slot][k] = if weight > 0.0 {
                     velocity[k] as f32
                 } else {
@@ -337,8 +336,8 @@ impl Xpbd {
             particles.start[slot] = start;
             particles.now[slot] = start;
         }
-        for moves in &mut particles.bend {
-            moves.fill([0.0; 4]);
+        for displacements in &mut particles.filtered {
+            displacements.fill([0.0; 4]);
         }
         self.regions
             .set_attachments(system, &self.partition, origin);
@@ -348,16 +347,16 @@ impl Xpbd {
         }
     }
 
-    /// Gives pinned vertices that are led the velocity that takes them where they have to be after
-    /// `span` [s].
-    fn lead(&mut self, system: &System, state: &State, span: f64) {
+    /// Sets the velocities of pinned vertices with a prescribed motion, such that they reach their prescribed
+    /// positions after `span` [s].
+    fn set_prescribed_velocities(&mut self, system: &System, state: &State, span: f64) {
         for grip in &system.prescribed.led {
             let v = grip.vertex as usize;
             if !system.prescribed.pinned[v] {
                 continue;
             }
-            let there = grip.motion.pose(state.time + span).apply(grip.home);
-            let velocity = (there - state.positions[v]) / span;
+            let target = grip.motion.pose(state.time + span).apply(grip.home);
+            let velocity = (target - state.positions[v]) / span;
             let slot = self.partition.slot_of[v] as usize;
             for k in 0..3 {
                 self.particles.velocity[slot][k] = velocity[k] as f32;
@@ -365,7 +364,7 @@ impl Xpbd {
         }
     }
 
-    /// Writes the state.
+    /// Stores the particles in the state, with normal forces and friction anchors of contacts.
     fn store(&self, system: &System, state: &mut State, origin: Vec3) -> XpbdReport {
         let particles = &self.particles;
         let mut fastest = 0f64;
@@ -393,8 +392,8 @@ impl Xpbd {
         let kappa = self.kappa;
         let vertices = particles.contacts.iter();
         let vertices = vertices.flat_map(|block| (0..LANES).map(|lane| block.get(lane)));
-        let within = self.regions.all().flat_map(|r| &r.contacts);
-        for contact in vertices.chain(within.map(|c| c.constraint)) {
+        let in_triangles = self.regions.all().flat_map(|r| &r.contacts);
+        for contact in vertices.chain(in_triangles.map(|c| c.constraint)) {
             let at = contact.sample as usize;
             if contact.sample == contact::NO_SAMPLE {
                 continue;
@@ -413,7 +412,7 @@ impl Xpbd {
         }
     }
 
-    /// The vertex of the first point whose numbers are not finite.
+    /// The vertex of the first particle with a position or velocity that is not finite.
     fn first_not_finite(&self) -> Option<usize> {
         let particles = &self.particles;
         let bad = |p: &[f32; 4]| !(p[0] + p[1] + p[2]).is_finite();
@@ -423,15 +422,15 @@ impl Xpbd {
             .find_map(|(_, vertex)| vertex.map(|v| v as usize))
     }
 
-    fn run(&mut self, system: &System, origin: Vec3, motion: &Free, count: u32) {
-        let &Free { h, drag, time } = motion;
+    fn run(&mut self, system: &System, origin: Vec3, motion: &SubstepSize, count: u32) {
+        let &SubstepSize { h, drag, time } = motion;
         let kappa = (1.0 + drag * h) / (h * h);
         self.set_step(system, h, kappa);
         let g = system.control.gravity;
         let motion = MotionStep {
             step: h as f32,
             gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
-            kept: (1.0 / (1.0 + drag * h)) as f32,
+            drag_factor: (1.0 / (1.0 + drag * h)) as f32,
             speed_limit: self.settings.speed_limit as f32,
             lead: (bending::LEAD * h) as f32,
         };
@@ -445,9 +444,9 @@ impl Xpbd {
                 },
                 laws: &self.laws,
                 contact: ContactStep::new(kappa as f32, h as f32),
-                begins: None,
+                first_with_travel: None,
                 iterated: self.settings.iterations > 1,
-                bends: self.filter.is_none(),
+                has_bending: self.filter.is_none(),
             },
             motion,
             bounces: system.materials.bounce().then_some(BounceStep {
@@ -465,16 +464,16 @@ impl Xpbd {
             arch: pulp::Arch::new(),
         };
         let (regions, particles) = (&mut self.regions, &mut self.particles);
-        let meets = run.sweep.solid.has_surfaces() && self.contact_starts.len() > 2;
-        if self.domain_starts.len() <= 2 && !meets {
+        let divides_contacts = run.sweep.solid.has_surfaces() && self.contact_starts.len() > 2;
+        if self.domain_starts.len() <= 2 && !divides_contacts {
             run.substeps(regions, particles, count);
         } else {
-            // One entry into the pool for all substeps.
+            // Within the thread pool: entering it once spares waking its threads in every substep.
             rayon::scope(|_| run.substeps(regions, particles, count));
         }
     }
 
-    /// Sets up what depends on the size of the substep.
+    /// Sets up filter and constraints for a size of substep.
     fn set_step(&mut self, system: &System, h: f64, kappa: f64) {
         let iterated = self.settings.iterations > 1;
         if self.step != h {
@@ -501,27 +500,27 @@ impl Xpbd {
     }
 }
 
-/// Middle of the box round some places, on a grid of an eighth of a metre.
-fn middle(places: &[Vec3]) -> Vec3 {
+/// Middle of the bounding box of some positions, rounded to an eighth of a metre.
+fn middle(positions: &[Vec3]) -> Vec3 {
     let mut low = Vec3::repeat(f64::INFINITY);
     let mut high = Vec3::repeat(f64::NEG_INFINITY);
-    for place in places {
-        low = low.inf(place);
-        high = high.sup(place);
+    for position in positions {
+        low = low.inf(position);
+        high = high.sup(position);
     }
-    if places.is_empty() {
+    if positions.is_empty() {
         return Vec3::zeros();
     }
     ((low + high) * 4.0).map(f64::round) / 8.0
 }
 
-/// The numbers of some substeps.
-struct Free {
+/// Size and start of some substeps.
+struct SubstepSize {
     /// Substep [s].
     h: f64,
     /// Drag per mass [1/s].
     drag: f64,
-    /// Time when they begin [s].
+    /// Time at the start of the first [s].
     time: f64,
 }
 
@@ -530,25 +529,25 @@ pub(crate) struct XpbdMethod {
     settings: XpbdSettings,
     substeps: u32,
     solver: Option<Xpbd>,
-    cloth: ClothWatch,
+    cloth: ClothContacts,
 }
 
-/// Substeps of a step when none are asked for.
+/// Substeps of a step where the settings give none.
 const SUBSTEPS: u32 = 20;
 
 impl XpbdMethod {
     /// From settings: substeps and iterations.
     pub(crate) fn new(settings: &MethodSettings) -> Self {
-        let usual = XpbdSettings::default();
-        let asked = settings.iterations.map(|n| n.clamp(1, 1_000_000) as u32);
+        let default = XpbdSettings::default();
+        let iterations = settings.iterations.map(|n| n.clamp(1, 1_000_000) as u32);
         Self {
             settings: XpbdSettings {
-                iterations: asked.unwrap_or(usual.iterations),
-                ..usual
+                iterations: iterations.unwrap_or(default.iterations),
+                ..default
             },
             substeps: settings.substeps.unwrap_or(SUBSTEPS).max(1),
             solver: None,
-            cloth: ClothWatch::default(),
+            cloth: ClothContacts::default(),
         }
     }
 }
@@ -571,14 +570,15 @@ impl Method for XpbdMethod {
         let settings = self.settings;
         let solver = (self.solver).get_or_insert_with(|| Xpbd::with_settings(system, settings));
         let substep = step / f64::from(self.substeps);
-        let span = Span {
+        let substeps = Substeps {
             substep,
             count: self.substeps,
             drag: system.control.air_drag,
         };
-        // A step must not depend on what was found before it.
-        self.cloth.forget();
-        let report = solver.advance_touching(system, state, &mut self.cloth, &span)?;
+        // A step must depend on the state alone, not on contacts detected before it.
+        self.cloth.invalidate();
+        let report =
+            solver.advance_with_cloth_contact(system, state, &mut self.cloth, &substeps)?;
         let iterations = self.substeps * self.settings.iterations * report.pieces;
         Ok(StepReport {
             pieces: report.pieces,

@@ -1,44 +1,44 @@
-//! The points: where they go by themselves, and what the constraints did to their velocities.
+//! The particles: prediction of their free motion, bending filter, contact with solids, and velocities.
 
 use super::bending::{BendingForce, Filter};
 use super::contact::{ContactStep, Solid};
 use super::contact_block::{ContactBlock, solve_block};
-use crate::lanes::{LANES, Point, load, parts, store};
+use crate::lanes::{LANES, Point, lane_groups, load, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
 
-/// Farthest that a vertex may go in one substep [m]: what goes farther was thrown by a substep that
-/// is too large.
-const FARTHEST_MOVE: f32 = 10.0;
+/// Largest displacement of a vertex in one substep [m]: beyond it the substep counts as unstable and is repeated
+/// in pieces.
+const MAX_DISPLACEMENT: f32 = 10.0;
 
-/// Points by slot. Fourth numbers: inverse mass in `start` and `now`, zero elsewhere.
+/// Particles by slot. The fourth component is the inverse mass [1/kg] in `start` and `now`.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
-    /// Where they were when the substep began [m].
+    /// Positions at the start of the substep [m].
     pub start: Vec<Point>,
-    /// Where they would be a little later [m]: bending is felt from there, see [`super::bending::LEAD`].
+    /// Positions extrapolated by the lead, at which the bending force is evaluated [m]; see
+    /// [`super::bending::LEAD`].
     pub ahead: Vec<Point>,
-    /// Where they are [m].
+    /// Present positions [m].
     pub now: Vec<Point>,
-    /// Where they went by themselves [m].
+    /// Positions predicted by free motion, before constraints [m].
     pub free: Vec<Point>,
-    /// What single precision left out of `now` [m].
+    /// Rounding errors of `now` in the prediction [m], added in the next one (compensated summation).
     pub low: Vec<Point>,
     /// Velocities [m/s].
     pub velocity: Vec<Point>,
-    /// Velocities without what contacts did in the substep [m/s]; only where cloth bounces.
-    pub without: Vec<Point>,
-    /// Contact of each vertex with the surfaces, sixteen a block.
+    /// Velocities without the contact impulses of the substep [m/s]; only where cloth has restitution.
+    pub velocity_without_contact: Vec<Point>,
+    /// Contact of each vertex with the solids, sixteen a block.
     pub contacts: Vec<ContactBlock>,
-    /// h^2 W K x [m].
-    pub pull: Vec<Point>,
-    /// How far bending moves them in the substep, by the present stage of its filter and the last
-    /// one [m].
-    pub bend: [Vec<Point>; 2],
+    /// Displacement by the unfiltered bending force, h^2 W K x [m].
+    pub unfiltered: Vec<Point>,
+    /// Displacement d of the bending filter after two successive stages [m].
+    pub filtered: [Vec<Point>; 2],
 }
 
 impl Particles {
-    /// Room for some slots, a multiple of sixteen.
+    /// Zero particles in `count` slots, a multiple of sixteen.
     pub fn new(count: usize) -> Self {
         let points = vec![[0.0; 4]; count];
         Self {
@@ -47,16 +47,16 @@ impl Particles {
             now: points.clone(),
             free: points.clone(),
             low: points.clone(),
-            pull: points.clone(),
-            bend: [points.clone(), points.clone()],
+            unfiltered: points.clone(),
+            filtered: [points.clone(), points.clone()],
             velocity: points,
-            without: Vec::new(),
+            velocity_without_contact: Vec::new(),
             contacts: vec![ContactBlock::none(); count / LANES],
         }
     }
 }
 
-/// The numbers of a substep that free motion needs.
+/// Parameters of a substep for free motion.
 #[derive(Clone, Copy)]
 pub struct MotionStep {
     /// Substep h [s].
@@ -64,26 +64,26 @@ pub struct MotionStep {
     /// Acceleration of gravity [m/s2].
     pub gravity: Point,
     /// 1 / (1 + drag h).
-    pub kept: f32,
-    /// Largest speed a vertex keeps [m/s].
+    pub drag_factor: f32,
+    /// Largest speed of a vertex; faster ones are slowed down to it [m/s].
     pub speed_limit: f32,
-    /// How long after a substep's start bending is felt as it would be then [s].
+    /// Time theta h by which positions are extrapolated for the bending force [s].
     pub lead: f32,
 }
 
-/// How bending enters free motion.
+/// Bending in free motion.
 #[derive(Clone, Copy)]
-pub enum Bend<'a> {
-    /// It does not.
+pub enum FreeBending<'a> {
+    /// None: bending is constraints.
     None,
-    /// As the force at some places, [`Particles::ahead`].
+    /// The force at positions, [`Particles::ahead`].
     Force(&'a BendingForce, &'a [Point]),
-    /// As moves found before, times a factor.
-    Moves(&'a [Point], f32),
+    /// Displacements of the filter, times its factor.
+    Filtered(&'a [Point], f32),
 }
 
-/// Slices of the points of a domain that its core alone may change while all read `start`.
-pub struct Free<'a> {
+/// The arrays of [`Particles`] that the prediction of a domain writes, while all domains read `start`.
+pub struct PredictSlices<'a> {
     /// As in [`Particles`].
     pub now: &'a mut [Point],
     /// As in [`Particles`].
@@ -94,17 +94,17 @@ pub struct Free<'a> {
     pub velocity: &'a mut [Point],
 }
 
-/// Free motion of a domain: v = (v + h (g - W K x)) / (1 + drag h), x = x + h v; pinned points go on
-/// at the velocity they have.
+/// Prediction by free motion in a domain: v = (v + h (g - W K x)) / (1 + drag h), x = x + h v; pinned points move at
+/// their prescribed velocity.
 pub struct Predict<'a, 'b> {
     /// The domain.
-    pub fields: &'b mut Free<'a>,
+    pub fields: &'b mut PredictSlices<'a>,
     /// Slot of its first point.
     pub first: usize,
     /// All points at the start of the substep.
     pub start: &'a [Point],
     /// Bending.
-    pub bend: Bend<'a>,
+    pub bending: FreeBending<'a>,
     /// The substep.
     pub step: &'a MotionStep,
 }
@@ -121,27 +121,29 @@ impl WithSimd for Predict<'_, '_> {
         let (low, _) = self.fields.low.as_chunks_mut::<LANES>();
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
         for b in 0..now.len() {
-            for part in 0..parts::<S>() {
+            for lane_group in 0..lane_groups::<S>() {
                 let block = [&mut now[b], &mut free[b], &mut low[b], &mut velocity[b]];
-                self.step.predict(simd, &starts[first + b], block, part, {
-                    let slot = LANES * (first + b);
-                    match self.bend {
-                        Bend::None => [simd.splat_f32s(0.0); 3],
-                        Bend::Force(force, ahead) => {
-                            let (places, _) = ahead.as_chunks::<LANES>();
-                            let here = load(simd, &places[first + b], part);
-                            let sum = force.times(simd, slot, ahead, here, part);
-                            let scale = simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
-                            scaled(simd, sum, scale)
+                self.step
+                    .predict(simd, &starts[first + b], block, lane_group, {
+                        let slot = LANES * (first + b);
+                        match self.bending {
+                            FreeBending::None => [simd.splat_f32s(0.0); 3],
+                            FreeBending::Force(force, ahead) => {
+                                let (positions, _) = ahead.as_chunks::<LANES>();
+                                let here = load(simd, &positions[first + b], lane_group);
+                                let sum = force.times(simd, slot, ahead, here, lane_group);
+                                let scale =
+                                    simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
+                                scaled(simd, sum, scale)
+                            }
+                            FreeBending::Filtered(filtered, factor) => {
+                                let (filtered, _) = filtered.as_chunks::<LANES>();
+                                let [x, y, z, _] = load(simd, &filtered[first + b], lane_group);
+                                let factor = simd.splat_f32s(factor / self.step.step);
+                                scaled(simd, [x, y, z], factor)
+                            }
                         }
-                        Bend::Moves(moves, factor) => {
-                            let (moves, _) = moves.as_chunks::<LANES>();
-                            let [x, y, z, _] = load(simd, &moves[first + b], part);
-                            let factor = simd.splat_f32s(factor / self.step.step);
-                            scaled(simd, [x, y, z], factor)
-                        }
-                    }
-                });
+                    });
             }
         }
     }
@@ -157,125 +159,133 @@ fn scaled<S: Simd>(simd: S, a: [S::f32s; 3], s: S::f32s) -> [S::f32s; 3] {
 }
 
 impl MotionStep {
-    /// `gain` is the velocity that bending adds.
+    /// Predicts one lane group; `gain` is the velocity change by bending [m/s].
     #[inline(always)]
     fn predict<S: Simd>(
         &self,
         simd: S,
         start: &[Point; LANES],
         block: [&mut [Point; LANES]; 4],
-        part: usize,
+        lane_group: usize,
         gain: [S::f32s; 3],
     ) {
         let [now, free, low, velocity] = block;
-        let (h, kept) = (simd.splat_f32s(self.step), simd.splat_f32s(self.kept));
+        let (h, drag_factor) = (
+            simd.splat_f32s(self.step),
+            simd.splat_f32s(self.drag_factor),
+        );
         let zero = simd.splat_f32s(0.0);
-        let here = load(simd, start, part);
+        let here = load(simd, start, lane_group);
         let weight = here[3];
-        let moves = simd.less_than_f32s(zero, weight);
-        let mut speed = load(simd, velocity, part);
-        let mut rest = load(simd, low, part);
+        let is_free = simd.less_than_f32s(zero, weight);
+        let mut speed = load(simd, velocity, lane_group);
+        let mut error = load(simd, low, lane_group);
         let mut there = here;
         for k in 0..3 {
             let fall = simd.splat_f32s(self.step * self.gravity[k]);
             let gained = simd.add_f32s(simd.add_f32s(speed[k], fall), gain[k]);
-            let v = simd.select_f32s(moves, simd.mul_f32s(gained, kept), speed[k]);
-            // The sum and what rounding leaves out of it (Knuth's two-sum).
-            let d = simd.mul_add_e_f32s(h, v, rest[k]);
+            let v = simd.select_f32s(is_free, simd.mul_f32s(gained, drag_factor), speed[k]);
+            // The sum and its rounding error (Knuth's two-sum).
+            let d = simd.mul_add_e_f32s(h, v, error[k]);
             let sum = simd.add_f32s(here[k], d);
-            let share = simd.sub_f32s(sum, here[k]);
-            let lost = simd.sub_f32s(here[k], simd.sub_f32s(sum, share));
-            rest[k] = simd.add_f32s(lost, simd.sub_f32s(d, share));
+            let added = simd.sub_f32s(sum, here[k]);
+            let lost = simd.sub_f32s(here[k], simd.sub_f32s(sum, added));
+            error[k] = simd.add_f32s(lost, simd.sub_f32s(d, added));
             speed[k] = v;
             there[k] = sum;
         }
-        store(simd, now, part, there);
-        store(simd, free, part, there);
-        store(simd, low, part, rest);
-        store(simd, velocity, part, speed);
+        store(simd, now, lane_group, there);
+        store(simd, free, lane_group, there);
+        store(simd, low, lane_group, error);
+        store(simd, velocity, lane_group, speed);
     }
 }
 
-/// Slices of a domain that a stage of the bending filter writes.
-pub struct Stage<'a> {
-    /// h^2 W K x.
-    pub pull: &'a mut [Point],
-    /// The stage before the last; overwritten by the new one.
-    pub moves: &'a mut [Point],
+/// The arrays that a stage of the bending filter writes in a domain.
+pub struct FilterSlices<'a> {
+    /// Displacement by the unfiltered force, h^2 W K x [m].
+    pub unfiltered: &'a mut [Point],
+    /// Displacements of the stage before the last; overwritten by those of the new stage [m].
+    pub filtered: &'a mut [Point],
 }
 
-/// One stage of the bending filter on a domain; see [`Filter`].
-pub struct RunStage<'a, 'b> {
+/// One stage of the bending filter in a domain; see [`Filter`].
+pub struct FilterStage<'a, 'b> {
     /// The domain.
-    pub fields: &'b mut Stage<'a>,
+    pub fields: &'b mut FilterSlices<'a>,
     /// Slot of its first point.
     pub first: usize,
     /// As in [`Particles`].
     pub ahead: &'a [Point],
-    /// The moves of the last stage; none before the first.
+    /// Displacements of the last stage; none before the first.
     pub last: Option<&'a [Point]>,
-    /// K.
+    /// The bending matrix K.
     pub force: &'a BendingForce,
-    /// The filter's numbers for the stage: mu, nu, kappa.
-    pub numbers: [f32; 3],
+    /// The coefficients of the stage: mu, nu, kappa.
+    pub coefficients: [f32; 3],
     /// h^2 [s2].
     pub step2: f32,
 }
 
-impl WithSimd for RunStage<'_, '_> {
+impl WithSimd for FilterStage<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let first = self.first / LANES;
-        let (places, _) = self.ahead.as_chunks::<LANES>();
-        let (pull, _) = self.fields.pull.as_chunks_mut::<LANES>();
-        let (moves, _) = self.fields.moves.as_chunks_mut::<LANES>();
-        let [mu, nu, kappa] = self.numbers.map(|x| simd.splat_f32s(x));
+        let (positions, _) = self.ahead.as_chunks::<LANES>();
+        let (unfiltered, _) = self.fields.unfiltered.as_chunks_mut::<LANES>();
+        let (filtered, _) = self.fields.filtered.as_chunks_mut::<LANES>();
+        let [mu, nu, kappa] = self.coefficients.map(|x| simd.splat_f32s(x));
         let zero = simd.splat_f32s(0.0);
-        for b in 0..pull.len() {
+        for b in 0..unfiltered.len() {
             let slot = LANES * (first + b);
-            for part in 0..parts::<S>() {
-                let here = load(simd, &places[first + b], part);
+            for lane_group in 0..lane_groups::<S>() {
+                let here = load(simd, &positions[first + b], lane_group);
                 let scale = simd.mul_f32s(here[3], simd.splat_f32s(self.step2));
                 let new = match self.last {
                     None => {
-                        let sum = self.force.times(simd, slot, self.ahead, here, part);
+                        let sum = self.force.times(simd, slot, self.ahead, here, lane_group);
                         let [x, y, z] = scaled(simd, sum, scale);
-                        store(simd, &mut pull[b], part, [x, y, z, zero]);
+                        store(simd, &mut unfiltered[b], lane_group, [x, y, z, zero]);
                         scaled(simd, [x, y, z], simd.sub_f32s(zero, kappa))
                     }
                     Some(last) => {
                         let (lasts, _) = last.as_chunks::<LANES>();
-                        let moved = load(simd, &lasts[first + b], part);
-                        let before = load(simd, &moves[b], part);
-                        let pulled = load(simd, &pull[b], part);
-                        let sum = self.force.times(simd, slot, last, moved, part);
+                        let d = load(simd, &lasts[first + b], lane_group);
+                        let before = load(simd, &filtered[b], lane_group);
+                        let constant = load(simd, &unfiltered[b], lane_group);
+                        let sum = self.force.times(simd, slot, last, d, lane_group);
                         let mut new = [zero; 3];
                         for k in 0..3 {
-                            let all = simd.mul_add_e_f32s(sum[k], scale, pulled[k]);
-                            let kept = simd.mul_f32s(mu, moved[k]);
-                            let kept = simd.negate_mul_add_e_f32s(nu, before[k], kept);
-                            new[k] = simd.negate_mul_add_e_f32s(kappa, all, kept);
+                            let all = simd.mul_add_e_f32s(sum[k], scale, constant[k]);
+                            let recursion = simd.mul_f32s(mu, d[k]);
+                            let recursion = simd.negate_mul_add_e_f32s(nu, before[k], recursion);
+                            new[k] = simd.negate_mul_add_e_f32s(kappa, all, recursion);
                         }
                         new
                     }
                 };
-                store(simd, &mut moves[b], part, [new[0], new[1], new[2], zero]);
+                store(
+                    simd,
+                    &mut filtered[b],
+                    lane_group,
+                    [new[0], new[1], new[2], zero],
+                );
             }
         }
     }
 }
 
 impl Filter {
-    /// Whether the force alone is stable.
-    pub fn is_plain(&self) -> bool {
+    /// Whether the force is used without a filter.
+    pub fn is_identity(&self) -> bool {
         self.stages.is_empty()
     }
 }
 
-/// Slices of the points of a domain at the end of a substep.
-pub struct Bound<'a> {
+/// The arrays of [`Particles`] that the end of an iteration reads or writes in a domain.
+pub struct FinishSlices<'a> {
     /// As in [`Particles`].
     pub start: &'a mut [Point],
     /// As in [`Particles`].
@@ -290,21 +300,21 @@ pub struct Bound<'a> {
     pub contacts: &'a mut [ContactBlock],
 }
 
-/// The end of an iteration on a domain: vertices are kept outside the surfaces; after the last one
-/// velocities follow from what the constraints moved, v = v + (x - free) / h, so that rounding of
-/// positions does not reach points that nothing touches.
-pub struct Settle<'a, 'b> {
+/// The end of an iteration in a domain: contacts of vertices with solids are solved. After the last iteration
+/// velocities are updated by the displacement due to constraints, v = v + (x - x_free) / h, so that rounding of
+/// positions does not enter the velocities of points without constraints.
+pub struct FinishIteration<'a, 'b> {
     /// The domain.
-    pub fields: &'b mut Bound<'a>,
-    /// The surfaces, where there are any.
+    pub fields: &'b mut FinishSlices<'a>,
+    /// The solids, where there are any.
     pub solid: Option<Solid<'a>>,
-    /// Contact's numbers.
+    /// Parameters for contacts.
     pub contact: &'a ContactStep,
-    /// The substep, at its end.
+    /// Parameters of the substep in its last iteration, else none.
     pub finish: Option<&'a MotionStep>,
 }
 
-impl WithSimd for Settle<'_, '_> {
+impl WithSimd for FinishIteration<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -316,29 +326,29 @@ impl WithSimd for Settle<'_, '_> {
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
         for b in 0..now.len() {
             if let Some(solid) = &self.solid {
-                for part in 0..parts::<S>() {
+                for lane_group in 0..lane_groups::<S>() {
                     let contact = &mut self.fields.contacts[b];
                     let now = &mut now[b];
-                    if contact.is_stale(simd, now, part) {
-                        let first = part * S::F32_LANES;
+                    if contact.is_stale(simd, now, lane_group) {
+                        let first = lane_group * S::F32_LANES;
                         contact.query_surfaces(solid, now, first..first + S::F32_LANES);
                     }
-                    solve_block(simd, contact, now, &start[b], self.contact, part);
+                    solve_block(simd, contact, now, &start[b], self.contact, lane_group);
                 }
             }
             if let Some(step) = self.finish {
                 step.finish(simd, &now[b], &free[b], &mut velocity[b]);
                 start[b] = now[b];
-                step.look_ahead(&start[b], &velocity[b], &mut ahead[b]);
+                step.extrapolate(&start[b], &velocity[b], &mut ahead[b]);
             }
         }
     }
 }
 
 impl MotionStep {
-    /// Where points would be when bending is felt.
+    /// Extrapolates positions by the lead of the bending force.
     #[inline(always)]
-    pub fn look_ahead(&self, start: &[Point], velocity: &[Point], ahead: &mut [Point]) {
+    pub fn extrapolate(&self, start: &[Point], velocity: &[Point], ahead: &mut [Point]) {
         for ((ahead, x), v) in ahead.iter_mut().zip(start).zip(velocity) {
             for k in 0..4 {
                 ahead[k] = x[k] + self.lead * v[k];
@@ -346,6 +356,7 @@ impl MotionStep {
         }
     }
 
+    /// Updates the velocities of a block.
     #[inline(always)]
     fn finish<S: Simd>(
         &self,
@@ -368,22 +379,23 @@ impl MotionStep {
             }
         }
         // Only a component beyond limit / 2 can belong to a speed beyond the limit.
-        let limit = self.speed_limit.min(FARTHEST_MOVE / self.step);
+        let limit = self.speed_limit.min(MAX_DISPLACEMENT / self.step);
         if simd.reduce_max_f32s(largest) > 0.25 * limit * limit {
             self.limit(velocity);
         }
     }
 
+    /// Limits speeds, and sets the velocity of an unstable particle to NaN, by which the substep is rejected.
     #[inline(never)]
     fn limit(&self, velocity: &mut [Point; LANES]) {
-        let most2 = self.speed_limit * self.speed_limit;
+        let limit2 = self.speed_limit * self.speed_limit;
         for v in velocity {
             let speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-            if speed2 * self.step * self.step > FARTHEST_MOVE * FARTHEST_MOVE {
+            if speed2 * self.step * self.step > MAX_DISPLACEMENT * MAX_DISPLACEMENT {
                 *v = [f32::NAN; 4];
-            } else if speed2 > most2 {
+            } else if speed2 > limit2 {
                 let share = self.speed_limit / speed2.sqrt();
-                *v = v.map(|part| part * share);
+                *v = v.map(|component| component * share);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! A region: the constraints that one core solves in one go, on one slice of the points.
+//! A region: the constraints of one partition, solved by one task on one slice of the points.
 
 use super::attachment_constraint::{AttachmentConstraint, AttachmentEnd, solve_attachments};
 use super::bending::{self, BendingBatch, Stencil};
@@ -15,9 +15,9 @@ use toile_geometry::Vec3;
 #[derive(Clone, Debug, Default)]
 pub struct Region {
     membrane: Vec<MembraneBatch>,
-    membrane_sums: Vec<membrane::Sums>,
+    membrane_multipliers: Vec<membrane::Multipliers>,
     bending: Vec<BendingBatch>,
-    bending_sums: Vec<bending::Sums>,
+    bending_multipliers: Vec<bending::Multipliers>,
     elastics: Vec<AttachmentConstraint>,
     attachments: Vec<AttachmentConstraint>,
     /// Attachments that end on moving solids: index among the attachments, index among the control's frames.
@@ -65,16 +65,16 @@ impl Regions {
             .chain(std::iter::once(&mut self.global))
     }
 
-    /// Adds the membrane of every triangle that has a vertex to move.
+    /// Adds the membrane of every triangle with a free vertex.
     pub fn add_membranes(&mut self, system: &System, numbering: &VertexPartition) {
-        let moves = |t: &u32| {
+        let is_free = |t: &u32| {
             let corners = system.topology.triangles[*t as usize];
             corners
                 .iter()
                 .any(|&v| !system.prescribed.pinned[v as usize])
         };
         let triangles: Vec<u32> = (0..system.topology.triangles.len() as u32)
-            .filter(moves)
+            .filter(is_free)
             .collect();
         let corners = |&t: &u32| &system.topology.triangles[t as usize][..];
         for (partition, members) in by_partition(numbering, &triangles, corners) {
@@ -127,8 +127,8 @@ impl Regions {
     /// Adds elastics between vertices.
     pub fn add_elastics(&mut self, model: &Model, numbering: &VertexPartition) {
         for &(ends, law) in &model.couplings.all {
-            let moves = ends.iter().any(|&v| !model.prescribed.pinned[v as usize]);
-            if law.stiffness <= 0.0 || !moves || ends[0] == ends[1] {
+            let is_free = ends.iter().any(|&v| !model.prescribed.pinned[v as usize]);
+            if law.stiffness <= 0.0 || !is_free || ends[0] == ends[1] {
                 continue;
             }
             let partition = numbering.partition_of(&ends);
@@ -174,7 +174,7 @@ impl Regions {
         }
     }
 
-    /// Moves the ends of attachments that lie on moving solids to where these stand at a time [s].
+    /// Sets the ends of the attachments to moving solids to their positions at a time [s].
     pub fn move_frames(&mut self, system: &System, origin: Vec3, time: f64) {
         for region in self.all_mut() {
             for &[constraint, frame] in &region.frames {
@@ -228,9 +228,11 @@ impl Regions {
         }
         for (partition, members) in numbering.partitions().zip(&members) {
             let start = numbering.start(partition) as u32;
-            let made = members.par_iter().with_min_len(256);
-            let held = &mut self.at(partition).cloth;
-            made.map(|one| stencil(one, start)).collect_into_vec(held);
+            let members = members.par_iter().with_min_len(256);
+            let contacts = &mut self.at(partition).cloth;
+            members
+                .map(|one| stencil(one, start))
+                .collect_into_vec(contacts);
         }
     }
 
@@ -241,7 +243,7 @@ impl Regions {
             .chain(std::iter::once(&self.global))
     }
 
-    /// Membrane constraints and bending constraints.
+    /// Numbers of membrane constraints and of bending constraints.
     pub fn counts(&self) -> [usize; 2] {
         [
             self.all()
@@ -255,7 +257,7 @@ impl Regions {
         ]
     }
 
-    /// Elastics.
+    /// Number of elastics and attachments.
     pub fn elastic_count(&self) -> usize {
         (self.all().map(|r| r.elastics.len() + r.attachments.len())).sum()
     }
@@ -275,7 +277,7 @@ fn by_partition<'a, T>(
         let partition = numbering.partition_of(vertices(member));
         partitions[numbering.index_of(partition)].1.push(member);
     }
-    // Neighbours in memory come one after the other.
+    // Constraints on neighbouring slots follow each other.
     for (_, members) in &mut partitions {
         let first = |member: &&'a T| {
             let slots = vertices(member)
@@ -288,52 +290,53 @@ fn by_partition<'a, T>(
     partitions
 }
 
-/// What the constraints of a substep share.
+/// Parameters of a sweep over constraints.
 #[derive(Clone, Copy)]
 pub struct SweepStep<'a> {
-    /// The surfaces.
+    /// The solids.
     pub solid: Solid<'a>,
     /// The laws of the materials.
     pub laws: &'a [LawRow],
-    /// (1 + drag h) / h^2 [1/s2], and the like for contacts.
+    /// (1 + drag h) / h^2 [1/s2], and the parameters of contacts.
     pub contact: ContactStep,
-    /// How far surfaces move in the substep [m]; said in its first sweep, which lets forces start from zero.
-    pub begins: Option<f32>,
-    /// Whether forces are kept from iteration to iteration.
+    /// In the first sweep of a substep, which sets the multipliers to zero: the largest displacement of a surface in
+    /// the substep [m].
+    pub first_with_travel: Option<f32>,
+    /// Whether multipliers are accumulated over several iterations.
     pub iterated: bool,
-    /// Whether bending is a constraint.
-    pub bends: bool,
+    /// Whether bending is constraints.
+    pub has_bending: bool,
 }
 
 impl Region {
-    /// Gets ready for a substep of new size.
+    /// Sets up the bending constraints for a new size of substep; `kappa` is (1 + drag h) / h^2 [1/s2].
     pub fn set_step(&mut self, kappa: f64) {
         for batch in &mut self.bending {
             batch.set_step(kappa);
         }
     }
 
-    /// Gets ready for an advance.
+    /// Sizes the multipliers, which only iterated constraints need.
     pub fn begin(&mut self, iterated: bool) {
         if iterated {
-            self.membrane_sums
+            self.membrane_multipliers
                 .resize(self.membrane.len(), [Row::splat(0.0); 3]);
-            self.bending_sums
+            self.bending_multipliers
                 .resize(self.bending.len(), [[Row::splat(0.0); 3]; 3]);
         }
     }
 
-    /// Lets the surfaces be queried again before the next use.
+    /// Marks all contact planes as invalid: surfaces are queried again before the next use.
     pub fn invalidate_surfaces(&mut self) {
         for contact in &mut self.contacts {
             contact.constraint.invalidate();
         }
     }
 
-    /// Multipliers start from zero, so that nothing sticks from one substep to the next.
+    /// Sets all multipliers to zero: nothing is carried over from one substep to the next.
     fn clear(&mut self) {
-        self.membrane_sums.fill([Row::splat(0.0); 3]);
-        self.bending_sums.fill([[Row::splat(0.0); 3]; 3]);
+        self.membrane_multipliers.fill([Row::splat(0.0); 3]);
+        self.bending_multipliers.fill([[Row::splat(0.0); 3]; 3]);
         for constraint in self.elastics.iter_mut().chain(&mut self.attachments) {
             constraint.lambda = [0.0; 3];
         }
@@ -343,7 +346,7 @@ impl Region {
         }
     }
 
-    /// Takes into account that surfaces move by up to `travel` [m] in the substep that begins.
+    /// Accounts for surfaces that move by up to `travel` [m] in the coming substep.
     fn expect_motion(&mut self, travel: f32) {
         for contact in &mut self.contacts {
             contact.constraint.expect_motion(travel);
@@ -352,7 +355,7 @@ impl Region {
 
     /// Solves every constraint once.
     pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
-        if let Some(travel) = step.begins {
+        if let Some(travel) = step.first_with_travel {
             self.clear();
             if travel > 0.0 {
                 self.expect_motion(travel);
@@ -390,15 +393,22 @@ impl WithSimd for Sweep<'_> {
         let (region, kappa) = (self.region, self.step.contact.kappa);
         let laws = self.step.laws;
         if self.step.iterated {
-            let sums = Some(&mut region.membrane_sums[..]);
-            membrane::solve(simd, &region.membrane, sums, laws, kappa, self.points);
-            let sums = Some(&mut region.bending_sums[..]);
-            if self.step.bends {
-                bending::solve(simd, &region.bending, sums, kappa, self.points);
+            let multipliers = Some(&mut region.membrane_multipliers[..]);
+            membrane::solve(
+                simd,
+                &region.membrane,
+                multipliers,
+                laws,
+                kappa,
+                self.points,
+            );
+            let multipliers = Some(&mut region.bending_multipliers[..]);
+            if self.step.has_bending {
+                bending::solve(simd, &region.bending, multipliers, kappa, self.points);
             }
         } else {
             membrane::solve(simd, &region.membrane, None, laws, kappa, self.points);
-            if self.step.bends {
+            if self.step.has_bending {
                 bending::solve(simd, &region.bending, None, kappa, self.points);
             }
         }

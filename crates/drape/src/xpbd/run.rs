@@ -1,49 +1,50 @@
-//! Substeps: free motion, constraints, contact, velocities, each shared between cores.
+//! Substeps: prediction, constraints, contact, velocities, each in parallel over domains.
 
 use super::bending::{BendingForce, Filter};
 use super::bounce::{BounceStep, bounce};
 use super::contact::Solid;
-use super::domains::{Of, Swept, for_domains};
+use super::domains::{RegionSlices, SweepSlices, for_domains};
 use super::particles::{
-    Bend, Bound, Free, MotionStep, Particles, Predict, RunStage, Settle, Stage,
+    FilterSlices, FilterStage, FinishIteration, FinishSlices, FreeBending, MotionStep, Particles,
+    Predict, PredictSlices,
 };
 use super::region::{Regions, SweepStep};
 use crate::ContactSample;
 use crate::Pose;
 
-/// What substeps of one size share.
+/// Parameters of substeps of one size.
 pub struct Run<'a> {
-    /// For constraints.
+    /// Parameters of sweeps over constraints.
     pub sweep: SweepStep<'a>,
-    /// For free motion.
+    /// Parameters of free motion.
     pub motion: MotionStep,
-    /// Restitution, where any cloth bounces.
+    /// Parameters of restitution, where any material has it.
     pub bounces: Option<BounceStep>,
-    /// K.
+    /// The bending matrix K.
     pub bending: &'a BendingForce,
-    /// How its force is filtered; none where bending is constraints.
+    /// The filter of the bending force; none where bending is constraints.
     pub filter: Option<&'a Filter>,
     /// Time when the first substep begins [s].
     pub time: f64,
-    /// Sweeps a substep.
+    /// Sweeps over all constraints in a substep.
     pub iterations: u32,
     /// The contact samples of the state.
     pub samples: &'a [ContactSample],
     /// First slots of the domains, and the end.
     pub domain_starts: &'a [usize],
-    /// First slots of what meets surfaces by itself, and the end.
+    /// First slots of the ranges whose contacts with solids one task solves, and the end.
     pub contact_starts: &'a [usize],
     /// First slots of the ranges about cuts, and the end.
     pub cut_starts: &'a [usize],
-    /// The processor's vectors.
+    /// The instruction set for vectors.
     pub arch: pulp::Arch,
 }
 
 impl Run<'_> {
-    /// Takes some substeps.
+    /// Advances by `count` substeps.
     pub fn substeps(&self, regions: &mut Regions, particles: &mut Particles, count: u32) {
         let mut poses = Vec::new();
-        self.look_ahead(particles);
+        self.extrapolate(particles);
         for number in 0..count {
             let travel = self.place_surfaces(number, &mut poses);
             let Solid { system, origin, .. } = self.sweep.solid;
@@ -69,7 +70,7 @@ impl Run<'_> {
             self.filter_bending(particles);
             for iteration in 0..self.iterations {
                 let sweep = SweepStep {
-                    begins: (iteration == 0).then_some(travel),
+                    first_with_travel: (iteration == 0).then_some(travel),
                     ..sweep
                 };
                 self.domains(regions, particles, &sweep, iteration == 0);
@@ -88,23 +89,24 @@ impl Run<'_> {
                         [&region.contacts, &region.cloth].map(|run| (first, &run[..]))
                     });
                 bounce(self.samples, runs, particles, step);
-                self.look_ahead(particles);
+                self.extrapolate(particles);
             }
         }
     }
 
-    /// Says where bending is felt.
-    fn look_ahead(&self, particles: &mut Particles) {
+    /// Extrapolates all positions by the lead of the bending force.
+    fn extrapolate(&self, particles: &mut Particles) {
         let Particles {
             start,
             ahead,
             velocity,
             ..
         } = particles;
-        self.motion.look_ahead(start, velocity, ahead);
+        self.motion.extrapolate(start, velocity, ahead);
     }
 
-    /// Where moving surfaces stand before and after a substep; returns how far they move [m].
+    /// Computes the poses of moving solids before and after a substep; returns the largest displacement of a
+    /// surface [m].
     fn place_surfaces(&self, number: u32, poses: &mut Vec<Option<[Pose; 2]>>) -> f32 {
         let colliders = &self.sweep.solid.system.colliders;
         poses.clear();
@@ -125,35 +127,38 @@ impl Run<'_> {
         travel as f32
     }
 
-    /// Finds the moves of the bending filter, stage by stage.
+    /// Computes the displacements of the bending filter, stage by stage.
     fn filter_bending(&self, particles: &mut Particles) {
         let stages = self.filter.map_or(&[][..], |filter| &filter.stages);
         let Particles {
-            ahead, pull, bend, ..
+            ahead,
+            unfiltered,
+            filtered,
+            ..
         } = particles;
-        let [mut moves, mut last] = bend.each_mut();
-        for (stage, &numbers) in stages.iter().enumerate() {
+        let [mut current, mut last] = filtered.each_mut();
+        for (stage, &coefficients) in stages.iter().enumerate() {
             let known = (stage > 0).then_some(&last[..]);
-            let all = Stage {
-                pull: &mut pull[..],
-                moves: &mut moves[..],
+            let all = FilterSlices {
+                unfiltered: &mut unfiltered[..],
+                filtered: &mut current[..],
             };
             for_domains(self.domain_starts, 0, all, &|d, mut fields| {
-                self.arch.dispatch(RunStage {
+                self.arch.dispatch(FilterStage {
                     fields: &mut fields,
                     first: self.domain_starts[d],
                     ahead,
                     last: known,
                     force: self.bending,
-                    numbers,
+                    coefficients,
                     step2: self.motion.step * self.motion.step,
                 });
             });
-            std::mem::swap(&mut moves, &mut last);
+            std::mem::swap(&mut current, &mut last);
         }
     }
 
-    /// Free motion and the domains' own constraints, in one go.
+    /// Sweeps over the constraints within domains, in the first iteration together with the prediction.
     fn domains(
         &self,
         regions: &mut Regions,
@@ -168,12 +173,12 @@ impl Run<'_> {
             free,
             low,
             velocity,
-            bend,
+            filtered,
             ..
         } = particles;
         let regions = &mut regions.domains[..];
         if !first {
-            let all = Swept {
+            let all = SweepSlices {
                 regions,
                 now,
                 start,
@@ -183,16 +188,16 @@ impl Run<'_> {
             });
             return;
         }
-        let bend = match self.filter {
-            None => Bend::None,
-            Some(filter) if filter.is_plain() => Bend::Force(self.bending, ahead),
-            // Stages take turns in two places; the first one writes the first.
+        let bending = match self.filter {
+            None => FreeBending::None,
+            Some(filter) if filter.is_identity() => FreeBending::Force(self.bending, ahead),
+            // Stages alternate between two arrays, beginning with the first.
             Some(filter) => {
                 let last = (filter.stages.len() + 1) % 2;
-                Bend::Moves(&bend[last], filter.factor)
+                FreeBending::Filtered(&filtered[last], filter.factor)
             }
         };
-        let fields = Free {
+        let fields = PredictSlices {
             now,
             free,
             low,
@@ -201,14 +206,14 @@ impl Run<'_> {
         for_domains(
             self.domain_starts,
             0,
-            (fields, Of { regions }),
+            (fields, RegionSlices { regions }),
             &|d, (mut fields, own)| {
                 let at = self.domain_starts[d];
                 self.arch.dispatch(Predict {
                     fields: &mut fields,
                     first: at,
                     start,
-                    bend,
+                    bending,
                     step: &self.motion,
                 });
                 let end = at + fields.now.len();
@@ -217,12 +222,12 @@ impl Run<'_> {
         );
     }
 
-    /// Constraints across cuts.
+    /// Sweeps over the constraints across cuts.
     fn cuts(&self, regions: &mut Regions, particles: &mut Particles, sweep: &SweepStep) {
         let (Some(&from), Some(&to)) = (self.cut_starts.first(), self.cut_starts.last()) else {
             return;
         };
-        let all = Swept {
+        let all = SweepSlices {
             regions: &mut regions.cuts,
             now: &mut particles.now[from..to],
             start: &particles.start[from..to],
@@ -232,7 +237,7 @@ impl Run<'_> {
         });
     }
 
-    /// Contacts of vertices and, at the end of the substep, velocities.
+    /// Solves the contacts of vertices with solids and, in the last iteration, updates velocities.
     fn solve_contacts(&self, particles: &mut Particles, sweep: &SweepStep, last: bool) {
         let Particles {
             start,
@@ -243,7 +248,7 @@ impl Run<'_> {
             contacts,
             ..
         } = particles;
-        let all = Bound {
+        let all = FinishSlices {
             start,
             ahead,
             now,
@@ -256,7 +261,7 @@ impl Run<'_> {
             false => self.domain_starts,
         };
         for_domains(starts, 0, all, &|_, mut fields| {
-            self.arch.dispatch(Settle {
+            self.arch.dispatch(FinishIteration {
                 fields: &mut fields,
                 solid: sweep.solid.has_surfaces().then_some(sweep.solid),
                 contact: &sweep.contact,

@@ -10,19 +10,19 @@
 use crate::System;
 use crate::lanes::LANES;
 
-/// Vertices of a domain: two a side make a sheet of 10,000 vertices worth sharing.
+/// Least number of vertices of a domain: two cores have two domains each in a sheet of 10,000 vertices.
 const DOMAIN: usize = 2500;
 
 /// Most domains.
-const MOST_DOMAINS: usize = 64;
+const MAX_DOMAINS: usize = 64;
 
 /// Slots of the vertices and cuts of the domains.
 #[derive(Clone, Debug, Default)]
 pub struct VertexPartition {
     /// Slot of each vertex.
     pub slot_of: Vec<u32>,
-    /// Vertex in each slot; none in the slot that begins each half domain, where a point stands
-    /// that nothing moves (idle lanes point at it), and in those that fill its last block.
+    /// Vertex in each slot; none in the first slot of each half domain, a fixed point to which unused lanes refer,
+    /// and in the slots that pad its last block.
     pub vertex_of: Vec<Option<u32>>,
     /// First slot of each half domain, and the end.
     pub halves: Vec<usize>,
@@ -44,7 +44,7 @@ impl VertexPartition {
     pub fn new(system: &System) -> Self {
         let sorted = cuthill_mckee(system);
         let count = sorted.len();
-        let domains = (count / DOMAIN).clamp(1, MOST_DOMAINS);
+        let domains = (count / DOMAIN).clamp(1, MAX_DOMAINS);
         let halves = 2 * domains;
         let mut partition = Self {
             slot_of: vec![0; count],

@@ -1,27 +1,29 @@
-//! What the Hessian cannot tell a Newton step about contact: that a point at the limit of friction
-//! sticks as soon as it turns back, and that a point above a surface is stopped by it. Either kink,
-//! at a single point, would make the line search cut the step of all the cloth.
+//! Kinks of the contact potential, which no Hessian contains: a point at the limit of friction sticks as soon as it
+//! moves back, and a point above a surface touches it further on. Either kink, at a single point, would make the
+//! line search shorten the step of the whole cloth. A step is therefore tested for kinks before it is taken, and the
+//! points that cross one count as sticking or touching: an active set found by prediction.
 
 use crate::System;
 use crate::contacts::Contacts;
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use toile_geometry::Vec3;
 
-/// Unforeseen energy, over the fall a step promises, from which it is seen to.
-const MATTERS: f64 = 0.1;
+/// Kinks are taken into account where the energy that the quadratic model misses because of them exceeds this share
+/// of the predicted decrease.
+const MIN_ENERGY_SHARE: f64 = 0.1;
 
 impl Contacts {
-    /// Marks the points that a step would bring back from the limit of friction as sticking and
-    /// those it would take into a surface as touching, where what they find there is not small
-    /// beside the fall of the potential that the step `promises` [J]. Returns whether the direction
-    /// has to be found anew.
-    pub fn foresee(&mut self, x: &[Vec3], step: &[Vec3], promises: f64) -> bool {
+    /// Marks the points that a step would move back from the limit of friction as sticking and those that it
+    /// would move into a surface as touching, where the energy of these kinks is not small against the decrease
+    /// of the potential that the quadratic model predicts, `predicted_decrease` [J]. Returns whether points were
+    /// marked, and the direction has to be computed anew.
+    pub fn predict_kinks(&mut self, x: &[Vec3], step: &[Vec3], predicted_decrease: f64) -> bool {
         let mut energy = 0.0;
         self.for_each(x, step, |plane, law, at, by| {
             energy += law.unforeseen_return(plane, at, by);
             energy += law.unforeseen_landing(plane, at, by);
         });
-        if energy <= MATTERS * promises {
+        if energy <= MIN_ENERGY_SHARE * predicted_decrease {
             return false;
         }
         self.for_each(x, step, |plane, law, at, by| {
@@ -35,21 +37,21 @@ impl Contacts {
         &mut self,
         x: &[Vec3],
         step: &[Vec3],
-        mut see: impl FnMut(&mut ContactPlane, &ContactLaw, Vec3, Vec3),
+        mut visit: impl FnMut(&mut ContactPlane, &ContactLaw, Vec3, Vec3),
     ) {
         for contact in &mut self.active {
             let sample = &contact.point;
             let (at, by) = (sample.position(x), sample.position(step));
-            see(&mut contact.plane, &contact.law, at, by);
+            visit(&mut contact.plane, &contact.law, at, by);
         }
         for contact in self.cloth.all_mut() {
             let (at, by) = (contact.between(x), contact.between(step));
-            see(&mut contact.plane, &contact.law, at, by);
+            visit(&mut contact.plane, &contact.law, at, by);
         }
     }
 
-    /// Adds to a force what draws points down that are about to land [N].
-    pub fn pull_down(&self, system: &System, x: &[Vec3], force: &mut [Vec3]) {
+    /// Adds to a force [N] the pull of the surfaces on the points marked as touching that are still above them.
+    pub fn add_landing_pull(&self, system: &System, x: &[Vec3], force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &contact.point;
             let pull = contact.law.pull_down(&contact.plane, sample.position(x));
@@ -126,24 +128,24 @@ mod tests {
     }
 
     #[test]
-    fn kinks_are_seen_to_only_where_they_matter() {
+    fn kinks_are_predicted_only_where_their_energy_is_not_small() {
         let (system, mut contacts, x) = scene();
         let back_and_down = [Vec3::x() * -1e-4, Vec3::y() * -3e-3, Vec3::zeros()];
         // 2.5e-7 J for the return, 2e-4 J for the landing.
-        assert!(!contacts.foresee(&x, &back_and_down, 1.0));
+        assert!(!contacts.predict_kinks(&x, &back_and_down, 1.0));
         assert!(
             contacts
                 .active
                 .iter()
                 .all(|c| !c.plane.returning && !c.plane.landing)
         );
-        assert!(contacts.foresee(&x, &back_and_down, 1e-3));
+        assert!(contacts.predict_kinks(&x, &back_and_down, 1e-3));
         assert!(contacts.active[0].plane.returning && !contacts.active[0].plane.landing);
         assert!(!contacts.active[1].plane.returning && contacts.active[1].plane.landing);
-        // Once seen they are foreseen.
-        assert!(!contacts.foresee(&x, &back_and_down, 1e-9));
+        // Marked points are not predicted again.
+        assert!(!contacts.predict_kinks(&x, &back_and_down, 1e-9));
         let mut force = vec![Vec3::zeros(); 3];
-        contacts.pull_down(&system, &x, &mut force);
+        contacts.add_landing_pull(&system, &x, &mut force);
         assert!((force[1] - Vec3::y() * -0.1).norm() < 1e-12 && force[0] == Vec3::zeros());
     }
 
@@ -151,6 +153,6 @@ mod tests {
     fn a_step_on_or_up_meets_no_kink() {
         let (_, mut contacts, x) = scene();
         let on_and_up = [Vec3::x() * 1e-4, Vec3::y() * 3e-3, Vec3::zeros()];
-        assert!(!contacts.foresee(&x, &on_and_up, 1e-12));
+        assert!(!contacts.predict_kinks(&x, &on_and_up, 1e-12));
     }
 }
