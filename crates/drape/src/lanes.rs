@@ -1,12 +1,12 @@
-//! Vectors as wide as the processor has, found at run time, and how points get into them.
+//! SIMD vectors of the width that the processor has, detected at run time, with gather and scatter of points.
 //!
-//! A point is four floats in memory (x, y, z and its inverse mass), so that one load fetches it;
-//! sixteen of them are turned into four vectors by shuffles in registers.
+//! A point is four floats in memory (x, y, z and its inverse mass), so that one load fetches it; shuffles in registers
+//! transpose sixteen points to four vectors.
 
 use pulp::Simd;
 use pulp::bytemuck::cast;
 
-/// A point: x, y, z [m] relative to some origin, and its inverse mass [1/kg] where that counts.
+/// A point: x, y, z [m] relative to an origin, and its inverse mass [1/kg] where it is used.
 pub type Point = [f32; 4];
 
 /// Constraints solved side by side.
@@ -41,7 +41,7 @@ impl Row {
 #[repr(C, align(64))]
 pub struct Corner(pub [u32; LANES]);
 
-/// The corner of points that lie side by side.
+/// The corner of consecutive points.
 const SIDE_BY_SIDE: Corner = Corner([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
 
 /// Number of lane groups in a batch.
@@ -58,8 +58,8 @@ fn at<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, lane: usize
 
 /// Loads the points of one corner for one lane group: x, y, z and inverse mass.
 ///
-/// Everything that works on vectors is inlined by force, closures are avoided: a function that is
-/// not inlined into the one compiled for the processor is compiled without its vectors.
+/// All functions on vectors are inlined by force, without closures: a function that is not inlined into the one compiled
+/// for the processor's instruction set is compiled for the baseline set.
 #[inline(always)]
 pub fn gather<S: Simd>(
     simd: S,
@@ -67,7 +67,7 @@ pub fn gather<S: Simd>(
     corner: &Corner,
     lane_group: usize,
 ) -> [S::f32s; 4] {
-    // Slot l of register r holds lane 4 l + r: the shuffle then leaves lanes in their order.
+    // Slot l of register r holds lane 4 l + r, so that the shuffle returns lanes in order.
     if S::F32_LANES == 16 {
         simd.deinterleave_shfl_f32s([
             four::<S>(points, corner, lane_group, 0),
@@ -126,7 +126,7 @@ pub fn load<S: Simd>(simd: S, points: &[Point; LANES], lane_group: usize) -> [S:
     gather(simd, points, &SIDE_BY_SIDE, lane_group)
 }
 
-/// Stores points that lie side by side.
+/// Stores one part of sixteen consecutive points.
 #[inline(always)]
 pub fn store<S: Simd>(
     simd: S,
