@@ -58,8 +58,8 @@ fn at<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, lane: usize
 
 /// Loads the points of one corner for one lane group: x, y, z and inverse mass.
 ///
-/// All functions on vectors are inlined by force, without closures: a function that is not inlined into the one
-/// compiled for the processor's instruction set is compiled for the baseline set.
+/// All functions on vectors are inlined by force, without closures: a function that is not inlined into the one compiled
+/// for the processor's instruction set is compiled for the baseline set.
 #[inline(always)]
 pub fn gather<S: Simd>(
     simd: S,
