@@ -81,7 +81,7 @@ pub use material::Material;
 pub use materials::Materials;
 pub use measure::{LayerMeasures, Measures, measure, residual, stretch_per_triangle};
 pub use memory::{Memory, RelaxationMemory, RestMemory};
-pub use merge::merge_map;
+pub use merge::{keeps_corners, merge_map};
 pub use method::{Method, MethodKind, MethodSettings, StepReport};
 pub use methods::{largest_frequency, whole_energy};
 pub use model::{Model, ModelParts, Prescribed};

@@ -31,7 +31,7 @@ impl Sets {
 }
 
 /// Whether a triangle still has three corners when vertices are merged by `target`.
-pub(crate) fn keeps_corners(triangle: [u32; 3], target: &[u32]) -> bool {
+pub fn keeps_corners(triangle: [u32; 3], target: &[u32]) -> bool {
     let [a, b, c] = triangle.map(|v| target[v as usize]);
     a != b && b != c && c != a
 }

@@ -4,6 +4,7 @@
 use crate::collision::Tally;
 use crate::digest::Digest;
 use crate::measure::{Measures, measure, self_intersections};
+use crate::merge::keeps_corners;
 use crate::method::Method;
 use crate::methods::whole_energy;
 use crate::world::{Edited, MeshVertex, ObjectId, Simulation, Solids, World, WorldEdit};
@@ -374,9 +375,9 @@ impl SceneRun {
                 numbers.push(at);
             }
             let triangles = mesh.triangles.iter();
-            let renumbered = triangles.map(|t| t.map(|v| numbers[v as usize]));
-            let distinct = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-            (surface.mesh.triangles).extend(renumbered.filter(distinct));
+            let whole = triangles.filter(|t| keeps_corners(**t, &numbers));
+            let renumbered = whole.map(|t| t.map(|v| numbers[v as usize]));
+            surface.mesh.triangles.extend(renumbered);
             let range = first..surface.mesh.triangles.len();
             surface.objects.push((id, range));
         }

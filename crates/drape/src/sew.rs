@@ -53,6 +53,8 @@ const DRAG: f64 = 5.0;
 const SPEED_LIMIT: f64 = 1.2;
 /// Strain of the cloth beside a seam under the largest force of its springs, before that force is raised.
 const PULL_STRAIN: f64 = 0.2;
+/// Square of the edge of an equilateral triangle over its area, 4 / sqrt(3).
+const EDGE_SQUARED_PER_AREA: f64 = 2.31;
 /// Steps without progress after which the springs get stiffer and stronger.
 const PATIENCE: usize = 12;
 
@@ -61,7 +63,7 @@ impl SewRun {
     /// stretch stiffness of the cloth, their largest force also from the edge length of the mesh.
     pub fn new(system: &mut System, stitches: Vec<[u32; 2]>, settings: SewSettings) -> Self {
         let area: f64 = system.rest.elements.iter().map(|e| e.area).sum();
-        let edge = (area / system.rest.elements.len().max(1) as f64 * 2.31).sqrt();
+        let edge = (area / system.rest.elements.len().max(1) as f64 * EDGE_SQUARED_PER_AREA).sqrt();
         let count = 2 * system.materials.list.len().max(1);
         let stretch: f64 = system
             .materials

@@ -17,7 +17,8 @@ struct Head {
     checksum: u32,
 }
 
-/// A type that may be saved as a checkpoint, with the name of its format.
+/// A type that may be saved as a checkpoint, with the name of its format. `toile run` writes only that of
+/// `toile-session`, which has a scene's run with the counts of its report.
 pub trait CheckpointFormat: Serialize + DeserializeOwned {
     /// The name of the format.
     const FORMAT: &'static str;

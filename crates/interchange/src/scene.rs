@@ -163,7 +163,7 @@ pub struct CollisionFile {
 pub struct ObjectFile {
     /// Unique name.
     pub name: String,
-    /// `static`, `animated`, `rigid` or `deformable`.
+    /// `static`, `animated` or `deformable`.
     pub kind: String,
     /// An OBJ file, relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]

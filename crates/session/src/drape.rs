@@ -5,7 +5,7 @@ use crate::watcher::report_progress;
 use crate::{Draped, Event, GarmentJob, GarmentPart, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_drape::collision::Tally;
-use toile_drape::{Measures, Stage, stretch_per_triangle};
+use toile_drape::{Measures, Stage, keeps_corners, stretch_per_triangle};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A garment sewn and draped.
@@ -41,10 +41,7 @@ impl Drape {
         let measures = run.measure();
         let mesh = run.system.mesh(&run.state.positions);
         let origin = (0..job.garment.triangles.len() as u32)
-            .filter(|&t| {
-                let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target()[v as usize]);
-                a != b && b != c && c != a
-            })
+            .filter(|&t| keeps_corners(job.garment.triangles[t as usize], run.target()))
             .collect();
         let mut warnings = run.warnings().to_vec();
         warnings.extend(shortcomings(&mesh, &measures, &job.parts));

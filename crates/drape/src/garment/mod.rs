@@ -242,7 +242,7 @@ impl GarmentRun {
         match self.stage.stage() {
             Stage::Sewing => self.sew()?,
             Stage::Swinging => self.swing()?,
-            Stage::Settling => self.relax()?,
+            Stage::Settling => self.step_to_rest()?,
             Stage::Finished => {}
         }
         Ok(self.progress())
@@ -301,7 +301,7 @@ impl GarmentRun {
 
     /// Takes a step of pseudo-transient continuation, then goes on to another swing, to the next finer level or to
     /// the end where its time has come.
-    fn relax(&mut self) -> Result<(), DrapeError> {
+    fn step_to_rest(&mut self) -> Result<(), DrapeError> {
         let StageState::Settling(settling) = &mut self.stage else {
             return Ok(());
         };

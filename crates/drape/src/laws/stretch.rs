@@ -38,7 +38,8 @@ pub enum Compression {
     TensionField,
 }
 
-/// Stress and energy as functions of Green strain (E_uu, E_vv, gamma).
+/// Stress and energy as functions of Green strain (E_uu, E_vv, gamma). Implemented by [`MembraneLaw`] and by its
+/// form over a step; materials hold a [`MembraneLaw`], so another law is a part of it.
 pub trait StrainLaw {
     /// Stress S_uu, S_vv, S_uv [N/m] and energy per area [J/m2].
     fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64);

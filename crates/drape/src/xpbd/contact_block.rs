@@ -141,7 +141,8 @@ impl ContactBlock {
     }
 }
 
-/// [`ContactConstraint::solve`] for one lane group of a block; moves the points.
+/// [`ContactConstraint::solve`] for one lane group of a block; moves the points. The two compute the same and are
+/// edited together.
 #[inline(always)]
 pub fn solve_block<S: Simd>(
     simd: S,
