@@ -285,7 +285,7 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     advance_to(&mut run, within(Stage::Settling, 1, 1));
     run.control_mut().attachments = Default::default();
     check("settling", &mut run, task(19));
-    assert!(run.cloth_tally().looks > 0 && !run.state.cloth.held.is_empty());
+    assert!(run.cloth_tally().looks > 0 && !run.state.cloth.friction.is_empty());
     advance_to(&mut run, within(Stage::Finished, 1, 1));
     check("at rest, then edited", &mut run, edit(3));
     advance_to(&mut run, within(Stage::Settling, 1, 1));
