@@ -2,10 +2,10 @@
 
 use crate::SessionError;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toile_drape::{DrapeError, Scene, SceneCheckpoint, SceneRun};
 use toile_interchange::{
-    CheckpointFormat, read_checkpoint, read_text, write_atomically, write_checkpoint,
+    CheckpointFormat, read_checkpoint, read_text, write_all_atomically, write_checkpoint,
 };
 
 /// How a scene is run beside what its file says.
@@ -16,6 +16,9 @@ pub struct RunOptions {
     /// Goes on from the checkpoint in the folder of the results.
     pub resume: bool,
 }
+
+/// Its file in the folder of the results.
+const NAME: &str = "checkpoint.json";
 
 /// A run of a scene between two steps, with the counts of its report so far.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -34,31 +37,31 @@ impl CheckpointFormat for SavedRun {
 }
 
 impl SavedRun {
-    /// Its file in the folder of the results.
-    pub fn path(folder: &Path) -> PathBuf {
-        folder.join("checkpoint.json")
-    }
-
     /// Reads the one in the folder of the results.
     ///
     /// # Errors
     /// There is none, or it cannot be read.
     pub fn read(folder: &Path) -> Result<Self, SessionError> {
-        let path = Self::path(folder);
+        let path = folder.join(NAME);
+        if !path.exists() {
+            return Err(SessionError::Nothing {
+                action: "resume",
+                hint: "the folder has no checkpoint.json; run the scene with --checkpoint first",
+            });
+        }
         let text = read_text(&path)?;
         read_checkpoint(&text).map_err(|error| SessionError::Format { path, error })
     }
 
-    /// Writes it into the folder of the results.
+    /// Writes it into the folder of the results, which is made if need be.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), SessionError> {
-        let text = write_checkpoint(self).map_err(|error| SessionError::Write {
-            file: "checkpoint.json",
-            error,
-        })?;
-        Ok(write_atomically(&Self::path(folder), text.as_bytes())?)
+        let text =
+            write_checkpoint(self).map_err(|error| SessionError::Write { file: NAME, error })?;
+        let file = (NAME.to_owned(), text.into_bytes());
+        Ok(write_all_atomically(folder, &[file])?)
     }
 }
 
