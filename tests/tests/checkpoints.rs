@@ -363,7 +363,7 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
     let run = GarmentRun::new(setup()).unwrap();
     let text = write_checkpoint(&run.checkpoint().unwrap()).unwrap();
     let cut = &text[..text.len() / 2];
-    let newer = text.replacen("\"version\":2", "\"version\":3", 1);
+    let newer = text.replacen("\"version\":3", "\"version\":4", 1);
     let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
     let mut changed = text.clone();
     let other = if &text[digit..=digit] == "7" {
