@@ -1,6 +1,7 @@
 //! The drawing of a cut piece: lines, areas and words by kind. Prints, markers, their files and the window
 //! draw a piece from this alone.
 
+use crate::CutNotch;
 use crate::label::{GAP, LINES, SMALLEST, Spot, roomiest_spot};
 use crate::piece::{CutPiece, PieceRing, PieceSegment};
 use std::f64::consts::FRAC_PI_2;
@@ -16,8 +17,10 @@ pub enum StrokeKind {
     Sew,
     /// Drawn inside.
     Inside,
-    /// A notch.
+    /// A notch, to cut along.
     Notch,
+    /// A notch that is drawn, as there is no allowance to cut it into.
+    Mark,
     /// The fold of the cloth.
     Fold,
     /// The grain line with its arrow.
@@ -87,6 +90,13 @@ const LINE_STEP: f64 = 1.3;
 /// Arm of the cross at the end of a dart \[m\].
 const DRILL: f64 = 0.003;
 
+impl StrokeKind {
+    /// Whether a knife follows it.
+    pub fn is_cut(self) -> bool {
+        matches!(self, Self::Cut | Self::Notch)
+    }
+}
+
 impl CutPiece {
     /// The piece drawn somewhere: `place` takes its points there, moved, turned, turned over or
     /// scaled. The lines given are written on it, the first one largest.
@@ -114,10 +124,14 @@ impl CutPiece {
             let name = StrokeName::Line(line.name);
             draw(StrokeKind::Inside, name, placed(&line.points), false);
         }
-        for notch in &self.notches {
-            for points in notch.on_seam_line().iter().chain(&notch.on_cut_line()) {
-                let name = StrokeName::Notch(notch.id);
-                draw(StrokeKind::Notch, name, placed(points), false);
+        for notch in self.notches_seen() {
+            let name = StrokeName::Notch(notch.id);
+            for points in &notch.cut {
+                draw(StrokeKind::Notch, name.clone(), placed(points), false);
+            }
+            let drawn = notch.cut.is_empty().then(|| notch.on_seam_line());
+            for points in drawn.iter().flatten() {
+                draw(StrokeKind::Mark, name.clone(), placed(points), false);
             }
         }
         if let Some(ends) = self.on_fold {
@@ -146,6 +160,13 @@ impl CutPiece {
             strokes,
             words,
         }
+    }
+
+    /// Its notches, of those that look alike one.
+    pub fn notches_seen(&self) -> impl Iterator<Item = &CutNotch> {
+        let seen = self.notches.iter().enumerate();
+        seen.filter(|(k, notch)| !self.notches[..*k].iter().any(|n| n.looks_like(notch)))
+            .map(|(_, notch)| notch)
     }
 
     /// The grain line above the words at the roomiest spot, and its arrow head.

@@ -2,6 +2,7 @@
 
 use crate::EdgeIndex;
 use toile_geometry::Vec2;
+use toile_pattern::NotchId;
 
 /// Why a dart has a straight cap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,5 +90,17 @@ pub enum Finding {
         dart: usize,
         /// Why.
         fault: CapFault,
+    },
+    /// Notches are cut less deep than usual, as the allowance is narrower.
+    NotchesShort {
+        /// The notches.
+        notches: Vec<NotchId>,
+        /// The least depth \[m\].
+        depth: f64,
+    },
+    /// Notches are drawn on the seam line, as there is no allowance to cut them into.
+    NotchesDrawn {
+        /// The notches.
+        notches: Vec<NotchId>,
     },
 }

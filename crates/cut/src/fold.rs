@@ -1,5 +1,6 @@
 //! Pieces halved along their fold, and mirror images among them.
 
+use crate::notch::CutNotch;
 use crate::piece::{CutPiece, HalfPlane, InsideLine, PieceRing, PieceSegment};
 use toile_geometry::{
     Bounds2, EdgeTree, Polygon, Vec2, intersection, point_segment_distance, total_area,
@@ -78,6 +79,14 @@ impl HalfPlane {
         self.cut(&polygon).rings().map(of).collect()
     }
 
+    /// A line of points that lies on the side kept or on the border, or its parts that do.
+    fn kept(&self, points: &[Vec2]) -> Vec<Vec<Vec2>> {
+        match points.iter().all(|&p| self.keeps(p)) {
+            true => vec![points.to_vec()],
+            false => self.cut_line(points),
+        }
+    }
+
     /// The parts of a line of points that are kept.
     fn cut_line(&self, points: &[Vec2]) -> Vec<Vec<Vec2>> {
         let mut parts: Vec<Vec<Vec2>> = vec![Vec::new()];
@@ -133,8 +142,11 @@ impl CutPiece {
             notches: self
                 .notches
                 .iter()
-                .filter(|notch| half.keeps(notch.point))
-                .cloned()
+                .filter(|notch| half.keeps(notch.point) && half.keeps(notch.on_cut))
+                .map(|notch| CutNotch {
+                    cut: notch.cut.iter().flat_map(|l| half.kept(l)).collect(),
+                    ..notch.clone()
+                })
                 .collect(),
             drills: self
                 .drills

@@ -22,6 +22,8 @@ mod fold;
 mod label;
 mod names;
 mod notch;
+mod notch_place;
+mod notch_room;
 mod options;
 mod outline;
 mod piece;
@@ -48,4 +50,4 @@ pub use piece::{
 };
 pub use ring::FLATNESS;
 pub use seam_line::{CutError, Dart, EdgeIndex, SeamEdge, SeamLine};
-pub use words::cut_diagnostics;
+pub use words::{concerns_cutter, cut_diagnostics};

@@ -1,14 +1,21 @@
 //! A piece as it is cut: everything that is drawn on it, each part with what it came from.
 
 use crate::names::edge_words;
-use crate::notch::{CutNotch, notches_of};
+use crate::notch::CutNotch;
+use crate::notch_place::notches_of;
+use crate::notch_room::Room;
 use crate::options::CutOptions;
 use crate::outline::cut_line;
 use crate::ring::FLATNESS;
 use crate::seams::{NamedSeam, Plane, seam_of};
 use crate::{CutError, CutRing, EdgeIndex, Finding, SeamEdge, SegmentKind};
 use toile_geometry::{Bounds2, Polygon, Vec2};
-use toile_pattern::{CornerName, Draft, EdgeOrigin, LineName, Name, Pattern, Piece, PieceId, Role};
+use toile_pattern::{
+    CornerName, Draft, EdgeOrigin, LineName, Name, NotchId, Pattern, Piece, PieceId, Role,
+};
+
+/// A notch that is less deep is told \[m\]: the allowance is then narrower than a notch is deep.
+const SHORT_NOTCH: f64 = 0.0035;
 
 /// The kind of a segment of a cut piece's line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -166,19 +173,28 @@ impl CutPiece {
         };
         let rings = std::iter::once(&line.outline).chain(&line.holes);
         let cut: Vec<PieceRing> = rings.map(named).collect();
+        let sew = sewn(&seam);
+        // Darts inside the piece are sewn and hold cloth.
+        let room = Room {
+            cut: polygon_of(&cut),
+            sewn: polygon_of(&sew[..seam.names.len()]),
+        };
+        let notches = notches_of(piece, &plane, &seam, &room);
+        let mut findings = line.findings;
+        findings.extend(notch_findings(&notches));
         Ok(Self {
             id: piece.id,
             name: piece.name.clone(),
-            notches: notches_of(piece, &plane, &polygon_of(&cut)),
+            notches,
             cut,
-            sew: sewn(&seam),
+            sew,
             inside: inside_lines(piece, &plane),
             fold: last_fold(piece, &plane),
             on_fold: None,
             grain: plane.grain(piece.grain),
             drills: drills(&seam),
             texts: texts((pattern, draft), piece, size),
-            findings: line.findings,
+            findings,
             darts: seam
                 .line
                 .darts
@@ -235,8 +251,10 @@ impl CutPiece {
         let lines = rings.chain(self.inside.iter().map(|line| &line.points));
         let notches = self.notches.iter();
         let notches = notches.flat_map(|n| [n.point, n.inward, n.on_cut, n.along]);
+        let cuts = self.notches.iter().flat_map(|n| n.cut.iter().flatten());
         let drills = self.drills.iter().map(|drill| drill.at);
-        let mut points = lines.flatten().copied().chain(notches).chain(drills);
+        let points = lines.flatten().chain(cuts).copied();
+        let mut points = points.chain(notches).chain(drills);
         points.all(|p| p.x.is_finite() && p.y.is_finite()) && self.grain.is_finite()
     }
 
@@ -312,10 +330,7 @@ fn last_fold(piece: &Piece, plane: &Plane) -> Option<HalfPlane> {
 
 /// The lines a piece is sewn along.
 fn sewn(seam: &NamedSeam) -> Vec<PieceRing> {
-    let loops = std::iter::once(&seam.line.outline).chain(&seam.line.holes);
-    let named = loops.zip(&seam.names);
-    let only = seam.sewn_only.iter().map(|(edges, names)| (edges, names));
-    let ring = |(edges, names): (&Vec<SeamEdge>, &Vec<EdgeOrigin>)| {
+    let ring = |(edges, names): (&[SeamEdge], &[EdgeOrigin])| {
         let mut ring = PieceRing::default();
         for (edge, name) in edges.iter().zip(names) {
             let points = edge.curve.flatten(FLATNESS);
@@ -326,7 +341,32 @@ fn sewn(seam: &NamedSeam) -> Vec<PieceRing> {
         }
         ring
     };
-    named.chain(only).map(ring).collect()
+    seam.loops().map(ring).collect()
+}
+
+/// What is said of notches: those for which the allowance is narrow, and those for which there is
+/// none.
+fn notch_findings(notches: &[CutNotch]) -> Vec<Finding> {
+    let of = |wanted: &dyn Fn(&CutNotch) -> bool| {
+        let mut ids: Vec<NotchId> = Vec::new();
+        for notch in notches.iter().filter(|notch| wanted(notch)) {
+            if !ids.contains(&notch.id) {
+                ids.push(notch.id);
+            }
+        }
+        ids
+    };
+    let is_short = |notch: &CutNotch| !notch.cut.is_empty() && notch.depth < SHORT_NOTCH;
+    let short = of(&is_short);
+    let depths = notches.iter().filter(|n| is_short(n)).map(|n| n.depth);
+    let least = depths.fold(SHORT_NOTCH, f64::min);
+    let drawn = of(&|notch| notch.cut.is_empty());
+    let short = (!short.is_empty()).then_some(Finding::NotchesShort {
+        notches: short,
+        depth: least,
+    });
+    let drawn = (!drawn.is_empty()).then_some(Finding::NotchesDrawn { notches: drawn });
+    short.into_iter().chain(drawn).collect()
 }
 
 fn inside_lines(piece: &Piece, plane: &Plane) -> Vec<InsideLine> {

@@ -14,6 +14,26 @@ pub(crate) struct NamedSeam {
     pub sewn_only: Vec<(Vec<SeamEdge>, Vec<EdgeOrigin>)>,
 }
 
+impl NamedSeam {
+    /// Its loops, the outline first, with the names of their edges; last those that are sewn and
+    /// not cut.
+    pub fn loops(&self) -> impl Iterator<Item = (&[SeamEdge], &[EdgeOrigin])> {
+        let cut = std::iter::once(&self.line.outline).chain(&self.line.holes);
+        let only = self.sewn_only.iter().map(|(edges, names)| (edges, names));
+        let all = cut.zip(&self.names).chain(only);
+        all.map(|(edges, names)| (edges.as_slice(), names.as_slice()))
+    }
+
+    /// The width of the allowance beside an edge \[m\].
+    pub fn width_of(&self, edge: EdgeOrigin) -> f64 {
+        let all = self
+            .loops()
+            .flat_map(|(edges, names)| edges.iter().zip(names));
+        let own = all.filter(|(_, name)| **name == edge);
+        own.map(|(edge, _)| edge.width).fold(0.0, f64::max)
+    }
+}
+
 /// The plane of a piece before it was shrunk and as it is seen from the right side of the cloth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {

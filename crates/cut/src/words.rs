@@ -4,7 +4,9 @@ use crate::names::edge_words;
 use crate::piece::CutPiece;
 use crate::{CapFault, EdgeIndex, Finding};
 use std::collections::BTreeSet;
-use toile_pattern::{Code, Diagnostic, Draft, EdgeOrigin, Name, Panel, Pattern, Place, Severity};
+use toile_pattern::{
+    Code, Diagnostic, Draft, EdgeOrigin, Name, NotchId, Panel, Pattern, Place, Severity,
+};
 
 /// Missing or narrow allowance along less than this is not worth a word \[m\].
 const SHORT: f64 = 0.002;
@@ -36,11 +38,16 @@ pub fn cut_diagnostics(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
     found
 }
 
+/// Whether who cuts a piece should know of it: faults of the cut line, and how its notches are cut.
+pub fn concerns_cutter(found: &Diagnostic) -> bool {
+    found.severity > Severity::Note || matches!(found.code, Code::NotchShort | Code::NotchDrawn)
+}
+
 /// A finding in words: severity, code, edge, text and remedy.
 struct Message {
     severity: Severity,
     code: Code,
-    edge: Option<EdgeOrigin>,
+    place: Place,
     what: String,
     hint: &'static str,
 }
@@ -69,16 +76,11 @@ impl CutPiece {
             if !seen.insert(message.what.clone()) {
                 continue;
             }
-            let place = match message.edge.map(|edge| edge.name) {
-                Some(Name::Drawn(edge)) => Place::Edge(id, edge),
-                Some(Name::Made { by, .. }) => Place::Operation(id, by),
-                None => Place::Panel(id),
-            };
             let text = format!("panel {:?}: {}", panel.name, message.what);
             found.push(Diagnostic::new(
                 message.severity,
                 message.code,
-                place,
+                message.place,
                 text,
                 message.hint,
             ));
@@ -94,7 +96,7 @@ impl CutPiece {
         let message = |severity, code, at: Option<EdgeIndex>, what, hint| Message {
             severity,
             code,
-            edge: at.and_then(|index| self.edge(index)),
+            place: self.place(at.and_then(|index| self.edge(index))),
             what,
             hint,
         };
@@ -221,7 +223,7 @@ impl CutPiece {
                 Message {
                     severity: Severity::Note,
                     code: Code::StraightDart,
-                    edge: leg,
+                    place: self.place(leg),
                     what: format!(
                         "{name} is cut straight across its mouth: {}",
                         fault_words(*fault)
@@ -229,7 +231,64 @@ impl CutPiece {
                     hint: "fold the dart before cutting there, or press it to the other side",
                 }
             }
+            Finding::NotchesShort { notches, depth } => self.notches_message(
+                lineage,
+                (Code::NotchShort, notches),
+                (
+                    &format!(
+                        "cut only {} deep, as the seam allowance is narrow",
+                        mm(*depth)
+                    ),
+                    "widen the seam allowance if that is too little to see",
+                ),
+            ),
+            Finding::NotchesDrawn { notches } => self.notches_message(
+                lineage,
+                (Code::NotchDrawn, notches),
+                (
+                    "drawn on the seam line and not cut, as there is no seam allowance",
+                    "mark the cloth there, or give the edge a seam allowance",
+                ),
+            ),
         })
+    }
+
+    /// What is said of notches.
+    fn notches_message(
+        &self,
+        lineage: &[&Panel],
+        (code, notches): (Code, &[NotchId]),
+        (done, hint): (&str, &'static str),
+    ) -> Message {
+        let panel = self.id.panel;
+        let name = |id: &NotchId| match lineage.iter().find_map(|own| own.notch(*id)) {
+            Some(notch) => format!("{:?}", notch.name),
+            None => id.to_string(),
+        };
+        let names: Vec<String> = notches.iter().map(name).collect();
+        let what = match &names[..] {
+            [only] => format!("notch {only} is {done}"),
+            all => format!("notches {} are {done}", all.join(", ")),
+        };
+        Message {
+            severity: Severity::Note,
+            code,
+            place: notches
+                .first()
+                .map_or(Place::Panel(panel), |id| Place::Notch(panel, *id)),
+            what,
+            hint,
+        }
+    }
+
+    /// The place of an edge, or of the operation that made it; else of the panel.
+    fn place(&self, edge: Option<EdgeOrigin>) -> Place {
+        let panel = self.id.panel;
+        match edge.map(|edge| edge.name) {
+            Some(Name::Drawn(edge)) => Place::Edge(panel, edge),
+            Some(Name::Made { by, .. }) => Place::Operation(panel, by),
+            None => Place::Panel(panel),
+        }
     }
 
     /// The corner at the start of an edge, by its two edges.

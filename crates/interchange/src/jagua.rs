@@ -119,7 +119,7 @@ fn read_item(
         Some("simple_polygon") => Polygon::new(ring(&shape["data"], &field("shape.data"), scale)?),
         Some("polygon") => {
             notes.push(format!(
-                "item {name}: its holes are not filled with other pieces"
+                "item {name}: its holes are not filled with other pieces; density counts them as cloth, as published densities do"
             ));
             let outer = &shape["data"]["outer"];
             Polygon::new(ring(outer, &field("shape.data.outer"), scale)?)

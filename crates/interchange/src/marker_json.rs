@@ -165,6 +165,9 @@ pub struct MarkerFilePiece {
     pub on_print: Option<MarkerMatch>,
     /// Cut outline as laid, to the nearest micrometre \[m\].
     pub outline: Vec<[f64; 2]>,
+    /// Holes cut into it, likewise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub holes: Vec<Vec<[f64; 2]>>,
 }
 
 /// A point of a piece that must lie on the print, in a marker file.
@@ -225,7 +228,13 @@ impl MarkerFile {
     pub fn new(name: &str, items: &[Item], strip: &Strip, marker: &Marker) -> Self {
         let piece = |placement: &Placement| {
             let item = items.get(placement.item)?;
-            let outline = placement.pose(item).lay(&item.outline).outer;
+            let laid = placement.pose(item).lay(&item.outline);
+            let ring = |ring: &Vec<Vec2>| {
+                let points = ring.iter();
+                points
+                    .map(|p| [micrometres(p.x), micrometres(p.y)])
+                    .collect()
+            };
             Some(MarkerFilePiece {
                 name: item.name.clone(),
                 item: placement.item,
@@ -241,10 +250,8 @@ impl MarkerFile {
                     .match_point
                     .filter(|_| strip.stripes.is_some())
                     .map(MarkerMatch::of),
-                outline: outline
-                    .iter()
-                    .map(|p| [micrometres(p.x), micrometres(p.y)])
-                    .collect(),
+                outline: ring(&laid.outer),
+                holes: laid.holes.iter().map(ring).collect(),
             })
         };
         let left = |unplaced: &Unplaced| MarkerFileUnplaced {
@@ -443,7 +450,8 @@ fn check_numbers(file: &MarkerFile) -> Result<(), FormatError> {
         let print = print.flat_map(|p| p.point.into_iter().chain(p.after.unwrap_or_default()));
         let numbers = [piece.grain, piece.turn, piece.gap].into_iter();
         let numbers = numbers.chain(piece.at).chain(print);
-        let mut all = numbers.chain(piece.outline.iter().flatten().copied());
+        let rings = std::iter::once(&piece.outline).chain(&piece.holes);
+        let mut all = numbers.chain(rings.flatten().flatten().copied());
         if !all.all(f64::is_finite) {
             return bad(format!("piece \"{}\"", piece.name));
         }

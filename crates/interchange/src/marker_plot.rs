@@ -105,7 +105,7 @@ pub(crate) struct PlotLook {
     pub origin: Vec2,
     /// Length on the page over length of fabric.
     pub scale: f64,
-    /// Width of a line \[m\].
+    /// Width of a line to cut along \[m\]; others are half as wide.
     pub width: f64,
     /// Whether words are written.
     pub words: bool,
@@ -135,8 +135,14 @@ pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook)
             Layer::Fold => 0.02,
             _ => 0.0,
         };
-        let style = (look.width, dash * look.scale, stroke.layer.ink());
+        let width = match stroke.layer.is_cut() {
+            true => look.width,
+            false => 0.5 * look.width,
+        };
+        let style = (width, dash * look.scale, stroke.layer.ink());
+        page.begin_kind(stroke.layer.name());
         page.stroke(&mapped(&stroke.points), stroke.closed, style);
+        page.end_kind();
     }
     for words in all.words.iter().filter(|_| look.words) {
         page.text(PdfText {

@@ -57,6 +57,29 @@ impl Layer {
         }
     }
 
+    /// Class of its lines in SVG.
+    pub fn class(self) -> &'static str {
+        match self {
+            Self::Fabric => "fabric",
+            Self::Margin => "margin",
+            Self::Fold => "on-fold",
+            Self::Print => "print",
+            Self::Flaw => "flaw",
+            Self::Cut => "cut",
+            Self::Sew => "sew",
+            Self::Line => "line",
+            Self::Notch => "notch",
+            Self::Grain => "grain",
+            Self::Drill => "drill",
+            Self::Text => "text",
+        }
+    }
+
+    /// Whether a knife follows its lines.
+    pub fn is_cut(self) -> bool {
+        self.pen() == 1
+    }
+
     /// AutoCAD colour index.
     pub fn colour_index(self) -> u8 {
         match self {
@@ -74,11 +97,10 @@ impl Layer {
     /// Red, green, blue, 0..=1.
     pub fn ink(self) -> [f32; 3] {
         match self {
-            Self::Cut | Self::Text => [0.07, 0.07, 0.07],
-            Self::Notch | Self::Drill => [0.07, 0.07, 0.07],
+            Self::Cut | Self::Notch | Self::Text => [0.07, 0.07, 0.07],
             Self::Fabric => [0.33, 0.33, 0.33],
             Self::Margin => [0.7, 0.68, 0.64],
-            Self::Sew | Self::Line => [0.45, 0.45, 0.45],
+            Self::Sew | Self::Line | Self::Drill => [0.45, 0.45, 0.45],
             Self::Grain => [0.12, 0.31, 0.62],
             Self::Print => [0.62, 0.72, 0.85],
             Self::Fold => [0.55, 0.2, 0.55],
@@ -237,7 +259,7 @@ impl From<StrokeKind> for Layer {
         match kind {
             StrokeKind::Cut => Self::Cut,
             StrokeKind::Sew => Self::Sew,
-            StrokeKind::Inside => Self::Line,
+            StrokeKind::Inside | StrokeKind::Mark => Self::Line,
             StrokeKind::Notch => Self::Notch,
             StrokeKind::Fold => Self::Fold,
             StrokeKind::Grain => Self::Grain,

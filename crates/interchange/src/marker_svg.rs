@@ -266,40 +266,34 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
         "fill=\"#{red:02x}{green:02x}{blue:02x}\" fill-rule=\"evenodd\" stroke=\"#111111\" stroke-width=\"0.8\""
     );
     let looks = [
-        (Layer::Cut, "cut", cut.as_str()),
+        (Layer::Cut, cut.as_str()),
         (
             Layer::Sew,
-            "sew",
             "fill=\"none\" stroke=\"#666666\" stroke-width=\"0.5\" stroke-dasharray=\"4 2\"",
         ),
         (
             Layer::Line,
-            "line",
             "fill=\"none\" stroke=\"#888888\" stroke-width=\"0.5\"",
         ),
         (
             Layer::Notch,
-            "notch",
             "fill=\"none\" stroke=\"#111111\" stroke-width=\"0.8\"",
         ),
         (
             Layer::Grain,
-            "grain",
             "fill=\"none\" stroke=\"#1f4e9e\" stroke-width=\"1\"",
         ),
         (
             Layer::Fold,
-            "on-fold",
             "fill=\"none\" stroke=\"#8c338c\" stroke-width=\"1\" stroke-dasharray=\"20 5 4 5\"",
         ),
         (
             Layer::Drill,
-            "drill",
-            "fill=\"none\" stroke=\"#111111\" stroke-width=\"0.5\"",
+            "fill=\"none\" stroke=\"#666666\" stroke-width=\"0.5\"",
         ),
     ];
-    for (layer, class, style) in looks {
-        draw(text, class, &page.lines(own.on(layer)), style);
+    for (layer, style) in looks {
+        draw(text, layer.class(), &page.lines(own.on(layer)), style);
     }
     for words in &own.words {
         write_words(text, &page, words);

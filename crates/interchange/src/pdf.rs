@@ -82,6 +82,16 @@ impl PdfPage {
         self.content.end_marked_content();
     }
 
+    /// What follows is of a kind (marked content by that name), until its end.
+    pub fn begin_kind(&mut self, name: &str) {
+        self.content.begin_marked_content(Name(name.as_bytes()));
+    }
+
+    /// Ends a kind.
+    pub fn end_kind(&mut self) {
+        self.content.end_marked_content();
+    }
+
     /// What follows is seen inside bounds \[m\] alone, until the end of the clip.
     pub fn clip(&mut self, bounds: &Bounds2) {
         let (low, size) = (bounds.min, bounds.size());

@@ -223,9 +223,10 @@ fn a_piece_has_every_part_with_what_it_came_from() {
             ((notch.on_cut - notch.point).norm() - 0.01).abs() < 1e-9,
             "{notch:?}"
         );
-        let shapes = notch.on_seam_line().len() + notch.on_cut_line().len();
-        assert_eq!(shapes, if notch.kind == NotchKind::T { 4 } else { 2 });
-        for p in notch.on_cut_line().concat() {
+        let lines = if notch.kind == NotchKind::T { 2 } else { 1 };
+        assert_eq!([notch.cut.len(), notch.on_seam_line().len()], [lines; 2]);
+        assert!((notch.depth - 0.006).abs() < 1e-12, "{notch:?}");
+        for p in notch.cut.concat() {
             assert!((p - notch.on_cut).norm() < 0.0085, "{notch:?}");
             let inside = (p - notch.on_cut).dot(&notch.inward);
             assert!((-1e-9..0.007).contains(&inside), "{notch:?}");

@@ -88,11 +88,15 @@ fn items_of(file: &MarkerFile) -> Vec<Item> {
             translation: Vec2::new(piece.at[0], piece.at[1]),
         };
         let [x, y] = pose.axes();
-        let back = |p: &[f64; 2]| {
-            let from = Vec2::new(p[0], p[1]) - pose.translation;
+        let back = |p: Vec2| {
+            let from = p - pose.translation;
             Vec2::new(from.dot(&x), from.dot(&y))
         };
-        let outline = Polygon::new(piece.outline.iter().map(back).collect());
+        let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|&p| back(Vec2::from(p))).collect();
+        let outline = Polygon {
+            outer: ring(&piece.outline),
+            holes: piece.holes.iter().map(ring).collect(),
+        };
         let half_turns = (pose.turn / PI).round() * PI;
         let most = match has_nap {
             true => MOST_TILT,

@@ -66,6 +66,7 @@ pub(crate) fn items_on(
         items.push(item);
         drawn.push((k, to_cut.cut.clone()));
     }
+    notes.extend(holes_left(&items));
     if printed {
         let order: Vec<usize> = drawn.iter().map(|d| d.0).collect();
         match_up(&mut items, &order, (to_cut, plan))?;
@@ -77,6 +78,17 @@ pub(crate) fn items_on(
         ));
     }
     Ok((items, drawn.into_iter().map(|d| d.1).collect(), notes))
+}
+
+/// What is said where pieces have holes: a search lays nothing into them.
+fn holes_left(items: &[Item]) -> Option<String> {
+    let holed = items.iter().filter(|item| !item.outline.holes.is_empty());
+    let mut names: Vec<&str> = holed.map(|item| &*item.name).collect();
+    names.dedup();
+    let of = names.join(", ");
+    (!names.is_empty()).then(|| {
+        format!("{of}: no piece is laid into its holes, and their cloth counts as not used")
+    })
 }
 
 /// Lays a piece half as often, or as often if one of two is the wrong way round; how many more come
@@ -165,7 +177,7 @@ fn roles(to_cut: &[PieceToCut], plan: &FabricPlan) -> Result<Vec<Role>, MarkerEr
 /// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
 fn item_of(to_cut: &PieceToCut, print: bool, options: &NestOptions) -> Item {
     let (piece, settings) = (&to_cut.cut, &to_cut.settings);
-    let outline = piece.outer();
+    let outline = piece.polygon();
     // Back to the grain's own axes: the hem lies where the grain starts.
     let bounds = outline.rotated(-piece.grain).bounds();
     let hem = turned(Vec2::new(bounds.min.x, bounds.centre().y), piece.grain);
@@ -208,7 +220,7 @@ fn item_of(to_cut: &PieceToCut, print: bool, options: &NestOptions) -> Item {
 /// Half of a piece, for the fold.
 fn halved(mut item: Item, piece: &CutPiece, half: HalfPlane) -> (Item, Arc<CutPiece>) {
     let drawn = piece.halved(&half);
-    item.outline = drawn.outer();
+    item.outline = drawn.polygon();
     let inward = turned(half.inward, -item.grain);
     item.fold_edge = Some(match inward.y > 0.0 {
         true => FoldEdge::Lower,

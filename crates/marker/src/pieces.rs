@@ -3,11 +3,11 @@
 use crate::marks::resolve_marks;
 use crate::{MarkerError, NestOptions};
 use std::sync::Arc;
-use toile_cut::{CutOptions, CutPiece};
+use toile_cut::{CutOptions, CutPiece, concerns_cutter};
 use toile_geometry::Vec2;
 use toile_interchange::{ANY_NAME, PieceSettings};
 use toile_nesting::{MOST_PIECES, NestingError};
-use toile_pattern::{Diagnostic, Draft, Pattern, Piece, Severity};
+use toile_pattern::{Diagnostic, Draft, Pattern, Piece};
 
 /// Garments to cut from one draft.
 #[derive(Clone, Copy, Debug)]
@@ -136,12 +136,12 @@ fn cut_piece(
     })
 }
 
-/// Warnings in words, each with the label of its garment.
+/// What the cutter should know in words, each with the label of its garment.
 fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
     let of = label.map_or_else(String::new, |label| format!("{label}: "));
     let words = |one: &Diagnostic| format!("{of}{}; {}", one.message, one.hint);
-    let warnings = found.iter().filter(|one| one.severity > Severity::Note);
-    warnings.map(words).collect()
+    let told = found.iter().filter(|one| concerns_cutter(one));
+    told.map(words).collect()
 }
 
 fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {

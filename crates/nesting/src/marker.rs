@@ -59,7 +59,8 @@ impl Allowed {
 pub struct Item {
     /// Name for messages.
     pub name: String,
-    /// Cut outline, curves flattened \[m\]. Pieces are not laid into each other's holes.
+    /// Cut outline, curves flattened, with the holes cut into it \[m\]. A search lays no piece into
+    /// the holes of another; one that lies there is sound.
     pub outline: Polygon,
     /// Direction of the warp in the outline's plane \[rad\], counter-clockwise from +x.
     pub grain: f64,

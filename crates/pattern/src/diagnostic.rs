@@ -90,6 +90,10 @@ pub enum Code {
     HoleShut,
     /// The mouth of a dart is cut straight across.
     StraightDart,
+    /// Notches are cut less deep than usual.
+    NotchShort,
+    /// Notches are drawn and not cut.
+    NotchDrawn,
     /// A piece has no line to cut along.
     NoCutLine,
     /// A mirrored pair is cut an odd number of times.

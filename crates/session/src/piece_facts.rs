@@ -80,6 +80,8 @@ pub struct NotchFacts {
     pub seam_mm: [f64; 2],
     /// On the cut line \[mm\].
     pub cut_mm: [f64; 2],
+    /// How deep it is cut \[mm\]; 0 where it is drawn on the seam line.
+    pub depth_mm: f64,
 }
 
 /// A dart.
@@ -255,6 +257,7 @@ fn notches((pattern, panel): (&Pattern, &Panel), cut: &CutPiece) -> Vec<NotchFac
             },
             seam_mm: millimetres(notch.point),
             cut_mm: millimetres(notch.on_cut),
+            depth_mm: notch.depth * 1e3,
         }
     };
     cut.notches.iter().map(notch).collect()

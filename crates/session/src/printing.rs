@@ -6,7 +6,7 @@ use crate::{Project, SessionError, Watcher};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use toile_cut::{CutList, CutOptions, CutPiece, Shrinkage, TextKind, cut_list};
+use toile_cut::{CutList, CutOptions, CutPiece, Shrinkage, TextKind, concerns_cutter, cut_list};
 use toile_geometry::{Bounds2, Polygon, Vec2, convex_hull, union};
 use toile_interchange::{
     FormatError, Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock, write_atomically,
@@ -153,7 +153,7 @@ pub fn print_job(
     let list = cut_list(of, &whole);
     let notes = whole.iter().flat_map(|cut| cut.diagnostics(pattern));
     let notes = notes
-        .filter(|found| found.severity > Severity::Note)
+        .filter(concerns_cutter)
         .map(|found| format!("{}; {}", found.message, found.hint))
         .collect();
     let job = PrintJob {

@@ -483,10 +483,12 @@ impl MarkerView {
             }
             let (width, colour): (f32, Color32) = match stroke.kind {
                 StrokeKind::Cut => (if lit { 2.2 } else { 1.4 }, line),
-                StrokeKind::Sew | StrokeKind::Inside => (0.8, palette.pencil),
+                StrokeKind::Sew | StrokeKind::Inside | StrokeKind::Mark | StrokeKind::Drill => {
+                    (0.8, palette.pencil)
+                }
                 StrokeKind::Grain => (1.0, palette.ink_soft),
                 StrokeKind::Fold => (1.2, palette.ink_soft),
-                StrokeKind::Notch | StrokeKind::Drill => (1.2, line),
+                StrokeKind::Notch => (1.2, line),
             };
             painter.add(Shape::line(points, Stroke::new(width, colour)));
         }

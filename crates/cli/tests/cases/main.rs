@@ -4,6 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod knife;
 
 use common::{toile, words};
 use std::path::{Path, PathBuf};

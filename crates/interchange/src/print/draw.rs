@@ -3,14 +3,14 @@
 use super::mark::{LineStyle, Mark, Shape};
 use super::{Lines, Paper, PrintJob, PrintPiece};
 use crate::pdf::{Align, Ink};
-use toile_cut::{Drawing, StrokeKind, Words};
+use toile_cut::{CutPiece, Drawing, StrokeKind, Words};
 use toile_geometry::Vec2;
 
 pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
 const BLUE: Ink = [0.12, 0.31, 0.62];
 const PURPLE: Ink = [0.55, 0.2, 0.55];
-/// Least width of a line that a projector shows \[m\].
-const PROJECTED: f64 = 0.0012;
+/// Least width of a line that a projector shows, and of one to cut along \[m\].
+const PROJECTED: [f64; 2] = [0.0012, 0.002];
 /// Letters beside the fold \[m\].
 const FOLD_LETTERS: f64 = 0.005;
 /// Their size over the length of the fold at the most: the words then fit.
@@ -41,22 +41,30 @@ pub(crate) fn style(job: &PrintJob, kind: StrokeKind, layer: usize) -> LineStyle
         StrokeKind::Sew => (if several { ink } else { [0.35; 3] }, 0.0002, 0.0),
         StrokeKind::Inside => (if several { ink } else { [0.35; 3] }, 0.0002, 0.004),
         StrokeKind::Notch => (ink, 0.000_35, 0.0),
+        // Drawn and not cut: as fine as the line to sew along.
+        StrokeKind::Mark | StrokeKind::Drill => {
+            (if several { ink } else { [0.35; 3] }, 0.0002, 0.0)
+        }
         StrokeKind::Fold => (PURPLE, 0.0006, 0.02),
         StrokeKind::Grain => (BLUE, 0.0003, 0.0),
-        StrokeKind::Drill => (ink, 0.000_25, 0.0),
     };
-    let width = match job.paper {
-        Paper::Projector => PROJECTED.max(width),
+    let width = match (job.paper, kind.is_cut()) {
+        (Paper::Projector, cut) => PROJECTED[usize::from(cut)].max(width),
         _ => width,
     };
-    LineStyle { ink, width, dash }
+    LineStyle {
+        ink,
+        width,
+        dash,
+        layer: Some(kind.into()),
+    }
 }
 
 /// Whether lines of a kind are printed.
 fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
     !matches!(
         (job.lines, kind),
-        (Lines::Cut, StrokeKind::Sew) | (Lines::Sew, StrokeKind::Cut)
+        (Lines::Cut, StrokeKind::Sew) | (Lines::Sew, StrokeKind::Cut | StrokeKind::Notch)
     )
 }
 
@@ -64,7 +72,7 @@ fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
 pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
     let place = |p: Vec2| piece.pose.apply(p * job.scale);
     let smallest = piece.sizes.iter().enumerate().min_by(|a, b| {
-        let area = |k: &(usize, std::sync::Arc<toile_cut::CutPiece>)| k.1.outer().area();
+        let area = |k: &(usize, std::sync::Arc<CutPiece>)| k.1.outer().area();
         area(a.1).total_cmp(&area(b.1))
     });
     let smallest = smallest.map(|(k, _)| k);
@@ -86,9 +94,33 @@ pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
             }
             marks.push(Mark::line(layer, (stroke.points, stroke.closed), style));
         }
+        if job.lines == Lines::Sew {
+            marks.extend(seam_marks(job, cut, (*layer, &place)));
+        }
         marks.extend(drawing.words.into_iter().map(words_mark));
     }
     marks
+}
+
+/// The notches that are cut, as marks on the seam line: without the line to cut along they would
+/// stand beside nothing.
+fn seam_marks(
+    job: &PrintJob,
+    cut: &CutPiece,
+    (layer, place): (usize, &dyn Fn(Vec2) -> Vec2),
+) -> Vec<Mark> {
+    let style = style(job, StrokeKind::Mark, layer);
+    let mut lines: Vec<Vec<Vec2>> = Vec::new();
+    for notch in cut.notches.iter().filter(|notch| !notch.cut.is_empty()) {
+        for line in notch.on_seam_line() {
+            let line: Vec<Vec2> = line.iter().map(|p| place(*p)).collect();
+            if !lines.contains(&line) {
+                lines.push(line);
+            }
+        }
+    }
+    let mark = |line| Mark::line(Some(layer), (line, false), style);
+    lines.into_iter().map(mark).collect()
 }
 
 fn words_mark(words: Words) -> Mark {

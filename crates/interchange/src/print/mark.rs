@@ -1,5 +1,6 @@
 //! Marks on paper: lines and words, each on a layer.
 
+use crate::marker_strokes::Layer;
 use crate::pdf::{Align, Ink};
 use toile_geometry::{Bounds2, Vec2};
 
@@ -11,6 +12,8 @@ pub(crate) struct LineStyle {
     pub width: f64,
     /// Length of a dash \[m\]; 0 for a line without.
     pub dash: f64,
+    /// The purpose of a line of a piece.
+    pub layer: Option<Layer>,
 }
 
 /// A line or words.

@@ -78,6 +78,7 @@ const CROSS: f64 = 0.004;
 const GREY: [f32; 3] = [0.55, 0.55, 0.55];
 /// Lines of frames and crosses.
 const JOIN: LineStyle = LineStyle {
+    layer: None,
     ink: GREY,
     width: 0.000_15,
     dash: 0.0,

@@ -39,7 +39,15 @@ fn write_mark(sheet: &mut PdfPage, mark: &Mark) {
             points,
             closed,
             style,
-        } => sheet.stroke(points, *closed, (style.width, style.dash, style.ink)),
+        } => {
+            if let Some(layer) = style.layer {
+                sheet.begin_kind(layer.name());
+            }
+            sheet.stroke(points, *closed, (style.width, style.dash, style.ink));
+            if style.layer.is_some() {
+                sheet.end_kind();
+            }
+        }
         Shape::Text {
             text,
             at,

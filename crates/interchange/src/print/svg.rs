@@ -115,9 +115,12 @@ fn write_mark(text: &mut String, page: &Page, mark: &Mark) {
                 ),
                 false => String::new(),
             };
+            let class = style
+                .layer
+                .map_or_else(String::new, |layer| format!(" class=\"{}\"", layer.class()));
             let _ = writeln!(
                 text,
-                "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dash}/>",
+                "<path{class} d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dash}/>",
                 path(points, *closed),
                 colour(style.ink),
                 number(style.width * 1e3)

@@ -32,6 +32,7 @@ const MOST_LINES: usize = 10;
 const MAP: f64 = WIDTH - TEST_BOX[0] - 4.0 * INSET;
 
 const THIN: LineStyle = LineStyle {
+    layer: None,
     ink: BLACK,
     width: 0.0002,
     dash: 0.0,

@@ -27,6 +27,11 @@ pub fn cut_piece(
         inward: Vec2::from(inward),
         on_cut: Vec2::from(notch),
         along: Vec2::new(inward[1], -inward[0]),
+        depth: 0.006,
+        cut: vec![vec![
+            Vec2::from(notch),
+            Vec2::from(notch) + Vec2::from(inward) * 0.006,
+        ]],
     }];
     piece.inside = vec![InsideLine {
         name: toile_pattern::Name::Drawn(LineId(0)),

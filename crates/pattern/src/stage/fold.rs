@@ -55,14 +55,44 @@ pub(crate) fn unfold(
     if !is_straight || edges.is_empty() {
         return Err(FoldError::NotStraight);
     }
-    let lost = stage
-        .notches
-        .iter()
-        .filter(|notch| notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge));
+    let mut own = stage.clone();
+    for notch in &mut own.notches {
+        if is_on(&folded, notch) {
+            move_off(notch, &edges, (start, end));
+        }
+    }
+    let lost = own.notches.iter().filter(|notch| is_on(&folded, notch));
     let lost: Vec<NotchId> = lost.map(|notch| notch.id).collect();
     let corner = folded[0].start;
-    let whole = unfolded(stage, (line, edges, corner), (start, end), &lost);
+    let whole = unfolded(&own, (line, edges, corner), (start, end), &lost);
     Ok((whole, lost))
+}
+
+/// Whether a notch is on one of the edges of a fold.
+fn is_on(folded: &[StageEdge], notch: &StageNotch) -> bool {
+    notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge)
+}
+
+/// Gives a notch at an end of the fold to the edge that meets the fold there: the other edges of
+/// the outline run from the end of the fold to its start.
+fn move_off(notch: &mut StageNotch, edges: &[StageEdge], (start, end): (Vec2, Vec2)) {
+    const SAME: f64 = 1e-9;
+    let (Some(first), Some(last)) = (edges.first(), edges.last()) else {
+        return;
+    };
+    let (edge, share, at) = match () {
+        () if (notch.point - start).norm() < SAME => (last, last.to, 1.0),
+        () if (notch.point - end).norm() < SAME => (first, first.from, 0.0),
+        () => return,
+    };
+    let Some(along) = edge.curve.derivative(at).try_normalize(1e-15) else {
+        return;
+    };
+    // The cloth is at the same side of both edges.
+    let (left, fold) = (Vec2::new(-along.y, along.x), end - start);
+    let side = Vec2::new(-fold.y, fold.x).dot(&notch.inward);
+    (notch.edge, notch.share) = (edge.name, share);
+    notch.inward = left * if side >= 0.0 { 1.0 } else { -1.0 };
 }
 
 fn unfolded(

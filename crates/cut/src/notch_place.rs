@@ -1,0 +1,190 @@
+//! Where the notches of a piece stand: on the seam line, and on the cut lines beside it.
+
+use crate::corner::MITRE_LIMIT;
+use crate::notch::CutNotch;
+use crate::notch_room::Room;
+use crate::seams::{NamedSeam, Plane};
+use toile_geometry::{Vec2, ring_area};
+use toile_pattern::{EdgeOrigin, Piece, PieceNotch};
+
+/// A notch this near to a corner of the seam line is at it \[m\].
+const AT_CORNER: f64 = 1e-6;
+/// Sine of the least turn that is a corner: below it the cut lines go on into each other.
+const TURNS: f64 = 0.02;
+
+/// Unit vectors and width at a place of an edge.
+#[derive(Clone, Copy)]
+struct Side {
+    edge: EdgeOrigin,
+    /// Along the edge, in the order of the loop.
+    way: Vec2,
+    /// Away from the cloth.
+    out: Vec2,
+    /// Width of the allowance \[m\].
+    width: f64,
+}
+
+/// The edges before and after a corner.
+struct Corner {
+    before: Side,
+    after: Side,
+}
+
+/// Where a notch stands: its edge, from the seam line to the cut line \[m\], and into the piece.
+struct Stand {
+    edge: EdgeOrigin,
+    outwards: Vec2,
+    inward: Vec2,
+}
+
+/// The notches of a piece with the room they have.
+pub(crate) fn notches_of(
+    piece: &Piece,
+    plane: &Plane,
+    seam: &NamedSeam,
+    room: &Room,
+) -> Vec<CutNotch> {
+    let mut found: Vec<CutNotch> = Vec::new();
+    for notch in &piece.notches {
+        let point = plane.vector(notch.point);
+        let stands = match corner_at(seam, point) {
+            Some(corner) => corner.stands(notch.edge),
+            None => vec![straight_out(notch, plane, seam)],
+        };
+        for stand in stands {
+            let is_known = |known: &CutNotch| {
+                (known.id, known.edge) == (notch.id, stand.edge)
+                    && (known.point - point).norm() < AT_CORNER
+            };
+            if !found.iter().any(is_known) {
+                found.push(cut_notch(piece, (notch, point), &stand, room));
+            }
+        }
+    }
+    found
+}
+
+fn cut_notch(
+    piece: &Piece,
+    (notch, point): (&PieceNotch, Vec2),
+    stand: &Stand,
+    room: &Room,
+) -> CutNotch {
+    let all = piece.outline.iter().chain(piece.holes.iter().flatten());
+    let mut edges = all.filter(|edge| edge.origin == stand.edge);
+    let reversed = edges.next().is_some_and(|edge| edge.reversed);
+    // The cloth is at the left of the outline as drawn.
+    let along = |inward: Vec2| Vec2::new(inward.y, -inward.x) * if reversed { -1.0 } else { 1.0 };
+    let mut made = CutNotch {
+        id: notch.id,
+        edge: stand.edge,
+        kind: notch.kind,
+        point,
+        inward: stand.inward,
+        on_cut: point,
+        along: along(stand.inward),
+        depth: 0.0,
+        cut: Vec::new(),
+    };
+    let way = stand.outwards.try_normalize(1e-9);
+    if let Some((way, at)) = way.and_then(|way| Some((way, room.cut_line(point, stand.outwards)?)))
+    {
+        made.on_cut = at;
+        let axes = [along(-way), -way];
+        if let Some((depth, lines)) = room.cut(notch.kind, (point, at), axes) {
+            (made.depth, made.cut) = (depth, lines);
+        }
+    }
+    made
+}
+
+/// A notch within an edge: square to the seam line.
+fn straight_out(notch: &PieceNotch, plane: &Plane, seam: &NamedSeam) -> Stand {
+    let inward = plane.normal(notch.inward);
+    Stand {
+        edge: notch.edge,
+        outwards: -inward * seam.width_of(notch.edge),
+        inward,
+    }
+}
+
+/// The corner of a seam line at a point, if two edges meet there.
+fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
+    for (number, (edges, names)) in seam.loops().enumerate() {
+        let corners: Vec<Vec2> = edges.iter().flat_map(|e| e.curve.flatten(1e-3)).collect();
+        // Outlines run counter-clockwise round the cloth and holes clockwise, or all the other way.
+        let is_hole = number > 0;
+        let sign = match (ring_area(&corners) < 0.0) == is_hole {
+            true => 1.0,
+            false => -1.0,
+        };
+        let side = |k: usize, end: f64| {
+            let way = edges[k].curve.derivative(end).try_normalize(1e-15)?;
+            Some(Side {
+                edge: names[k],
+                way,
+                out: Vec2::new(way.y, -way.x) * sign,
+                width: edges[k].width,
+            })
+        };
+        for after in 0..edges.len() {
+            let before = (after + edges.len() - 1) % edges.len();
+            let here = (edges[after].curve.start() - point).norm() < AT_CORNER;
+            if here && names[before] != names[after] {
+                let (before, after) = (side(before, 1.0)?, side(after, 0.0)?);
+                return Some(Corner { before, after });
+            }
+        }
+    }
+    None
+}
+
+impl Corner {
+    /// The places of a notch at the corner, one for each side that is cut; one of an edge where
+    /// neither is.
+    fn stands(&self, edge: EdgeOrigin) -> Vec<Stand> {
+        let (a, b) = (self.before, self.after);
+        let inward = -(a.out + b.out).try_normalize(1e-6).unwrap_or(a.out);
+        let own = [(a, -b.way), (b, a.way)];
+        let sides = own
+            .into_iter()
+            .filter(|(side, _)| side.edge.leg().is_none());
+        let stands: Vec<Stand> = sides
+            .map(|(side, drawn_on)| Stand {
+                edge: side.edge,
+                outwards: self.outwards(side, drawn_on),
+                inward,
+            })
+            .collect();
+        match stands.is_empty() {
+            true => vec![Stand {
+                edge,
+                outwards: Vec2::zeros(),
+                inward,
+            }],
+            false => stands,
+        }
+    }
+
+    /// From the corner to a side's cut line: along the other side's seam line drawn on; at an
+    /// inner corner to where both cut lines meet.
+    fn outwards(&self, side: Side, drawn_on: Vec2) -> Vec2 {
+        let (n, m) = (self.before.out, self.after.out);
+        let turn = n.dot(&self.after.way);
+        let (sin, cos) = (-turn, n.dot(&m));
+        if sin.abs() < TURNS && cos > 0.0 {
+            return side.out * side.width;
+        }
+        if sin < 0.0 {
+            let (p, q) = (self.before.width, self.after.width);
+            let share = 1.0 - cos * cos;
+            return (n * (p - q * cos) + m * (q - p * cos)) / share.max(1e-6);
+        }
+        let rise = drawn_on.dot(&side.out);
+        let reach = side.width / rise.max(1e-9);
+        match cos > 0.0 && reach > MITRE_LIMIT * side.width {
+            true => side.out * side.width,
+            false => drawn_on * reach.min(MITRE_LIMIT * side.width),
+        }
+    }
+}

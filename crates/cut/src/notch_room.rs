@@ -1,0 +1,189 @@
+//! The room that a notch has between the cut line and the cloth that is sewn.
+
+use crate::notch::{NOTCH_DEPTH, shape};
+use toile_geometry::{
+    Bounds2, Polygon, Vec2, closest_on_segment, point_segment_distance, segment_distance,
+    segments_cross,
+};
+use toile_pattern::NotchKind;
+
+/// Share of the allowance a notch is cut into at the most: the rest is sewn.
+const MOST_OF_ALLOWANCE: f64 = 0.6;
+/// Between a notch and the cloth that is sewn at the least, over its depth: what is left of the
+/// allowance beside the deepest notch.
+const CLEAR: f64 = 0.66;
+/// Between the ground of a notch and the cut line at the least, over its depth.
+const WITHIN: f64 = 0.3;
+/// Next depth that is tried over the last.
+const SHALLOWER: f64 = 0.85;
+/// A notch less deep is not cut \[m\]: it is no wider than the cut of a knife.
+const LEAST: f64 = 0.000_25;
+/// How far from the seam line a cut line is looked for \[m\].
+const REACH: f64 = 0.5;
+/// Cut lines nearer to the seam line are the same line, flattened \[m\].
+const ON_SEAM: f64 = 1e-4;
+/// A cut line passes through a place that is no farther away \[m\].
+const ON_CUT: f64 = 2e-5;
+
+/// A piece's cut line, and the cloth inside its seam lines.
+pub(crate) struct Room {
+    pub cut: Polygon,
+    pub sewn: Polygon,
+}
+
+/// What lies near a notch.
+struct Near<'a> {
+    room: &'a Room,
+    cut: Vec<[Vec2; 2]>,
+    sewn: Vec<[Vec2; 2]>,
+}
+
+impl Room {
+    /// Where a notch at a place of the seam line stands on the cut line that should lie beyond it
+    /// by a vector \[m\]; nothing where that line does not lie before other cloth.
+    pub fn cut_line(&self, from: Vec2, outwards: Vec2) -> Option<Vec2> {
+        let at = self
+            .there(from + outwards)
+            .or_else(|| self.outwards(from, outwards))?;
+        let way = at - from;
+        let length = way.norm();
+        let start = from + way * (ON_SEAM / length.max(ON_SEAM));
+        let blocked = |edge: [Vec2; 2]| segments_cross([start, at], edge);
+        (length <= ON_SEAM || !self.sewn.edges().any(blocked)).then_some(at)
+    }
+
+    /// The place on the cut line next to a place, if it passes there.
+    fn there(&self, place: Vec2) -> Option<Vec2> {
+        let away = |at: &Vec2| (at - place).norm();
+        let nearest = self.cut.edges().map(|edge| closest_on_segment(place, edge));
+        let nearest = nearest.min_by(|a, b| away(a).total_cmp(&away(b)));
+        nearest.filter(|at| away(at) <= ON_CUT)
+    }
+
+    /// Where a ray from a place meets the cut line first.
+    fn outwards(&self, from: Vec2, way: Vec2) -> Option<Vec2> {
+        let way = way.try_normalize(1e-9)?;
+        let mut nearest = REACH;
+        for [p, q] in self.cut.edges() {
+            let side = q - p;
+            let cross = way.perp(&side);
+            let (at, share) = (
+                (p - from).perp(&side) / cross,
+                (p - from).perp(&way) / cross,
+            );
+            let meets = (-1e-9..=1.0 + 1e-9).contains(&share) && at > -ON_SEAM;
+            if meets && at < nearest {
+                nearest = at;
+            }
+        }
+        (nearest < REACH).then(|| from + way * nearest.max(0.0))
+    }
+
+    /// The depth to which a notch can be cut, and its lines: from a place of the seam line, and
+    /// that on the cut line, with unit vectors along the cut line and inwards. Nothing where no
+    /// allowance is wide enough.
+    pub fn cut(
+        &self,
+        kind: NotchKind,
+        (point, at): (Vec2, Vec2),
+        axes: [Vec2; 2],
+    ) -> Option<(f64, Vec<Vec<Vec2>>)> {
+        let width = (at - point).norm();
+        let deepest = NOTCH_DEPTH.min(MOST_OF_ALLOWANCE * width);
+        let near = Near::new(self, at, 3.0 * deepest);
+        let mut depth = deepest;
+        while depth >= LEAST {
+            if let Some(lines) = near.lines(kind, (at, axes), depth) {
+                return Some((depth, lines));
+            }
+            depth *= SHALLOWER;
+        }
+        None
+    }
+}
+
+impl<'a> Near<'a> {
+    fn new(room: &'a Room, at: Vec2, reach: f64) -> Self {
+        let around = Bounds2::of([at]).grown(reach);
+        let near = |polygon: &Polygon| {
+            let edges = polygon.edges();
+            edges
+                .filter(|edge| Bounds2::of(*edge).meets(&around))
+                .collect()
+        };
+        Self {
+            cut: near(&room.cut),
+            sewn: near(&room.sewn),
+            room,
+        }
+    }
+
+    /// The lines of a notch so deep, if all of them lie in the allowance.
+    fn lines(
+        &self,
+        kind: NotchKind,
+        (at, [along, inward]): (Vec2, [Vec2; 2]),
+        depth: f64,
+    ) -> Option<Vec<Vec<Vec2>>> {
+        let mut lines = Vec::new();
+        for line in shape(kind) {
+            let mut points = Vec::with_capacity(line.len());
+            for [aside, deep] in line {
+                let place = at + (along * aside + inward * deep) * depth;
+                points.push(match (deep == 0.0, aside == 0.0) {
+                    (true, true) => at,
+                    (true, false) => self.on_cut_line(place, inward * depth)?,
+                    (false, _) => place,
+                });
+                let is_ground = deep > 0.0;
+                if is_ground && !self.is_within(place, WITHIN * depth) {
+                    return None;
+                }
+            }
+            let fits = |pair: &[Vec2]| self.is_clear([pair[0], pair[1]], CLEAR * depth);
+            if !points.windows(2).all(fits) {
+                return None;
+            }
+            lines.push(points);
+        }
+        Some(lines)
+    }
+
+    /// The place of the cut line straight out or in from a place that should be on it, no farther
+    /// than a depth inwards \[m\].
+    fn on_cut_line(&self, place: Vec2, inwards: Vec2) -> Option<Vec2> {
+        let (from, to) = (place + inwards * 0.9, place - inwards * 0.9);
+        let way = to - from;
+        let meet = |[p, q]: &[Vec2; 2]| {
+            let side = q - p;
+            let cross = way.perp(&side);
+            let (at, share) = (
+                (p - from).perp(&side) / cross,
+                (p - from).perp(&way) / cross,
+            );
+            let meets = (0.0..=1.0).contains(&at) && (-1e-9..=1.0 + 1e-9).contains(&share);
+            meets.then_some(at)
+        };
+        let first = self.cut.iter().filter_map(meet).min_by(f64::total_cmp);
+        first.map(|at| from + way * at)
+    }
+
+    /// Whether a place lies in the piece as cut, so far from the cut line \[m\].
+    fn is_within(&self, place: Vec2, far: f64) -> bool {
+        let near = |edge: &[Vec2; 2]| point_segment_distance(place, *edge) < far;
+        self.room.cut.contains(place) && !self.cut.iter().any(near)
+    }
+
+    /// Whether a line from or to the cut line crosses it nowhere else, and keeps so far from what
+    /// is sewn \[m\].
+    fn is_clear(&self, line: [Vec2; 2], far: f64) -> bool {
+        let short = (line[1] - line[0]) * 0.02;
+        let inner = [line[0] + short, line[1] - short];
+        !self.cut.iter().any(|edge| segments_cross(inner, *edge))
+            && !self
+                .sewn
+                .iter()
+                .any(|edge| segment_distance(line, *edge) < far)
+            && !self.room.sewn.contains(line[0])
+    }
+}
