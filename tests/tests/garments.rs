@@ -143,5 +143,5 @@ fn shipped_patterns_are_worn_over_one_another() {
     }
     let mesh = run.system.mesh(&run.state.positions);
     assert_eq!(mesh.component_count(), 3);
-    assert!(run.warnings().is_empty(), "{:?}", run.warnings());
+    assert!(run.findings().is_empty(), "{:?}", run.findings());
 }

@@ -15,7 +15,8 @@ use toile_session::{Command, OtherGarment, PatternFormat, Quality};
 /// their unit: mm, cm, m or in, as in 150cm; durations with ms, s or min, a number alone is in
 /// seconds. Files are in metres, Y up, the mannequin facing +Z.
 ///
-/// Exit status: 0 on success, 2 on bad input, 1 on failure.
+/// Exit status: 0 on success, 2 on bad input, 1 on failure, 3 where all was made and written but the verdict on it is
+/// bad: not at rest, off the body, seams open, tangled, crumpled or slowed down.
 #[derive(Debug, Parser)]
 #[command(name = "toile", version)]
 pub struct Arguments {
@@ -172,6 +173,10 @@ pub struct Run {
     /// Go on from checkpoint.json in that folder: the results are those of a run without interruption.
     #[arg(long)]
     pub resume: bool,
+    /// End the run with checkpoint.json and exit status 3 once a simulated second takes more processor time than this,
+    /// as in 30s or 10min.
+    #[arg(long, value_name = "TIME")]
+    pub give_up: Option<Duration>,
 }
 
 /// How finely to mesh and drape.

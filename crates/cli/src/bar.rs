@@ -1,19 +1,25 @@
-//! The progress bar, on a terminal only.
+//! The progress of long work: a bar on a terminal, else a line now and then.
 
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 use toile_session::Watcher;
 
 /// Exit status of a program that was interrupted.
 const INTERRUPTED: i32 = 130;
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
+/// Time from one line to the next where there is no terminal.
+const LINES_APART: Duration = Duration::from_secs(30);
 
-/// A bar on stderr; hidden where stderr is no terminal.
+/// A bar on stderr; where that is no terminal, a line there from time to time.
 pub struct Bar {
     bar: ProgressBar,
+    /// When the last line was written, at first when the work began.
+    last_line: Instant,
     /// Set when the work is to stop.
     stop: Option<Arc<AtomicBool>>,
 }
@@ -25,7 +31,11 @@ impl Bar {
         let style = ProgressStyle::with_template("{bar:36} {percent:>3} %  {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style);
-        Self { bar, stop: None }
+        Self {
+            bar,
+            last_line: Instant::now(),
+            stop: None,
+        }
     }
 
     /// A bar whose work stops at the first Ctrl-C; the second one ends the program.
@@ -52,6 +62,12 @@ impl Drop for Bar {
 impl Watcher for Bar {
     fn progress(&mut self, stage: &str, share: f64, detail: &str) -> ControlFlow<()> {
         let gap = if detail.is_empty() { "" } else { ": " };
+        if self.bar.is_hidden() && self.last_line.elapsed() >= LINES_APART {
+            self.last_line = Instant::now();
+            let percent = 100.0 * share;
+            // Nothing happens when nobody reads it any more.
+            let _ = writeln!(std::io::stderr(), "{percent:.0} %: {stage}{gap}{detail}");
+        }
         self.bar.set_message(format!("{stage}{gap}{detail}"));
         self.bar.set_position((share * STEPS) as u64);
         match &self.stop {

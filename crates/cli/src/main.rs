@@ -1,6 +1,7 @@
 //! The `toile` command: sewing patterns checked, laid out, sewn and draped.
 //!
-//! Exit status: 0 on success, 2 on bad input, 1 on failure.
+//! Exit status: 0 on success, 2 on bad input, 1 on failure, 3 where all was made and written but the verdict on it is
+//! bad.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod arguments;
@@ -19,7 +20,7 @@ mod values;
 
 use arguments::{Arguments, Task};
 use clap::Parser;
-use output::{Failure, Output};
+use output::{Failure, Made, Output};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -28,10 +29,7 @@ fn main() -> ExitCode {
     let output = Output::new(arguments.json);
     let outcome = run(arguments.task.unwrap_or_else(sample), &output);
     match outcome {
-        Ok(report) => {
-            output.finish(report);
-            ExitCode::SUCCESS
-        }
+        Ok(made) => output.finish(made),
         Err(failure) => output.fail(&failure),
     }
 }
@@ -47,22 +45,23 @@ fn sample() -> Task {
     Task::Make(arguments::Make::of(pattern, "out"))
 }
 
-fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
-    match task {
-        Task::Make(make) => session_commands::make(&make, output),
-        Task::Drape(drape) => session_commands::drape(&drape, output),
+fn run(task: Task, output: &Output) -> Result<Made, Failure> {
+    let report = match task {
+        Task::Make(make) => return session_commands::make(&make, output),
+        Task::Drape(drape) => return session_commands::drape(&drape, output),
         Task::Check(check) => check_commands::check(&check, output),
-        Task::Replay(replay) => session_commands::replay(&replay, output),
+        Task::Replay(replay) => return session_commands::replay(&replay, output),
         Task::Convert(convert) => tool_commands::convert(&convert, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
         Task::Print(print) => print_commands::print(&print, output),
         Task::Nest(nest) => nest_commands::nest(&nest, output),
         Task::Body(body) => tool_commands::body(&body, output),
-        Task::Run(run) => tool_commands::run(&run, output),
+        Task::Run(run) => return tool_commands::run(&run, output),
         Task::Validate(validate) => lab_commands::validate(&validate, output),
         Task::Chart(chart) => lab_commands::chart(&chart, output),
         Task::Stability(stability) => lab_commands::stability(&stability, output),
         Task::Accuracy(accuracy) => lab_commands::accuracy(&accuracy, output),
         Task::Bench(bench) => lab_commands::bench(&bench, output),
-    }
+    };
+    report.map(Made::from)
 }

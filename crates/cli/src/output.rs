@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use toile_session::{Event, SessionError};
+use toile_session::{Event, SessionError, Verdict};
 
 /// Why a command was not done, and its exit status.
 #[derive(Debug)]
@@ -93,6 +93,33 @@ impl From<SessionError> for Failure {
     }
 }
 
+/// What a command made.
+pub struct Made {
+    report: Value,
+    /// What the result is that it ought not to be, in a few words; none where it is sound.
+    fault: Option<String>,
+}
+
+impl Made {
+    /// What was made with the verdict on it, where there is one.
+    pub fn judged(report: Value, verdict: Option<&Verdict>) -> Self {
+        let bad = verdict.filter(|verdict| !verdict.is_sound());
+        Self {
+            report,
+            fault: bad.map(Verdict::headline),
+        }
+    }
+}
+
+impl From<Value> for Made {
+    fn from(report: Value) -> Self {
+        Self::judged(report, None)
+    }
+}
+
+/// Exit status where all was made and written but the verdict on it is bad.
+const BAD_VERDICT: u8 = 3;
+
 /// Where results go.
 pub struct Output {
     json: bool,
@@ -132,10 +159,21 @@ impl Output {
         }
     }
 
-    /// Ends with a report.
-    pub fn finish(&self, report: Value) {
+    /// Ends with what was made.
+    pub fn finish(&self, made: Made) -> ExitCode {
+        let is_sound = made.fault.is_none();
+        if let Some(fault) = &made.fault {
+            self.warn(format_args!(
+                "verdict: {fault}; the files show how it ended"
+            ));
+        }
         if self.json {
-            print_line(format_args!("{:#}", merged(json!({ "ok": true }), report)));
+            let start = json!({ "ok": is_sound });
+            print_line(format_args!("{:#}", merged(start, made.report)));
+        }
+        match is_sound {
+            true => ExitCode::SUCCESS,
+            false => ExitCode::from(BAD_VERDICT),
         }
     }
 

@@ -2,13 +2,13 @@
 
 use crate::arguments::{Make, Replay};
 use crate::bar::Bar;
-use crate::output::{Failure, Output, count};
+use crate::output::{Failure, Made, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use toile_session::{Command, Event, ExpectedKind, Session, read_input, read_journal};
 
 /// The whole job.
-pub fn make(make: &Make, output: &Output) -> Result<Value, Failure> {
+pub fn make(make: &Make, output: &Output) -> Result<Made, Failure> {
     let work = [
         Command::Check,
         Command::Nest,
@@ -19,12 +19,12 @@ pub fn make(make: &Make, output: &Output) -> Result<Value, Failure> {
 }
 
 /// The 3D half alone.
-pub fn drape(make: &Make, output: &Output) -> Result<Value, Failure> {
+pub fn drape(make: &Make, output: &Output) -> Result<Made, Failure> {
     let work = [Command::Check, Command::Assemble, Command::drape()];
     run(make, &work, output)
 }
 
-fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure> {
+fn run(make: &Make, work: &[Command], output: &Output) -> Result<Made, Failure> {
     refuse_layers(make)?;
     let mut commands = make.choices();
     refuse_nobody(&commands)?;
@@ -93,7 +93,7 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
 }
 
 /// A journal done again.
-pub fn replay(replay: &Replay, output: &Output) -> Result<Value, Failure> {
+pub fn replay(replay: &Replay, output: &Output) -> Result<Made, Failure> {
     let about = |error: toile_session::SessionError| Failure::from(error).about(&replay.journal);
     let text = read_input(&replay.journal, ExpectedKind::Journal).map_err(about)?;
     let commands = read_journal(&text).map_err(about)?;
@@ -102,8 +102,8 @@ pub fn replay(replay: &Replay, output: &Output) -> Result<Value, Failure> {
     Ok(outcome(&events, &replay.out))
 }
 
-/// The machine-readable outcome: files, warnings, and the content of `report.json`.
-fn outcome(events: &[Event], folder: &Path) -> Value {
+/// The machine-readable outcome: files, warnings, and the content of `report.json`; with the verdict on the last drape.
+fn outcome(events: &[Event], folder: &Path) -> Made {
     let files: Vec<&PathBuf> = events
         .iter()
         .filter_map(|event| match event {
@@ -115,7 +115,12 @@ fn outcome(events: &[Event], folder: &Path) -> Value {
     let report = std::fs::read_to_string(folder.join("report.json"))
         .ok()
         .and_then(|text| serde_json::from_str::<Value>(&text).ok());
-    json!({ "files": files, "warnings": warnings(events), "report": report })
+    let verdict = events.iter().rev().find_map(|event| match event {
+        Event::Draped(drape) => Some(&drape.verdict),
+        _ => None,
+    });
+    let made = json!({ "files": files, "warnings": warnings(events), "report": report });
+    Made::judged(made, verdict)
 }
 
 /// What was warned of.

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Body, Convert, Mesh, Run};
 use crate::bar::Bar;
-use crate::output::{Failure, Output, count};
+use crate::output::{Failure, Made, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -302,10 +302,11 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Simulates a scene.
-pub fn run(run: &Run, output: &Output) -> Result<Value, Failure> {
+pub fn run(run: &Run, output: &Output) -> Result<Made, Failure> {
     let options = RunOptions {
         checkpoint_step: run.checkpoint,
         resume: run.resume,
+        give_up: run.give_up.map(Duration::as_seconds),
     };
     let outcome = run_scene(&run.scene, &run.out, &options, &mut Bar::new())
         .map_err(|error| Failure::from(error).about(&run.scene))?;
@@ -342,5 +343,6 @@ pub fn run(run: &Run, output: &Output) -> Result<Value, Failure> {
     for file in outcome.files.iter().filter(|file| !is_frame(file)) {
         output.say(format!("wrote {}", file.display()));
     }
-    Ok(json!({ "files": outcome.files, "report": outcome.report }))
+    let made = json!({ "files": outcome.files, "report": outcome.report });
+    Ok(Made::judged(made, Some(&outcome.verdict)))
 }

@@ -54,8 +54,10 @@ mod sew;
 mod state;
 mod step;
 mod submodel;
+mod support;
 mod system;
 mod topology;
+mod verdict;
 mod world;
 mod xpbd;
 
@@ -95,11 +97,13 @@ pub use scene_run::{SceneCheckpoint, SceneRun, Surface, TimeSettings};
 pub use sew::{SewRun, SewSettings};
 pub use state::State;
 pub use step::{StepSettings, step_in_time};
+pub use support::{Support, supports};
 pub use system::{System, SystemBuilder};
 pub use toile_sparse::PcgLimits;
 pub use topology::Topology;
+pub use verdict::{Aspect, Finding, Verdict};
 pub use world::{
     AttachmentEnd, AttachmentId, Edited, Kind, Layers, MeshVertex, Object, ObjectAttachment,
-    ObjectId, PairPolicy, Simulation, VertexGrip, VertexMap, World, WorldEdit,
+    ObjectId, OpenAttachment, PairPolicy, Simulation, VertexGrip, VertexMap, World, WorldEdit,
 };
 pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};

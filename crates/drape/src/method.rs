@@ -203,6 +203,16 @@ pub struct MethodSettings {
     pub tolerance: Option<f64>,
 }
 
+/// Net force over weight at which equilibrium methods end by default.
+const REST_RESIDUAL: f64 = 1e-3;
+
+impl MethodSettings {
+    /// Net force over weight at which an equilibrium method ends.
+    pub fn rest_residual(&self) -> f64 {
+        self.tolerance.unwrap_or(REST_RESIDUAL)
+    }
+}
+
 impl From<MethodKind> for MethodSettings {
     fn from(kind: MethodKind) -> Self {
         Self {

@@ -408,6 +408,11 @@ impl SceneRun {
         self_intersections(&self.system, &SurfaceTree::new(mesh)).len()
     }
 
+    /// Net force over weight after the last step, where the method computes it; infinite where it has failed to.
+    pub fn residual(&self) -> Option<f64> {
+        self.method.residual()
+    }
+
     /// Net force over weight in some measures; none where the method does not balance forces.
     pub fn residual_of(&self, measures: &Measures) -> Option<f64> {
         let balances = self.settings.method.kind.balances_forces();

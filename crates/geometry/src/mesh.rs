@@ -206,6 +206,14 @@ impl TriangleMesh {
 
     /// Number of pieces that hang together by shared vertices; lone vertices are not counted.
     pub fn component_count(&self) -> usize {
+        let labels = self.component_labels();
+        let most = labels.into_iter().flatten().max();
+        most.map_or(0, |most| most as usize + 1)
+    }
+
+    /// The number of the piece that each vertex belongs to, pieces in the order of their first vertices; none for lone
+    /// vertices.
+    pub fn component_labels(&self) -> Vec<Option<u32>> {
         let mut parent: Vec<u32> = (0..self.positions.len() as u32).collect();
         fn root(parent: &mut [u32], mut v: u32) -> u32 {
             while parent[v as usize] != v {
@@ -214,21 +222,28 @@ impl TriangleMesh {
             }
             v
         }
+        let mut used = vec![false; self.positions.len()];
         for &[a, b, c] in &self.triangles {
             let ra = root(&mut parent, a);
+            used[a as usize] = true;
             for other in [b, c] {
                 let ro = root(&mut parent, other);
                 parent[ro as usize] = ra;
+                used[other as usize] = true;
             }
         }
-        let mut roots: Vec<u32> = self
-            .triangles
-            .iter()
-            .map(|t| root(&mut parent, t[0]))
-            .collect();
-        roots.sort_unstable();
-        roots.dedup();
-        roots.len()
+        let mut numbers: Vec<Option<u32>> = vec![None; self.positions.len()];
+        let mut count = 0;
+        let mut label = |v: u32| {
+            let number = &mut numbers[root(&mut parent, v) as usize];
+            *number.get_or_insert_with(|| {
+                count += 1;
+                count - 1
+            })
+        };
+        (0..self.positions.len() as u32)
+            .map(|v| used[v as usize].then(|| label(v)))
+            .collect()
     }
 
     /// Vertices minus edges plus triangles, over used vertices: 2 for a closed ball.

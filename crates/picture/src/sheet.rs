@@ -21,6 +21,8 @@ pub struct Sheet {
     pub height: usize,
     /// Words at the top; may be empty.
     pub title: String,
+    /// Words under the title in the colour of a warning; may be empty.
+    pub warning: String,
     /// Views from left to right, all at one scale.
     pub views: Vec<View>,
     /// The background.
@@ -35,6 +37,7 @@ impl Sheet {
             width: 1600,
             height: 1000,
             title: title.into(),
+            warning: String::new(),
             views: vec![View::Front, View::ThreeQuarter, View::Side, View::Back],
             backdrop: Backdrop::default(),
         }
@@ -59,6 +62,8 @@ impl Sheet {
 const RISE: f64 = 0.05;
 /// Colour of captions.
 const SOFT: Rgb = [0.42, 0.41, 0.40];
+/// Colour of warnings.
+const WARNING: Rgb = [0.72, 0.13, 0.10];
 
 /// Draws a scene from one camera.
 ///
@@ -121,6 +126,11 @@ fn write_title(image: &mut Image, sheet: &Sheet) {
     let letters = sheet.letters();
     let style = TextStyle::plain(1.35 * letters);
     image.write([2.5 * letters, 3.4 * letters], &sheet.title, &style);
+    let style = TextStyle {
+        colour: WARNING,
+        ..style
+    };
+    image.write([2.5 * letters, 5.4 * letters], &sheet.warning, &style);
 }
 
 /// All views and their captions; `margins` are kept free above and below \[pixel\].

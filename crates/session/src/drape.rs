@@ -2,10 +2,10 @@
 
 use crate::interactive_run::InteractiveRun;
 use crate::watcher::report_progress;
-use crate::{Draped, Event, GarmentJob, GarmentPart, SessionError, StampedInput, Watcher};
+use crate::{Draped, Event, GarmentJob, SessionError, StampedInput, Watcher, verdict};
 use std::sync::Arc;
 use toile_drape::collision::Tally;
-use toile_drape::{Measures, Stage, keeps_corners, stretch_per_triangle};
+use toile_drape::{DrapeError, Measures, Stage, Verdict, keeps_corners, stretch_per_triangle};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A garment sewn and draped.
@@ -27,13 +27,16 @@ pub(crate) struct Drape {
     pub seam_gap: f64,
     /// What contact of cloth with cloth found and did while it swung.
     pub tally: Tally,
+    /// What it came to.
+    pub verdict: Verdict,
+    /// What is told of it: the words of the verdict, and whether a hand is still on the cloth.
     pub warnings: Vec<String>,
     /// What was done to the cloth meanwhile.
     pub inputs: Vec<StampedInput>,
 }
 
 impl Drape {
-    /// A finished run as a product.
+    /// A run as a product, at rest or where it stopped.
     pub fn of(handled: &mut InteractiveRun) -> Self {
         let held = handled.is_held();
         let inputs = handled.applied().to_vec();
@@ -43,22 +46,25 @@ impl Drape {
         let origin = (0..job.garment.triangles.len() as u32)
             .filter(|&t| keeps_corners(job.garment.triangles[t as usize], run.target()))
             .collect();
-        let mut warnings = run.warnings().to_vec();
-        warnings.extend(shortcomings(&mesh, &measures, &job.parts));
-        warnings.extend(tangle(&measures, &run.cloth_tally()));
+        let verdict = verdict::of_garment(job, run, &measures);
+        let mut warnings: Vec<String> = verdict.words().map(str::to_owned).collect();
         if held {
             warnings.push("the cloth is still held; let go of it to see how it hangs".to_owned());
         }
         Self {
             stretch: stretch_per_triangle(&run.system, &run.state.positions),
             steps: run.steps(),
-            seam_gap: run.gap_before_merging(),
+            seam_gap: match run.progress().stage {
+                Stage::Sewing => run.progress().gap,
+                _ => run.gap_before_merging(),
+            },
             tally: run.cloth_tally(),
             target: run.target().to_vec(),
             job: job.clone(),
             mesh,
             origin,
             measures,
+            verdict,
             warnings,
             inputs,
         }
@@ -107,6 +113,7 @@ impl Drape {
             body_intersections: self.measures.body_intersections,
             strain_max: self.measures.strain_max,
             strain_p99: self.measures.strain_p99,
+            verdict: self.verdict.clone(),
         }
     }
 }
@@ -157,7 +164,11 @@ pub(crate) fn drape(
         run.give(stamped.input, Some(stamped.step));
     }
     loop {
-        let progress = run.advance()?;
+        let progress = match run.advance() {
+            // What is made so far is of use to see why.
+            Err(DrapeError::SeamsOpen { .. }) => break,
+            advanced => advanced?,
+        };
         let (stage, detail) = match progress.stage {
             Stage::Sewing => ("sewing", format!("gap {:.1} mm", progress.gap * 1e3)),
             Stage::Swinging => ("draping", "swinging".to_owned()),
@@ -170,53 +181,4 @@ pub(crate) fn drape(
         }
     }
     Ok(Drape::of(&mut run))
-}
-
-/// What is said of a garment that ends with folds of its cloth in one another.
-fn tangle(measures: &Measures, tally: &Tally) -> Option<String> {
-    let [found, most, _] = tally.crossings;
-    (measures.self_intersections > 0).then(|| {
-        format!(
-            "it ends tangled: {} pairs of cloth triangles cross each other ({found} edges of cloth went through cloth when its seams were closed, {most} at most): folds of the cloth lie in one another; try --quality final, more ease, or panels placed farther apart",
-            measures.self_intersections
-        )
-    })
-}
-
-/// What a finished garment ought not to have, in plain words.
-fn shortcomings(mesh: &TriangleMesh, measures: &Measures, parts: &[GarmentPart]) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let components = mesh.component_count();
-    if components > parts.len() {
-        warnings.push(format!(
-            "the garment is in {components} parts that no seam joins; sew them together or make them apart"
-        ));
-    }
-    if measures.body_intersections > 0 {
-        warnings.push(format!(
-            "{} pairs of cloth and body triangles cross; the garment is too tight there, or the mesh too coarse: try a larger size or --quality final",
-            measures.body_intersections
-        ));
-    }
-    for layer in &measures.layers {
-        if layer.outer_intersections + layer.astray > 0 {
-            let of_layer = |part: &&GarmentPart| part.layer == layer.layer;
-            let names: Vec<&str> = parts.iter().filter(of_layer).map(|p| &*p.name).collect();
-            warnings.push(format!(
-                "{} pairs of triangles of {} and of what is worn over it cross, and {} vertices of that lie under it: give it more ease",
-                layer.outer_intersections,
-                names.join(" and "),
-                layer.astray
-            ));
-        }
-    }
-    for (name, strain) in ["warp", "weft"].iter().zip(measures.strain_max) {
-        if strain > 0.15 {
-            warnings.push(format!(
-                "the cloth is stretched by {:.0} % along the {name} at the tightest place: see fit.png, and add ease there",
-                strain * 100.0
-            ));
-        }
-    }
-    warnings
 }

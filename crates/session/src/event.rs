@@ -1,6 +1,7 @@
 //! Events: what a command did, for whoever gave it.
 
 use std::path::PathBuf;
+use toile_drape::Verdict;
 use toile_marker::MarkerSummary;
 
 /// Something that happened while a command was done.
@@ -77,4 +78,6 @@ pub struct Draped {
     pub strain_max: [f64; 2],
     /// Stretch along warp and weft that 99 % of the cloth stays under.
     pub strain_p99: [f64; 2],
+    /// What it came to.
+    pub verdict: Verdict,
 }

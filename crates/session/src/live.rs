@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
-use toile_drape::{DrapeError, Progress, Stage};
+use toile_drape::{DrapeError, Progress, Stage, Verdict};
 use toile_geometry::Vec3;
 
 /// One moment of a live drape.
@@ -61,6 +61,7 @@ struct Shared {
     applied: Mutex<Vec<StampedInput>>,
     outcome: Mutex<Option<Result<DrapeResult, String>>>,
     warnings: Mutex<Vec<String>>,
+    verdict: Mutex<Option<Verdict>>,
     finished: AtomicBool,
 }
 
@@ -216,6 +217,11 @@ impl LiveRun {
     pub fn warnings(&self) -> Vec<String> {
         lock(&self.shared.warnings).clone()
     }
+
+    /// The verdict on a garment that rests, also after an edit; none while it moves.
+    pub fn verdict(&self) -> Option<Verdict> {
+        lock(&self.shared.verdict).clone()
+    }
 }
 
 impl Drop for LiveRun {
@@ -245,6 +251,7 @@ impl Shared {
     fn begin_again(&self, orders: &Orders) {
         if !orders.ended {
             *lock(&self.outcome) = None;
+            *lock(&self.verdict) = None;
             self.finished.store(false, Ordering::Release);
             self.woken.notify_all();
         }
@@ -279,6 +286,7 @@ impl Shared {
                     Some(told) => {
                         *lock(&self.outcome) = told.result.clone().map(Ok);
                         lock(&self.warnings).clone_from(&told.warnings);
+                        *lock(&self.verdict) = Some(told.verdict.clone());
                         self.finished.store(true, Ordering::Release);
                     }
                 }
@@ -317,6 +325,7 @@ struct RestReport {
     /// Its drape, unless it followed an edit.
     result: Option<DrapeResult>,
     warnings: Vec<String>,
+    verdict: Verdict,
 }
 
 /// Runs until it is stopped.
@@ -336,8 +345,13 @@ fn run(shared: &Shared, mut job: Arc<GarmentJob>) -> Result<(), DrapeError> {
                 let drape = Arc::new(Drape::of(&mut run));
                 seconds += start.elapsed().as_secs_f64();
                 let warnings = drape.warnings.clone();
+                let verdict = drape.verdict.clone();
                 let result = (!is_edited).then_some(DrapeResult { drape, seconds });
-                told = Some(RestReport { result, warnings });
+                told = Some(RestReport {
+                    result,
+                    warnings,
+                    verdict,
+                });
             }
             NextTask::Edit(edit) => {
                 is_edited |= edit.change != RestChange::Nothing;

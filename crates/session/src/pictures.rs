@@ -36,7 +36,7 @@ fn garment(drape: &Drape, paint: Paint, line: [f64; 3]) -> Surface {
     }
 }
 
-/// The garment on the mannequin from all sides, as PNG.
+/// The garment on the mannequin from all sides with what the verdict found, as PNG.
 pub(crate) fn drape_png(
     drape: &Drape,
     skin: &TriangleMesh,
@@ -56,7 +56,11 @@ pub(crate) fn drape_png(
             body(skin),
         ],
     };
-    Ok(drape_picture(&scene, &Sheet::studio(title))?.to_png()?)
+    let sheet = Sheet {
+        warning: drape.verdict.headline(),
+        ..Sheet::studio(title)
+    };
+    Ok(drape_picture(&scene, &sheet)?.to_png()?)
 }
 
 /// The stretch of the cloth in colour, with its key, as PNG.

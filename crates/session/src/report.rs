@@ -6,6 +6,7 @@ use crate::crossings::Tangles;
 use crate::drape::Drape;
 use crate::outfit::DraftedPart;
 use serde::Serialize;
+use toile_drape::Verdict;
 use toile_marker::FinishedMarker;
 use toile_pattern::{Draft, DraftSpan};
 
@@ -100,6 +101,7 @@ struct DrapeReport {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     layers: Vec<LayerReport>,
     tangles: Tangles,
+    verdict: Verdict,
 }
 
 #[derive(Serialize)]
@@ -278,6 +280,7 @@ impl Report {
             self_intersections: measures.self_intersections,
             layers: layer_reports(drape),
             tangles: Tangles::of(&drape.tally),
+            verdict: drape.verdict.clone(),
         });
     }
 

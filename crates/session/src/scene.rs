@@ -3,16 +3,20 @@
 use crate::crossings::{Crossings, Tangles};
 use crate::export::{cannot, file_name};
 use crate::open::read_input;
+use crate::pace::Pace;
 use crate::scene_builder::Builder;
 use crate::scene_checkpoint::{CheckpointTimes, RunOptions, SavedRun};
 use crate::timing::Timing;
 use crate::watcher::report_progress;
-use crate::{SessionError, Watcher};
+use crate::{SessionError, Watcher, verdict};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use toile_drape::{Kind, Layers, Object, ObjectId, Scene, SceneRun, Surface, World};
+use toile_drape::{
+    Finding, Kind, Layers, Object, ObjectId, Scene, SceneCheckpoint, SceneRun, Surface, Verdict,
+    World,
+};
 use toile_interchange::{
     ExpectedKind, FormatError, ObjGroup, ObjMesh, read_scene, write_all_atomically, write_obj,
 };
@@ -24,6 +28,8 @@ pub struct SceneOutcome {
     pub files: Vec<PathBuf>,
     /// The report, as JSON.
     pub report: serde_json::Value,
+    /// What the run came to; the report holds it, too.
+    pub verdict: Verdict,
 }
 
 /// Frames a scene may save: beyond this the frame step is surely a mistake.
@@ -62,65 +68,176 @@ pub fn run_scene(
     let scene = builder.scene(watcher)?;
     timing.add("read", start);
     let start = Instant::now();
-    let frame_step = scene.frame_step;
     check_frames(&scene).map_err(wrong)?;
-    let saved = options.resume.then(|| SavedRun::read(folder)).transpose()?;
-    let (mut run, mut crossings, mut frame) = match saved {
-        Some(saved) => {
-            let run = SceneRun::resume(&scene, saved.run)?;
-            let crossings = Crossings::resumed(&run, saved.crossings);
-            (run, crossings, saved.frames)
-        }
-        None => {
-            let run = SceneRun::new(&scene)?;
-            let crossings = Crossings::new(&run);
-            (run, crossings, 0)
-        }
+    let begun = Begun::new(&scene, folder, options)?;
+    let names = state_names(begun.run.world()).map_err(wrong)?;
+    let mut course = Course {
+        scene: &scene,
+        folder,
+        checkpoints: CheckpointTimes::new(options, &begun.run, &scene)?,
+        pace: Pace::new(options, &begun.run)?,
+        names,
+        begun,
+        written: Vec::new(),
     };
-    let names = state_names(run.world()).map_err(wrong)?;
-    let mut checkpoints = CheckpointTimes::new(options, &run, &scene)?;
-    let mut written: Vec<PathBuf> = Vec::new();
-    let mut write = |files: &[(String, Vec<u8>)]| {
-        written.extend(files.iter().map(|(name, _)| folder.join(name)));
-        write_all_atomically(folder, files)
-    };
-    while !run.finished() {
-        if let Some(step) = frame_step
-            && run.state.time + 1e-9 >= frame as f64 * step
-        {
-            write(&state_files(&run, (&names, &format!("frame-{frame:05}-")))?)?;
-            frame += 1;
-        }
-        run.advance()?;
-        crossings.follow(&run);
-        if let Some(checkpoint) = checkpoints.due(&run, &scene)? {
-            let saved = SavedRun {
-                frames: frame,
-                crossings: crossings.counts(),
-                run: checkpoint,
-            };
-            saved.write(folder)?;
-        }
-        report_progress(
-            watcher,
-            "simulating",
-            run.share(),
-            &format!("{:.2} s", run.state.time),
-        )?;
-    }
-    let mut files = state_files(&run, (&names, ""))?;
+    let given_up = course.follow(watcher)?;
     timing.add("simulate", start);
     let start = Instant::now();
-    let report = report(&mut run, builder.notes, &crossings);
+    let mut files = state_files(&course.begun.run, (&course.names, ""))?;
+    let Begun { run, crossings, .. } = &mut course.begun;
+    let (report, verdict) = report(run, builder.notes, crossings, given_up);
     timing.add("measure", start);
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
     files.push(("timing.json".to_owned(), timing.to_json().into_bytes()));
-    write(&files)?;
+    course.write(&files)?;
     Ok(SceneOutcome {
-        files: written,
+        files: course.written,
         report,
+        verdict,
     })
+}
+
+/// A run before its next step, with what goes with it into a checkpoint.
+struct Begun {
+    run: SceneRun,
+    crossings: Crossings,
+    /// Frames written.
+    frames: usize,
+}
+
+impl Begun {
+    /// A run at its start, or where its checkpoint in a folder was saved.
+    fn new(scene: &Scene, folder: &Path, options: &RunOptions) -> Result<Self, SessionError> {
+        if !options.resume {
+            let run = SceneRun::new(scene)?;
+            let crossings = Crossings::new(&run);
+            return Ok(Self {
+                run,
+                crossings,
+                frames: 0,
+            });
+        }
+        let saved = SavedRun::read(folder)?;
+        let run = SceneRun::resume(scene, saved.run)?;
+        let crossings = Crossings::resumed(&run, saved.crossings);
+        Ok(Self {
+            run,
+            crossings,
+            frames: saved.frames,
+        })
+    }
+
+    /// A checkpoint of the present state.
+    fn kept(&self, scene: &Scene) -> Result<Kept, SessionError> {
+        Ok(Kept {
+            time: self.run.state.time,
+            saved: self.saved(self.run.checkpoint(scene)?),
+        })
+    }
+
+    /// With a checkpoint of the run, as it is saved.
+    fn saved(&self, run: SceneCheckpoint) -> SavedRun {
+        SavedRun {
+            frames: self.frames,
+            crossings: self.crossings.counts(),
+            run,
+        }
+    }
+}
+
+/// A checkpoint that is written only if the run is given up.
+struct Kept {
+    /// Simulated time [s].
+    time: f64,
+    saved: SavedRun,
+}
+
+/// The course of a run from step to step.
+struct Course<'a> {
+    scene: &'a Scene,
+    folder: &'a Path,
+    /// The surfaces that move, with the names of their files.
+    names: Vec<(Vec<ObjectId>, String)>,
+    begun: Begun,
+    checkpoints: CheckpointTimes,
+    pace: Pace,
+    /// Files written.
+    written: Vec<PathBuf>,
+}
+
+impl Course<'_> {
+    /// Takes all steps; writes frames and checkpoints on the way. Gives why the run was given up, if it was.
+    fn follow(&mut self, watcher: &mut dyn Watcher) -> Result<Option<Finding>, SessionError> {
+        // Where cloth meets cloth no checkpoint can be taken between whole seconds: the last one is kept.
+        let mut kept = self.keep(None)?;
+        while !self.begun.run.finished() {
+            self.write_frame()?;
+            self.begun.run.advance()?;
+            let Begun { run, crossings, .. } = &mut self.begun;
+            crossings.follow(run);
+            if let Some(checkpoint) = self.checkpoints.due(run, self.scene)? {
+                self.begun.saved(checkpoint).write(self.folder)?;
+            }
+            kept = self.keep(kept)?;
+            let run = &self.begun.run;
+            if let Some(mut finding) = self.pace.follow(run)
+                && !run.finished()
+            {
+                if let Some(Kept { time, saved }) = self.newest_checkpoint(kept)? {
+                    saved.write(self.folder)?;
+                    finding.words.push_str(&format!(
+                        "; checkpoint.json holds it at {time:.3} s, to go on from it with --resume"
+                    ));
+                }
+                return Ok(Some(finding));
+            }
+            let words = self.pace.words(run);
+            report_progress(watcher, "simulating", run.share(), &words)?;
+        }
+        Ok(None)
+    }
+
+    /// The newest checkpoint of a run that may be given up, taken once a simulated second.
+    fn keep(&self, kept: Option<Kept>) -> Result<Option<Kept>, SessionError> {
+        let run = &self.begun.run;
+        let is_new = kept
+            .as_ref()
+            .is_none_or(|kept| run.state.time - kept.time > 1.0 - 1e-9);
+        if !self.pace.may_give_up() || !is_new || run.steps_to_checkpoint() > 0 {
+            return Ok(kept);
+        }
+        Ok(Some(self.begun.kept(self.scene)?))
+    }
+
+    /// A checkpoint of the present state where one can be taken, else the one that was kept.
+    fn newest_checkpoint(&self, kept: Option<Kept>) -> Result<Option<Kept>, SessionError> {
+        let run = &self.begun.run;
+        match run.steps_to_checkpoint() {
+            0 => Ok(Some(self.begun.kept(self.scene)?)),
+            _ => Ok(kept),
+        }
+    }
+
+    /// Writes the frame that is due.
+    fn write_frame(&mut self) -> Result<(), SessionError> {
+        let Begun { run, frames, .. } = &mut self.begun;
+        let Some(step) = self.scene.frame_step else {
+            return Ok(());
+        };
+        if run.state.time + 1e-9 < *frames as f64 * step {
+            return Ok(());
+        }
+        let files = state_files(run, (&self.names, &format!("frame-{:05}-", *frames)))?;
+        *frames += 1;
+        self.write(&files)
+    }
+
+    fn write(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), SessionError> {
+        let paths = files.iter().map(|(name, _)| self.folder.join(name));
+        self.written.extend(paths);
+        Ok(write_all_atomically(self.folder, files)?)
+    }
 }
 
 /// Refuses a scene that would save more frames than anybody looks at.
@@ -199,16 +316,18 @@ fn state_files(
     Ok(files)
 }
 
-fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serde_json::Value {
+/// The report, and the verdict in it.
+fn report(
+    run: &mut SceneRun,
+    notes: Vec<String>,
+    crossings: &Crossings,
+    given_up: Option<Finding>,
+) -> (serde_json::Value, Verdict) {
     let measures = run.measure();
+    let mut verdict = verdict::of_scene(run, &measures, crossings);
+    verdict.extend(given_up);
     let mut warnings = notes;
-    if run.split_steps() > 0 {
-        warnings.push(format!(
-            "{} steps failed and were taken in smaller ones",
-            run.split_steps()
-        ));
-    }
-    warnings.extend(crossings.warning(run.system.contact.cloth_offset));
+    warnings.extend(verdict.words().map(str::to_owned));
     let layers = measures.layers.iter().map(|layer| {
         let of_layer =
             |o: &&Object| o.kind == Kind::Deformable && o.layers == Layers::One(layer.layer);
@@ -224,7 +343,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
         })
     });
     let layers: Vec<_> = layers.collect();
-    serde_json::json!({
+    let report = serde_json::json!({
         "method": run.settings().method.kind.name(),
         "vertices": run.state.positions.len(),
         "triangles": run.system.topology.triangles.len(),
@@ -241,6 +360,8 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
         "crossings": crossings,
         "layers": layers,
         "tangles": run.cloth_tally().map(|tally| Tangles::of(&tally)),
+        "verdict": verdict,
         "warnings": warnings,
-    })
+    });
+    (report, verdict)
 }

@@ -15,6 +15,8 @@ pub struct RunOptions {
     pub checkpoint_step: Option<f64>,
     /// Goes on from the checkpoint in the folder of the results.
     pub resume: bool,
+    /// Processor time of a simulated second beyond which the run is ended with a checkpoint [s]; none never ends it.
+    pub give_up: Option<f64>,
 }
 
 /// Its file in the folder of the results.

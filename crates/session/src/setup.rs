@@ -28,6 +28,8 @@ pub struct GarmentJob {
     pub garment: Arc<Garment>,
     /// Names and colours of the pieces, in the order of the garment's panels.
     pub panels: Arc<Vec<JobPanel>>,
+    /// The seams, in the order that its stitches number them.
+    pub seams: Arc<Vec<JobSeam>>,
     /// The garments it is made of, the project's own first.
     pub parts: Arc<Vec<GarmentPart>>,
     /// What an edit of the pattern is compared with.
@@ -56,6 +58,15 @@ pub struct JobPanel {
     pub colour: [f64; 3],
 }
 
+/// What a report needs to know of a seam of a garment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobSeam {
+    /// Name to show.
+    pub name: String,
+    /// Whether the longer side is gathered or eased on purpose.
+    pub gathered: bool,
+}
+
 /// Builds the drape of a garment that was meshed and placed.
 pub(crate) fn job(
     outfit: &Outfit,
@@ -75,6 +86,10 @@ pub(crate) fn job(
                 .map_or([0.7; 3], |f| f.colour),
         })
         .collect();
+    let seams = draft.seams.iter().map(|seam| JobSeam {
+        name: seam.name.clone(),
+        gathered: seam.gathered,
+    });
     let setup = GarmentSetup {
         levels: vec![level(outfit)],
         counted: counted(draft, &garment, 2.0 * quality.edge_length()),
@@ -96,6 +111,7 @@ pub(crate) fn job(
         setup,
         garment,
         panels: Arc::new(panels),
+        seams: Arc::new(seams.collect()),
         parts: outfit.parts.clone(),
         origin: Arc::new(JobOrigin {
             body,

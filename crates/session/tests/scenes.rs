@@ -216,7 +216,7 @@ fn an_interrupted_run_goes_on_from_its_checkpoint_to_the_same_files() {
     run_scene(&path, &whole, &RunOptions::default(), &mut Silent).unwrap();
     let mut options = RunOptions {
         checkpoint_step: Some(0.03),
-        resume: false,
+        ..RunOptions::default()
     };
     let mut watcher = |_: &str, share: f64, _: &str| match share > 0.7 {
         true => ControlFlow::Break(()),
@@ -246,7 +246,7 @@ fn an_interrupted_run_goes_on_from_its_checkpoint_to_the_same_files() {
     refused(&other, &broken, &options, "saved of another scene");
     let endless = RunOptions {
         checkpoint_step: Some(0.0),
-        resume: false,
+        ..RunOptions::default()
     };
     refused(
         &other,
@@ -259,7 +259,7 @@ fn an_interrupted_run_goes_on_from_its_checkpoint_to_the_same_files() {
     std::fs::write(&other, text).unwrap();
     let saved = RunOptions {
         checkpoint_step: Some(1.0),
-        resume: false,
+        ..RunOptions::default()
     };
     refused(&other, &whole, &saved, "a run by \"rest\" has none");
 }
@@ -287,7 +287,7 @@ fn a_cloth_falls_through_what_it_ignores() {
     // The first checkpoint makes the folder.
     let options = RunOptions {
         checkpoint_step: Some(0.1),
-        resume: false,
+        ..RunOptions::default()
     };
     let run = || run_scene(&path, &out, &options, &mut Silent);
     let height = || {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use toile_session::{
     CannotFollow, Event, GarmentEdit, GarmentJob, LiveFrame, LiveRun, Project, RestChange, Session,
-    SessionError, Stage,
+    SessionError, Stage, Verdict,
 };
 
 /// The work in progress and the live drape.
@@ -178,6 +178,11 @@ impl BackgroundWork {
     /// The drape at its newest.
     pub fn moment(&self) -> Option<Moment> {
         self.last
+    }
+
+    /// The verdict on the garment at rest.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.run.as_ref()?.verdict()
     }
 
     /// What the picture shows.

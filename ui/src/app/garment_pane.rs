@@ -6,7 +6,7 @@ use crate::theme::{self, Palette};
 use egui::{
     Align, Button, ComboBox, Label, Layout, Panel, Rect, RichText, Ui, UiBuilder, pos2, vec2,
 };
-use toile_session::{Command, Quality, Stage};
+use toile_session::{Command, Quality, Stage, Verdict};
 
 /// Height of the strip over the view [pixels].
 const STRIP: f32 = 38.0;
@@ -110,6 +110,7 @@ impl ToileApp {
         );
         let (colour, is_old) = match self.background_work.status() {
             GarmentStatus::OutOfDate(_) => (palette.warning, true),
+            GarmentStatus::AtRest if !self.is_flawless() => (palette.warning, false),
             _ => (palette.ink_soft, false),
         };
         let layout = Layout::bottom_up(Align::Min);
@@ -121,6 +122,12 @@ impl ToileApp {
                 false => label.truncate(),
             });
         });
+    }
+
+    /// Whether nothing is to be told of the garment at rest.
+    fn is_flawless(&self) -> bool {
+        let verdict = self.background_work.verdict();
+        verdict.is_none_or(|verdict| verdict.findings().is_empty())
     }
 
     fn drape_words(&self) -> String {
@@ -136,7 +143,10 @@ impl ToileApp {
             GarmentStatus::Moving => format!("Moving: {state}"),
             GarmentStatus::Held => format!("Paused: {state}"),
             GarmentStatus::Stopped => format!("Stopped: {state}"),
-            GarmentStatus::AtRest => state,
+            GarmentStatus::AtRest => match self.background_work.verdict() {
+                Some(verdict) => ended_words(&verdict, state),
+                None => state,
+            },
             GarmentStatus::OutOfDate(why) => format!("Out of date: {why}"),
         }
     }
@@ -147,6 +157,16 @@ fn quality_words(quality: Quality) -> &'static str {
         Quality::Preview => "coarse",
         Quality::Fit => "medium",
         Quality::Final => "fine",
+    }
+}
+
+/// How a garment ended: what it is that it ought not to be first, where it is not as asked for.
+fn ended_words(verdict: &Verdict, state: String) -> String {
+    let headline = verdict.headline();
+    match (headline.is_empty(), verdict.is_sound()) {
+        (true, _) => state,
+        (_, true) => format!("{state}, {headline}"),
+        (_, false) => format!("Not as asked for: {headline}"),
     }
 }
 

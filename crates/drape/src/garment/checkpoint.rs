@@ -7,7 +7,7 @@ use super::{GarmentRun, GarmentSetup};
 use crate::collision::Tally;
 use crate::kinetic_damping::SwingWorkspace;
 use crate::world::{ObjectId, Simulation, WorldEdit};
-use crate::{Control, DrapeError, State, Workspace};
+use crate::{Control, DrapeError, Finding, State, Workspace};
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Vec2, Vec3};
 
@@ -31,7 +31,7 @@ pub struct Checkpoint {
     #[serde(with = "crate::exact")]
     gap_before_merging: f64,
     share: f64,
-    warnings: Vec<String>,
+    findings: Vec<Finding>,
     steps: [usize; 2],
     tally: Tally,
 }
@@ -74,7 +74,7 @@ impl GarmentRun {
             eliminated_pairs: self.workspace.eliminated_pairs(&self.system),
             gap_before_merging: self.gap_before_merging,
             share: self.share,
-            warnings: self.warnings.clone(),
+            findings: self.findings.clone(),
             steps: self.steps,
             tally: self.cloth_tally(),
         })
@@ -125,7 +125,7 @@ impl GarmentRun {
             stage,
             gap_before_merging: checkpoint.gap_before_merging,
             share: checkpoint.share,
-            warnings: checkpoint.warnings,
+            findings: checkpoint.findings,
             steps: checkpoint.steps,
             tally: checkpoint.tally,
             workspace,

@@ -95,7 +95,7 @@ impl GarmentRun {
                 0.7
             }
         };
-        self.warnings.clear();
+        self.findings.clear();
     }
 }
 

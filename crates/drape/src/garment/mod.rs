@@ -16,7 +16,7 @@ use crate::collision::{ClothMemory, Tally};
 use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
 use crate::measure::{Measures, measure};
 use crate::world::{MeetingPoint, ObjectId, Simulation, WorldEdit};
-use crate::{Control, DrapeError, Equilibrium, SewRun, State, System, Workspace};
+use crate::{Control, DrapeError, Equilibrium, Finding, SewRun, State, System, Workspace};
 use setup::GarmentWorld;
 use stage::{Attempts, Settling, StageState, Swinging};
 use std::ops::Deref;
@@ -50,7 +50,7 @@ pub struct GarmentRun {
     made_for: Option<Vec<[Vec2; 3]>>,
     gap_before_merging: f64,
     share: f64,
-    warnings: Vec<String>,
+    findings: Vec<Finding>,
     /// Steps of sewing and of settling in finished stages.
     steps: [usize; 2],
     /// Counts of contact of cloth with cloth before the present caches were made.
@@ -117,7 +117,7 @@ impl GarmentRun {
             made_for: None,
             gap_before_merging: 0.0,
             share: 0.0,
-            warnings: Vec::new(),
+            findings: Vec::new(),
             steps: [0; 2],
             tally: Tally::default(),
             workspace: Workspace::default(),
@@ -201,7 +201,7 @@ impl GarmentRun {
                 .continuation
                 .continue_to(settings.residual, settings.steps);
             self.stage = StageState::Settling(settling);
-            self.warnings.clear();
+            self.findings.clear();
         }
     }
 
@@ -229,9 +229,9 @@ impl GarmentRun {
         self.swing_workspace.builds() + self.workspace.symbolic_factorisations()
     }
 
-    /// Shortcomings so far, in plain words.
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
+    /// What the run found on its way and did about it, for the verdict on its result.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 
     /// Takes one step.
@@ -360,13 +360,6 @@ impl GarmentRun {
         }
         if !finished {
             return;
-        }
-        if residual > self.setup.rest.residual {
-            self.warnings.push(format!(
-                "the drape stopped after {} steps with net force {residual:.1e} of the weight, above the {:.1e} asked for",
-                settling.continuation.steps(),
-                self.setup.rest.residual
-            ));
         }
         self.stage = StageState::Finished(settling.clone());
         self.share = 1.0;

@@ -17,7 +17,7 @@ impl Rest {
     /// With the settings, and its defaults where they give none.
     pub fn new(settings: &MethodSettings) -> Self {
         let settings = RestSettings {
-            residual: settings.tolerance.unwrap_or(1e-3),
+            residual: settings.rest_residual(),
             steps: settings.iterations.unwrap_or(2000),
             ..RestSettings::default()
         };

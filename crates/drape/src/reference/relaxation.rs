@@ -44,7 +44,7 @@ impl Relaxation {
     /// With the settings, and its defaults where they give none.
     pub fn new(settings: &MethodSettings) -> Self {
         Self {
-            tolerance: settings.tolerance.unwrap_or(1e-3),
+            tolerance: settings.rest_residual(),
             max_iterations: settings.iterations.unwrap_or(MAX_ITERATIONS),
             run: None,
             workspace: Workspace::default(),

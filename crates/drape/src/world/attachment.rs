@@ -42,7 +42,7 @@ pub struct ObjectAttachment {
 }
 
 /// An end in terms of the merged cloth.
-enum ResolvedEnd {
+pub(super) enum ResolvedEnd {
     Vertex(u32),
     Point(Vec3),
     Moving(ObjectId, Vec3),
@@ -58,7 +58,7 @@ pub(super) struct ResolvedAttachments {
 }
 
 impl World {
-    fn resolve_end(&self, map: &VertexMap, end: AttachmentEnd) -> Option<ResolvedEnd> {
+    pub(super) fn resolve_end(&self, map: &VertexMap, end: AttachmentEnd) -> Option<ResolvedEnd> {
         let (object, point) = match end {
             AttachmentEnd::Point(point) => return Some(ResolvedEnd::Point(point)),
             AttachmentEnd::Vertex(vertex) => match map.vertex(vertex) {

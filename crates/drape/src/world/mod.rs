@@ -5,6 +5,7 @@
 mod attachment;
 mod compile;
 mod edit;
+mod gaps;
 mod object;
 mod present;
 mod simulation;
@@ -14,6 +15,7 @@ mod vertex_map;
 pub use attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
 pub(crate) use compile::Solids;
 pub use edit::{Edited, WorldEdit};
+pub use gaps::OpenAttachment;
 pub use object::{Kind, Layers, MeshVertex, Object, ObjectId, VertexGrip};
 pub use simulation::Simulation;
 pub(crate) use transfer::MeetingPoint;

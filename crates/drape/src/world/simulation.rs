@@ -89,7 +89,7 @@ impl Simulation {
         self.present().mesh_of(id)
     }
 
-    fn present(&self) -> Present<'_> {
+    pub(super) fn present(&self) -> Present<'_> {
         Present {
             world: &self.world,
             map: &self.map,

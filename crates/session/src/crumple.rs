@@ -1,0 +1,135 @@
+//! Finds seams that hang in a heap: shorter from top to bottom than their cloth, without a gather that explains it.
+
+use crate::GarmentJob;
+use std::collections::BTreeSet;
+use toile_geometry::Vec3;
+
+/// A seam that hangs shorter than its cloth.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ShortSeam {
+    /// Its name.
+    pub name: String,
+    /// Length of its cloth [m].
+    pub cloth: f64,
+    /// Length that it hangs at [m].
+    pub hangs: f64,
+}
+
+/// Share of its cloth by which a seam must be shorter to be found.
+const SHORTER: f64 = 0.05;
+/// Cloth from one point of a seam to the next between which its length is measured [m]: long enough that folds
+/// between count, short enough that the curves of a body do not.
+const SPACING: f64 = 0.06;
+/// Shortest seam that is looked at [m].
+const LEAST: f64 = 0.2;
+/// Share of the distance between the ends of a hanging seam that is height.
+const STEEP: f64 = 0.8;
+/// Share by which the two sides of a seam that is not eased may differ.
+const EASED: f64 = 0.03;
+/// Distance from gathers within which a seam is not looked at [m].
+const NEAR_GATHERS: f64 = 0.05;
+
+/// A point of a seam: its place, and the cloth from its start [m].
+#[derive(Clone, Copy)]
+struct Point {
+    place: Vec3,
+    cloth: f64,
+}
+
+/// The seams that hang in a heap. `target` has the merged vertex of each of the garment's, `places` where those lie [m].
+pub(crate) fn short_seams(job: &GarmentJob, target: &[u32], places: &[Vec3]) -> Vec<ShortSeam> {
+    let near = near_gathers(job);
+    let stitches = &job.garment.stitches;
+    let chains = stitches.chunk_by(|a, b| a.draft_seam == b.draft_seam);
+    let short = chains.filter_map(|chain| {
+        let seam = job.seams.get(chain.first()?.draft_seam)?;
+        if seam.gathered {
+            return None;
+        }
+        let pairs: Vec<[u32; 2]> = chain.iter().map(|stitch| stitch.vertices).collect();
+        let pieces = pairs.split(|pair| pair.iter().any(|v| near.contains(v)));
+        let point = |v: u32| places[target[v as usize] as usize];
+        pieces
+            .filter_map(|piece| hanging(&line(job, piece, &point)?))
+            .map(|[cloth, hangs]| ShortSeam {
+                name: seam.name.clone(),
+                cloth,
+                hangs,
+            })
+            .next()
+    });
+    short.collect()
+}
+
+/// Vertices within reach of a gathered seam, in their piece.
+fn near_gathers(job: &GarmentJob) -> BTreeSet<u32> {
+    let garment = &job.garment;
+    let gathered = garment.stitches.iter().filter(|stitch| {
+        let seam = job.seams.get(stitch.draft_seam);
+        seam.is_some_and(|seam| seam.gathered)
+    });
+    let gathered: Vec<u32> = gathered.flat_map(|stitch| stitch.vertices).collect();
+    let mut near = BTreeSet::new();
+    for panel in &garment.panels {
+        let here = |v: &&u32| panel.vertices.contains(&(**v as usize));
+        let at: Vec<_> = gathered
+            .iter()
+            .filter(here)
+            .map(|&v| garment.flat[v as usize])
+            .collect();
+        let close = |v: &usize| {
+            at.iter()
+                .any(|p| (garment.flat[*v] - p).norm() < NEAR_GATHERS)
+        };
+        near.extend(panel.vertices.clone().filter(close).map(|v| v as u32));
+    }
+    near
+}
+
+/// A seam as a line with the cloth of its shorter side; none where its sides differ or it breaks off.
+fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Option<Vec<Point>> {
+    let flat = &job.garment.flat;
+    let panel_of = |v: u32| {
+        let mut panels = job.garment.panels.iter();
+        panels.position(|panel| panel.vertices.contains(&(v as usize)))
+    };
+    let mut points = vec![Point {
+        place: point(pairs.first()?[0]),
+        cloth: 0.0,
+    }];
+    let mut lengths = [0.0; 2];
+    for step in pairs.windows(2) {
+        let side = |k: usize| {
+            let [a, b] = [step[0][k], step[1][k]];
+            (panel_of(a) == panel_of(b)).then(|| (flat[a as usize] - flat[b as usize]).norm())
+        };
+        let both = [side(0)?, side(1)?];
+        lengths = [lengths[0] + both[0], lengths[1] + both[1]];
+        points.push(Point {
+            place: point(step[1][0]),
+            cloth: lengths[0].min(lengths[1]),
+        });
+    }
+    let [a, b] = lengths;
+    ((a - b).abs() <= EASED * a.max(b)).then_some(points)
+}
+
+/// Cloth and length of a line that hangs shorter than its cloth.
+fn hanging(points: &[Point]) -> Option<[f64; 2]> {
+    let (first, last) = (points.first()?, points.last()?);
+    let cloth = last.cloth;
+    let across = last.place - first.place;
+    if cloth < LEAST || across.y.abs() < STEEP * across.norm() {
+        return None;
+    }
+    let pieces = (cloth / SPACING).round().max(1.0);
+    let mut hangs = 0.0;
+    let mut from = first;
+    for k in 1..=pieces as usize {
+        let reached = cloth * k as f64 / pieces;
+        let to = points.iter().find(|point| point.cloth >= reached - 1e-9)?;
+        hangs += (to.place - from.place).norm();
+        from = to;
+    }
+    (hangs < (1.0 - SHORTER) * cloth).then_some([cloth, hangs])
+}

@@ -1,0 +1,381 @@
+//! Judges what a drape or the run of a scene came to: the verdict that reports, pictures, the window and the exit status
+//! of the command tell.
+
+use crate::crossings::Crossings;
+use crate::crumple::short_seams;
+use crate::{GarmentJob, GarmentPart};
+use toile_drape::{
+    Aspect, AttachmentEnd, Finding, GarmentRun, Measures, OpenAttachment, SceneRun, Stage, Support,
+    Verdict, Workspace, supports,
+};
+use toile_geometry::Vec3;
+
+/// Stretch beyond which a garment is called too tight: a knit gives as much at ease.
+const TIGHT: f64 = 0.15;
+/// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth presses
+/// [m].
+const THROUGH: f64 = 0.01;
+/// Depth below the floor up to which a hem only touches it [m].
+const ON_FLOOR: f64 = 0.02;
+/// Distance from the body within which cloth touches it, in contact offsets.
+const TOUCH: f64 = 1.5;
+/// How many names a list spells out.
+const MOST_NAMES: usize = 4;
+
+/// Judges a garment where its run stands: at rest, or where its seams could not be closed.
+pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures) -> Verdict {
+    let mut verdict = Verdict::default();
+    let progress = run.progress();
+    let is_sewn = progress.stage != Stage::Sewing;
+    let open = (!is_sewn).then(|| {
+        let words = format!(
+            "seams are still {:.1} mm apart after {} steps of sewing: the garment may be too tight for the body, or a panel hangs behind it; check the measurements and the placement",
+            progress.gap * 1e3,
+            progress.step
+        );
+        Finding::bad(Aspect::Seams, words)
+    });
+    verdict.judge(Aspect::Seams, open);
+    if is_sewn {
+        verdict.judge(Aspect::Body, off_body(job, run));
+        let remedy = match verdict.passes(Aspect::Body) {
+            Some(false) => "what nothing carries cannot come to rest",
+            _ => "panels placed nearer to where they hang, more ease, or another quality may help",
+        };
+        let (goal, steps) = (job.setup.rest.residual, run.steps()[1]);
+        verdict.judge(Aspect::Rest, unrest(progress.residual, goal, steps, remedy));
+        verdict.judge(Aspect::Length, None);
+        let parts = run.system.mesh(&run.state.positions).component_count();
+        verdict.judge(Aspect::Hang, crumpled(job, run));
+        verdict.judge(Aspect::Parts, in_parts(parts, job.parts.len()));
+    }
+    verdict.judge(Aspect::Tangle, garment_tangle(run, measures));
+    verdict.judge(Aspect::Tangle, through_solid(measures));
+    verdict.judge(Aspect::Tightness, tightness(measures));
+    if !measures.layers.is_empty() {
+        verdict.judge(Aspect::Layers, disorder(measures, &job.parts));
+    }
+    verdict.extend(run.findings().iter().cloned());
+    verdict
+}
+
+/// Judges the run of a scene where it ended.
+pub(crate) fn of_scene(run: &SceneRun, measures: &Measures, crossings: &Crossings) -> Verdict {
+    let mut verdict = Verdict::default();
+    let settings = run.settings();
+    if let Some(residual) = run.residual()
+        && settings.method.kind.is_equilibrium()
+    {
+        let goal = settings.method.rest_residual();
+        let falling = supports(&run.system, &run.state, &mut Workspace::default())
+            .iter()
+            .any(Support::falls);
+        let remedy = match falling {
+            true => "nothing holds a cloth, which falls for ever: pin it, or put a solid under it",
+            false => {
+                "give method.iterations more, a finer mesh, or let it swing out by a method in time first"
+            }
+        };
+        verdict.judge(Aspect::Rest, unrest(residual, goal, run.steps(), remedy));
+    }
+    if !settings.method.kind.is_equilibrium() {
+        verdict.judge(Aspect::Pace, None);
+    }
+    if run.split_steps() > 0 {
+        let words = format!(
+            "{} steps failed and were taken in smaller ones",
+            run.split_steps()
+        );
+        verdict.judge(Aspect::Pace, [Finding::told(Aspect::Pace, words)]);
+    }
+    if run.world().attachments().next().is_some() {
+        verdict.judge(Aspect::Seams, open_elastics(run));
+    }
+    let tangle = crossings.warning(run.system.contact.cloth_offset);
+    verdict.judge(
+        Aspect::Tangle,
+        tangle.map(|words| Finding::bad(Aspect::Tangle, words)),
+    );
+    verdict.judge(Aspect::Tangle, through_solid(measures));
+    verdict
+}
+
+/// A net force above the one that counts as rest.
+fn unrest(residual: f64, goal: f64, steps: usize, remedy: &str) -> Option<Finding> {
+    let at_rest = residual <= goal;
+    (!at_rest).then(|| {
+        let words = format!(
+            "it did not come to rest: after {steps} steps the net force is {} of the weight, above the {goal:.1e} asked for; {remedy}",
+            force(residual)
+        );
+        Finding::bad(Aspect::Rest, words)
+    })
+}
+
+/// A net force over weight, in plain figures where it is large.
+fn force(residual: f64) -> String {
+    match residual {
+        many if many >= 1.0 => format!("{many:.1} times"),
+        few => format!("{few:.1e}"),
+    }
+}
+
+/// Parts of the garment that the body does not carry, or that reach below its feet.
+fn off_body(job: &GarmentJob, run: &GarmentRun) -> Vec<Finding> {
+    let grounds = job.setup.colliders.iter();
+    let grounds = grounds.filter_map(|solid| Some(solid.mesh().bounds()?[0].y));
+    let floor = grounds.fold(f64::INFINITY, f64::min);
+    let reach = TOUCH * run.system.contact.offset;
+    let all = supports(&run.system, &run.state, &mut Workspace::default());
+    let lost = |part: &&Support| part.has_left(reach, floor) || part.falls();
+    let fallen: Vec<&Support> = all.iter().filter(lost).collect();
+    let mut found = Vec::new();
+    if !fallen.is_empty() {
+        let who = match fallen.len() == all.len() {
+            true => "the garment".to_owned(),
+            false => panels_of(job, run, &fallen),
+        };
+        let low = fallen.iter().map(|part| part.heights[1]);
+        let depth = floor - low.fold(f64::NEG_INFINITY, f64::max);
+        let place = match depth > 0.0 {
+            true => format!("fell off the body, {depth:.2} m below the floor"),
+            false => "falls off the body: nothing holds it".to_owned(),
+        };
+        let words = format!(
+            "{who} {place}; place it where it is to hang (facing, wrap), and let it be as narrow as the body where it is to hold"
+        );
+        found.push(Finding::bad(Aspect::Body, words));
+    }
+    let worn = all.iter().filter(|part| !lost(part));
+    let lowest = worn
+        .map(|part| part.heights[0])
+        .fold(f64::INFINITY, f64::min);
+    if lowest < floor - ON_FLOOR {
+        let words = format!(
+            "it reaches {:.1} cm below the floor: it slid down, or is too long for this wearer",
+            (floor - lowest) * 1e2
+        );
+        found.push(Finding::told(Aspect::Length, words));
+    }
+    found
+}
+
+/// The names of the panels of some parts.
+fn panels_of(job: &GarmentJob, run: &GarmentRun, parts: &[&Support]) -> String {
+    let has = |v: usize| {
+        let merged = run.target()[v];
+        parts
+            .iter()
+            .any(|part| part.vertices.binary_search(&merged).is_ok())
+    };
+    let panels = job.garment.panels.iter();
+    let names: Vec<String> = panels
+        .filter(|panel| panel.vertices.clone().any(has))
+        .map(|panel| format!("{:?}", panel.name))
+        .collect();
+    listed(&names)
+}
+
+/// Names in a row, the first few spelt out.
+fn listed(names: &[String]) -> String {
+    match names.len() {
+        0 => "a part".to_owned(),
+        few if few <= MOST_NAMES => names.join(" and "),
+        many => format!(
+            "{} and {} more",
+            names[..MOST_NAMES - 1].join(", "),
+            many + 1 - MOST_NAMES
+        ),
+    }
+}
+
+/// Seams that hang in a heap.
+fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
+    let mut short = short_seams(job, run.target(), &run.state.positions);
+    short.sort_by(|a, b| (a.hangs / a.cloth).total_cmp(&(b.hangs / b.cloth)));
+    let worst = short.first()?;
+    let more = match short.len() {
+        1 => String::new(),
+        many => format!(" (and {} more)", many - 1),
+    };
+    let words = format!(
+        "it hangs crumpled: seam {:?}{more} is {:.1} cm long and hangs in {:.1} cm; see that no piece is sewn inside out or held up, and that the pieces lie where they hang",
+        worst.name,
+        worst.cloth * 1e2,
+        worst.hangs * 1e2
+    );
+    Some(Finding::bad(Aspect::Hang, words))
+}
+
+/// More parts than garments.
+fn in_parts(parts: usize, garments: usize) -> Option<Finding> {
+    (parts > garments).then(|| {
+        let words = format!(
+            "the garment is in {parts} parts that no seam joins; sew them together or make them apart"
+        );
+        Finding::told(Aspect::Parts, words)
+    })
+}
+
+/// Folds of a garment's cloth in one another.
+fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
+    let [found, most, _] = run.cloth_tally().crossings;
+    (measures.self_intersections > 0).then(|| {
+        let words = format!(
+            "it ends tangled: {} pairs of cloth triangles cross each other ({found} edges of cloth went through cloth when its seams were closed, {most} at most): folds of the cloth lie in one another; try --quality final, more ease, or panels placed farther apart",
+            measures.self_intersections
+        );
+        Finding::bad(Aspect::Tangle, words)
+    })
+}
+
+/// Cloth inside a solid, deeper than pressing explains.
+fn through_solid(measures: &Measures) -> Option<Finding> {
+    let depth = measures.penetration_max;
+    (depth > THROUGH && measures.body_intersections > 0).then(|| {
+        let words = format!(
+            "cloth went through a solid: it lies up to {:.1} cm inside, and {} pairs of cloth and body triangles cross; place it clear of the body, or take a finer mesh or a shorter step",
+            depth * 1e2,
+            measures.body_intersections
+        );
+        Finding::bad(Aspect::Tangle, words)
+    })
+}
+
+/// Cloth that crosses a solid without lying deep inside.
+fn pressed(measures: &Measures) -> Option<Finding> {
+    let pressed = measures.body_intersections > 0 && measures.penetration_max <= THROUGH;
+    pressed.then(|| {
+        let words = format!(
+            "{} pairs of cloth and body triangles cross: the cloth is too tight there, or the mesh too coarse; try a larger size, more ease or a finer mesh (--quality final)",
+            measures.body_intersections
+        );
+        Finding::told(Aspect::Tightness, words)
+    })
+}
+
+/// Cloth that is stretched, or presses through the body.
+fn tightness(measures: &Measures) -> Vec<Finding> {
+    let mut found: Vec<Finding> = pressed(measures).into_iter().collect();
+    for (name, strain) in ["warp", "weft"].iter().zip(measures.strain_max) {
+        if strain > TIGHT {
+            let words = format!(
+                "the cloth is stretched by {:.0} % along the {name} at the tightest place: see fit.png, and add ease there",
+                strain * 100.0
+            );
+            found.push(Finding::told(Aspect::Tightness, words));
+        }
+    }
+    found
+}
+
+/// Layers that are not outside one another.
+fn disorder(measures: &Measures, parts: &[GarmentPart]) -> Vec<Finding> {
+    let wrong = measures
+        .layers
+        .iter()
+        .filter(|layer| layer.outer_intersections + layer.astray > 0);
+    let words = wrong.map(|layer| {
+        let of_layer = |part: &&GarmentPart| part.layer == layer.layer;
+        let names: Vec<&str> = parts.iter().filter(of_layer).map(|p| &*p.name).collect();
+        let words = format!(
+            "{} pairs of triangles of {} and of what is worn over it cross, and {} vertices of that lie under it: give it more ease",
+            layer.outer_intersections,
+            names.join(" and "),
+            layer.astray
+        );
+        Finding::told(Aspect::Layers, words)
+    });
+    words.collect()
+}
+
+/// Elastics that are open at the end: those that no force can close, and those that may yet.
+fn open_elastics(run: &SceneRun) -> Vec<Finding> {
+    let open = run.open_attachments();
+    let settings = run.settings();
+    let moves = |one: &OpenAttachment| {
+        let in_time = !settings.method.kind.is_equilibrium();
+        in_time && one.closing * settings.duration > CLOSING * one.gap
+    };
+    let (held, loose): (Vec<_>, Vec<_>) = open.into_iter().partition(|one| one.is_held);
+    let (yet, stuck): (Vec<_>, Vec<_>) = loose.into_iter().partition(moves);
+    let told = |all: &[OpenAttachment], why: &str, remedy: &str| {
+        let worst = all.iter().max_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let count = match all.len() {
+            1 => String::new(),
+            many => format!(" (and {} more)", many - 1),
+        };
+        Some(format!(
+            "{}{count} {why} {:.1} mm apart; {remedy}",
+            elastic_name(run, worst.index),
+            worst.gap * 1e3
+        ))
+    };
+    let bad = [
+        told(
+            &held,
+            "can never close: both ends are held,",
+            "let one of its ends go, or hold both at one place",
+        ),
+        told(
+            &stuck,
+            "is not closed and closes no more: weight, cloth or a solid holds its ends",
+            "give it more stiffness, lay its ends nearer, or clear what lies between",
+        ),
+    ];
+    let bad = bad
+        .into_iter()
+        .flatten()
+        .map(|words| Finding::bad(Aspect::Seams, words));
+    let words = told(
+        &yet,
+        "is not closed yet: its ends are",
+        "give the scene a longer duration",
+    );
+    bad.chain(words.map(|words| Finding::told(Aspect::Seams, words)))
+        .collect()
+}
+
+/// Share of its gap that an elastic would close in another run as long, at its present speed, that counts as closing.
+const CLOSING: f64 = 0.5;
+
+/// An elastic as its scene lists it, with its ends.
+fn elastic_name(run: &SceneRun, index: usize) -> String {
+    let world = run.world();
+    let point = |p: Vec3| format!("[{:.3}, {:.3}, {:.3}]", p.x, p.y, p.z);
+    let end = |end: AttachmentEnd| match end {
+        AttachmentEnd::Vertex(vertex) => {
+            let name = world
+                .object(vertex.object)
+                .map_or("", |object| &object.name);
+            format!("vertex {} of \"{name}\"", vertex.vertex)
+        }
+        AttachmentEnd::Point(p) | AttachmentEnd::Frame { point: p, .. } => point(p),
+    };
+    let found = world.attachments().nth(index);
+    let ends = found.map_or_else(String::new, |(_, attachment)| {
+        let [from, to] = attachment.ends.map(end);
+        format!(" from {from} to {to}")
+    });
+    format!("elastics[{index}]{ends}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_names_what_was_judged() {
+        let mut verdict = Verdict::default();
+        verdict.judge(Aspect::Rest, None);
+        verdict.judge(Aspect::Tangle, [Finding::bad(Aspect::Tangle, "two folds")]);
+        let written = serde_json::to_value(&verdict).unwrap();
+        let expected = serde_json::json!({
+            "sound": false,
+            "at_rest": true,
+            "tangled": true,
+            "findings": [ { "aspect": "tangle", "is_bad": true, "words": "two folds" } ],
+        });
+        assert_eq!(written, expected);
+    }
+}
