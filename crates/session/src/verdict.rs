@@ -105,18 +105,18 @@ fn unrest(residual: f64, goal: f64, steps: usize, remedy: &str) -> Option<Findin
     let at_rest = residual <= goal;
     (!at_rest).then(|| {
         let words = format!(
-            "it did not come to rest: after {steps} steps the net force is {} of the weight, above the {goal:.1e} asked for; {remedy}",
+            "it did not come to rest: after {steps} steps the net force is {} the weight, above the {goal:.1e} asked for; {remedy}",
             force(residual)
         );
         Finding::bad(Aspect::Rest, words)
     })
 }
 
-/// A net force over weight, in plain figures where it is large.
+/// A net force as so much "the weight", in plain figures where it is large.
 fn force(residual: f64) -> String {
     match residual {
         many if many >= 1.0 => format!("{many:.1} times"),
-        few => format!("{few:.1e}"),
+        few => format!("{few:.1e} of"),
     }
 }
 
