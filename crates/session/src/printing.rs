@@ -14,7 +14,7 @@ use toile_interchange::{
 use toile_nesting::{
     Allowed, Budget, Control, Item, Locked, Marker, Progress, Search, Strip, make_marker,
 };
-use toile_pattern::{Draft, Pattern, Severity};
+use toile_pattern::{Draft, Pattern};
 
 /// White between pieces on paper, and to the edge of the drawing \[m\].
 const GAP: f64 = 0.004;

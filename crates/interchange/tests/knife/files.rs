@@ -71,13 +71,13 @@ pub fn hpgl(text: &str) -> Vec<Line> {
     for command in text.split(';').map(str::trim).filter(|c| c.len() > 1) {
         let (name, rest) = command.split_at(2);
         let numbers: Vec<f64> = rest.split(',').filter_map(|n| n.parse().ok()).collect();
-        let points = numbers.chunks_exact(2).map(|p| Vec2::new(p[0], p[1]));
+        let mut points = numbers.chunks_exact(2).map(|p| Vec2::new(p[0], p[1]));
         match name {
             "IP" => unit = (numbers[2] - numbers[0]) * 25e-6,
             "SC" => unit /= numbers[1] - numbers[0],
             "SP" => pen = rest,
             "PU" => {
-                at = points.last().unwrap_or(at);
+                at = points.next_back().unwrap_or(at);
                 lines.push(vec![at * unit]);
             }
             "PD" => {

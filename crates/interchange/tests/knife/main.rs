@@ -184,7 +184,6 @@ fn shipped_patterns_are_cut_in_their_allowances() {
             seen.look(&format!("{name}, allowances {k}"), &wide);
         }
     }
-    println!("{seen:?}");
     assert!(seen.pieces > 50 && seen.cut > 200, "{seen:?}");
 }
 
@@ -201,7 +200,6 @@ fn patterns_at_random_are_cut_in_their_allowances() {
             }
         }
     }
-    println!("{seen:?}");
     assert!(seen.pieces > 10 && seen.cut > 50, "{seen:?}");
 }
 
