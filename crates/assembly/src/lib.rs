@@ -6,6 +6,7 @@ mod boundary;
 mod creases;
 mod edges;
 mod error;
+mod flat_pieces;
 mod garment;
 mod harmonic;
 mod links;
@@ -26,6 +27,7 @@ mod seam_match;
 mod size_field;
 mod smoothing;
 mod source;
+mod wearer_side;
 mod wrap;
 
 pub use assemble::{Assembled, AssemblyOptions, assemble};

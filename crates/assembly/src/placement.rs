@@ -1,10 +1,11 @@
 //! Pieces placed round the body: wrapped, laid over or as given, then moved until they are
 //! clear of the skin and of each other.
 
+use crate::flat_pieces::{FlatPiece, flat_pieces, ties};
 use crate::mesh::PieceMeshes;
 use crate::part_frames::{PartFrame, label_skin};
 use crate::role::{Role, roles};
-use crate::rows::{FlatPiece, Row, flat_pieces, rows, set_heights, set_shifts, ties};
+use crate::rows::{Row, rows, set_heights, set_shifts};
 use crate::wrap::{Fit, Surroundings, lay_over, wrap_row};
 use crate::{Diagnostic, PlacementBody};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
@@ -51,10 +52,10 @@ pub(crate) fn place(
     body: &PlacementBody,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Placement {
-    let roles = roles(draft, meshes, diagnostics);
     let turned: Vec<bool> = meshes.pieces.iter().map(is_counter_clockwise).collect();
     let mut laid = flat_pieces(meshes, &turned);
     let ties = ties(meshes, &laid);
+    let roles = roles((draft, meshes), (&laid, &ties), diagnostics);
     set_heights(&mut laid, &roles, &ties, (draft, meshes, body));
     let mut rows = rows(&laid, &roles);
     for row in &rows {

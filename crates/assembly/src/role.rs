@@ -2,7 +2,9 @@
 //! and size.
 
 use crate::Diagnostic;
+use crate::flat_pieces::{FlatPiece, Tie};
 use crate::mesh::PieceMeshes;
+use crate::wearer_side::wearer_sides;
 use toile_geometry::Rigid;
 use toile_pattern::{BodyPart, Draft, Facing, Piece, Worn};
 
@@ -21,15 +23,13 @@ pub(crate) enum Role {
 
 /// Decides the roles of all meshed pieces.
 pub(crate) fn roles(
-    draft: &Draft,
-    meshes: &PieceMeshes,
+    (draft, meshes): (&Draft, &PieceMeshes),
+    (laid, ties): (&[FlatPiece], &[Tie]),
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<Role> {
     let mut known: Vec<Option<Role>> = Vec::new();
-    let mut guesses: Vec<Guess> = Vec::new();
     for mesh in &meshes.pieces {
         let piece = &draft.pieces[mesh.draft_piece];
-        guesses.push(Guess::from_name(piece));
         known.push(match piece.worn {
             Worn::Placed(place) => Some(Role::Placed(place)),
             Worn::Wrapped {
@@ -46,6 +46,18 @@ pub(crate) fn roles(
     }
     let guessed: Vec<usize> = (0..known.len()).filter(|&k| known[k].is_none()).collect();
     if !guessed.is_empty() {
+        let pieces = meshes.pieces.iter();
+        let pieces: Vec<(&Piece, Option<&Role>)> = pieces
+            .zip(&known)
+            .map(|(mesh, role)| (&draft.pieces[mesh.draft_piece], role.as_ref()))
+            .collect();
+        let facing: Vec<_> = pieces.iter().map(told_facing).collect();
+        let told: Vec<_> = pieces.iter().map(told_side).collect();
+        let sides = wearer_sides((meshes, laid), ties, &facing, &told);
+        let guesses = pieces.iter().zip(sides);
+        let guesses: Vec<Guess> = guesses
+            .map(|((piece, _), left)| Guess::from_name(piece, left))
+            .collect();
         let sewn = SewnLengths::new(meshes);
         let areas: Vec<f64> = meshes.pieces.iter().map(crate::PieceMesh::area).collect();
         guess(&mut known, &guesses, &sewn, (&areas, draft, meshes));
@@ -98,18 +110,42 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
+/// The side a piece faces by the document, else by its name.
+fn told_facing((piece, role): &(&Piece, Option<&Role>)) -> Option<Facing> {
+    match role {
+        Some(Role::Wrapped { facing, .. }) => Some(*facing),
+        Some(Role::Placed(_)) => None,
+        None => Guess::from_name(piece, None).facing,
+    }
+}
+
+/// Whether a piece goes on the wearer's left by the document, else by its name.
+fn told_side((piece, role): &(&Piece, Option<&Role>)) -> Option<bool> {
+    match role {
+        Some(Role::Wrapped { part, facing, .. }) => match (part, facing) {
+            (BodyPart::LeftArm | BodyPart::LeftLeg, _) => Some(true),
+            (BodyPart::RightArm | BodyPart::RightLeg, _) => Some(false),
+            (_, Facing::Left) => Some(true),
+            (_, Facing::Right) => Some(false),
+            _ => None,
+        },
+        Some(Role::Placed(_)) => None,
+        None => {
+            let words = words(&piece.name);
+            let has = |list: [&str; 2]| words.iter().any(|w| list.contains(&w.as_str()));
+            let is_left = has(["left", "l"]).then_some(true);
+            is_left.or(has(["right", "r"]).then_some(false))
+        }
+    }
+}
+
 impl Guess {
-    fn from_name(piece: &Piece) -> Self {
+    /// The place by the name; `left` is whether the piece goes on the wearer's left, if that is known.
+    fn from_name(piece: &Piece, left: Option<bool>) -> Self {
         let words = words(&piece.name);
         let has = |list: &[&str]| words.iter().any(|w| list.contains(&w.as_str()));
         let holds = |list: &[&str]| words.iter().any(|w| list.iter().any(|p| w.contains(p)));
-        let left = if has(&["left", "l"]) {
-            true
-        } else if has(&["right", "r"]) {
-            false
-        } else {
-            piece.id.copy.is_multiple_of(2)
-        };
+        let left = left.unwrap_or(piece.id.copy.is_multiple_of(2));
         let leg = holds(&["pant", "trouser", "jean", "short", "legging"]) || has(&["leg"]);
         let part = if leg && !holds(&["waist", "band", "wb"]) {
             Some(if left {

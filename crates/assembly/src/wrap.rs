@@ -1,10 +1,11 @@
 //! Rows of pieces wrapped round a body part, outside the skin, without stretching them.
 
 use crate::PlacementBody;
+use crate::flat_pieces::FlatPiece;
 use crate::outline_curve::OutlineCurve;
 use crate::part_frames::PartFrame;
 use crate::role::Role;
-use crate::rows::{FlatPiece, Row};
+use crate::rows::Row;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Facing};
 

@@ -1,6 +1,7 @@
 //! Checks that a draft can be cut and sewn.
 
 use crate::evaluate::{Evaluation, Wearer};
+use crate::orientation::turned_pieces;
 use crate::{
     Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, Name, OperationKind, Panel, Pattern,
     Piece, PieceEdge, PieceLine, Place, SeamOrigin, Severity,
@@ -39,10 +40,21 @@ impl Evaluation {
         for (seam, ease) in drafting.draft.seams.iter().zip(&drafting.eases) {
             check_seam(&drafting.draft, seam, *ease, &mut diagnostics);
         }
+        diagnostics.extend(turned_pieces(&drafting.draft));
         for panel in &self.pattern().panels {
             note_pleats(panel, &mut diagnostics);
         }
         diagnostics
+    }
+
+    /// What the seams do with the sides of the cloth: where the draft takes other copies than are
+    /// written, and which pieces show their wrong side all the same.
+    pub fn check_sides(&self) -> Vec<Diagnostic> {
+        let drafting = self.drafting();
+        let mut found = drafting.diagnostics;
+        found.retain(|found| found.code == Code::OtherCopy);
+        found.extend(turned_pieces(&drafting.draft));
+        found
     }
 }
 

@@ -72,6 +72,10 @@ pub enum Code {
     SeamLength,
     /// A panel is sewn to nothing.
     NotSewn,
+    /// Seams take the other copy of a pair or half of a folded panel than is written.
+    OtherCopy,
+    /// A piece shows its wrong side, or pieces are sewn to a ring that has no right side.
+    InsideOut,
     /// A fabric has an impossible property.
     BadFabric,
     /// A seam allowance or other length is negative.

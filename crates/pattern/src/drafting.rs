@@ -1,11 +1,14 @@
 //! Makes a draft from an evaluation: pieces of cloth, and seams between them.
 
-use crate::evaluate::{Evaluation, SeamValue, Wearer};
+use crate::evaluate::{Evaluation, SeamValue, SpanValue, Wearer};
+use crate::orientation::{
+    Meeting, SeamSpan, SidePart, Taken, Twin, choose, exchange_words, meetings,
+};
 use crate::stage::StageEdge;
 use crate::{
     BodyPart, Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeName, EdgeOrigin, Facing,
     LineKind, Name, Number, OperationKind, Panel, PanelId, Pattern, Piece, PieceEdge, PieceId,
-    PieceLine, PieceNotch, Place, Role, SeamOrigin, Severity, Stage, Worn, WornRule,
+    PieceLine, PieceNotch, Place, Role, Seam, SeamOrigin, Severity, Stage, Worn, WornRule,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Rigid, Vec3};
@@ -57,11 +60,7 @@ impl Evaluation {
             drafter.panel(panel);
         }
         drafter.darts();
-        for seam in &pattern.seams {
-            if let Some(value) = self.seam_value(seam.id) {
-                drafter.seam(seam, value);
-            }
-        }
+        drafter.seams();
         drafter.mark_sewn();
         drafter.drafting
     }
@@ -272,36 +271,116 @@ impl Drafter<'_> {
         self.drafting.draft.seams = seams;
     }
 
-    fn seam(&mut self, seam: &crate::Seam, value: &SeamValue) {
-        let mut sides = [Vec::new(), Vec::new()];
-        for (side, spans) in value.sides.iter().enumerate() {
-            for span in spans {
-                let id = PieceId {
-                    panel: span.panel,
-                    copy: span.copy,
-                };
-                let Some((piece, tracks)) = self.tracks.get(&id) else {
-                    return;
-                };
-                for &(name, from, to) in &span.stretch {
-                    let origin = EdgeOrigin {
-                        name,
-                        half: span.half,
-                    };
-                    let found = tracks.get(&origin).into_iter().flatten();
-                    sides[side].extend(spans_on(*piece, found, from, to));
+    /// Seams of the document, on the copies and halves by which pieces show their right sides.
+    fn seams(&mut self) {
+        let evaluation = self.evaluation;
+        let seams = evaluation.pattern().seams.iter();
+        let walked: Vec<(&Seam, &SeamValue)> = seams
+            .filter_map(|seam| Some((&**seam, &**evaluation.seam_value(seam.id)?)))
+            .filter(|(_, value)| {
+                let mut spans = value.sides.iter().flatten();
+                spans.all(|span| self.tracks.contains_key(&piece_id(span)))
+            })
+            .collect();
+        let mut spans = Vec::new();
+        let mut asked = Vec::new();
+        for (number, (seam, value)) in walked.iter().enumerate() {
+            let first = spans.len();
+            let mut parts = [Vec::new(), Vec::new()];
+            for (side, values) in value.sides.iter().enumerate() {
+                for value in values {
+                    parts[side].extend(SidePart::of(&self.drafting.draft, &self.spans(value)));
+                    spans.push(SeamSpan {
+                        seam: number,
+                        side,
+                        value,
+                        twin: self.twin(value),
+                    });
                 }
             }
+            let all = parts[0].len() + parts[1].len() == spans.len() - first;
+            if all && seam.right_sides_together {
+                let starts = [first, first + parts[0].len()];
+                let found = meetings([&parts[0], &parts[1]]);
+                asked.extend(found.into_iter().map(|meeting| Meeting {
+                    spans: [0, 1].map(|side| starts[side] + meeting.spans[side]),
+                    ..meeting
+                }));
+            }
         }
-        self.drafting.eases.push(value.ease);
-        self.drafting.draft.seams.push(DraftSeam {
-            id: SeamOrigin::Seam(seam.id),
-            name: seam.name.clone(),
-            sides,
-            gathered: seam.gathered,
-            right_sides_together: seam.right_sides_together,
-            multi_ply: seam.multi_ply,
+        let exchanged = choose(&spans, &asked);
+        let mut taken = spans.iter().zip(&exchanged);
+        for (seam, value) in &walked {
+            let sides = [0, 1].map(|side| {
+                let own = taken.by_ref().take(value.sides[side].len());
+                let own = own.flat_map(|(span, taken)| match taken.exchanged {
+                    true => self.spans(&span.exchanged()),
+                    false => self.spans(span.value),
+                });
+                own.collect()
+            });
+            self.drafting.eases.push(value.ease);
+            self.drafting.draft.seams.push(DraftSeam {
+                id: SeamOrigin::Seam(seam.id),
+                name: seam.name.clone(),
+                sides,
+                gathered: seam.gathered,
+                right_sides_together: seam.right_sides_together,
+                multi_ply: seam.multi_ply,
+            });
+        }
+        self.tell_exchanges((&walked, &spans), &exchanged);
+    }
+
+    /// A span on its piece, in walking order.
+    fn spans(&self, span: &SpanValue) -> Vec<DraftSpan> {
+        let Some((piece, tracks)) = self.tracks.get(&piece_id(span)) else {
+            return Vec::new();
+        };
+        let parts = span.stretch.iter().flat_map(|&(name, from, to)| {
+            let half = span.half;
+            let found = tracks.get(&EdgeOrigin { name, half }).into_iter().flatten();
+            spans_on(*piece, found, from, to)
         });
+        parts.collect()
+    }
+
+    /// What may be laid in the place of what a span is on: all of the span is there too.
+    fn twin(&self, span: &SpanValue) -> Option<Twin> {
+        let panel = self.evaluation.pattern().panel(span.panel)?;
+        let twin = match folds(panel) {
+            0 if panel.cut.mirrored => Twin::Copy,
+            0 => return None,
+            _ => Twin::Half,
+        };
+        let there = twin.of(span);
+        let count = self.spans(span).len();
+        (self.spans(&there).len() == count).then_some(twin)
+    }
+
+    /// Says which seams take another copy or half than is written, a line a panel.
+    fn tell_exchanges(
+        &mut self,
+        (walked, spans): (&[(&Seam, &SeamValue)], &[SeamSpan<'_>]),
+        taken: &[Taken],
+    ) {
+        let mut told: BTreeMap<(PanelId, Twin), BTreeSet<usize>> = BTreeMap::new();
+        for (span, _) in spans.iter().zip(taken).filter(|(_, taken)| taken.is_needed) {
+            if let Some(twin) = span.twin {
+                let seams = told.entry((span.value.panel, twin)).or_default();
+                seams.insert(span.seam);
+            }
+        }
+        for ((id, twin), seams) in told {
+            let Some(panel) = self.evaluation.pattern().panel(id) else {
+                continue;
+            };
+            let names = seams.iter().map(|seam| &*walked[*seam].0.name);
+            let what = exchange_words(twin, &panel.name, names);
+            let hint = "nothing need be done; the pattern stays as it is written";
+            let place = Place::Panel(id);
+            self.report(Severity::Note, Code::OtherCopy, place, what, hint);
+        }
     }
 
     /// A piece is sewn if a seam names it, or if it is all there is.
@@ -318,6 +397,14 @@ impl Drafter<'_> {
         if panels.len() == 1 && !draft.pieces.iter().any(|piece| piece.sewn) {
             draft.pieces[0].sewn = true;
         }
+    }
+}
+
+/// The piece a span is on.
+fn piece_id(span: &SpanValue) -> PieceId {
+    PieceId {
+        panel: span.panel,
+        copy: span.copy,
     }
 }
 

@@ -14,6 +14,7 @@ mod formula;
 mod ids;
 mod name;
 mod number;
+mod orientation;
 pub mod plan;
 mod stage;
 mod suggest;

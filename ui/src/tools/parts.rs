@@ -143,6 +143,7 @@ pub static MEASURE: SlotTool = SlotTool {
             ),
             select: reading.selection.clone(),
             again: Vec::new(),
+            told: None,
         })
     },
 };
@@ -190,5 +191,6 @@ fn transformed(reading: &Reading<'_>, map: &Affine, label: &str) -> Result<Plan,
         label: label.to_owned(),
         select: reading.selection.clone(),
         again: Vec::new(),
+        told: None,
     })
 }

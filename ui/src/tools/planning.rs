@@ -116,6 +116,7 @@ impl Planning {
             label: label.to_owned(),
             select: select.into_iter().collect::<Selection>(),
             again: Vec::new(),
+            told: None,
         }
     }
 }

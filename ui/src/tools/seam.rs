@@ -49,11 +49,12 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
             )
         })?;
     }
-    // Hems meet hems: where both panels are drawn with the seam on the same side, the other half or
-    // copy of the second is what lies against the first.
+    // Hems meet hems and right sides lie together: where both panels are drawn with the seam on the same
+    // side, the other half or copy of the second is what lies against the first.
     let mut trial = Planning::new(reading);
     let seam = trial.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?;
-    if plan::is_upside_down(trial.evaluation(), seam)
+    let sewn = trial.evaluation();
+    if plan::is_upside_down(sewn, seam) != plan::turns_over(sewn, seam)
         && let Some(turned) = twins(pattern, &second)
         && turned.iter().all(|edge| !first.contains(edge))
     {
@@ -77,7 +78,19 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
     } else {
         "Sew"
     };
-    Ok(planning.done(label, seams.into_iter().map(Item::Seam)))
+    let told = told(reading, &planning);
+    Ok(Plan {
+        told,
+        ..planning.done(label, seams.into_iter().map(Item::Seam))
+    })
+}
+
+/// What the seams do with the sides of the cloth that was not so before.
+fn told(reading: &Reading<'_>, planning: &Planning) -> Option<String> {
+    let known = reading.evaluation.check_sides();
+    let found = planning.evaluation().check_sides();
+    let new = found.into_iter().find(|found| !known.contains(found));
+    new.map(|found| found.message)
 }
 
 /// The same chain on the other side of the wearer, if all of it has one.

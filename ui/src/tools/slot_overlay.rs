@@ -7,6 +7,9 @@ use super::{Overlay, Reading, along, number};
 use crate::canvas::selection::Item;
 use toile_pattern::Want;
 
+/// Bytes of a line at the pointer.
+const LINE: usize = 44;
+
 pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
     let kind = slot(tool, state).kind;
     let mut marks = Vec::new();
@@ -87,7 +90,12 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
         Ok(Answer::Inside(sheet, at, _)) if !typed.is_empty() => {
             marks.push(Overlay::Words(sheet, at, typed));
         }
-        Ok(Answer::Chain(chain)) => marks.extend(chain.last().map(edge)),
+        Ok(Answer::Chain(chain)) => {
+            marks.extend(chain.last().map(edge));
+            if let (Some(pointer), Some(words)) = (&state.pointer, &state.told) {
+                marks.push(Overlay::Words(pointer.sheet, pointer.at, in_lines(words)));
+            }
+        }
         Ok(_) => {}
         Err(words) => {
             if let Some(pointer) = state.pointer.as_ref().filter(|_| state.is_typing()) {
@@ -101,6 +109,22 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
 
 fn edge((panel, edge): &ChainEdge) -> Overlay {
     Overlay::Edge(*panel, *edge)
+}
+
+/// A sentence in lines short enough to stand at the pointer.
+fn in_lines(words: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in words.split(' ') {
+        if let Some(line) = lines.last_mut() {
+            if line.is_empty() || line.len() + word.len() < LINE {
+                line.push_str(if line.is_empty() { "" } else { " " });
+                line.push_str(word);
+            } else {
+                lines.push(word.to_owned());
+            }
+        }
+    }
+    lines.join("\n")
 }
 
 /// What is typed, a line each, the one in hand with a bar.
@@ -119,7 +143,7 @@ fn typed_words(kind: SlotKind, state: &SlotState) -> String {
 }
 
 pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
-    if let Some(words) = &state.refusal {
+    if let Some(words) = state.refusal.as_ref().or(state.told.as_ref()) {
         return words.clone();
     }
     let slot = slot(tool, state);

@@ -141,6 +141,8 @@ pub struct Plan {
     pub select: Selection,
     /// What the tool has been given already when it begins again.
     pub again: Vec<Answer>,
+    /// What ought to be known of it before it is done.
+    pub told: Option<String>,
 }
 
 /// How far a tool has come.
@@ -166,6 +168,8 @@ pub struct SlotState {
     pub(super) pointer: Option<Pointer>,
     /// Why what was asked last was not done.
     pub(super) refusal: Option<String>,
+    /// What ought to be known of what would be done now.
+    pub(super) told: Option<String>,
 }
 
 impl SlotState {
@@ -289,8 +293,13 @@ pub(super) fn step(
         }
         Event::Drop | Event::Go(_) => {}
     }
+    next.told = None;
     if outcome.commit.is_none() {
-        outcome.shown = shown(tool, &next, reading);
+        outcome.shown = PreviewChange::Nothing;
+        if let Some(plan) = shown(tool, &next, reading) {
+            outcome.shown = PreviewChange::Edits(plan.edits);
+            next.told = plan.told;
+        }
     }
     next.refusal = outcome.refusal.clone();
     outcome.gets_on = outcome.refusal.is_none()
@@ -578,19 +587,13 @@ fn accept(
 }
 
 /// What the tool would do if it were given this now.
-fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> PreviewChange {
+fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Plan> {
     let kind = slot(tool, state).kind;
     let is_last = state.answers.len() + 1 == tool.slots.len();
     if !is_last || matches!(kind, SlotKind::Places) {
-        return PreviewChange::Nothing;
+        return None;
     }
-    let Ok(answer) = answer(kind, state, reading) else {
-        return PreviewChange::Nothing;
-    };
     let mut answers = state.answers.clone();
-    answers.push(answer);
-    match (tool.plan)(&answers, reading) {
-        Ok(plan) => PreviewChange::Edits(plan.edits),
-        Err(_) => PreviewChange::Nothing,
-    }
+    answers.push(answer(kind, state, reading).ok()?);
+    (tool.plan)(&answers, reading).ok()
 }

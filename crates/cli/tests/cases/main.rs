@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod knife;
+mod sides;
 mod verdict;
 
 use common::{toile, words};

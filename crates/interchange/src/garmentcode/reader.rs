@@ -15,6 +15,9 @@ const GATHER_RATIO: f64 = 1.05;
 /// A seam is reported as perhaps twisted when its edges run against each other in space, the
 /// cosine of the angle between them being less than this.
 const TWIST_COSINE: f64 = -0.7;
+/// The places of two edges tell which ends meet where the cosine of the angle between them is beyond
+/// this.
+const CLEAR_COSINE: f64 = 0.7;
 
 /// The result of reading a file.
 #[derive(Clone, Debug)]
@@ -57,6 +60,7 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
         colour: [0.45, 0.58, 0.72],
         rheology: Rheology::default(),
     }));
+    builder.right_sides_out = specification.older && right_sides_out(&specification);
     for panel in &specification.panels {
         builder.add_panel(panel, fabric);
     }
@@ -77,6 +81,8 @@ struct Builder {
     names: BTreeSet<String>,
     /// For each panel of the file, where its edges went.
     edges: Vec<Vec<Option<Place>>>,
+    /// Of older files, whether all outlines are wound as seen from the right side.
+    right_sides_out: bool,
 }
 
 /// A name a part may have, unique among those taken.
@@ -270,15 +276,6 @@ impl Builder {
 
     /// Whether the start of one edge is sewn to the end of the other.
     fn runs_against(&mut self, specification: &Specification, stitch: &SpecStitch) -> bool {
-        let [a, b] = stitch.sides.map(|(panel, edge)| {
-            let panel = &specification.panels[panel];
-            let curve = &panel.edges[edge].curve;
-            [curve.start(), curve.end()].map(|p| {
-                panel.place.rotation * Vec3::new(p.x, p.y, 0.0) + panel.place.translation.vector
-            })
-        });
-        let [same, against] =
-            [[0, 1], [1, 0]].map(|order| (a[0] - b[order[0]]).norm() + (a[1] - b[order[1]]).norm());
         if stitch.sides[0].0 == stitch.sides[1].0 {
             let panel = &specification.panels[stitch.sides[0].0];
             let [e, f] = stitch.sides.map(|(_, edge)| panel.edges[edge].ends);
@@ -289,12 +286,12 @@ impl Builder {
                 return true;
             }
         }
+        let placed = PlacedStitch::new(specification, stitch);
         if specification.older {
-            return against <= same;
+            return (self.right_sides_out && !placed.is_clear()) || placed.nearer_ends_run_against;
         }
         let rule = !stitch.right_wrong;
-        let [along, beside] = [a, b].map(|ends| ends[1] - ends[0]);
-        let cosine = along.dot(&beside) / (along.norm() * beside.norm()).max(f64::MIN_POSITIVE);
+        let cosine = placed.cosine;
         if (if rule { -cosine } else { cosine }) < TWIST_COSINE {
             self.notes.push(FormatError::new(
                 &stitch.path,
@@ -304,6 +301,48 @@ impl Builder {
         }
         rule
     }
+}
+
+/// Both edges of a stitch as they are placed in space.
+struct PlacedStitch {
+    /// Cosine of the angle between them.
+    cosine: f64,
+    /// Whether start and end are nearer to each other than start and start.
+    nearer_ends_run_against: bool,
+}
+
+impl PlacedStitch {
+    fn new(specification: &Specification, stitch: &SpecStitch) -> Self {
+        let [a, b] = stitch.sides.map(|(panel, edge)| {
+            let panel = &specification.panels[panel];
+            let curve = &panel.edges[edge].curve;
+            [curve.start(), curve.end()].map(|p| {
+                panel.place.rotation * Vec3::new(p.x, p.y, 0.0) + panel.place.translation.vector
+            })
+        });
+        let [same, against] =
+            [[0, 1], [1, 0]].map(|order| (a[0] - b[order[0]]).norm() + (a[1] - b[order[1]]).norm());
+        let [along, beside] = [a, b].map(|ends| ends[1] - ends[0]);
+        Self {
+            cosine: along.dot(&beside) / (along.norm() * beside.norm()).max(f64::MIN_POSITIVE),
+            nearer_ends_run_against: against <= same,
+        }
+    }
+
+    /// Whether places tell which ends meet: edges square to each other, as of a hood's side and the
+    /// neck, have neither ends nearer by design.
+    fn is_clear(&self) -> bool {
+        self.cosine.abs() > CLEAR_COSINE
+    }
+}
+
+/// Whether all outlines are wound as seen from the right side: wherever places tell, edges of two panels
+/// are sewn against each other.
+fn right_sides_out(specification: &Specification) -> bool {
+    let between = |stitch: &&SpecStitch| stitch.sides[0].0 != stitch.sides[1].0;
+    let stitches = specification.stitches.iter().filter(between);
+    let mut placed = stitches.map(|stitch| PlacedStitch::new(specification, stitch));
+    placed.all(|stitch| stitch.nearer_ends_run_against || !stitch.is_clear())
 }
 
 fn is_plain(label: &str) -> bool {

@@ -197,6 +197,23 @@ pub fn is_upside_down(evaluation: &Evaluation, seam: SeamId) -> bool {
         .is_some_and(|(one, two)| one * two < 0.0 && one.abs().min(two.abs()) > STEEP)
 }
 
+/// Whether a seam is walked the same way round both pieces, seen from their right sides, so that one of
+/// them would show its wrong side.
+pub fn turns_over(evaluation: &Evaluation, seam: SeamId) -> bool {
+    let pattern = evaluation.pattern();
+    let Some(seam) = pattern.seam(seam).filter(|seam| seam.right_sides_together) else {
+        return false;
+    };
+    let [one, two] = [0, 1].map(|side| {
+        let first = seam.sides[side].first()?;
+        let panel = pattern.panel(first.panel)?;
+        let odd_copy = panel.cut.mirrored && first.copy % 2 == 1;
+        let is_mirrored = odd_copy != (first.half.count_ones() % 2 == 1);
+        Some(first.backwards != is_mirrored)
+    });
+    one.is_some() && one == two
+}
+
 /// How much of the way from the start to the end of a side goes along the grain: 1 all of it
 /// upward, -1 downward.
 fn rise(evaluation: &Evaluation, side: &[Span]) -> Option<f64> {

@@ -54,7 +54,9 @@ pub use marker::{
     set_marker_cloth, set_marker_order, take_off_pieces, turn_pieces,
 };
 pub use marks::{NearMark, nearest_mark};
-pub use matched::{Opposite, PanelNotch, add_matched_notches, is_upside_down, opposites, twin};
+pub use matched::{
+    Opposite, PanelNotch, add_matched_notches, is_upside_down, opposites, turns_over, twin,
+};
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
 pub use number_address::{MarkNumber, NumberAddress, OperationNumber, PointNumber, SpanEnd};

@@ -1,0 +1,16 @@
+//! Which side of the cloth every piece of a garment shows.
+//!
+//! Seen from its right side the outline of a piece runs counter-clockwise. Where two pieces that both
+//! show their right side are sewn, their outlines run against each other along the seam; where they run
+//! the same way, one of the two shows its wrong side. So every seam links the sides of two pieces.
+
+mod colouring;
+mod exchange;
+mod meetings;
+mod turned;
+mod words;
+
+pub(crate) use exchange::{SeamSpan, Taken, Twin, choose};
+pub(crate) use meetings::{Meeting, SidePart, meetings};
+pub(crate) use turned::turned_pieces;
+pub(crate) use words::exchange_words;

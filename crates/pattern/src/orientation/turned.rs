@@ -1,0 +1,116 @@
+//! Pieces that their seams turn inside out.
+
+use super::colouring::{Colouring, Link};
+use super::meetings::{SidePart, meetings};
+use super::words::{ring_words, turned_words};
+use crate::{Diagnostic, Draft, DraftSpan, SeamOrigin};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A seam between two pieces: its place in the draft, and how it lays them.
+struct Joined {
+    seam: usize,
+    pieces: [usize; 2],
+    /// Whether one of them shows its wrong side when the other shows its right side.
+    opposite: bool,
+    /// Whether right sides lie together while it is sewn, so that this is a mistake.
+    is_fault: bool,
+}
+
+/// Pieces that show their wrong side, and rings of pieces that have none.
+pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
+    let joined = joined(draft);
+    let mut found = Vec::new();
+    if joined.iter().all(|joined| !joined.opposite) {
+        return found;
+    }
+    let count = draft.pieces.len();
+    let as_laid = Colouring::new(count, &links(&joined, |joined| joined.opposite));
+    for ring in as_laid.rings.values() {
+        let seams: BTreeSet<usize> = ring.iter().map(|&k| joined[k].seam).collect();
+        let pieces: BTreeSet<usize> = ring.iter().flat_map(|&k| joined[k].pieces).collect();
+        found.push(ring_words(draft, &pieces, seams));
+    }
+    let as_meant = Colouring::new(count, &links(&joined, |joined| joined.is_fault));
+    let mut faults: BTreeMap<usize, Vec<&Joined>> = BTreeMap::new();
+    for joined in joined.iter().filter(|joined| joined.is_fault) {
+        let root = as_laid.root[joined.pieces[0]];
+        faults.entry(root).or_default().push(joined);
+    }
+    for (root, faults) in faults {
+        if as_laid.rings.contains_key(&root) {
+            continue;
+        }
+        // Seams that are meant to lay a wrong side outward leave a piece its place, unless other seams
+        // of it speak against them.
+        let colouring = match as_meant.rings.contains_key(&root) {
+            true => &as_laid,
+            false => &as_meant,
+        };
+        let members = (0..count).filter(|&k| colouring.root[k] == root);
+        let (unlike, like): (Vec<usize>, Vec<usize>) = members.partition(|&k| colouring.unlike[k]);
+        let turned = match smaller(draft, &unlike, &like) {
+            true => unlike,
+            false => like,
+        };
+        for piece in turned {
+            let own = faults
+                .iter()
+                .filter(|joined| joined.pieces.contains(&piece));
+            let seams: BTreeSet<usize> = own.map(|joined| joined.seam).collect();
+            if !seams.is_empty() {
+                found.push(turned_words(draft, piece, seams));
+            }
+        }
+    }
+    found
+}
+
+/// Every meeting of two pieces along a seam of the document. The legs of a dart run against each other.
+fn joined(draft: &Draft) -> Vec<Joined> {
+    let mut all = Vec::new();
+    for (index, seam) in draft.seams.iter().enumerate() {
+        if !matches!(seam.id, SeamOrigin::Seam(_)) {
+            continue;
+        }
+        let [first, second] = [0, 1].map(|side| parts(draft, &seam.sides[side]));
+        let of = |side: &[(usize, SidePart)]| side.iter().map(|part| part.1).collect::<Vec<_>>();
+        for meeting in meetings([&of(&first), &of(&second)]) {
+            let [i, j] = meeting.spans;
+            all.push(Joined {
+                seam: index,
+                pieces: [first[i].0, second[j].0],
+                opposite: meeting.turns,
+                is_fault: meeting.turns && seam.right_sides_together,
+            });
+        }
+    }
+    all
+}
+
+/// The stretches of a side that lie on one piece each and run one way round it.
+fn parts(draft: &Draft, side: &[DraftSpan]) -> Vec<(usize, SidePart)> {
+    let is_one =
+        |a: &DraftSpan, b: &DraftSpan| a.piece == b.piece && (a.to > a.from) == (b.to > b.from);
+    side.chunk_by(is_one)
+        .filter_map(|spans| Some((spans[0].piece, SidePart::of(draft, spans)?)))
+        .collect()
+}
+
+fn links(joined: &[Joined], unlike: impl Fn(&Joined) -> bool) -> Vec<Link> {
+    let link = |joined: &Joined| Link {
+        nodes: joined.pieces,
+        unlike: unlike(joined),
+    };
+    joined.iter().map(link).collect()
+}
+
+/// Whether some pieces are the ones to name: fewer than the others, else of less cloth, else later.
+fn smaller(draft: &Draft, some: &[usize], others: &[usize]) -> bool {
+    let cloth = |pieces: &[usize]| -> f64 {
+        let edges = pieces.iter().flat_map(|&k| &draft.pieces[k].outline);
+        edges.map(|edge| edge.curve.swept_area()).sum::<f64>().abs()
+    };
+    let order = some.len().cmp(&others.len());
+    let order = order.then_with(|| cloth(some).total_cmp(&cloth(others)));
+    order.then_with(|| others.cmp(some)).is_lt()
+}
