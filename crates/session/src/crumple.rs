@@ -2,7 +2,7 @@
 
 use crate::GarmentJob;
 use std::collections::BTreeSet;
-use toile_geometry::Vec3;
+use toile_geometry::{Vec2, Vec3};
 
 /// A seam that hangs shorter than its cloth.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,16 +23,20 @@ const SPACING: f64 = 0.06;
 /// Shortest seam that is looked at [m].
 const LEAST: f64 = 0.2;
 /// Share of the distance between the ends of a hanging seam that is height.
-const STEEP: f64 = 0.8;
+const STEEP: f64 = 0.9;
 /// Share by which the two sides of a seam that is not eased may differ.
 const EASED: f64 = 0.03;
 /// Distance from gathers within which a seam is not looked at [m].
 const NEAR_GATHERS: f64 = 0.05;
 
-/// A point of a seam: its place, and the cloth from its start [m].
+/// A point of a seam.
 #[derive(Clone, Copy)]
 struct Point {
+    /// Where it lies [m].
     place: Vec3,
+    /// Where it lies in the pieces of both sides [m].
+    flat: [Vec2; 2],
+    /// Cloth along the shorter side from the start of the seam [m].
     cloth: f64,
 }
 
@@ -93,10 +97,12 @@ fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Op
         let mut panels = job.garment.panels.iter();
         panels.position(|panel| panel.vertices.contains(&(v as usize)))
     };
-    let mut points = vec![Point {
-        place: point(pairs.first()?[0]),
-        cloth: 0.0,
-    }];
+    let at = |pair: &[u32; 2], cloth: f64| Point {
+        place: point(pair[0]),
+        flat: pair.map(|v| flat[v as usize]),
+        cloth,
+    };
+    let mut points = vec![at(pairs.first()?, 0.0)];
     let mut lengths = [0.0; 2];
     for step in pairs.windows(2) {
         let side = |k: usize| {
@@ -105,29 +111,29 @@ fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Op
         };
         let both = [side(0)?, side(1)?];
         lengths = [lengths[0] + both[0], lengths[1] + both[1]];
-        points.push(Point {
-            place: point(step[1][0]),
-            cloth: lengths[0].min(lengths[1]),
-        });
+        points.push(at(&step[1], lengths[0].min(lengths[1])));
     }
     let [a, b] = lengths;
     ((a - b).abs() <= EASED * a.max(b)).then_some(points)
 }
 
-/// Cloth and length of a line that hangs shorter than its cloth.
+/// Cloth and length of a line that hangs shorter than its cloth, both along straight lines between the same points: a
+/// seam that is cut in a curve is not short.
 fn hanging(points: &[Point]) -> Option<[f64; 2]> {
     let (first, last) = (points.first()?, points.last()?);
-    let cloth = last.cloth;
+    let length = last.cloth;
     let across = last.place - first.place;
-    if cloth < LEAST || across.y.abs() < STEEP * across.norm() {
+    if length < LEAST || across.y.abs() < STEEP * across.norm() {
         return None;
     }
-    let pieces = (cloth / SPACING).round().max(1.0);
-    let mut hangs = 0.0;
+    let pieces = (length / SPACING).round().max(1.0);
+    let (mut cloth, mut hangs) = (0.0, 0.0);
     let mut from = first;
     for k in 1..=pieces as usize {
-        let reached = cloth * k as f64 / pieces;
+        let reached = length * k as f64 / pieces;
         let to = points.iter().find(|point| point.cloth >= reached - 1e-9)?;
+        let sides = [0, 1].map(|side| (to.flat[side] - from.flat[side]).norm());
+        cloth += sides[0].min(sides[1]);
         hangs += (to.place - from.place).norm();
         from = to;
     }
