@@ -16,6 +16,9 @@ pub(crate) struct FlatPiece {
     pub rise: f64,
     /// Added to the first coordinate: distance round the part from its first direction [m].
     pub shift: f64,
+    /// How much longer it gets round for each metre down from its inner edge, which then is at height 0 of the
+    /// points: the angle of the sector of a ring that it is [rad]; 0 of a piece that is not flared.
+    pub turn: f64,
 }
 
 impl FlatPiece {
@@ -53,6 +56,7 @@ pub(crate) fn flat_pieces(meshes: &PieceMeshes, counter_clockwise: &[bool]) -> V
                 high,
                 rise: 0.0,
                 shift: 0.0,
+                turn: 0.0,
             }
         })
         .collect()

@@ -3,9 +3,12 @@
 
 mod assemble;
 mod boundary;
+mod closing;
 mod creases;
 mod edges;
 mod error;
+mod flare;
+mod flared_row;
 mod flat_pieces;
 mod garment;
 mod harmonic;
@@ -27,6 +30,7 @@ mod seam_match;
 mod size_field;
 mod smoothing;
 mod source;
+mod surroundings;
 mod wearer_side;
 mod wrap;
 
@@ -37,4 +41,5 @@ pub use mesh::{PieceMesh, PieceMeshes, mesh_pieces};
 pub use morph::{MorphError, morph};
 pub use placement_body::{Levels, Limb, PlacementBody};
 pub use quality::{MeshQuality, combine, smallest_angle};
+pub use role::body_part_by_name;
 pub use sanity::{Sanity, sanity};

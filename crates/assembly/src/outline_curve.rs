@@ -75,12 +75,22 @@ impl OutlineCurve {
     /// `length` [m] long. Folds get no narrower than [`NARROWEST_FOLD`]: what does not fit then
     /// is left out.
     pub fn folded(&self, length: f64, amplitude: f64) -> Self {
+        self.in_folds(self.fold_count(length, amplitude), length, amplitude)
+    }
+
+    /// How many folds [`Self::folded`] lays it in.
+    pub fn fold_count(&self, length: f64, amplitude: f64) -> usize {
         let around = self.length();
         let most = (around / NARROWEST_FOLD).floor().max(2.0) as usize;
         let mut count = 2;
         while count < most && self.with_folds(count, amplitude).length() < length {
             count += 1;
         }
+        count
+    }
+
+    /// The ring laid in so many even folds, that reach up to `amplitude` [m] outward, so that it is `length` [m] long.
+    pub fn in_folds(&self, count: usize, length: f64, amplitude: f64) -> Self {
         let (mut low, mut high) = (0.0, amplitude);
         for _ in 0..30 {
             let middle = 0.5 * (low + high);

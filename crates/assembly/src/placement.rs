@@ -1,14 +1,18 @@
 //! Pieces placed round the body: wrapped, laid over or as given, then moved until they are
 //! clear of the skin and of each other.
 
+use crate::closing::{PlacedPieces, clear_closing_seams};
+use crate::flare::{Pieces, turn_as_sewn, unroll_flares};
+use crate::flared_row::set_flared_shifts;
 use crate::flat_pieces::{FlatPiece, flat_pieces, ties};
 use crate::mesh::PieceMeshes;
 use crate::part_frames::{PartFrame, label_skin};
 use crate::role::{Role, roles};
 use crate::rows::{Row, rows, set_heights, set_shifts};
-use crate::wrap::{Fit, Surroundings, lay_over, wrap_row};
+use crate::surroundings::{Fit, Surroundings, skin_outline};
+use crate::wrap::{lay_over, wrap_row};
 use crate::{Diagnostic, PlacementBody};
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Draft, Facing};
 
 /// Distance every vertex keeps from the skin [m].
@@ -54,13 +58,26 @@ pub(crate) fn place(
 ) -> Placement {
     let turned: Vec<bool> = meshes.pieces.iter().map(is_counter_clockwise).collect();
     let mut laid = flat_pieces(meshes, &turned);
-    let ties = ties(meshes, &laid);
-    let roles = roles((draft, meshes), (&laid, &ties), diagnostics);
+    let drawn = ties(meshes, &laid);
+    let mut roles = roles((draft, meshes), (&laid, &drawn), diagnostics);
+    let labels = label_skin(body);
+    let pieces = Pieces {
+        draft,
+        meshes,
+        waist: waist_length(body, &labels),
+    };
+    unroll_flares(&pieces, &mut laid, &mut roles);
+    let mut ties = ties(meshes, &laid);
+    turn_as_sewn(&mut laid, &mut ties);
     set_heights(&mut laid, &roles, &ties, (draft, meshes, body));
     let mut rows = rows(&laid, &roles);
     for row in &rows {
         let frame = PartFrame::new(body, row.part);
         set_shifts(&mut laid, &roles, row, &ties, &frame);
+    }
+    for row in rows.iter().filter(|row| row.turn > 0.0) {
+        let frame = PartFrame::new(body, row.part);
+        set_flared_shifts(&mut laid, &roles, (row, &rows), &ties, &frame);
     }
     // Trunk last, over sleeves: its fronts and backs go round what is placed already.
     rows.sort_by_key(|row| row.part == BodyPart::Trunk);
@@ -68,12 +85,18 @@ pub(crate) fn place(
         draft,
         meshes,
         body,
-        labels: label_skin(body),
+        labels,
         positions: vec![Vec::new(); laid.len()],
         laid,
         roles,
     };
     placer.place_given(diagnostics);
+    let placed = PlacedPieces {
+        draft,
+        meshes,
+        roles: &placer.roles,
+    };
+    clear_closing_seams(&placed, body, &mut placer.positions, diagnostics);
     let mut fits: Vec<Fit> = Vec::new();
     for row in &rows {
         let start = Fit {
@@ -87,6 +110,19 @@ pub(crate) fn place(
     Placement {
         positions: placer.positions,
     }
+}
+
+/// Length round the trunk at the waist [m].
+fn waist_length(body: &PlacementBody, labels: &[BodyPart]) -> f64 {
+    let around = Surroundings {
+        body,
+        labels,
+        placed: &[],
+    };
+    let frame = PartFrame::new(body, BodyPart::Trunk);
+    let level = [body.levels.waist; 2];
+    let points = skin_outline(BodyPart::Trunk, &around, &frame, level);
+    closed_length(&convex_hull(&points))
 }
 
 fn is_counter_clockwise(mesh: &crate::PieceMesh) -> bool {

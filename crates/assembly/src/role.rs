@@ -84,6 +84,11 @@ pub(crate) fn roles(
         .collect()
 }
 
+/// The body part that a piece's name suggests.
+pub fn body_part_by_name(piece: &Piece) -> Option<BodyPart> {
+    Guess::from_name(piece).part
+}
+
 /// The place that a piece's name suggests.
 #[derive(Clone, Copy, Debug, Default)]
 struct Guess {

@@ -23,6 +23,8 @@ pub(crate) struct Row {
     pub pieces: Vec<usize>,
     /// Distance round that the pieces fill [m].
     pub girth: f64,
+    /// How much longer it gets for each metre down: the sectors of its flared pieces together [rad].
+    pub turn: f64,
 }
 
 /// Parts that share heights above the floor are laid out together; each arm has its own, and
@@ -204,10 +206,12 @@ pub(crate) fn rows(laid: &[FlatPiece], roles: &[Role]) -> Vec<Row> {
             .collect();
         if let Some((part, ..)) = pieces.first().and_then(|&k| wrapped(&roles[k])) {
             let girth = pieces.iter().map(|&k| laid[k].width()).sum();
+            let turn = pieces.iter().map(|&k| laid[k].turn).sum();
             rows.push(Row {
                 part,
                 pieces,
                 girth,
+                turn,
             });
         }
     }

@@ -1,44 +1,24 @@
 //! Rows of pieces wrapped round a body part, outside the skin, without stretching them.
 
 use crate::PlacementBody;
+use crate::flared_row::wrap_flared;
 use crate::flat_pieces::FlatPiece;
 use crate::outline_curve::OutlineCurve;
 use crate::part_frames::PartFrame;
 use crate::role::Role;
 use crate::rows::Row;
+use crate::surroundings::{BAND, Fit, Surroundings, arm_distance, obstacles, skin_outline};
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Facing};
 
 /// Distance of cloth from the hull of the skin to start with [m].
 const FIRST_DISTANCE: f64 = 0.012;
-/// Skin this far above and below a row is gone round too [m].
-const BAND: f64 = 0.03;
 /// Distance between neighbouring pieces of a row, as a share of their places' spread.
 const SPREAD: f64 = 1.02;
-/// Distance that rings round the trunk keep from the arms [m].
-const ARM_CLEARANCE: f64 = 0.015;
 /// Room for folds below which a ring is not folded [m].
 const SMALLEST_FOLD: f64 = 0.04;
 /// Distance that pieces of one leg keep from the middle of the body [m].
 const MIDDLE_CLEARANCE: f64 = 0.006;
-
-/// The curve that a row goes round.
-pub(crate) struct Surroundings<'a> {
-    pub body: &'a PlacementBody<'a>,
-    /// Part of each vertex of the skin.
-    pub labels: &'a [BodyPart],
-    /// Points of pieces placed before.
-    pub placed: &'a [Vec3],
-}
-
-/// Parameters of a wrapped row, which the search for a clear place changes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Fit {
-    /// Extra distance from the skin [m].
-    pub distance: f64,
-    /// Extra height [m].
-    pub lift: f64,
-}
 
 /// The shape a row is bent to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +60,9 @@ pub(crate) fn wrap_row(
     fit: Fit,
 ) -> Vec<Vec<Vec3>> {
     let frame = PartFrame::new(around.body, row.part);
+    if row.turn > 0.0 {
+        return wrap_flared(row, laid, around, &frame, fit);
+    }
     let spans = row.pieces.iter().map(|&k| laid[k].span());
     let band = spans.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], [a, b]| {
         [l.min(a + fit.lift - BAND), h.max(b + fit.lift + BAND)]
@@ -106,29 +89,6 @@ pub(crate) fn wrap_row(
         .collect()
 }
 
-/// Skin a row on a part goes round, between two heights.
-fn obstacles(
-    part: BodyPart,
-    around: &Surroundings,
-    frame: &PartFrame,
-    [low, high]: [f64; 2],
-    keep: impl Fn(Vec3, BodyPart) -> bool,
-) -> Vec<Vec3> {
-    let skin = &around.body.skin.mesh().positions;
-    let mut found: Vec<Vec3> = Vec::new();
-    for (&p, &label) in skin.iter().zip(around.labels) {
-        let height = frame.height(p);
-        if height >= low && height <= high && keep(p, label) {
-            found.push(p);
-        }
-    }
-    if matches!(part, BodyPart::Trunk) {
-        let near = |p: &&Vec3| (low..=high).contains(&frame.height(**p));
-        found.extend(around.placed.iter().filter(near));
-    }
-    found
-}
-
 fn ring_for(
     row: &Row,
     around: &Surroundings,
@@ -136,19 +96,7 @@ fn ring_for(
     band: [f64; 2],
     distance: f64,
 ) -> OutlineCurve {
-    let arm = |l: BodyPart| matches!(l, BodyPart::LeftArm | BodyPart::RightArm);
-    let own = |label: BodyPart| match row.part {
-        BodyPart::Trunk => !arm(label),
-        part => label == part,
-    };
-    let skin_only = Surroundings {
-        placed: &[],
-        ..*around
-    };
-    let points: Vec<Vec2> = obstacles(row.part, &skin_only, frame, band, |_, l| own(l))
-        .into_iter()
-        .map(|p| frame.across(p, 0))
-        .collect();
+    let points = skin_outline(row.part, around, frame, [band[0] + BAND, band[1] - BAND]);
     let length = row.girth * SPREAD + 0.01;
     let hull = closed_length(&convex_hull(&points));
     let wanted = ((length - hull) / std::f64::consts::TAU).max(FIRST_DISTANCE) + distance;
@@ -157,11 +105,7 @@ fn ring_for(
         return ring;
     }
     // Wide skirts would meet the arms: they are laid in folds between body and arms.
-    let free = obstacles(row.part, &skin_only, frame, band, |_, l| arm(l))
-        .into_iter()
-        .map(|p| frame.across(p, 0).norm())
-        .fold(f64::INFINITY, f64::min)
-        - ARM_CLEARANCE;
+    let free = arm_distance(row.part, around, frame, [band[0] + BAND, band[1] - BAND]);
     let close = OutlineCurve::ring(&points, Vec2::zeros(), FIRST_DISTANCE + distance);
     let room = free - close.reach(Vec2::zeros());
     if ring.reach(Vec2::zeros()) <= free || room < SMALLEST_FOLD {

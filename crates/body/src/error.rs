@@ -8,13 +8,13 @@ pub enum BodyError {
     OutOfRange {
         /// The measurement.
         name: &'static str,
-        /// The value refused [m] or [rad].
+        /// The value refused [m] or [degrees].
         value: f64,
-        /// Smallest value accepted [m] or [rad].
+        /// Smallest value accepted [m] or [degrees].
         low: f64,
-        /// Largest value accepted [m] or [rad].
+        /// Largest value accepted [m] or [degrees].
         high: f64,
-        /// `m` or `rad`.
+        /// `m` or `degrees`.
         unit: &'static str,
     },
     /// Two measurements that no single body can have together.

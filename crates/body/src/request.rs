@@ -18,6 +18,8 @@ pub(crate) struct Request {
 /// of unit or typing are refused.
 const LENGTH: [f64; 2] = [0.004, 2.2];
 const ANGLE: [f64; 2] = [-0.2, 1.3];
+/// Limits of the angle of the arms [rad]: from straight out to the sides, as many programs hold them.
+const ARM_POSE: [f64; 2] = [0.0, 1.4];
 /// Limits of the stature [m]: dolls and giants.
 const STATURE: [f64; 2] = [0.12, 6.0];
 
@@ -76,10 +78,15 @@ impl Request {
                 continue;
             }
             match known.kind {
-                UnitKind::Angle if known.name == "arm_pose_angle" => {
-                    check(known.name, measured.value, [0.3, 1.35], "rad")?;
+                UnitKind::Angle => {
+                    let limits = match known.name {
+                        "arm_pose_angle" => ARM_POSE,
+                        _ => ANGLE,
+                    };
+                    // Files give angles in degrees.
+                    let limits = limits.map(f64::to_degrees);
+                    check(known.name, measured.value.to_degrees(), limits, "degrees")?;
                 }
-                UnitKind::Angle => check(known.name, measured.value, ANGLE, "rad")?,
                 UnitKind::Length => {
                     let row = CLOSER.iter().find(|row| row.0 == known.name);
                     let limits = row.map_or(LENGTH, |row| row.1).map(|x| x * stature);
@@ -131,7 +138,8 @@ fn check(
     let rounded = |x: f64| (x * 1e3).round() / 1e3;
     Err(BodyError::OutOfRange {
         name,
-        value,
+        // Degrees as the file has them, without what the way through radians added.
+        value: (value * 1e9).round() / 1e9,
         low: rounded(low),
         high: rounded(high),
         unit,

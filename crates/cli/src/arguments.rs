@@ -3,11 +3,11 @@
 use crate::body_options::BodyOptions;
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
-use crate::values::blend;
+use crate::values::{blend, panel_origin};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
-use toile_session::{Command, OtherGarment, PatternFormat, Quality};
+use toile_session::{Command, OtherGarment, PanelOrigin, PatternFormat, Quality};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
@@ -233,6 +233,10 @@ pub struct Make {
     /// How finely to mesh and how near to rest to drape.
     #[arg(long, value_enum, default_value = "fit")]
     pub quality: QualityName,
+    /// Point of the body that the patterns place their panels round, if they place them in space: auto, floor, waist,
+    /// pelvis, or its height above the floor, as in 90cm.
+    #[arg(long, value_name = "POINT", default_value = "auto", value_parser = panel_origin)]
+    pub origin: PanelOrigin,
 }
 
 impl Make {
@@ -247,6 +251,7 @@ impl Make {
             fabric: None,
             width: None,
             quality: QualityName::Fit,
+            origin: PanelOrigin::Automatic,
         }
     }
 
@@ -261,6 +266,10 @@ impl Make {
             }
         });
         let mut commands = Vec::new();
+        if self.origin != PanelOrigin::Automatic {
+            let origin = self.origin;
+            commands.push(Command::SetOrigin { origin });
+        }
         if let Some(OtherGarment { path, layer }) = garments.next() {
             commands.push(Command::OpenPattern { path });
             let others: Vec<OtherGarment> = garments.collect();
@@ -433,6 +442,10 @@ pub struct Convert {
     /// Format to write. Default: native if the name ends in .toile.json, else GarmentCode.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub to: Option<FormatName>,
+    /// Point of the body that the input places its panels round: auto, floor, waist, pelvis, or its height above the
+    /// floor, as in 90cm. They are written as they stand on the floor.
+    #[arg(long, value_name = "POINT", default_value = "auto", value_parser = panel_origin)]
+    pub origin: PanelOrigin,
 }
 
 /// `toile replay`.

@@ -18,7 +18,7 @@ use toile_session::{
 /// A pattern in another format.
 pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
     let format = convert.to.map(Into::into);
-    let lost = convert_file(&convert.input, &convert.output, format)
+    let lost = convert_file(&convert.input, &convert.output, format, convert.origin)
         .map_err(|error| Failure::from(error).about(&convert.input))?;
     for note in &lost {
         output.say(format!("not carried over or assumed: {note}"));

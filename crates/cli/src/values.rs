@@ -1,7 +1,7 @@
 //! Parsers for options with several values.
 
 use toile_geometry::Length;
-use toile_session::{GivenFlaw, Shrinkage};
+use toile_session::{GivenFlaw, PanelOrigin, Shrinkage};
 
 /// Most garments of one size: far more than can be laid at once.
 const MOST_GARMENTS: u32 = 10_000;
@@ -27,6 +27,21 @@ pub fn blend(text: &str) -> Result<(String, f64), String> {
         }
         _ => Err(format!(
             "{text:?} is no gait with a share from 0 to 1; write for example run:0.3"
+        )),
+    }
+}
+
+/// A point of the body that panels are placed round, or its height above the floor, as in 90cm.
+pub fn panel_origin(text: &str) -> Result<PanelOrigin, String> {
+    let length: Result<Length, _> = text.parse();
+    match (text, length) {
+        ("auto", _) => Ok(PanelOrigin::Automatic),
+        ("floor", _) => Ok(PanelOrigin::Floor),
+        ("waist", _) => Ok(PanelOrigin::Waist),
+        ("pelvis", _) => Ok(PanelOrigin::Pelvis),
+        (_, Ok(height)) => Ok(PanelOrigin::Height(height.as_metres())),
+        _ => Err(format!(
+            "{text:?} is no point that panels are placed round; write auto, floor, waist, pelvis, or its height above the floor, as in 90cm"
         )),
     }
 }

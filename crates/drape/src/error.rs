@@ -123,6 +123,14 @@ pub enum DrapeError {
         /// Steps taken.
         steps: usize,
     },
+    /// Cloth that no seam or contact holds on the body any more.
+    #[error(
+        "the garment fell off the body: the highest point of a part that hangs together is {top:.2} m above the soles; check where its panels are worn, its size, and what should hold it"
+    )]
+    LeftBody {
+        /// Highest point of the part over the body's lowest [m].
+        top: f64,
+    },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

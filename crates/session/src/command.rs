@@ -1,6 +1,6 @@
 //! Commands: everything that can be asked of a session, as data.
 
-use crate::{Quality, StampedInput};
+use crate::{PanelOrigin, Quality, StampedInput};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use toile_body::{Figure, PrimitiveEdit};
@@ -14,6 +14,11 @@ pub enum Command {
     OpenPattern {
         /// The file.
         path: PathBuf,
+    },
+    /// Says which point of the body the files that are opened next place their panels round.
+    SetOrigin {
+        /// The point.
+        origin: PanelOrigin,
     },
     /// Replaces the project by an empty pattern.
     NewPattern {
@@ -133,6 +138,7 @@ impl Command {
             Self::SavePattern { path } | Self::SaveBody { path } => Some(path),
             Self::Export { dir } => Some(dir),
             Self::OpenPattern { .. }
+            | Self::SetOrigin { .. }
             | Self::NewPattern { .. }
             | Self::RestorePattern { .. }
             | Self::Edit { .. }

@@ -4,15 +4,17 @@ use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
 use crate::fabrics::{FabricChoice, unseen_at_rest};
-use crate::mannequin_source::MannequinSource;
+use crate::mannequin_source::{MannequinSource, measurements_for_sleeves};
 use crate::marker_cache::MarkerCache;
 use crate::outfit::{DraftedPart, MeshedPart, Outfit, checked, tell_apart};
+use crate::put_on::PutOn;
 use crate::setup::{self, GarmentJob};
 use crate::watched_search::lay_watched;
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Mannequin};
+use toile_drape::{Aspect, DrapeError, Finding};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_marker::{FinishedMarker, Garments};
@@ -270,12 +272,23 @@ impl Derived {
         if let Some(outfit) = &self.outfit {
             return Ok(outfit.clone());
         }
-        let parts = self.sound_parts(project)?;
+        let put_on = PutOn::as_given(self.sound_parts(project)?);
+        let outfit = self.outfit_put_on(project, &put_on)?;
+        Ok(self.outfit.insert(outfit).clone())
+    }
+
+    /// The same, put on in a way.
+    fn outfit_put_on(
+        &mut self,
+        project: &Project,
+        put_on: &PutOn,
+    ) -> Result<Arc<Outfit>, SessionError> {
         let mannequin = self.mannequin(project)?;
-        let (outfit, notes) = assembled(&parts, &mannequin, project.quality.edge_length())?;
+        let (outfit, notes) = assembled(put_on, &mannequin, project.quality.edge_length())?;
         self.assembly_notes = notes;
         self.assembly_notes.extend(unseen_at_rest(&outfit.draft));
-        Ok(self.outfit.insert(Arc::new(outfit)).clone())
+        self.assembly_notes.extend(arms_follow_sleeves(project));
+        Ok(Arc::new(outfit))
     }
 
     /// Whether the pieces are meshed and placed already.
@@ -285,17 +298,28 @@ impl Derived {
 
     /// The garment ready to be sewn and draped.
     pub fn job(&mut self, project: &Project) -> Result<GarmentJob, SessionError> {
+        let put_on = PutOn::as_given(self.sound_parts(project)?);
         let outfit = self.outfit(project)?;
+        self.job_put_on(project, &outfit, &put_on)
+    }
+
+    /// The same of an outfit that was put on in a way.
+    fn job_put_on(
+        &mut self,
+        project: &Project,
+        outfit: &Outfit,
+        put_on: &PutOn,
+    ) -> Result<GarmentJob, SessionError> {
         let skin = self.cached_mannequin(project)?.skin.clone();
         let source = MannequinSource::of(project);
-        let mut job = setup::job(&outfit, (source, skin), project.quality);
+        let mut job = setup::job(outfit, (source, skin), project.quality);
         // Gathers have as many folds as the mesh they swing in can hold.
         let gathers = outfit.draft.seams.iter().any(|seam| seam.gathered);
         let first = project.quality.first_edge_length();
         if let Some(edge_length) = first.filter(|_| !gathers) {
-            let (parts, mannequin) = (self.sound_parts(project)?, self.mannequin(project)?);
+            let mannequin = self.mannequin(project)?;
             // A piece too small for the coarse mesh is no fault: the fine one does alone.
-            if let Ok((coarse, _)) = assembled(&parts, &mannequin, edge_length) {
+            if let Ok((coarse, _)) = assembled(put_on, &mannequin, edge_length) {
                 job.setup.levels.insert(0, setup::level(&coarse));
             }
         }
@@ -312,10 +336,51 @@ impl Derived {
         if let Some(drape) = self.drape.as_ref().filter(|drape| drape.inputs == inputs) {
             return Ok(drape.clone());
         }
-        let made = Arc::new(drape(self.job(project)?, inputs, watcher)?);
+        let made = match drape(self.job(project)?, inputs, watcher) {
+            Err(SessionError::Drape(DrapeError::LeftBody { .. })) => {
+                self.drape_otherwise(project, inputs, watcher)?
+            }
+            made => made?,
+        };
+        let made = Arc::new(made);
         self.drape = Some(made.clone());
         Ok(made)
     }
+
+    /// The drape of a garment that fell off the body, put on the other way; refused where it falls again.
+    fn drape_otherwise(
+        &mut self,
+        project: &Project,
+        inputs: &[StampedInput],
+        watcher: &mut dyn Watcher,
+    ) -> Result<Drape, SessionError> {
+        let (put_on, [first, second]) = PutOn::otherwise(&*self.sound_parts(project)?);
+        let fell = |error| match error {
+            SessionError::Drape(DrapeError::LeftBody { .. }) => {
+                SessionError::FallsOff { first, second }
+            }
+            error => error,
+        };
+        let outfit = self.outfit_put_on(project, &put_on)?;
+        let job = self.job_put_on(project, &outfit, &put_on)?;
+        let mut made = drape(job, inputs, watcher).map_err(fell)?;
+        self.outfit = Some(outfit);
+        let words = format!("put on {first}, it fell off the body: put on again {second}");
+        made.warnings.insert(0, words.clone());
+        made.verdict.extend([Finding::told(Aspect::Body, words)]);
+        Ok(made)
+    }
+}
+
+/// What is said where the arms are held as the sleeves are placed.
+fn arms_follow_sleeves(project: &Project) -> Option<String> {
+    if matches!(project.body, BodyChoice::Shaped { .. }) {
+        return None;
+    }
+    let angle = measurements_for_sleeves(project).1?.to_degrees();
+    Some(format!(
+        "the arms are held {angle:.0} degrees below the horizontal, as the sleeves are placed; give arm_pose_angle among the measurements to hold them otherwise"
+    ))
 }
 
 /// Whether the panels of two patterns are the same but for where they lie on the table.
@@ -336,15 +401,16 @@ fn has_same_panels(a: &Pattern, b: &Pattern) -> bool {
 /// The parts meshed with edges of a length [m] and placed round a mannequin, and what is worth
 /// telling.
 fn assembled(
-    parts: &[DraftedPart],
+    put_on: &PutOn,
     mannequin: &Mannequin,
     edge_length: f64,
 ) -> Result<(Outfit, Vec<String>), SessionError> {
     let options = AssemblyOptions { edge_length };
-    let body = setup::placement_body(mannequin);
+    let body = put_on.body(setup::placement_body(mannequin));
+    let parts = &put_on.parts;
     let mut meshed = Vec::new();
     let mut notes = Vec::new();
-    for part in parts {
+    for part in parts.iter() {
         let assembled = assemble(&part.draft, &body, &options)?;
         let prefix = match parts.len() {
             1 => String::new(),

@@ -1,6 +1,7 @@
 //! Drapes a garment from its setup to rest, and summarises the result.
 
 use crate::interactive_run::InteractiveRun;
+use crate::stuck::stuck;
 use crate::watcher::report_progress;
 use crate::{Draped, Event, GarmentJob, SessionError, StampedInput, Watcher, verdict};
 use std::sync::Arc;
@@ -42,11 +43,13 @@ impl Drape {
         let inputs = handled.applied().to_vec();
         let (job, run) = handled.parts();
         let measures = run.measure();
+        let stuck = stuck(job, run);
         let mesh = run.system.mesh(&run.state.positions);
         let origin = (0..job.garment.triangles.len() as u32)
             .filter(|&t| keeps_corners(job.garment.triangles[t as usize], run.target()))
             .collect();
-        let verdict = verdict::of_garment(job, run, &measures);
+        let mut verdict = verdict::of_garment(job, run, &measures);
+        verdict.extend(stuck);
         let mut warnings: Vec<String> = verdict.words().map(str::to_owned).collect();
         if held {
             warnings.push("the cloth is still held; let go of it to see how it hangs".to_owned());

@@ -71,6 +71,16 @@ pub enum SessionError {
     /// The garment cannot be sewn or draped.
     #[error("{0}")]
     Drape(toile_drape::DrapeError),
+    /// The garment falls off the body whichever way it is put on.
+    #[error(
+        "the garment falls off the body: it was put on {first}, then {second}, and fell within a second both times; give it a waist, straps or shoulders that hold it, or say where its panels are worn"
+    )]
+    FallsOff {
+        /// How it was put on first.
+        first: &'static str,
+        /// How it was put on then.
+        second: &'static str,
+    },
     /// A picture cannot be drawn.
     #[error("picture: {0}")]
     Picture(#[from] toile_picture::PictureError),

@@ -33,9 +33,11 @@ mod pace;
 mod perform;
 mod pictures;
 mod piece_facts;
+mod placed_panels;
 mod printing;
 mod product;
 mod project;
+mod put_on;
 mod recovery;
 mod report;
 mod rest_change;
@@ -46,6 +48,7 @@ mod session;
 mod setup;
 mod snapshot;
 mod stored_marker;
+mod stuck;
 mod study;
 mod timing;
 mod tools;
@@ -76,6 +79,7 @@ pub use piece_facts::{
     DartFacts, EdgeFacts, JointFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts,
     seam_facts,
 };
+pub use placed_panels::PanelOrigin;
 pub use printing::{PrintOptions, PrintSizes, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
 pub use recovery::{Abandoned, Recovery, abandoned, state_folder};

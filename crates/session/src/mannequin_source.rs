@@ -2,9 +2,10 @@
 
 use crate::Project;
 use crate::choice::BodyChoice;
+use crate::placed_panels::sleeve_angle;
 use std::sync::Arc;
 use toile_body::{BodyError, Description, Figure, Mannequin};
-use toile_measure::Measurements;
+use toile_measure::{Measurements, Origin};
 
 /// What a mannequin is made from: the same makes the same.
 #[derive(Clone, PartialEq)]
@@ -19,7 +20,7 @@ impl MannequinSource {
     pub fn of(project: &Project) -> Self {
         match &project.body {
             BodyChoice::Shaped { description, .. } => Self::Shaped(description.clone()),
-            _ => Self::Grown(project.figure(), project.body_measurements()),
+            _ => Self::Grown(project.figure(), measurements_for_sleeves(project).0),
         }
     }
 
@@ -29,4 +30,25 @@ impl MannequinSource {
             Self::Shaped(description) => Mannequin::from_description(description),
         }
     }
+}
+
+/// The measurements of the mannequin of a project, with its arms held as the sleeves of its garments are placed
+/// where nobody says how they are held, and that angle.
+pub(crate) fn measurements_for_sleeves(project: &Project) -> (Measurements, Option<f64>) {
+    let mut measurements = project.body_measurements();
+    let given = measurements.measured("arm_pose_angle");
+    if given.is_some_and(|measured| measured.origin == Origin::Asked) {
+        return (measurements, None);
+    }
+    let patterns = [&project.pattern]
+        .into_iter()
+        .chain(project.others.iter().map(|worn| &worn.pattern));
+    let angle = patterns
+        .into_iter()
+        .find_map(|pattern| sleeve_angle(pattern));
+    let kept = angle.filter(|&angle| {
+        let set = measurements.set("arm_pose_angle", angle, Origin::Asked);
+        set.is_ok()
+    });
+    (measurements, kept)
 }

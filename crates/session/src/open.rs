@@ -1,6 +1,7 @@
 //! Opens patterns, markers and measurements; the format is recognised from the content.
 
 use crate::SessionError;
+use crate::placed_panels::PanelOrigin;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
     ExpectedKind, FileError, FormatError, MarkerFile, SizeChoice, read_garmentcode,
@@ -57,11 +58,20 @@ pub struct Opened {
     pub notes: Vec<String>,
 }
 
-/// Reads a pattern file. A pattern without a name is named after its file.
+/// Reads a pattern file. A pattern without a name is named after its file; panels that the file plainly places
+/// round another point than the floor are raised to stand there, with a note.
 ///
 /// # Errors
 /// The file cannot be read, or is not a pattern.
 pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
+    open_pattern_from(path, PanelOrigin::Automatic)
+}
+
+/// Reads a pattern file whose panels are placed round an origin: see [`open_pattern`].
+///
+/// # Errors
+/// Those of [`open_pattern`].
+pub(crate) fn open_pattern_from(path: &Path, origin: PanelOrigin) -> Result<Opened, SessionError> {
     let text = match sample(path) {
         Some(text) => text.to_owned(),
         None => read_input(path, ExpectedKind::Pattern)?,
@@ -73,6 +83,7 @@ pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
     if opened.pattern.name.is_empty() {
         opened.pattern.name = stem(path);
     }
+    opened.notes.extend(origin.settle(&mut opened.pattern));
     Ok(opened)
 }
 

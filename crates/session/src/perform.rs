@@ -5,11 +5,11 @@ use crate::export::{cannot, files, portable};
 use crate::fabrics::chosen;
 use crate::history::History;
 use crate::journal::MOST_COMMANDS;
-use crate::open::{open_pattern, read_pattern_text};
+use crate::open::{open_pattern_from, read_pattern_text};
 use crate::watcher::{ProgressShare, report_progress};
 use crate::{
-    Assembled, BodyChoice, Command, Event, OtherGarment, Project, Session, SessionError,
-    StampedInput, Watcher, WornGarment, journal_lines,
+    Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, Project, Session,
+    SessionError, StampedInput, Watcher, WornGarment, journal_lines,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -19,12 +19,16 @@ use toile_drape::MOST_LAYER;
 use toile_interchange::{write_all_atomically, write_atomically, write_mannequin, write_pattern};
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
+/// Farthest from the floor that the origin of panels may lie [m].
+const HIGHEST_ORIGIN: f64 = 10.0;
+
 type Outcome = Result<Vec<Event>, SessionError>;
 
 impl Session {
     pub(crate) fn perform(&mut self, command: &Command, watcher: &mut dyn Watcher) -> Outcome {
         match command {
             Command::OpenPattern { path } => self.open(path, watcher),
+            Command::SetOrigin { origin } => self.set_origin(*origin),
             Command::SavePattern { path } => self.save(path, watcher),
             Command::NewPattern { name } => self.start(name),
             Command::RestorePattern { text, source } => self.restore(text, source.as_deref()),
@@ -100,7 +104,7 @@ impl Session {
 
     fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
         report_progress(watcher, "reading", 0.0, &path.display().to_string())?;
-        let opened = open_pattern(path)?;
+        let opened = open_pattern_from(path, self.origin)?;
         let mut events = self.begin(opened.pattern, Some(path));
         self.saved = self.project.pattern.clone();
         events.extend(opened.notes.iter().map(|note| Event::Warned {
@@ -250,7 +254,7 @@ impl Session {
         let mut worn = Vec::new();
         let mut notes = Vec::new();
         for other in others {
-            let opened = open_pattern(&other.path)?;
+            let opened = open_pattern_from(&other.path, self.origin)?;
             let note = |note: &String| format!("{}: {note}", other.path.display());
             notes.extend(opened.notes.iter().map(note));
             worn.push(WornGarment {
@@ -276,6 +280,20 @@ impl Session {
         let mut events = self.change(next, "Choose layers");
         events.extend(Event::warnings(&notes));
         Ok(events)
+    }
+
+    fn set_origin(&mut self, origin: PanelOrigin) -> Outcome {
+        if let PanelOrigin::Height(value) = origin
+            && !(value.abs() <= HIGHEST_ORIGIN)
+        {
+            return Err(SessionError::Number {
+                what: "the height of the origin of the panels [m]",
+                value,
+                hint: "give a height within 10 m of the floor",
+            });
+        }
+        self.origin = origin;
+        Ok(Vec::new())
     }
 
     fn check(&mut self, watcher: &mut dyn Watcher) -> Outcome {

@@ -5,7 +5,9 @@ use crate::history::History;
 use crate::journal::Journal;
 use crate::timing::Timing;
 use crate::watcher::ProgressShare;
-use crate::{Command, DrapeResult, Draped, Event, GarmentJob, Project, SessionError, Watcher};
+use crate::{
+    Command, DrapeResult, Draped, Event, GarmentJob, PanelOrigin, Project, SessionError, Watcher,
+};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -34,6 +36,8 @@ pub struct Session {
     /// The pattern as it is in its file.
     pub(crate) saved: Arc<Pattern>,
     pub(crate) timing: Timing,
+    /// The point that files place their panels round.
+    pub(crate) origin: PanelOrigin,
 }
 
 impl Session {

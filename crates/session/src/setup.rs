@@ -47,6 +47,15 @@ pub(crate) struct JobOrigin {
     pub meshed: Arc<Vec<MeshedPart>>,
 }
 
+impl JobOrigin {
+    /// Names of the seams of all garments, in the order of the garment's.
+    pub fn seam_names(&self) -> Vec<String> {
+        let drafts = self.meshed.iter().map(|meshed| &meshed.part.draft);
+        let seams = drafts.flat_map(|draft| &draft.seams);
+        seams.map(|seam| seam.name.clone()).collect()
+    }
+}
+
 /// What a picture or a file needs to know of a piece of a garment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobPanel {

@@ -1,9 +1,9 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
 
 use crate::export::cannot;
-use crate::open::{open_pattern, read_input};
+use crate::open::{open_pattern_from, read_input};
 use crate::product::body_obj;
-use crate::{PatternFormat, Project, SessionError};
+use crate::{PanelOrigin, PatternFormat, Project, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
@@ -48,7 +48,16 @@ pub(crate) fn project_of(
     path: &Path,
     size: Option<&str>,
 ) -> Result<(Project, Vec<String>), SessionError> {
-    let opened = open_pattern(path)?;
+    project_from(path, size, PanelOrigin::Automatic)
+}
+
+/// The same of a file whose panels are placed round an origin.
+fn project_from(
+    path: &Path,
+    size: Option<&str>,
+    origin: PanelOrigin,
+) -> Result<(Project, Vec<String>), SessionError> {
+    let opened = open_pattern_from(path, origin)?;
     let project = Project {
         pattern: Arc::new(opened.pattern),
         source: Some(path.to_owned()),
@@ -67,6 +76,7 @@ pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
 }
 
 /// Converts a pattern between formats: to the one asked for, else by the name of the output.
+/// Panels that the input places in space, round `origin`, are written as they stand on the floor.
 /// Returns what was left out or assumed on the way in and out.
 ///
 /// # Errors
@@ -75,6 +85,7 @@ pub fn convert(
     from: &Path,
     to: &Path,
     format: Option<PatternFormat>,
+    origin: PanelOrigin,
 ) -> Result<Vec<String>, SessionError> {
     let remedy = "patterns are written as NAME.toile.json (Toile) and NAME.json (GarmentCode); \
                   `toile nest --write` writes markers as svg, dxf, pdf and plt";
@@ -84,7 +95,7 @@ pub fn convert(
         true => PatternFormat::Native,
         false => PatternFormat::GarmentCode,
     });
-    let (project, mut notes) = project_of(from, None)?;
+    let (project, mut notes) = project_from(from, None, origin)?;
     let text = match format {
         PatternFormat::Native => write_pattern(&project.pattern).map_err(cannot("the pattern"))?,
         PatternFormat::GarmentCode => {

@@ -8,6 +8,8 @@ mod knife;
 mod sides;
 mod verdict;
 
+mod put_on;
+
 use common::{toile, words};
 use std::path::{Path, PathBuf};
 

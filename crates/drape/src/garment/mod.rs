@@ -7,6 +7,7 @@ mod digest;
 mod edit;
 mod setup;
 mod stage;
+mod watch;
 
 pub use checkpoint::Checkpoint;
 pub use setup::{GarmentLevel, GarmentSetup};
@@ -21,6 +22,7 @@ use setup::GarmentWorld;
 use stage::{Attempts, Settling, StageState, Swinging};
 use std::ops::Deref;
 use toile_geometry::Vec2;
+use watch::Fall;
 
 /// Progress of a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +69,10 @@ pub struct GarmentRun {
 const SEWING_SPAN: usize = 8;
 const SWINGING_SPAN: usize = 40;
 const SETTLING_SPAN: usize = 8;
+
+/// Rounds of the swing between two searches for cloth that fell off the body: 0.1 s or less; and steps of the settling.
+const FALL_ROUNDS: usize = 10;
+const FALL_STEPS: usize = 8;
 
 /// Most rounds of refined contact samples; crossings of the body that remain are reported.
 const MOST_REFINEMENTS: usize = 12;
@@ -200,6 +206,7 @@ impl GarmentRun {
             settling
                 .continuation
                 .continue_to(settings.residual, settings.steps);
+            settling.fall = Fall::default();
             self.stage = StageState::Settling(settling);
             self.findings.clear();
         }
@@ -296,6 +303,9 @@ impl GarmentRun {
             self.forget_after(rounds, SWINGING_SPAN);
         }
         self.set_progress(shown);
+        if rounds.is_multiple_of(FALL_ROUNDS) {
+            self.refuse_fallen()?;
+        }
         Ok(())
     }
 
@@ -310,7 +320,8 @@ impl GarmentRun {
         let Simulation { system, state, .. } = &mut self.simulation;
         continuation.advance(system, state, &mut self.workspace)?;
         let (residual, steps) = (continuation.residual(), continuation.steps());
-        let finished = continuation.finished();
+        settling.fall.note(residual, steps);
+        let finished = continuation.finished() || settling.fall.is_stuck;
         if settling.cut_short && self.workspace.contacts.cloth.is_in_order() {
             settling.cut_short = false;
             if settling.attempts.swings < MOST_SWINGS {
@@ -330,7 +341,15 @@ impl GarmentRun {
             StageState::Finished(_) => self.forget_contacts(),
             _ => self.forget_after(steps, SETTLING_SPAN),
         }
+        if steps.is_multiple_of(FALL_STEPS) {
+            self.refuse_fallen()?;
+        }
         Ok(())
+    }
+
+    /// Whether it was given up because its net force stayed far above its weight.
+    pub fn is_stuck(&self) -> bool {
+        matches!(&self.stage, StageState::Finished(settling) if settling.fall.is_stuck)
     }
 
     /// Refines contact samples at crossings of the body on the finest mesh, and finishes a garment at rest.
@@ -338,9 +357,10 @@ impl GarmentRun {
         let StageState::Settling(settling) = &mut self.stage else {
             return;
         };
-        let finished = settling.continuation.finished();
+        let is_stuck = settling.fall.is_stuck;
+        let finished = settling.continuation.finished() || is_stuck;
         let residual = settling.continuation.residual();
-        if finished || residual < settling.attempts.check_below {
+        if !is_stuck && (finished || residual < settling.attempts.check_below) {
             settling.attempts.check_below = NEXT_CHECK * residual;
             let Simulation { system, state, .. } = &mut self.simulation;
             let crossing = body_crossings(system, state);

@@ -1,5 +1,6 @@
 //! The stages of a garment's run with their memories: plain data of a checkpoint.
 
+use super::watch::Fall;
 use crate::kinetic_damping::KineticDamping;
 use crate::{PseudoTransientContinuation, RestSettings, SewRun};
 use serde::{Deserialize, Serialize};
@@ -46,6 +47,9 @@ pub(super) struct Settling {
     /// Whether the swing ended with crossings of cloth before the motion had died out.
     pub cut_short: bool,
     pub attempts: Attempts,
+    /// How its net force falls.
+    #[serde(default)]
+    pub fall: Fall,
 }
 
 /// Attempts so far to bring a merged level to rest; a level that returns to an earlier stage continues the count.
@@ -81,6 +85,7 @@ impl Settling {
             continuation: PseudoTransientContinuation::near(settings),
             cut_short: false,
             attempts,
+            fall: Fall::default(),
         }
     }
 }
