@@ -354,7 +354,7 @@ impl Derived {
         inputs: &[StampedInput],
         watcher: &mut dyn Watcher,
     ) -> Result<Drape, SessionError> {
-        let (put_on, [first, second]) = PutOn::otherwise(&*self.sound_parts(project)?);
+        let (put_on, [first, second]) = PutOn::otherwise(&self.sound_parts(project)?);
         let fell = |error| match error {
             SessionError::Drape(DrapeError::LeftBody { .. }) => {
                 SessionError::FallsOff { first, second }

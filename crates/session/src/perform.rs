@@ -284,7 +284,7 @@ impl Session {
 
     fn set_origin(&mut self, origin: PanelOrigin) -> Outcome {
         if let PanelOrigin::Height(value) = origin
-            && !(value.abs() <= HIGHEST_ORIGIN)
+            && (value.is_nan() || value.abs() > HIGHEST_ORIGIN)
         {
             return Err(SessionError::Number {
                 what: "the height of the origin of the panels [m]",

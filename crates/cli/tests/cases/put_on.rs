@@ -94,3 +94,47 @@ fn arms_can_be_held_from_straight_out_and_are_refused_in_degrees() {
         "{said}"
     );
 }
+
+#[test]
+fn a_garment_that_falls_off_is_put_on_again_and_refused_with_what_was_tried() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let arguments = ["drape", "tube.json", "--quality", "preview", "--out", out];
+    let (said, status) = run("falls-off-both-ways", &arguments);
+    assert_eq!(status, Some(2), "{said}");
+    for words in [
+        "falls off the body",
+        "where its file places",
+        "names and seams",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(!folder.path().join("garment.obj").exists());
+}
+
+#[test]
+fn a_circle_skirt_hangs_from_the_waist() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let arguments = [
+        "drape",
+        "circle.toile.json",
+        "--quality",
+        "preview",
+        "--out",
+        out,
+    ];
+    let (said, status) = run("fell-off-unsaid", &arguments);
+    assert_eq!(status, Some(0), "{said}");
+    let mesh = std::fs::read_to_string(folder.path().join("garment.obj")).unwrap();
+    let heights = mesh.lines().filter_map(|line| {
+        let mut words = line.strip_prefix("v ")?.split_whitespace();
+        words.nth(1)?.parse::<f64>().ok()
+    });
+    let (low, high) = heights.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    assert!(
+        low > 0.3 && (0.95..1.25).contains(&high),
+        "from {low} to {high} m"
+    );
+    assert!(!said.contains("tangled"), "{said}");
+}
