@@ -7,6 +7,7 @@ mod common;
 mod knife;
 mod sides;
 mod verdict;
+mod xpbd;
 
 mod put_on;
 

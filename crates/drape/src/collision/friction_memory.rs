@@ -14,11 +14,8 @@ pub(super) fn anchor(memory: &ClothMemory, near: &Nearness, x: &[Vec3]) -> Optio
         .binary_search_by(|state| state.pair.cmp(&near.pair))
         .ok()?;
     let state = &memory.friction[at];
-    let four = near.pair.vertices().into_iter().zip(near.weights);
-    let slid: Vec3 = four
-        .map(|(v, w)| (x[v as usize] - memory.positions[v as usize]) * w)
-        .sum();
     let between = near.normal * near.distance;
+    let slid = near.slid(&memory.positions, x);
     Some((between - state.slip - slid, state.force))
 }
 
