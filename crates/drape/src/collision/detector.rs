@@ -132,6 +132,9 @@ impl ContactDetector {
             let factor = edge_mollifier(contact, x);
             contact.law.normal *= factor;
             contact.law.tangential *= factor;
+            if friction_memory::is_new(memory, contact) {
+                contact.plane.lagged_normal_force *= factor;
+            }
         }
     }
 
