@@ -132,7 +132,14 @@ impl ContactLaw {
                 gradient += slip * (limit / length);
             }
             if plane.returning || self.tangential * length <= AT_LIMIT * limit {
-                hessian += tangent * self.tangential;
+                // Of a point that slid beyond the limit the secant, which majorises the energy on the way back.
+                let sticks = self.tangential * length <= limit;
+                let stiffness = if sticks {
+                    self.tangential
+                } else {
+                    limit / length
+                };
+                hessian += tangent * stiffness;
             } else {
                 // Friction is constant along the slip, so it has no stiffness in that direction.
                 let along = slip / length;
@@ -161,7 +168,9 @@ impl ContactLaw {
         if limit <= 0.0 || plane.returning || self.tangential * length <= AT_LIMIT * limit {
             return 0.0;
         }
-        let back = -step.dot(&slip) / length;
+        // A point beyond the limit enters the cone only after the way back to it.
+        let beyond = (length - limit / self.tangential).max(0.0);
+        let back = -step.dot(&slip) / length - beyond;
         // Beyond the far side of the cone it slides in the opposite direction.
         let width = 2.0 * limit / self.tangential;
         let spring = back.clamp(0.0, width);
