@@ -17,7 +17,6 @@ fn the_quick_laws_hold_for_every_method() {
         "uniaxial",
         "flight",
         "incline",
-        "cloth-on-cloth",
         "fall",
     ];
     let checks = checks(&quick);
