@@ -210,7 +210,10 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         };
         let rate = 1.0 / R::unknown_time(h);
         self.workspace.increment.begin_step(system, state, rate);
-        (self.workspace.contacts).begin_step(&self.before.positions);
+        // A single linear solve cannot follow the friction of a contact that it does not yet know.
+        if self.limits.iterations > 1 {
+            (self.workspace.contacts).begin_step(&self.before.positions);
+        }
         let report = self.solver.minimise(&problem, state, &mut self.workspace);
         self.workspace.increment.begin_static(system, state);
         R::finish(&self.before, state, h);
