@@ -248,8 +248,7 @@ fn proportions(
 const ROOM: [(Level, f64); 9] = [
     (Knee, 0.12),
     (Crotch, 0.10),
-    // The fullest buttocks may lie under the crotch.
-    (Hips, -0.025),
+    (Hips, 0.008),
     (Waist, 0.03),
     (Underbust, 0.012),
     (Bust, 0.012),

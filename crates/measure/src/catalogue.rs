@@ -106,7 +106,7 @@ pub const CATALOGUE: &[Definition] = &[
     length(
         "bust",
         "Bust or chest girth",
-        "Horizontal girth at the fullest part of the chest.",
+        "Largest horizontal girth of the chest under the arms.",
         &[
             "chest",
             "bust_circ",
@@ -148,7 +148,7 @@ pub const CATALOGUE: &[Definition] = &[
     length(
         "waist",
         "Waist girth",
-        "Horizontal girth at the natural waist.",
+        "Smallest horizontal girth between hips and ribs: the natural waist.",
         &["waist_circ", "waist_girth", "natural_waist"],
     ),
     length(
@@ -172,7 +172,7 @@ pub const CATALOGUE: &[Definition] = &[
     length(
         "hips",
         "Hip girth",
-        "Horizontal girth at the fullest part of the buttocks.",
+        "Largest horizontal girth between waist and crotch.",
         &["hip", "hip_circ", "hip_girth", "seat", "seat_circ"],
     ),
     length(
@@ -226,13 +226,13 @@ pub const CATALOGUE: &[Definition] = &[
     length(
         "wrist",
         "Wrist girth",
-        "Girth of the arm over the wrist bone.",
+        "Smallest girth of the arm above the hand, over the wrist bone.",
         &["wrist_circ", "wrist_girth"],
     ),
     length(
         "neck",
         "Neck girth",
-        "Girth of the neck just below the larynx, square to its axis.",
+        "Smallest girth of the neck below the larynx, square to its axis.",
         &["neck_circ", "neck_girth", "neck_mid_girth"],
     ),
     length(

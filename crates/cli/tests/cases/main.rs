@@ -4,10 +4,10 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod girths;
 mod knife;
 mod sides;
 mod verdict;
-mod xpbd;
 
 mod put_on;
 
