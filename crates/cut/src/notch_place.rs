@@ -9,8 +9,6 @@ use toile_pattern::{EdgeOrigin, Piece, PieceNotch};
 
 /// A notch this near to a corner of the seam line is at it \[m\].
 const AT_CORNER: f64 = 1e-6;
-/// Sine of the least turn that is a corner: below it the cut lines go on into each other.
-const TURNS: f64 = 0.02;
 
 /// Unit vectors and width at a place of an edge.
 #[derive(Clone, Copy)]
@@ -166,25 +164,31 @@ impl Corner {
         }
     }
 
-    /// From the corner to a side's cut line: along the other side's seam line drawn on; at an
-    /// inner corner to where both cut lines meet.
+    /// From the corner to a side's cut line: along the other side's seam line drawn on. At an inner
+    /// corner and at a blunt one, where that is far away, to where both cut lines meet.
     fn outwards(&self, side: Side, drawn_on: Vec2) -> Vec2 {
-        let (n, m) = (self.before.out, self.after.out);
-        let turn = n.dot(&self.after.way);
-        let (sin, cos) = (-turn, n.dot(&m));
-        if sin.abs() < TURNS && cos > 0.0 {
-            return side.out * side.width;
-        }
-        if sin < 0.0 {
-            let (p, q) = (self.before.width, self.after.width);
-            let share = 1.0 - cos * cos;
-            return (n * (p - q * cos) + m * (q - p * cos)) / share.max(1e-6);
-        }
+        let (sin, cos) = (
+            -self.before.out.dot(&self.after.way),
+            self.before.out.dot(&self.after.out),
+        );
         let rise = drawn_on.dot(&side.out);
-        let reach = side.width / rise.max(1e-9);
-        match cos > 0.0 && reach > MITRE_LIMIT * side.width {
-            true => side.out * side.width,
-            false => drawn_on * reach.min(MITRE_LIMIT * side.width),
+        let is_blunt = cos > 0.0 && rise * MITRE_LIMIT < 1.0;
+        if sin < 0.0 || is_blunt {
+            return self.meeting().unwrap_or(side.out * side.width);
         }
+        drawn_on * (side.width / rise.max(1e-9)).min(MITRE_LIMIT * side.width)
+    }
+
+    /// From the corner to where both cut lines meet, unless that is far away.
+    fn meeting(&self) -> Option<Vec2> {
+        let (n, m) = (self.before.out, self.after.out);
+        let (p, q) = (self.before.width, self.after.width);
+        let cos = n.dot(&m);
+        let both = match (p - q).abs() < AT_CORNER {
+            true => (n + m) * (p / (1.0 + cos)),
+            false => (n * (p - q * cos) + m * (q - p * cos)) / (1.0 - cos * cos),
+        };
+        let is_near = both.norm() <= MITRE_LIMIT * p.max(q);
+        is_near.then_some(both)
     }
 }

@@ -63,16 +63,25 @@ fn exchanged(pattern: &Pattern, spans: impl IntoIterator<Item = At>) -> Pattern 
     pattern
 }
 
-/// Seams as sets: which side is the first and which seam comes first does not count.
-fn sewn(draft: &Draft) -> BTreeSet<[Vec<(usize, usize, u64, u64)>; 2]> {
-    let side = |spans: &[DraftSpan]| {
+/// Where a span is: its piece, edge and ends.
+type Place = (usize, usize, u64, u64);
+
+/// Seams as sets: which side is the first, from which end both are walked and which seam comes first does
+/// not count.
+fn sewn(draft: &Draft) -> BTreeSet<[Vec<Place>; 2]> {
+    let ahead = |spans: &[DraftSpan]| {
         let span = |s: &DraftSpan| (s.piece, s.edge, s.from.to_bits(), s.to.to_bits());
         spans.iter().map(span).collect::<Vec<_>>()
     };
+    let back = |spans: &[DraftSpan]| {
+        let span = |s: &DraftSpan| (s.piece, s.edge, s.to.to_bits(), s.from.to_bits());
+        spans.iter().rev().map(span).collect::<Vec<_>>()
+    };
     let seams = draft.seams.iter().map(|seam| {
-        let mut sides = [side(&seam.sides[0]), side(&seam.sides[1])];
-        sides.sort();
-        sides
+        let [one, two] = [&seam.sides[0], &seam.sides[1]];
+        let mut ways = [[ahead(one), ahead(two)], [back(one), back(two)]];
+        ways.iter_mut().for_each(|sides| sides.sort());
+        ways.into_iter().min().unwrap()
     });
     seams.collect()
 }

@@ -190,16 +190,34 @@ fn rolls_are_filled_in_turn_and_what_fits_none_is_named() {
     assert!(words.contains("roll 2: it is"), "{words}");
 }
 
-/// Where the first notch of every piece lies along the fabric [mm], from the drawing.
+/// Places of a path [mm].
+fn places(path: &str) -> Vec<[f64; 2]> {
+    let corners = path.split(['M', 'L', 'Z']).filter(|c| !c.is_empty());
+    let place = |corner: &str| {
+        let (x, y) = corner.split_once(' ')?;
+        Some([x.parse().ok()?, y.parse().ok()?])
+    };
+    corners.filter_map(place).collect()
+}
+
+/// Where the first notch of every piece lies on the seam line, along the fabric [mm], from the
+/// drawing: at a corner of the seam line, 10 mm within the slit that is cut for it.
 fn first_notches(svg: &str) -> Vec<(String, f64)> {
-    let after = |text: &str, mark: &str| text.split(mark).nth(1).map(str::to_owned);
+    let after = |text: &str, mark: &str| {
+        let rest = text.split(mark).nth(1)?;
+        Some(rest.split('"').next()?.to_owned())
+    };
     svg.split("<g class=\"piece\"")
         .skip(1)
         .filter_map(|piece| {
             let name = after(piece, "data-name=\"")?;
-            let d = after(piece, "class=\"notch\" d=\"M")?;
-            let x = d.split(' ').next()?.parse().ok()?;
-            Some((name.split('"').next()?.to_owned(), x))
+            let slit = places(&after(piece, "class=\"notch\" d=\"")?);
+            let way = [0, 1].map(|k| (slit[1][k] - slit[0][k]) / 6.0);
+            let goal = [0, 1].map(|k| slit[0][k] + 10.0 * way[k]);
+            let off = |p: &[f64; 2]| (p[0] - goal[0]).hypot(p[1] - goal[1]);
+            let sewn = places(&after(piece, "class=\"sew\" d=\"")?);
+            let corner = sewn.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+            (off(&corner) < 0.2).then_some((name, corner[0]))
         })
         .collect()
 }

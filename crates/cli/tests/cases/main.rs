@@ -8,6 +8,7 @@ mod girths;
 mod knife;
 mod sides;
 mod verdict;
+mod xpbd;
 
 mod put_on;
 
