@@ -203,8 +203,7 @@ fn holes_are_not_counted_as_cloth() {
     let (told, right) = told_and_right(&folder, ("holes.toile.json", 0.42), &made);
     assert!((told - right).abs() < 1e-9, "{told} {right}");
     let checked = run(&folder, &["check", &format!("{made}/marker.json")]);
-    let words = format!("{:.1} %", 100.0 * right);
-    assert!(checked.contains(&words), "{checked} does not say {words}");
+    assert!(checked.contains("no faults"), "{checked}");
 }
 
 #[test]
