@@ -1,7 +1,6 @@
 //! The garments worn together: each is drafted and meshed by itself, then all become one garment of several
 //! parts, each in its layer.
 
-use crate::drape::Drape;
 use crate::fabrics::FabricChoice;
 use crate::{Project, SessionError, WornGarment};
 use std::ops::Range;
@@ -9,8 +8,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use toile_assembly::{Garment, PieceMeshes};
 use toile_cut::cut_diagnostics;
-use toile_geometry::TriangleMesh;
-use toile_interchange::ObjMesh;
 use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern, Severity};
 
 /// One of the garments worn: what of the whole is its own.
@@ -213,57 +210,6 @@ fn add_draft(whole: &mut Draft, part: &DraftedPart, prefix: &str) {
         whole.seams.push(seam);
     }
     whole.fabrics.extend(part.draft.fabrics.iter().cloned());
-}
-
-impl Drape {
-    /// The triangles of the draped mesh that belong to a part.
-    pub fn part_triangles(&self, part: &GarmentPart) -> Range<usize> {
-        let bound = |at: usize| self.origin.partition_point(|&t| (t as usize) < at);
-        bound(part.triangles.start)..bound(part.triangles.end)
-    }
-
-    /// A part by itself.
-    pub fn part_mesh(&self, part: &GarmentPart) -> TriangleMesh {
-        let mut number = vec![u32::MAX; self.mesh.positions.len()];
-        let mut mesh = TriangleMesh::default();
-        for t in self.part_triangles(part) {
-            let corners = self.mesh.triangles[t].map(|v| {
-                let number = &mut number[v as usize];
-                if *number == u32::MAX {
-                    *number = mesh.positions.len() as u32;
-                    mesh.positions.push(self.mesh.positions[v as usize]);
-                }
-                *number
-            });
-            mesh.triangles.push(corners);
-        }
-        mesh
-    }
-
-    /// Each of several garments as a file of its own: `layer-1-shirt.obj`, innermost first.
-    pub fn part_files(&self) -> Vec<(String, ObjMesh)> {
-        let mut parts: Vec<&GarmentPart> = self.job.parts.iter().collect();
-        if parts.len() < 2 {
-            return Vec::new();
-        }
-        parts.sort_by_key(|part| part.layer);
-        let each = parts.into_iter().enumerate();
-        each.map(|(k, part)| {
-            let plain = |c: char| match c.is_alphanumeric() {
-                true => c.to_ascii_lowercase(),
-                false => '-',
-            };
-            let name: String = part.name.chars().map(plain).collect();
-            let mesh = self.part_mesh(part);
-            let obj = ObjMesh {
-                normals: mesh.vertex_normals(),
-                normal_triangles: mesh.triangles.clone(),
-                ..ObjMesh::from(mesh)
-            };
-            (format!("layer-{}-{name}.obj", k + 1), obj)
-        })
-        .collect()
-    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Writes a draped garment as glTF and OBJ, one group for each panel.
 
+use crate::GarmentPart;
 use crate::drape::Drape;
 use std::ops::Range;
 use toile_geometry::{TriangleMesh, Vec3};
@@ -104,5 +105,56 @@ pub(crate) fn body_obj(skin: &TriangleMesh) -> ObjMesh {
         normals: skin.vertex_normals(),
         normal_triangles: skin.triangles.clone(),
         ..ObjMesh::from(skin.clone())
+    }
+}
+
+impl Drape {
+    /// The triangles of the draped mesh that belong to a part.
+    pub fn part_triangles(&self, part: &GarmentPart) -> Range<usize> {
+        let bound = |at: usize| self.origin.partition_point(|&t| (t as usize) < at);
+        bound(part.triangles.start)..bound(part.triangles.end)
+    }
+
+    /// A part by itself.
+    pub fn part_mesh(&self, part: &GarmentPart) -> TriangleMesh {
+        let mut number = vec![u32::MAX; self.mesh.positions.len()];
+        let mut mesh = TriangleMesh::default();
+        for t in self.part_triangles(part) {
+            let corners = self.mesh.triangles[t].map(|v| {
+                let number = &mut number[v as usize];
+                if *number == u32::MAX {
+                    *number = mesh.positions.len() as u32;
+                    mesh.positions.push(self.mesh.positions[v as usize]);
+                }
+                *number
+            });
+            mesh.triangles.push(corners);
+        }
+        mesh
+    }
+
+    /// Each of several garments as a file of its own: `layer-1-shirt.obj`, innermost first.
+    pub fn part_files(&self) -> Vec<(String, ObjMesh)> {
+        let mut parts: Vec<&GarmentPart> = self.job.parts.iter().collect();
+        if parts.len() < 2 {
+            return Vec::new();
+        }
+        parts.sort_by_key(|part| part.layer);
+        let each = parts.into_iter().enumerate();
+        each.map(|(k, part)| {
+            let plain = |c: char| match c.is_alphanumeric() {
+                true => c.to_ascii_lowercase(),
+                false => '-',
+            };
+            let name: String = part.name.chars().map(plain).collect();
+            let mesh = self.part_mesh(part);
+            let obj = ObjMesh {
+                normals: mesh.vertex_normals(),
+                normal_triangles: mesh.triangles.clone(),
+                ..ObjMesh::from(mesh)
+            };
+            (format!("layer-{}-{name}.obj", k + 1), obj)
+        })
+        .collect()
     }
 }
