@@ -86,7 +86,7 @@ pub(crate) fn roles(
 
 /// The body part that a piece's name suggests.
 pub fn body_part_by_name(piece: &Piece) -> Option<BodyPart> {
-    Guess::from_name(piece).part
+    Guess::from_name(piece, told_side(&(piece, None))).part
 }
 
 /// The place that a piece's name suggests.
