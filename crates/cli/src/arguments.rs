@@ -3,11 +3,11 @@
 use crate::body_options::BodyOptions;
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
-use crate::values::{blend, panel_origin};
+use crate::values::{blend, one_size, panel_origin, sizes};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
-use toile_session::{Command, OtherGarment, PanelOrigin, PatternFormat, Quality};
+use toile_session::{Command, OtherGarment, PanelOrigin, PatternFormat, Quality, SizeSelection};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
@@ -220,7 +220,7 @@ pub struct Make {
     pub body: Option<String>,
     /// Named size of the pattern; the mannequin gets that size too. Default: the pattern's base
     /// size, or the body's own measurements where --body is given.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = one_size)]
     pub size: Option<String>,
     /// Cut every panel from this fabric: one of the pattern's, or of the library: silk,
     /// chiffon, poplin, cotton, jersey, wool, denim, leather, felt, flag-nylon. Default: each
@@ -327,9 +327,10 @@ pub struct Check {
     /// flaws as they stand. Each file gets its own verdict.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Named size to check. Default: the pattern's base size.
-    #[arg(long, value_name = "NAME")]
-    pub size: Option<String>,
+    /// Named sizes to check, as in S,M; or all. The pieces of --json are those of the first. Default:
+    /// all, with the pieces of the base size.
+    #[arg(long, value_name = "NAMES", value_parser = sizes)]
+    pub size: Option<SizeSelection>,
     /// Folder for the drawing of a marker, where what is cut twice is red.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -344,7 +345,7 @@ pub struct Mesh {
     #[arg(long, value_name = "LENGTH", default_value = "10mm")]
     pub edge: Length,
     /// Named size. Default: the pattern's base size.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = one_size)]
     pub size: Option<String>,
     /// OBJ file to write (m).
     #[arg(long, value_name = "FILE")]

@@ -7,7 +7,8 @@ use crate::session_commands::warnings;
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_session::{
-    Command, Event, Session, is_marker_file, judge_marker_file, piece_facts, seam_facts,
+    Command, Event, Session, Severity, SizeSelection, SizedDiagnostic, is_marker_file,
+    judge_marker_file, piece_facts, seam_facts,
 };
 
 /// One file judged, or several with a verdict each.
@@ -72,41 +73,58 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     let mut commands = vec![Command::OpenPattern {
         path: path.to_owned(),
     }];
-    if let Some(size) = check.size.clone() {
-        commands.push(Command::SetSize { size: Some(size) });
+    // Pieces are told in numbers of the first size that was asked for.
+    if let Some(SizeSelection::Named(names)) = &check.size {
+        let size = names.first().map(|(name, _)| name.clone());
+        commands.push(Command::SetSize { size });
     }
-    commands.push(Command::Check);
-    let events = session
+    let mut events = session
         .execute_all(&commands, &mut Bar::new())
         .map_err(|error| Failure::from(error).about(path))?;
-    let diagnostics = session.diagnostics();
+    let found = session
+        .diagnostics_by_size(check.size.as_ref())
+        .map_err(|error| Failure::from(error).about(path))?;
+    let errors = count_of(&found, Severity::Error);
+    events.push(Event::Checked {
+        errors,
+        warnings: count_of(&found, Severity::Warning),
+    });
+    events.extend(found.iter().map(|sized| Event::Warned {
+        message: format!("{}: {sized}", path.display()),
+    }));
     let place = |place| session.project().pattern.describe(place);
-    let listed: Vec<Value> = diagnostics
+    let listed: Vec<Value> = found
         .iter()
-        .map(|d| {
-            json!({
-                "severity": d.severity.to_string(),
-                "place": place(&d.place),
-                "message": d.message,
-                "hint": d.hint,
-            })
-        })
+        .map(
+            |SizedDiagnostic {
+                 diagnostic: d,
+                 sizes,
+                 ..
+             }| {
+                json!({
+                    "severity": d.severity.to_string(),
+                    "sizes": sizes,
+                    "place": place(&d.place),
+                    "message": d.message,
+                    "hint": d.hint,
+                })
+            },
+        )
         .collect();
     output.print_events(&events);
-    let errors = events
-        .iter()
-        .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
     let (draft, evaluation) = (session.draft(), session.evaluation());
+    let own = session.diagnostics();
+    let is_sound = own.iter().all(|d| d.severity != Severity::Error);
     let project = session.project();
-    let (pieces, seams) = match errors {
-        false => {
+    let (pieces, seams) = match is_sound {
+        true => {
             let of = (&*project.pattern, &*draft);
             (
                 piece_facts(of, project.size_name()),
                 seam_facts((&evaluation, &draft)),
             )
         }
-        true => (Vec::new(), Vec::new()),
+        false => (Vec::new(), Vec::new()),
     };
     let report = json!({
         "format": "toile-check",
@@ -118,11 +136,16 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
         "diagnostics": listed,
         "warnings": warnings(&events),
     });
-    if errors {
+    if errors > 0 {
         let message = format!("{}: the garment cannot be made", path.display());
         return Err(Failure::bad_input(message).with_report(report));
     }
     Ok(report)
+}
+
+fn count_of(found: &[SizedDiagnostic], severity: Severity) -> usize {
+    let own = |sized: &&SizedDiagnostic| sized.diagnostic.severity == severity;
+    found.iter().filter(own).count()
 }
 
 /// A marker judged as it stands.

@@ -1,10 +1,10 @@
 //! Options of `toile nest`.
 
-use crate::values::{flaw, repeat, roll, size_count};
+use crate::values::{flaw, repeat, roll, sizes};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
-use toile_session::{GivenFlaw, MarkerFormat, Spread};
+use toile_session::{GivenFlaw, MarkerFormat, SizeSelection, Spread};
 /// `toile nest`.
 #[derive(Debug, Args)]
 pub struct Nest {
@@ -16,7 +16,7 @@ pub struct Nest {
     /// there stay, and where the pieces lie is stored in the file. The files of --write follow.
     #[arg(long, value_name = "NAME", conflicts_with_all = [
         "width", "length", "selvedge", "end_margin", "gap", "nap", "spread", "plies", "roll", "price",
-        "settings", "tilt", "repeat", "defect", "size", "sizes", "from", "lock", "study",
+        "settings", "tilt", "repeat", "defect", "size", "from", "lock", "study",
     ])]
     pub marker: Option<String>,
     /// Go on from where the marker's pieces lie, instead of laying them anew.
@@ -84,12 +84,10 @@ pub struct Nest {
     /// again.
     #[arg(long, value_name = "[FABRIC:]L,L,L,L", value_parser = flaw)]
     pub defect: Vec<GivenFlaw>,
-    /// Named size. Default: each pattern's base size.
-    #[arg(long, value_name = "NAME", conflicts_with = "sizes")]
-    pub size: Option<String>,
-    /// Several sizes in a ratio, as in S:1,M:2,L:1. Each garment is a bundle.
-    #[arg(long, value_name = "NAME:COUNT", value_delimiter = ',', value_parser = size_count)]
-    pub sizes: Vec<(String, u32)>,
+    /// Named sizes, each with how many garments of it where that is not one, as in S,M:2,L; or all.
+    /// Each garment is a bundle. Default: each pattern's base size.
+    #[arg(long, alias = "sizes", value_name = "NAMES", value_parser = sizes)]
+    pub size: Option<SizeSelection>,
     /// Time to search each fabric, as in 10s or 2min. The result depends on the machine; see
     /// --evaluations.
     #[arg(

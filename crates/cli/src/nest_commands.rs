@@ -24,12 +24,8 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
             "--time is {seconds} s; give a time above 0, as in 10s"
         )));
     }
-    let sizes = match &nest.size {
-        Some(size) => vec![(size.clone(), 1)],
-        None => nest.sizes.clone(),
-    };
     Ok(NestOptions {
-        sizes,
+        sizes: nest.size.clone().unwrap_or_default(),
         width: metres(&nest.width),
         length: metres(&nest.length),
         selvedge: metres(&nest.selvedge),

@@ -1,19 +1,20 @@
 //! Options of `toile print`.
 
-use crate::values::{scale, shrinkage};
+use crate::values::{scale, shrinkage, sizes};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use toile_session::{Lines, Paper, PrintOptions, PrintSizes, Shrinkage};
+use toile_session::{Lines, Paper, PrintOptions, Shrinkage, SizeSelection};
 
 /// `toile print`.
 #[derive(Debug, Args)]
 pub struct Print {
     /// The pattern: native or GarmentCode.
     pub pattern: PathBuf,
-    /// Named size. Default: the pattern's base size.
-    #[arg(long, value_name = "NAME")]
-    pub size: Option<String>,
-    /// Every size, one over another, each a layer.
+    /// Named sizes, as in S,M; or all. Several lie one over another, each a layer. Default: the
+    /// pattern's base size.
+    #[arg(long, value_name = "NAMES", value_parser = sizes)]
+    pub size: Option<SizeSelection>,
+    /// The same as --size all.
     #[arg(long, conflicts_with = "size")]
     pub all_sizes: bool,
     /// Names of the pieces to print, as in front,back. Default: all.
@@ -45,9 +46,9 @@ impl Print {
     pub fn options(&self) -> PrintOptions {
         PrintOptions {
             sizes: match (&self.size, self.all_sizes) {
-                (Some(name), _) => PrintSizes::Named(name.clone()),
-                (None, true) => PrintSizes::All,
-                (None, false) => PrintSizes::Base,
+                (Some(sizes), _) => sizes.clone(),
+                (None, true) => SizeSelection::All,
+                (None, false) => SizeSelection::Base,
             },
             pieces: self.pieces.clone(),
             lines: self.lines.into(),

@@ -39,8 +39,13 @@ pub fn print(print: &Print, output: &Output) -> Result<Value, Failure> {
             )
         }
     });
+    // Of several sizes, what is cut is told of the first.
+    let size = match &printed.sizes[..] {
+        [first, _, ..] => format!(" in size {first}"),
+        _ => String::new(),
+    };
     for list in &printed.cut_list {
-        output.say(cut_words(list));
+        output.say(cut_words(list, &size));
     }
     output.say(format!("wrote {}", print.out.display()));
     Ok(json!({
@@ -66,7 +71,7 @@ fn extent(printed: &Printed) -> [u32; 2] {
     })
 }
 
-fn cut_words(list: &CutList) -> String {
+fn cut_words(list: &CutList, size: &str) -> String {
     let pieces = list.pieces.iter().map(|piece| match piece.pairs {
         0 => format!("{} x {}", piece.quantity, piece.name),
         1 if piece.quantity == 2 => format!("1 pair of {}", piece.name),
@@ -75,7 +80,7 @@ fn cut_words(list: &CutList) -> String {
     });
     let pieces: Vec<String> = pieces.collect();
     format!(
-        "cut from {}: {} ({:.0} cm2)",
+        "cut from {}{size}: {} ({:.0} cm2)",
         list.fabric,
         pieces.join(", "),
         list.area() * 1e4

@@ -43,9 +43,9 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Made, Failure> 
     let others = project.others.iter().map(|other| &*other.pattern.name);
     let names: Vec<&str> = [&*project.pattern.name].into_iter().chain(others).collect();
     output.say(format!(
-        "{}, size {}, {:.0} cm tall",
+        "{}, {}, {:.0} cm tall",
         names.join(" + "),
-        project.size_name().unwrap_or("as drawn"),
+        project.drafted_to_words(),
         project
             .body_measurements()
             .get("height")

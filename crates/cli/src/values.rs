@@ -1,19 +1,41 @@
 //! Parsers for options with several values.
 
 use toile_geometry::Length;
-use toile_session::{GivenFlaw, PanelOrigin, Shrinkage};
+use toile_session::{GivenFlaw, PanelOrigin, Shrinkage, SizeSelection};
 
 /// Most garments of one size: far more than can be laid at once.
 const MOST_GARMENTS: u32 = 10_000;
 
-/// A size and how many garments of it, as in M:2.
-pub fn size_count(text: &str) -> Result<(String, u32), String> {
-    let (name, count) = text.rsplit_once(':').unwrap_or((text, "1"));
-    match count.parse() {
-        Ok(count @ 1..=MOST_GARMENTS) => Ok((name.to_owned(), count)),
-        _ => Err(format!(
-            "{count:?} is no number of garments from 1 to {MOST_GARMENTS}; write NAME:COUNT"
-        )),
+/// The word for every size of a pattern.
+const EVERY_SIZE: &str = "all";
+
+/// Sizes: `all`, or names with commas between, each with how many garments of it where that is not
+/// one, as in S,M:2.
+pub fn sizes(text: &str) -> Result<SizeSelection, String> {
+    if text == EVERY_SIZE {
+        return Ok(SizeSelection::All);
+    }
+    let each = text.split(',').map(|one| {
+        let (name, count) = one.rsplit_once(':').unwrap_or((one, "1"));
+        match count.parse() {
+            Ok(count @ 1..=MOST_GARMENTS) => Ok((name.to_owned(), count)),
+            _ => Err(format!(
+                "{count:?} is no number of garments from 1 to {MOST_GARMENTS}; write NAME:COUNT"
+            )),
+        }
+    });
+    each.collect::<Result<_, _>>().map(SizeSelection::Named)
+}
+
+/// The name of one size, of which one garment is made.
+pub fn one_size(text: &str) -> Result<String, String> {
+    match sizes(text)? {
+        SizeSelection::Named(names) if names.len() == 1 && names[0].1 == 1 => {
+            Ok(names[0].0.clone())
+        }
+        _ => Err("one garment is made, of one size: give one name; \
+                  `toile check`, `print` and `nest` take several sizes"
+            .to_owned()),
     }
 }
 

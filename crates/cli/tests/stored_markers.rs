@@ -96,7 +96,7 @@ fn what_does_not_go_with_a_marker_is_refused() {
         (vec![shipped, "--marker", "x"], "has no markers"),
         (vec![own, shipped, "--marker", "two M"], "one pattern"),
         (vec![own, "--marker", "two M", "--width", "1m"], "--width"),
-        (vec![own, "--marker", "two M", "--sizes", "M:1"], "--sizes"),
+        (vec![own, "--marker", "two M", "--sizes", "M:1"], "--size"),
         (
             vec![own, "--marker", "two M", "--stored", "--as-it-lies"],
             "--as-it-lies",

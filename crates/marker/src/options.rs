@@ -10,13 +10,13 @@ use toile_interchange::{
     RollSettings,
 };
 use toile_nesting::{Budget, Fold, Nap, Search, Strip, Stripes};
-use toile_pattern::{Fabric, Spread, USUAL_GAP, USUAL_SELVEDGE};
+use toile_pattern::{Fabric, SizeSelection, Spread, USUAL_GAP, USUAL_SELVEDGE};
 
 /// How markers are made. What is not given is the fabric's own, or usual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NestOptions {
-    /// Named sizes, and how many garments of each; without any, one garment of the base size.
-    pub sizes: Vec<(String, u32)>,
+    /// Which sizes, and how many garments of each.
+    pub sizes: SizeSelection,
     /// Full width of the fabric [m].
     pub width: Option<f64>,
     /// Length at hand [m], all plies together.
@@ -68,7 +68,7 @@ impl Default for NestOptions {
     fn default() -> Self {
         let search = Search::default();
         Self {
-            sizes: Vec::new(),
+            sizes: SizeSelection::Base,
             width: None,
             length: None,
             selvedge: None,

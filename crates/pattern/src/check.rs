@@ -3,8 +3,8 @@
 use crate::evaluate::{Evaluation, Wearer};
 use crate::orientation::turned_pieces;
 use crate::{
-    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, Name, OperationKind, Panel, Pattern,
-    Piece, PieceEdge, PieceLine, Place, SeamOrigin, Severity,
+    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, Name, OperationId, OperationKind, Panel,
+    Pattern, Piece, PieceEdge, PieceLine, Place, SeamOrigin, Severity,
 };
 use toile_geometry::{Rings, Vec2};
 
@@ -42,7 +42,9 @@ impl Evaluation {
         }
         diagnostics.extend(turned_pieces(&drafting.draft));
         for panel in &self.pattern().panels {
-            note_pleats(panel, &mut diagnostics);
+            let stage = self.last_stage(panel);
+            let idle = stage.map_or(&[][..], |stage| &stage.idle);
+            note_pleats(panel, idle, &mut diagnostics);
         }
         diagnostics
     }
@@ -58,10 +60,11 @@ impl Evaluation {
     }
 }
 
-/// Says that pleats are not pressed when they are draped.
-fn note_pleats(panel: &Panel, diagnostics: &mut Vec<Diagnostic>) {
+/// Says that pleats are not pressed when they are draped, but for those that take in nothing.
+fn note_pleats(panel: &Panel, idle: &[OperationId], diagnostics: &mut Vec<Diagnostic>) {
     for operation in &panel.operations {
-        if matches!(operation.kind, OperationKind::Pleat { .. }) {
+        let is_pleat = matches!(operation.kind, OperationKind::Pleat { .. });
+        if is_pleat && !idle.contains(&operation.id) {
             diagnostics.push(Diagnostic::new(
                 Severity::Note,
                 Code::NotPressed,

@@ -108,6 +108,8 @@ pub enum Code {
     Unchecked,
     /// A pleat is draped without being folded and pressed.
     NotPressed,
+    /// An operation takes in nothing and leaves its panel as it was.
+    NoEffect,
 }
 
 /// Where it is.

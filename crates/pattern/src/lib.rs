@@ -16,6 +16,7 @@ mod name;
 mod number;
 mod orientation;
 pub mod plan;
+mod size_selection;
 mod stage;
 mod suggest;
 pub mod walk;
@@ -30,5 +31,6 @@ pub use formula::{Completion, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaErr
 pub use ids::*;
 pub use name::*;
 pub use number::Number;
+pub use size_selection::SizeSelection;
 pub use stage::{Stage, StageDart, StageEdge, StageLine, StageNotch};
 pub use suggest::nearest;

@@ -46,6 +46,7 @@ mod scene_builder;
 mod scene_checkpoint;
 mod session;
 mod setup;
+mod sizes;
 mod snapshot;
 mod stored_marker;
 mod stuck;
@@ -80,7 +81,7 @@ pub use piece_facts::{
     seam_facts,
 };
 pub use placed_panels::PanelOrigin;
-pub use printing::{PrintOptions, PrintSizes, Printed, print_job, print_pattern};
+pub use printing::{PrintOptions, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
 pub use recovery::{Abandoned, Recovery, abandoned, state_folder};
 pub use rest_change::RestChange;
@@ -88,6 +89,7 @@ pub use scene::{SceneOutcome, run_scene};
 pub use scene_checkpoint::RunOptions;
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel, JobSeam};
+pub use sizes::SizedDiagnostic;
 pub use stored_marker::{MarkerJob, nest_marker};
 pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
@@ -104,7 +106,7 @@ pub use toile_marker::{
     WaitingPiece,
 };
 pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
-pub use toile_pattern::Spread;
+pub use toile_pattern::{Severity, SizeSelection, Spread};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,
     measure_mesh, mesh_panels, open_mannequin, stretch_body,

@@ -2,10 +2,11 @@
 
 use crate::export::{cannot, file_name};
 use crate::open::read_input;
+use crate::sizes::selected;
 use crate::tools::{project_of, sound_draft};
 use crate::watched_search::lay_watched;
 use crate::watcher::report_progress;
-use crate::{MarkerSummary, NestOptions, SessionError, Watcher};
+use crate::{MarkerSummary, NestOptions, Project, SessionError, Watcher};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -46,18 +47,17 @@ pub(crate) fn drafts_of(
     let mut names = Vec::new();
     let mut known: Vec<String> = Vec::new();
     for path in patterns {
-        let sizes: Vec<(Option<&str>, u32)> = match options.sizes.is_empty() {
-            true => vec![(None, 1)],
-            false => options
-                .sizes
-                .iter()
-                .map(|(s, n)| (Some(s.as_str()), *n))
-                .collect(),
-        };
-        let several = options.sizes.len() > 1;
+        let (opened, _) = project_of(path, None)?;
+        let sizes = selected(&options.sizes, &opened.pattern)?;
+        let several = sizes.len() > 1;
         let mut own_name: Option<String> = None;
         for (size, count) in sizes {
-            let (project, _) = project_of(path, size)?;
+            let project = Project {
+                size: size.clone(),
+                ..opened.clone()
+            };
+            project.check_size()?;
+            let size = size.as_deref();
             let draft = sound_draft(&project)?;
             let name = own_name.get_or_insert_with(|| another(&project.pattern.name, &known));
             names.push(match (size, several || count > 1) {

@@ -6,11 +6,13 @@ use crate::fabrics::chosen;
 use crate::history::History;
 use crate::journal::MOST_COMMANDS;
 use crate::open::{open_pattern_from, read_pattern_text};
+use crate::outfit::DraftedPart;
 use crate::watcher::{ProgressShare, report_progress};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, Project, Session,
     SessionError, StampedInput, Watcher, WornGarment, journal_lines,
 };
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -299,17 +301,27 @@ impl Session {
     fn check(&mut self, watcher: &mut dyn Watcher) -> Outcome {
         report_progress(watcher, "checking", 0.0, "")?;
         let parts = self.derived.parts(&self.project);
+        let own = self.diagnostics_by_size(None)?;
         let mut found = [0; 2];
         let mut notes = Vec::new();
-        for part in parts.iter() {
+        let mut tell = |part: &DraftedPart, severity: Severity, words: &dyn Display| {
+            found[0] += usize::from(severity == Severity::Error);
+            found[1] += usize::from(severity == Severity::Warning);
             let name = match &part.source {
                 Some(path) => path.display().to_string(),
                 None => part.name.clone(),
             };
-            for diagnostic in part.diagnostics.iter() {
-                found[0] += usize::from(diagnostic.severity == Severity::Error);
-                found[1] += usize::from(diagnostic.severity == Severity::Warning);
-                notes.push(format!("{name}: {diagnostic}"));
+            notes.push(format!("{name}: {words}"));
+        };
+        for (k, part) in parts.iter().enumerate() {
+            match k {
+                0 => own
+                    .iter()
+                    .for_each(|sized| tell(part, sized.diagnostic.severity, sized)),
+                _ => part
+                    .diagnostics
+                    .iter()
+                    .for_each(|d| tell(part, d.severity, d)),
             }
         }
         let mut events = vec![Event::Checked {

@@ -1,5 +1,6 @@
 //! Pieces printed on paper: laid out to save it, in one size or all.
 
+use crate::sizes::selected;
 use crate::tools::{check_ending, sound_draft};
 use crate::watcher::report_progress;
 use crate::{Project, SessionError, Watcher};
@@ -14,7 +15,7 @@ use toile_interchange::{
 use toile_nesting::{
     Allowed, Budget, Control, Item, Locked, Marker, Progress, Search, Strip, make_marker,
 };
-use toile_pattern::{Draft, Pattern};
+use toile_pattern::{Draft, Pattern, SizeSelection};
 
 /// White between pieces on paper, and to the edge of the drawing \[m\].
 const GAP: f64 = 0.004;
@@ -32,23 +33,11 @@ const MOST_SHEETS: usize = 500;
 /// Scales that can be printed: from a doll's to twice the size.
 const SCALES: [f64; 2] = [0.01, 2.0];
 
-/// The sizes to print.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum PrintSizes {
-    /// The pattern's base size.
-    #[default]
-    Base,
-    /// A size of the pattern.
-    Named(String),
-    /// Every size, each a layer.
-    All,
-}
-
 /// What is printed, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintOptions {
     /// The sizes.
-    pub sizes: PrintSizes,
+    pub sizes: SizeSelection,
     /// Names of pieces; without any, all.
     pub pieces: Vec<String>,
     /// Which lines.
@@ -66,7 +55,7 @@ pub struct PrintOptions {
 impl Default for PrintOptions {
     fn default() -> Self {
         Self {
-            sizes: PrintSizes::Base,
+            sizes: SizeSelection::Base,
             pieces: Vec::new(),
             lines: Lines::Both,
             scale: 1.0,
@@ -217,29 +206,25 @@ impl SizeDraft {
     }
 }
 
-fn drafted(project: &Project, sizes: &PrintSizes) -> Result<Vec<SizeDraft>, SessionError> {
-    let pattern = &project.pattern;
-    let names: Vec<Option<String>> = match sizes {
-        PrintSizes::Base => vec![None],
-        PrintSizes::Named(name) => vec![Some(name.clone())],
-        PrintSizes::All => pattern.sizes.iter().map(|s| Some(s.name.clone())).collect(),
-    };
-    if names.is_empty() {
-        return Err(SessionError::Conflict(
-            "the pattern has no table of sizes: print it as drafted, without all sizes".to_owned(),
-        ));
-    }
-    let each = names.into_iter().map(|size| {
-        let project = Project {
-            size,
-            ..project.clone()
-        };
-        project.check_size()?;
-        Ok(SizeDraft {
-            draft: sound_draft(&project)?,
-            name: project.size_name().map(str::to_owned),
-        })
-    });
+fn drafted(project: &Project, sizes: &SizeSelection) -> Result<Vec<SizeDraft>, SessionError> {
+    let each = selected(sizes, &project.pattern)?
+        .into_iter()
+        .map(|(size, count)| {
+            if let (Some(name), 2..) = (&size, count) {
+                return Err(SessionError::Conflict(format!(
+                    "a size is printed once: leave the number after {name} out"
+                )));
+            }
+            let project = Project {
+                size,
+                ..project.clone()
+            };
+            project.check_size()?;
+            Ok(SizeDraft {
+                draft: sound_draft(&project)?,
+                name: project.size_name().map(str::to_owned),
+            })
+        });
     each.collect()
 }
 

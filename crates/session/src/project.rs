@@ -94,6 +94,15 @@ impl Project {
         }
     }
 
+    /// What the pattern is drafted to, in words.
+    pub fn drafted_to_words(&self) -> String {
+        match self.size_name() {
+            Some(size) => format!("size {size}"),
+            None if self.body == BodyChoice::OfPattern => "as drawn".into(),
+            None => "drafted to the body".into(),
+        }
+    }
+
     /// Refuses a size the pattern does not have, or one worn with it that has a table of sizes.
     pub(crate) fn check_size(&self) -> Result<(), SessionError> {
         let Some(name) = &self.size else {
@@ -128,7 +137,11 @@ impl Project {
     /// Refuses a pattern with faults that keep the garment from being made.
     pub(crate) fn refuse_faults(&self, found: &[Diagnostic]) -> Result<(), SessionError> {
         let errors = found.iter().filter(|d| d.severity == Severity::Error);
-        let faults: Vec<String> = errors.map(ToString::to_string).collect();
+        let size = self
+            .size_name()
+            .filter(|_| self.pattern.sizes.len() > 1)
+            .map_or_else(String::new, |size| format!("size {size}: "));
+        let faults: Vec<String> = errors.map(|fault| format!("{size}{fault}")).collect();
         if faults.is_empty() {
             return Ok(());
         }

@@ -3,6 +3,7 @@
 use crate::derived::Derived;
 use crate::history::History;
 use crate::journal::Journal;
+use crate::sizes::{SizedDiagnostic, sized_diagnostics, sizes_to_check};
 use crate::timing::Timing;
 use crate::watcher::ProgressShare;
 use crate::{
@@ -12,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
-use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, Pattern};
+use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, Pattern, SizeSelection};
 
 /// Edits that are shown and not taken over yet.
 #[derive(Clone)]
@@ -100,6 +101,19 @@ impl Session {
     /// Everything found wrong with the pattern.
     pub fn diagnostics(&mut self) -> Arc<Vec<Diagnostic>> {
         self.derived.diagnostics(&self.project)
+    }
+
+    /// Everything found wrong with the pattern in sizes of it; without any named, in the size that was
+    /// chosen for the project, else in all, or as drafted to the body that was chosen.
+    ///
+    /// # Errors
+    /// A size that the pattern does not have.
+    pub fn diagnostics_by_size(
+        &self,
+        sizes: Option<&SizeSelection>,
+    ) -> Result<Vec<SizedDiagnostic>, SessionError> {
+        let usual = sizes_to_check(&self.project);
+        sized_diagnostics(&self.project, sizes.unwrap_or(&usual))
     }
 
     /// The mannequin of the project's wearer.

@@ -189,6 +189,15 @@ fn gait(name: &str, skeleton: &Skeleton) -> Option<Motion> {
 }
 
 impl Moment {
+    /// What the motion is called: the gait, or the file's name without folders and ending.
+    fn name(&self) -> String {
+        let stem = Path::new(&self.motion).file_stem();
+        stem.map_or_else(
+            || self.motion.clone(),
+            |stem| stem.to_string_lossy().into_owned(),
+        )
+    }
+
     /// The whole motion, for a mannequin, and what of its file was left out.
     fn motion_for(&self, mannequin: &Mannequin) -> Result<(Motion, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
@@ -399,9 +408,8 @@ pub fn make_body(
     };
     let bytes = match extension.to_ascii_lowercase().as_str() {
         "glb" => {
-            let named = motion
-                .as_ref()
-                .map(|(m, motion)| (m.motion.as_str(), motion));
+            let named = motion.as_ref().map(|(m, motion)| (m.name(), motion));
+            let named = named.as_ref().map(|(name, motion)| (&**name, *motion));
             write_body_glb(&mannequin, named)
         }
         "json" => write_mannequin(&mannequin.description()).map(String::into_bytes),

@@ -13,8 +13,8 @@ use toile_pattern::{
 };
 use toile_session::{
     Budget, Command, Event, MarkerFormat, MarkerJob, MarkerState, NestOptions, SAMPLE, Search,
-    SearchProgress, SearchWatcher, Session, SessionError, Silent, Start, nest_marker,
-    nest_patterns,
+    SearchProgress, SearchWatcher, Session, SessionError, Silent, SizeSelection, Start,
+    nest_marker, nest_patterns,
 };
 
 const EVALUATIONS: u64 = 150_000;
@@ -278,7 +278,7 @@ fn a_document_s_marker_is_as_good_as_one_of_the_command_line() {
     let mut means = [0.0; 2];
     for seed in 1..=5 {
         let options = NestOptions {
-            sizes: vec![("S".into(), 1), ("M".into(), 2)],
+            sizes: SizeSelection::Named(vec![("S".into(), 1), ("M".into(), 2)]),
             budget: Budget::Evaluations(EVALUATIONS),
             seed,
             formats: Vec::new(),

@@ -8,8 +8,8 @@ use markers::{pattern, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, GivenFlaw, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent, Spread,
-    judge_marker_file, nest_instance, nest_patterns,
+    Budget, GivenFlaw, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent,
+    SizeSelection, Spread, judge_marker_file, nest_instance, nest_patterns,
 };
 
 fn options() -> NestOptions {
@@ -190,7 +190,7 @@ fn a_fabric_goes_on_from_its_own_marker() {
 fn our_own_markers_are_sound_to_the_check() {
     let naps = NestOptions {
         nap: Some(Nap::PerBundle),
-        sizes: vec![("S".into(), 1), ("M".into(), 1)],
+        sizes: SizeSelection::Named(vec![("S".into(), 1), ("M".into(), 1)]),
         ..options()
     };
     let over = NestOptions {
@@ -243,10 +243,13 @@ fn piece_gaps_and_the_measure_of_a_changed_marker_are_judged_anew() {
 #[test]
 fn more_pieces_than_can_be_laid_are_refused_at_once() {
     let mut options = options();
-    options.sizes = vec![("S".into(), 4_000_000_000), ("M".into(), 4_000_000_000)];
+    options.sizes = SizeSelection::Named(vec![
+        ("S".into(), 4_000_000_000),
+        ("M".into(), 4_000_000_000),
+    ]);
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("at most 2000"), "{words}");
-    options.sizes = Vec::new();
+    options.sizes = SizeSelection::Base;
     options.settings = settings(
         r#""fabrics": { "lining": { "width": "140cm" } },
            "pieces": { "front": { "also": { "lining": 4000000000 } } }"#,
@@ -262,7 +265,7 @@ fn two_at_once_belong_to_one_garment_where_each_runs_one_way() {
     options.nap = Some(Nap::PerBundle);
     options.settings =
         settings(r#""pieces": { "front": { "on_fold": false }, "back": { "on_fold": false } }"#);
-    options.sizes = vec![("M".into(), 2)];
+    options.sizes = SizeSelection::Named(vec![("M".into(), 2)]);
     let made = nest(&["t-shirt"], &options).unwrap();
     let file = made.marker("marker.json");
     let fronts = file.pieces.iter().filter(|p| p.name == "front");

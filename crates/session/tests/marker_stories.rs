@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent, Watcher,
-    judge_marker_file, nest_patterns,
+    Budget, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent, SizeSelection,
+    Watcher, judge_marker_file, nest_patterns,
 };
 
 fn options() -> NestOptions {
@@ -92,7 +92,7 @@ fn copies_on_rolls_keep_the_numbers_of_the_fabric() {
     let folder = tempfile::tempdir().unwrap();
     let rolled = NestOptions {
         rolls: vec![(1.2, Some(0.3)), (1.1, Some(0.8))],
-        sizes: vec![("M".into(), 2)],
+        sizes: SizeSelection::Named(vec![("M".into(), 2)]),
         ..options()
     };
     let summary = nest(&["trousers"], &rolled, (folder.path(), &mut Silent)).unwrap();

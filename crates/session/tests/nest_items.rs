@@ -6,7 +6,7 @@ use toile_cut::{CutOptions, CutPiece};
 use toile_geometry::{EdgeTree, Polygon, Vec2};
 use toile_interchange::{read_marker_json, read_pattern};
 use toile_nesting::Pose;
-use toile_session::{Budget, MarkerFormat, NestOptions, Silent, nest_patterns};
+use toile_session::{Budget, MarkerFormat, NestOptions, Silent, SizeSelection, nest_patterns};
 
 fn patterns() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");
@@ -31,7 +31,7 @@ fn items_of_markers_are_the_cut_lines() {
             let (draft, _) = pattern.resolve(&size.measurements);
             let folder = tempfile::tempdir().unwrap();
             let options = NestOptions {
-                sizes: vec![(size.name.clone(), 1)],
+                sizes: SizeSelection::one(&*size.name),
                 formats: vec![MarkerFormat::Json],
                 budget: Budget::Evaluations(1000),
                 ..NestOptions::default()

@@ -8,7 +8,8 @@ use markers::{pattern, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, MarkerSettings, read_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, MarkerSummary, NestOptions, SessionError, Silent, Spread, nest_patterns,
+    Budget, MarkerFormat, MarkerSummary, NestOptions, SessionError, Silent, SizeSelection, Spread,
+    nest_patterns,
 };
 
 fn options() -> NestOptions {
@@ -229,7 +230,7 @@ fn marks_of_a_garment_meet_on_the_print() {
         r#""fabrics": { "twill": { "print": { "repeat": ["70mm", "0mm"] } } },
            "match": [["front.hip", "back.hip"]]"#,
     );
-    options.sizes = vec![("M".into(), 2)];
+    options.sizes = SizeSelection::Named(vec![("M".into(), 2)]);
     let made = nest("trousers", &options).unwrap();
     let mut hips = first_notches(&made.text("marker.svg"));
     hips.retain(|(name, _)| name != "waistband");

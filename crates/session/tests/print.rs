@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 use toile_geometry::{EdgeTree, Polygon, Vec2};
 use toile_interchange::PrintJob;
 use toile_session::{
-    Lines, Paper, PrintOptions, PrintSizes, Project, SessionError, Silent, print_job, print_pattern,
+    Lines, Paper, PrintOptions, Project, SessionError, Silent, SizeSelection, print_job,
+    print_pattern,
 };
 
 const SAIL: &str = r#"{
@@ -68,7 +69,7 @@ fn test_boxes(page: &Page) -> usize {
 
 #[test]
 fn every_paper_has_its_pages_layers_and_a_box_to_measure() {
-    for sizes in [PrintSizes::Base, PrintSizes::All] {
+    for sizes in [SizeSelection::Base, SizeSelection::All] {
         for paper in Paper::ALL {
             let options = PrintOptions {
                 sizes: sizes.clone(),
@@ -101,7 +102,7 @@ fn every_paper_has_its_pages_layers_and_a_box_to_measure() {
                 "{paper:?}"
             );
             let wanted: Vec<&str> = match sizes {
-                PrintSizes::All => vec!["XS", "S", "M", "L", "XL", "XXL"],
+                SizeSelection::All => vec!["XS", "S", "M", "L", "XL", "XXL"],
                 _ => vec!["M"],
             };
             let wanted: Vec<String> = wanted.iter().map(|s| format!("size {s}")).collect();
@@ -183,7 +184,7 @@ fn compare(job: &PrintJob, lines: &[Line], within: f64, what: &str) {
 fn cut_lines_of_all_patterns_and_sizes_are_in_the_print() {
     for name in NAMES {
         let options = PrintOptions {
-            sizes: PrintSizes::All,
+            sizes: SizeSelection::All,
             paper: Paper::Page,
             ..PrintOptions::default()
         };
@@ -222,9 +223,9 @@ fn place(page: &Page) -> [f64; 2] {
 #[test]
 fn sheets_joined_by_their_marks_give_the_outlines() {
     for (name, paper, sizes) in [
-        ("t-shirt", Paper::A4, PrintSizes::Base),
-        ("trousers", Paper::Letter, PrintSizes::All),
-        ("gathered-skirt", Paper::A0, PrintSizes::Named("XL".into())),
+        ("t-shirt", Paper::A4, SizeSelection::Base),
+        ("trousers", Paper::Letter, SizeSelection::All),
+        ("gathered-skirt", Paper::A0, SizeSelection::one("XL")),
     ] {
         let options = PrintOptions {
             sizes,
@@ -353,7 +354,7 @@ fn what_is_not_there_is_refused_by_its_name() {
     let usual = PrintOptions::default;
     refused(
         PrintOptions {
-            sizes: PrintSizes::Named("XXXL".into()),
+            sizes: SizeSelection::one("XXXL"),
             ..usual()
         },
         "XXXL",

@@ -5,7 +5,7 @@ use super::answer::{Answer, main_button};
 use crate::fields::text_field;
 use crate::theme::Palette;
 use egui::{ComboBox, Grid, Key, RichText, Ui};
-use toile_session::{Lines, Paper, PrintOptions, PrintSizes};
+use toile_session::{Lines, Paper, PrintOptions, SizeSelection};
 
 /// What is asked before printing.
 #[derive(Clone, Debug)]
@@ -41,13 +41,13 @@ impl ToileApp {
             choose(ui, ("paper", label), &mut choice.options.paper, &papers);
             ui.end_row();
             let label = ui.label("Size").id;
-            let mut known = vec![(PrintSizes::Base, "as drafted")];
+            let mut known = vec![(SizeSelection::Base, "as drafted")];
             if !sizes.is_empty() {
                 known = sizes
                     .iter()
-                    .map(|size| (PrintSizes::Named(size.name.clone()), &*size.name))
+                    .map(|size| (SizeSelection::one(&*size.name), &*size.name))
                     .collect();
-                known.push((PrintSizes::All, "all, a layer each"));
+                known.push((SizeSelection::All, "all, a layer each"));
             }
             choose(ui, ("sizes", label), &mut choice.options.sizes, &known);
             ui.end_row();

@@ -6,7 +6,7 @@ use super::job::Job;
 use super::notice::Notice;
 use super::print_choice::PrintChoice;
 use std::path::PathBuf;
-use toile_session::{PrintOptions, PrintSizes, Printed, print_pattern};
+use toile_session::{PrintOptions, Printed, SizeSelection, print_pattern};
 
 /// A print that is being made.
 pub struct Printing {
@@ -27,8 +27,8 @@ impl ToileApp {
         let folder = source.and_then(|path| Some(path.parent()?.to_owned()));
         let path = folder.unwrap_or_default().join(format!("{stem}.pdf"));
         let sizes = match self.session.project().size_name() {
-            Some(name) => PrintSizes::Named(name.to_owned()),
-            None => PrintSizes::Base,
+            Some(name) => SizeSelection::one(name),
+            None => SizeSelection::Base,
         };
         self.dialog = Some(Dialog::Print(Box::new(PrintChoice {
             options: PrintOptions {

@@ -7,6 +7,7 @@ mod common;
 mod girths;
 mod knife;
 mod sides;
+mod sizes;
 mod verdict;
 mod xpbd;
 

@@ -6,15 +6,14 @@ use crate::clock::Clock;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use toile_session::{
-    Budget, MarkerSummary, NestOptions, SAMPLES, SessionError, Watcher, mesh_panels, nest_patterns,
+    Budget, MarkerSummary, NestOptions, SAMPLES, SessionError, SizeSelection, Watcher, mesh_panels,
+    nest_patterns,
 };
 
 /// Edge length of the meshes [m].
 const EDGE: f64 = 0.01;
 /// Evaluations given to each marker.
 const EVALUATIONS: u64 = 20_000_000;
-/// Names of the sizes that every pattern that ships has.
-const SIZES: [&str; 6] = ["XS", "S", "M", "L", "XL", "XXL"];
 
 /// A folder for files that nobody keeps.
 pub(super) fn scratch() -> Result<tempfile::TempDir, LabError> {
@@ -90,7 +89,7 @@ pub(super) fn markers(watcher: &mut dyn Watcher) -> Result<Content, LabError> {
         ..NestOptions::default()
     };
     let all_sizes = NestOptions {
-        sizes: SIZES.map(|size| (size.to_owned(), 1)).to_vec(),
+        sizes: SizeSelection::All,
         ..alone.clone()
     };
     let mut rows = Vec::new();

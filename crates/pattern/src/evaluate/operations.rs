@@ -6,7 +6,9 @@ use super::panels::PanelEvaluation;
 use crate::stage::{
     DartApex, DartError, DartMouth, FoldError, PlaceError, cut_dart, cut_diamond, unfold,
 };
-use crate::{Apex, Code, LineName, Mark, Operation, OperationKind, Panel, Place, Stage};
+use crate::{
+    Apex, Code, Diagnostic, LineName, Mark, Operation, OperationKind, Panel, Place, Severity, Stage,
+};
 use std::sync::Arc;
 
 /// A stage of a panel; nothing if its outline or the stage before it cannot be drawn.
@@ -27,6 +29,9 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
             done.sides.clear();
         }
         done.done.push(operation.id);
+        if done.idle.contains(&operation.id) {
+            evaluated.note_idle(operation, place);
+        }
         Arc::new(done)
     });
     let notches = evaluated.notches(&stage, step);
@@ -37,6 +42,24 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
 }
 
 impl PanelEvaluation<'_, '_, '_> {
+    /// Says that an operation leaves its panel as it was.
+    fn note_idle(&mut self, operation: &Operation, place: Place) {
+        let what = match &operation.kind {
+            OperationKind::Pleat { .. } => "has no depth",
+            OperationKind::Pivot { .. } => "moves a dart that has no width",
+            _ => "has no width",
+        };
+        let step = format!("{} {:?}", operation.kind.word(), operation.name);
+        let message = format!("{step} {what} and leaves the panel as it was");
+        self.c.diagnostics.push(Diagnostic::new(
+            Severity::Note,
+            Code::NoEffect,
+            place,
+            self.words(&message),
+            "a size that needs none of it may have 0 here",
+        ));
+    }
+
     /// A stage after an operation; nothing if it cannot be done.
     fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
         let place = Place::Operation(self.panel.id, operation.id);
@@ -63,8 +86,11 @@ impl PanelEvaluation<'_, '_, '_> {
                     self.error(
                         Code::DartTooWide,
                         place,
-                        &format!("dart {:?} has no width or length", operation.name),
-                        "give it a width, two ends that are apart, and a widest place from 0 to 1",
+                        &format!(
+                            "dart {:?} is narrower than nothing or has no length",
+                            operation.name
+                        ),
+                        "give it a width of 0 or more, two ends that are apart, and a widest place from 0 to 1",
                     );
                 }
                 done
@@ -134,7 +160,7 @@ impl PanelEvaluation<'_, '_, '_> {
                     operation.name,
                     intake * 100.0
                 ),
-                "make it narrower (and more than nothing), or move it along the edge",
+                "give it a width of 0 or more that its edge has room for, or move it along the edge",
             ),
             Err(DartError::Overlaps) => self.error(
                 Code::DartTooWide,

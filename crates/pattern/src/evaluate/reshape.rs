@@ -233,7 +233,10 @@ impl PanelEvaluation<'_, '_, '_> {
                     _ => "give cuts numbers up to 16383",
                 },
             ),
-            SpreadError::NoDepth => ("its folds have no depth".to_owned(), "give a depth above 0"),
+            SpreadError::NoDepth => (
+                "its folds are less than nothing deep".to_owned(),
+                "give a depth of 0 or more; 0 is no pleat",
+            ),
             SpreadError::TooDeep(number) => (
                 format!("the outline beside pleat {number} does not reach as far as its fold"),
                 "make the pleats less deep, or move them away from corners and darts",

@@ -1,6 +1,6 @@
 //! Darts taken out of a line.
 
-use super::{PlaceError, Spot, Stage, StageDart, StageEdge, with_ends};
+use super::{NOTHING, PlaceError, Placed, Spot, Stage, StageDart, StageEdge, StageLine, with_ends};
 use crate::{Corner, LineKind, LineName, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
@@ -31,13 +31,14 @@ pub(crate) enum DartApex {
 pub(crate) enum DartError {
     /// Its line is not there.
     Place(PlaceError),
-    /// It has no width, or does not fit on its edge.
+    /// It is narrower than nothing, or does not fit on its edge.
     TooWide,
     /// Another dart is there.
     Overlaps,
 }
 
-/// Takes a dart out of a stage.
+/// Takes a dart out of a stage. One without a width takes nothing out: both ends of its mouth are
+/// one corner.
 pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartError> {
     let turn = stage.turn();
     let mut result = stage.clone();
@@ -46,6 +47,12 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         .iter_mut()
         .find(|line| line.name == dart.line && line.half == 0 && line.kind == LineKind::Outline);
     let line = found.ok_or(DartError::Place(PlaceError::NoLine))?;
+    if dart.intake.abs() <= NOTHING {
+        let along = line.placed(Placed::Spot(dart.middle));
+        shut_mouth(line, dart.by, along.map_err(DartError::Place)?);
+        result.idle.push(dart.by);
+        return Ok(result);
+    }
     let pieces: Vec<usize> = (0..line.edges.len())
         .filter(|&k| line.edges[k].name == dart.middle.edge)
         .collect();
@@ -58,7 +65,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     let length = measured.ok_or(DartError::Place(PlaceError::Beyond))?;
     let half = 0.5 * dart.intake / length.max(1e-12);
     let (from, to) = (dart.middle.share - half, dart.middle.share + half);
-    if dart.intake <= 0.0 || from < -1e-9 || to > 1.0 + 1e-9 {
+    if dart.intake < 0.0 || from < -1e-9 || to > 1.0 + 1e-9 {
         return Err(DartError::TooWide);
     }
     let (from, to) = (from.clamp(0.0, 1.0), to.clamp(0.0, 1.0));
@@ -137,6 +144,14 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         pressed: dart.pressed,
     });
     Ok(result)
+}
+
+/// Puts both ends of a mouth that takes nothing in at one place of a line [m].
+pub(super) fn shut_mouth(line: &mut StageLine, by: OperationId, along: f64) {
+    let at = line.divide(along);
+    for end in 0..2 {
+        line.call(at, mouth(by, end));
+    }
 }
 
 /// An end of a dart's mouth.

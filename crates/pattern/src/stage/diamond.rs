@@ -1,11 +1,12 @@
 //! Darts inside a panel, pointed at both ends.
 
-use super::{Stage, StageDart, StageEdge, StageLine};
+use super::{NOTHING, Stage, StageDart, StageEdge, StageLine};
 use crate::{Corner, LineKind, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
 /// Takes a diamond out of a stage as a hole: legs 0 and 1 from the first end to the second on one
-/// side, 2 and 3 back on the other. Nothing if it has no width or length.
+/// side, 2 and 3 back on the other. One without a width takes nothing out. None if it is narrower
+/// than nothing or has no length.
 pub(crate) fn cut_diamond(
     stage: &Stage,
     by: OperationId,
@@ -14,8 +15,13 @@ pub(crate) fn cut_diamond(
     intake: f64,
 ) -> Option<Stage> {
     let way = b - a;
-    if intake <= 0.0 || !(0.0..=1.0).contains(&widest) || way.norm() <= 1e-9 {
+    if intake < -NOTHING || !(0.0..=1.0).contains(&widest) || way.norm() <= 1e-9 {
         return None;
+    }
+    let mut result = stage.clone();
+    if intake <= NOTHING {
+        result.idle.push(by);
+        return Some(result);
     }
     let side = Vec2::new(-way.y, way.x).normalize() * (0.5 * intake * stage.turn());
     let middle = a + way * widest;
@@ -40,7 +46,6 @@ pub(crate) fn cut_diamond(
             corner: Corner::Mitre,
         })
         .collect();
-    let mut result = stage.clone();
     let internal = result
         .lines
         .iter()

@@ -27,6 +27,10 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2};
 
+/// Widths, depths and intakes up to this are nothing [m]: what is left of a difference of two equal
+/// lengths.
+pub(crate) const NOTHING: f64 = 1e-9;
+
 /// A panel after some of its operations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
@@ -42,6 +46,8 @@ pub struct Stage {
     pub folds: Vec<(Vec2, Vec2)>,
     /// Operations that were done, in order.
     pub done: Vec<OperationId>,
+    /// Those of them that left the panel as it was, since what they take in is nothing.
+    pub idle: Vec<OperationId>,
     /// Left and right side, if the last operation split it.
     pub sides: Vec<Arc<Stage>>,
 }
@@ -204,6 +210,7 @@ impl Stage {
                 .collect(),
             folds: self.folds.iter().map(|f| (flip(f.0), flip(f.1))).collect(),
             done: self.done.clone(),
+            idle: self.idle.clone(),
             sides: self
                 .sides
                 .iter()

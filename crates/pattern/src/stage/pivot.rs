@@ -1,6 +1,6 @@
 //! Darts pivoted: a part of what a dart takes in is taken in elsewhere.
 
-use super::dart::{legs, mouth};
+use super::dart::{legs, mouth, shut_mouth};
 use super::motion::Motion;
 use super::partition::{CutError, SAME, check_cut, outline_of, partition, ring};
 use super::{Placed, Stage, StageDart, StageEdge, StageLine, with_ends};
@@ -67,15 +67,16 @@ pub(crate) fn pivot_dart(stage: &Stage, wish: &Pivoting) -> Result<Stage, PivotE
     if is_leg(&line.edges[at]) && line.edges[at].start.is_none() {
         return Err(PivotError::OnDart);
     }
-    let own = |dart: &&StageDart| dart.by == wish.dart && dart.half == 0;
-    let dart = stage.darts.iter().find(own).ok_or(PivotError::NoMouth)?;
-    if wish.share <= ROUNDING {
-        line.call(at, mouth(wish.by, 0));
-        line.call(at, mouth(wish.by, 1));
+    let is_idle = stage.idle.contains(&wish.dart);
+    if is_idle || wish.share <= ROUNDING {
+        shut_mouth(&mut line, wish.by, along);
         let mut result = stage.clone();
         result.lines[outline] = line;
+        result.idle.extend(is_idle.then_some(wish.by));
         return Ok(result);
     }
+    let own = |dart: &&StageDart| dart.by == wish.dart && dart.half == 0;
+    let dart = stage.darts.iter().find(own).ok_or(PivotError::NoMouth)?;
     let first = line
         .edges
         .iter()

@@ -2,7 +2,7 @@
 
 use super::motion::Motion;
 use super::spread::{Chord, Crossed, CutOpen, Gap};
-use super::{SpreadError, Spreading, Stage, StageEdge, StageLine};
+use super::{NOTHING, SpreadError, Spreading, Stage, StageEdge, StageLine};
 use crate::{Corner, CornerName, LineKind, Name, OperationId, PleatKind, PleatLine, Role, Side};
 use toile_geometry::{Curve, Vec2};
 
@@ -26,14 +26,18 @@ struct Piece {
 /// Depths may differ by this along a line that runs square to the pleat [m].
 const SAME_DEPTH: f64 = 1e-9;
 
-/// A stage with pleats: its parts moved aside, underlays between, and the lines to fold in.
+/// A stage with pleats: its parts moved aside, underlays between, and the lines to fold in. Pleats
+/// without a depth leave it as it was: the corners of each underlay are one.
 pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError> {
-    if wish.depth <= SAME_DEPTH {
+    if wish.depth < -NOTHING {
         return Err(SpreadError::NoDepth);
     }
     let open = CutOpen::of(stage, &wish.spread, PleatLine::LARGEST)?;
     let turn = stage.turn();
     let by = wish.spread.by;
+    if wish.depth <= NOTHING {
+        return laid_flat(stage, &open, by, 2 * folds(wish, (turn, 0)).len());
+    }
     let mut result = open.moved(stage, |gap| underlay(&open, gap, (wish, turn)))?;
     let outline = result
         .lines
@@ -45,6 +49,37 @@ pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError
         .flat_map(|chord| creases(outline, (by, chord), folds(wish, (turn, 0))))
         .collect();
     result.lines.extend(creases);
+    Ok(result)
+}
+
+/// A stage with pleats that have no depth: every corner of an underlay lies where its line meets the
+/// outline.
+fn laid_flat(
+    stage: &Stage,
+    open: &CutOpen,
+    by: OperationId,
+    layers: usize,
+) -> Result<Stage, SpreadError> {
+    let corners = |gap: (u16, usize)| move |k: usize| corner(by, gap, k);
+    let mut result = open.moved(stage, |gap| {
+        let name = corners((gap.chord.number, gap.end));
+        Ok(Crossed {
+            corners: [name(0), name(layers)],
+            edges: Vec::new(),
+        })
+    })?;
+    if let Some(line) = result
+        .lines
+        .iter_mut()
+        .find(|line| line.name == open.line.name)
+    {
+        for (chord, end) in open.chords.iter().flat_map(|c| [(c, 0), (c, 1)]) {
+            let name = corners((chord.number, end));
+            line.twins
+                .extend((1..layers).map(|k| [name(k), name(layers)]));
+        }
+    }
+    result.idle.push(by);
     Ok(result)
 }
 

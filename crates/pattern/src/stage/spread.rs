@@ -47,7 +47,7 @@ pub(crate) enum SpreadError {
     TooMany,
     /// A number is larger than what it makes can be counted from: the largest that may be.
     Large(u16, u16),
-    /// The depth of pleats is not above nothing.
+    /// The depth of pleats is less than nothing.
     NoDepth,
     /// The outline beside the pleat of that number turns back within the depth of a fold.
     TooDeep(u16),

@@ -1,0 +1,42 @@
+//! Which sizes of a pattern are printed, laid or checked.
+
+use crate::Pattern;
+
+/// The sizes that are printed, laid or checked.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum SizeSelection {
+    /// The pattern as it is drafted: its base size, if it has a table of sizes.
+    #[default]
+    Base,
+    /// Sizes of the pattern, each with how many garments of it.
+    Named(Vec<(String, u32)>),
+    /// Every size, a garment of each.
+    All,
+}
+
+impl SizeSelection {
+    /// One garment of one size.
+    pub fn one(name: impl Into<String>) -> Self {
+        Self::Named(vec![(name.into(), 1)])
+    }
+
+    /// The sizes of a pattern that are meant, each with how many garments of it; no name is the
+    /// pattern as drafted. Names are looked up where the sizes are drafted.
+    /// Nothing for all sizes of a pattern that has no table of sizes.
+    pub fn of(&self, pattern: &Pattern) -> Option<Vec<(Option<String>, u32)>> {
+        match self {
+            Self::Base => Some(vec![(None, 1)]),
+            Self::Named(names) => Some(
+                names
+                    .iter()
+                    .map(|(name, count)| (Some(name.clone()), *count))
+                    .collect(),
+            ),
+            Self::All if pattern.sizes.is_empty() => None,
+            Self::All => {
+                let sizes = pattern.sizes.iter();
+                Some(sizes.map(|size| (Some(size.name.clone()), 1)).collect())
+            }
+        }
+    }
+}
