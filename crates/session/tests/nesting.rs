@@ -134,7 +134,7 @@ fn every_fabric_has_its_own_marker_yardage_and_cost() {
            "pieces": { "front": { "also": { "interfacing": 1 } },
                        "waistband": { "also": { "interfacing": 2 } } }"#,
     );
-    options.sizes = vec![("S".into(), 1), ("M".into(), 2)];
+    options.sizes = SizeSelection::Named(vec![("S".into(), 1), ("M".into(), 2)]);
     let made = nest("trousers", &options).unwrap();
     let found: Vec<_> = made
         .summary
