@@ -240,14 +240,14 @@ fn draw(
             ends.reverse();
         }
         let id: OperationId = drawing.id();
-        drawing.panel.operations.push(Operation {
+        drawing.panel.operations.push(Arc::new(Operation {
             id,
             name: "fold".into(),
             kind: OperationKind::Fold {
                 line: Name::Drawn(line),
                 ends: ends.map(Mark::corner),
             },
-        });
+        }));
     } else {
         drawing.panel.cut = Cut {
             quantity: 2,
