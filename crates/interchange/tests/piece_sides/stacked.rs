@@ -162,7 +162,6 @@ fn sew(pattern: &mut Pattern, dice: &mut Dice, mut sides: [Vec<Span>; 2]) {
 
 /// Sews the bottom of a row to the top of the next: panel by panel, by halves, or all round at once.
 fn sew_rows(pattern: &mut Pattern, dice: &mut Dice, rows: [&[Drawn]; 2]) {
-    let columns = rows[0].len();
     let edges = [Edge4::Bottom, Edge4::Top];
     let half = |left: bool, side: usize| -> Vec<Span> {
         let row = rows[side].iter();
@@ -171,9 +170,10 @@ fn sew_rows(pattern: &mut Pattern, dice: &mut Dice, rows: [&[Drawn]; 2]) {
     };
     match dice.below(3) {
         0 => {
-            for column in 0..columns {
+            for column in rows[0].iter().zip(rows[1]) {
+                let panels = [column.0, column.1];
                 for left in [true, false] {
-                    let sides = [0, 1].map(|k| vec![rows[k][column].span(edges[k], left, false)]);
+                    let sides = [0, 1].map(|k| vec![panels[k].span(edges[k], left, false)]);
                     sew(pattern, dice, sides);
                 }
             }
