@@ -248,7 +248,8 @@ fn proportions(
 const ROOM: [(Level, f64); 9] = [
     (Knee, 0.12),
     (Crotch, 0.10),
-    (Hips, 0.008),
+    // The fullest buttocks may lie under the crotch.
+    (Hips, -0.025),
     (Waist, 0.03),
     (Underbust, 0.012),
     (Bust, 0.012),

@@ -1,14 +1,11 @@
 //! Mannequins: skeleton, ellipsoid primitives, skin.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
-mod arm_rings;
 mod attach;
 mod bands;
 mod bones;
 mod conflict;
 mod curve;
-mod cuts;
-mod definitions;
 mod deform;
 mod describe;
 mod deviation;
@@ -16,7 +13,6 @@ mod edits;
 mod ellipsoids;
 mod error;
 mod fair;
-mod fences;
 mod field;
 mod fit;
 mod fit_check;
@@ -41,7 +37,6 @@ mod rigging;
 mod rings;
 mod scaling;
 mod scan;
-mod scan_girths;
 mod shape;
 mod skeleton;
 mod skinning;

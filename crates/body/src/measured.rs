@@ -2,8 +2,6 @@
 
 use crate::Part;
 use crate::bands::Near;
-use crate::cuts::CutPlane;
-use crate::definitions::{BodyMarks, KNEE, Taping};
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::tape::{
@@ -24,31 +22,16 @@ pub(crate) struct TapedSkin<'a> {
     pub(crate) warp: &'a Warp,
     /// Vertices in the middle of the crotch.
     pub(crate) crotch: &'a [u32],
-    /// Shares of their ranges at which girths are known to lie; the others are looked for.
-    shares: Shares,
-    body: OnceCell<BodyMarks>,
-    /// Cache of places.
-    places: RefCell<[Option<f64>; Girth::COUNT]>,
     /// Cache of hulls.
-    hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
+    pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
     /// Cache of lengths.
     known: RefCell<Vec<(String, Option<f64>)>>,
     around: OnceCell<Option<Around>>,
     bust: OnceCell<Option<Vec3>>,
     through_neck: OnceCell<Vec<[Vec3; 2]>>,
-    /// Whether girths of a level are taken there, as far as their ranges reach, wherever they are largest
-    /// or smallest.
-    at_levels: bool,
     /// Vertex in the left armpit.
-    armpit: u32,
+    pub(crate) armpit: u32,
 }
-
-/// Shares of their ranges at which girths lie [1].
-pub(crate) type Shares = [Option<f64>; Girth::COUNT];
-
-/// By how much a girth at the level asked for may be beside the largest or smallest one and still
-/// stand for it, over stature: a millimetre and a half.
-pub(crate) const SLACK: f64 = 9e-4;
 
 /// The tight way in the middle from the waist in front round the crotch to the waist behind.
 struct Around {
@@ -92,15 +75,11 @@ impl<'a> TapedSkin<'a> {
             levels,
             warp,
             crotch,
-            shares: Shares::default(),
-            body: OnceCell::new(),
-            places: Default::default(),
             hulls: Default::default(),
             known: Default::default(),
             around: OnceCell::new(),
             bust: OnceCell::new(),
             through_neck: OnceCell::new(),
-            at_levels: false,
             armpit,
         }
     }
@@ -125,10 +104,6 @@ impl<'a> TapedSkin<'a> {
                 let heights = self.crotch.iter().map(|&v| self.skinned.at(v).y);
                 heights.fold(f64::INFINITY, f64::min)
             }
-            // What is taped lies where the tape does.
-            Level::Bust => self.place(Girth::Bust).unwrap_or(self.levels.at(level)),
-            Level::Waist => self.place(Girth::Waist).unwrap_or(self.levels.at(level)),
-            Level::Hips => self.place(Girth::Hips).unwrap_or(self.levels.at(level)),
             _ => self.levels.at(level),
         }
     }
@@ -144,108 +119,9 @@ impl<'a> TapedSkin<'a> {
     }
 
     fn taken_hull(&self, girth: Girth) -> Vec<Vec2> {
-        let cut = match (Taping::of(girth, self.body()), self.place(girth)) {
-            (Some(taping), Some(place)) => CutPlane::of(taping.cut, place, self.marks, self.warp),
-            _ => CutPlane::placed(girth, self.marks, self.levels, self.warp),
-        };
-        self.skinned.hull(cut.part, cut.plane, Some(cut.near))
-    }
-
-    /// What says where the girths lie.
-    pub(crate) fn body(&self) -> &BodyMarks {
-        self.body.get_or_init(|| {
-            let crotch = self.height(Level::Crotch);
-            let stature = self.levels.at(Level::Crown);
-            let fold = self.skinned.at(self.armpit);
-            let tip = self.skinned.at(self.marks.finger_tip);
-            BodyMarks {
-                stature,
-                crotch,
-                armpit: fold.y,
-                knee: KNEE * crotch,
-                arm: [fold, tip].map(|p| self.warp.along_arm(p)),
-            }
-        })
-    }
-
-    /// Girth of a taping at a place [m].
-    pub(crate) fn taped(&self, taping: &Taping, place: f64) -> f64 {
-        let cut = CutPlane::of(taping.cut, place, self.marks, self.warp);
-        closed_length(&self.skinned.hull(cut.part, cut.plane, Some(cut.near)))
-    }
-
-    /// The place of a girth [m]; none where lengths alone say it.
-    fn place(&self, girth: Girth) -> Option<f64> {
-        if let Some(known) = self.places.borrow()[girth as usize] {
-            return Some(known);
-        }
-        let taping = Taping::of(girth, self.body())?;
-        let place = match self.shares[girth as usize] {
-            Some(share) => taping.at(share),
-            None => match girth.level().filter(|_| self.at_levels) {
-                Some(level) => {
-                    let [low, high] = taping.range;
-                    self.levels.at(level).max(low).min(high)
-                }
-                None => self.found(girth, &taping)?,
-            },
-        };
-        self.places.borrow_mut()[girth as usize] = Some(place);
-        Some(place)
-    }
-
-    /// The place of a girth, looked for: where it is as large, or as small, at the level that was
-    /// asked for, there [m].
-    fn found(&self, girth: Girth, taping: &Taping) -> Option<f64> {
-        let found = taping.find(|place| Some(self.taped(taping, place)))?;
-        let Some(level) = girth.level() else {
-            return Some(found);
-        };
-        let asked = self.levels.at(level);
-        let [low, high] = taping.range;
-        let slack = SLACK * self.levels.at(Level::Crown);
-        let stands = (low..=high).contains(&asked) && {
-            let [there, best] = [asked, found].map(|place| self.taped(taping, place));
-            taping.beyond(best, there) <= slack
-        };
-        Some(if stands { asked } else { found })
-    }
-
-    /// The shares of their ranges at which girths lie, for the next body that is much the same.
-    pub(crate) fn shares(&self) -> Shares {
-        Girth::ALL.map(|girth| {
-            let taping = Taping::of(girth, self.body())?;
-            let known = self.places.borrow()[girth as usize];
-            known.map(|place| taping.share(place))
-        })
-    }
-
-    /// The same tape where girths are known to lie.
-    pub(crate) fn knowing(mut self, shares: Shares) -> Self {
-        self.shares = shares;
-        self
-    }
-
-    /// Whether a girth of a level is taken where it lies, be it beside.
-    pub(crate) fn is_searched(&self, girth: Girth) -> bool {
-        !self.at_levels && girth.level().is_some()
-    }
-
-    /// Whether it is looked for where girths lie.
-    pub(crate) fn looks(&self) -> bool {
-        self.shares.iter().all(Option::is_none)
-    }
-
-    /// The same tape with girths of a level taken there, as far as their ranges reach.
-    pub(crate) fn at_levels(mut self) -> Self {
-        self.at_levels = true;
-        for girth in Girth::ALL
-            .into_iter()
-            .filter(|girth| girth.level().is_some())
-        {
-            self.shares[girth as usize] = None;
-        }
-        self
+        let (part, plane) = girth.plane(self.marks, self.levels, self.warp);
+        self.skinned
+            .hull(part, plane, Some(girth.near(self.marks, plane, self.warp)))
     }
 
     /// A girth [m].

@@ -2,10 +2,8 @@
 
 use crate::BodyError;
 use crate::curve::Monotone;
-use crate::definitions::{BUST_DROP, THIGH_DROP, underbust};
-use crate::girths::Girth;
+use crate::girths::{Girth, Site, THIGH_DROP};
 use crate::levels::{Level, Levels};
-use crate::request::Request;
 use crate::solve::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 use crate::warp::Shape;
@@ -24,16 +22,6 @@ pub(crate) struct Scales {
     pub(crate) folds: f64,
     /// Front over back: the front's share of the scale beyond one half.
     pub(crate) split: [f64; Girth::COUNT],
-    /// How much the trunk is narrower at the crotch than at the hips, so that nothing there is larger
-    /// round than they are.
-    pub(crate) seat: f64,
-    /// How much it is wider or narrower at [`ribs`], so that nothing there is smaller round than the
-    /// waist or larger round than the hips.
-    pub(crate) ribs: [f64; RIBS.len()],
-    /// How much farther than to its girth the trunk is kept so, for what lies between [1].
-    pub(crate) margin: [f64; Girth::COUNT],
-    /// How much it is narrower at the armpits, so that nothing there is larger round than the bust.
-    pub(crate) chest: f64,
     /// Lateral, at the ends of the shoulders.
     pub(crate) shoulder: f64,
     /// Lateral, at the sides of the neck.
@@ -66,10 +54,6 @@ impl Scales {
             corners: [0.0; Girth::COUNT],
             folds: 0.0,
             split: [0.0; Girth::COUNT],
-            seat: 1.0,
-            ribs: [1.0; RIBS.len()],
-            margin: [0.0; Girth::COUNT],
-            chest: 1.0,
             shoulder: global,
             neck: global,
             elbow: global * marks.elbow,
@@ -108,46 +92,6 @@ type Section = [f64; 4];
 
 /// Least distance between sections that are scaled apart, over stature.
 const APART: f64 = 0.006;
-
-/// Girths whose scales are those of a level of the trunk, the most important first.
-const TRUNK: [Girth; 6] = [
-    Girth::Hips,
-    Girth::Waist,
-    Girth::Bust,
-    Girth::Underbust,
-    Girth::HighBust,
-    Girth::HighHips,
-];
-
-/// Where the trunk is kept within the girths beside: shares of the way from crotch to crown.
-pub(crate) const RIBS: [f64; 9] = [0.06, 0.11, 0.16, 0.20, 0.24, 0.28, 0.32, 0.355, 0.39];
-
-/// Where the girth of a level is taped [m].
-fn height_of(level: Level, levels: &Levels) -> f64 {
-    let at = |level: Level| levels.at(level);
-    match level {
-        Level::Underbust => underbust([at(Level::Crotch), at(Level::Armpit), at(Level::Crown)]),
-        _ => at(level),
-    }
-}
-
-/// Heights at which the trunk is kept within the girths beside, where none says its width [m].
-pub(crate) fn ribs(request: &Request, levels: &Levels) -> [Option<f64>; RIBS.len()] {
-    let [crotch, crown] = [Level::Crotch, Level::Crown].map(|level| levels.at(level));
-    let apart = APART * crown;
-    RIBS.map(|share| {
-        let y = crotch + share * (crown - crotch);
-        let is_near = |girth: &Girth| {
-            let is_set = request.girth(*girth).is_some();
-            let near = |level| (height_of(level, levels) - y).abs() < apart;
-            is_set && girth.level().is_some_and(near)
-        };
-        (!TRUNK.iter().any(is_near)).then_some(y)
-    })
-}
-
-/// Least distance of a section that keeps the chest within its girth from others, over stature.
-const CLOSE: f64 = 0.0012;
 
 /// The shape of given scales and levels.
 pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
@@ -281,25 +225,22 @@ fn trunk(
         let [front, back] = [1.0 + 2.0 * s.split[k], 1.0 - 2.0 * s.split[k]];
         [y, scale * form, frontal * front, frontal * back]
     };
-    let [y, crotch @ ..] = section(m.crotch, Girth::Hips);
-    let [lateral, front, back] = crotch.map(|scale| scale * s.seat);
-    let mut rows = vec![[y, lateral, front, back]];
-    for girth in TRUNK {
-        if let (Some(_), Some(level)) = (input.request.girth(girth), girth.level()) {
-            let y = on_template(height_of(level, levels));
+    let mut rows = vec![section(m.crotch, Girth::Hips)];
+    for girth in [
+        Girth::Hips,
+        Girth::Waist,
+        Girth::Bust,
+        Girth::Underbust,
+        Girth::HighBust,
+        Girth::HighHips,
+    ] {
+        if let (Some(_), Site::Trunk(level)) = (input.request.girth(girth), girth.site(m)) {
+            let y = on_template(levels.at(level));
             if rows.iter().all(|row| (row[0] - y).abs() > APART * t.height) {
                 rows.push(section(y, girth));
             }
         }
     }
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let heights = ribs(&input.request, levels);
-    let kept: Vec<Section> = heights
-        .into_iter()
-        .zip(s.ribs)
-        .filter_map(|(y, wider)| wider_between(&rows, on_template(y?), wider))
-        .collect();
-    rows.extend(kept);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let top = rows[rows.len() - 1];
     rows.retain(|row| row[0] < m.tip.y - APART * t.height);
@@ -307,49 +248,15 @@ fn trunk(
     let (neck, head) = (s.of(Girth::Neck), s.of(Girth::Head));
     let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
     let tip = [m.tip.y, s.shoulder, front, back];
-    let armpit = under_the_arm(&rows, tip, m.armpit, APART * t.height);
-    rows.extend(armpit);
+    rows.extend(under_the_arm(&rows, tip, m.armpit, APART * t.height));
     rows.push(tip);
-    let top = on_template(levels.at(Level::Armpit) - BUST_DROP * levels.at(Level::Crown));
-    under_armpits(&mut rows, (top, armpit), s.chest, t.height);
     let between = 0.5 * (s.neck + neck);
     rows.push([m.neck_side.y, s.neck, between, between]);
-    rows.push([m.neck.y.max(m.neck_side.y + 0.01), neck, neck, neck]);
+    rows.push([m.neck[0].y.max(m.neck_side.y + 0.01), neck, neck, neck]);
     let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
-    rows.push([chin.max(m.neck.y + 0.02), head, head, head]);
+    rows.push([chin.max(m.neck[0].y + 0.02), head, head, head]);
     rows.push([m.crown, head, head, head]);
     rows
-}
-
-/// Makes the trunk narrower at the top of where the bust may lie, by its section at the armpits where
-/// they lie near; a girth's own section stays.
-fn under_armpits(
-    rows: &mut Vec<Section>,
-    (top, armpit): (f64, Option<Section>),
-    narrower: f64,
-    height: f64,
-) {
-    if let Some([y, ..]) = armpit.filter(|row| (row[0] - top).abs() < APART * height) {
-        for row in rows.iter_mut().filter(|row| row[0] == y) {
-            row[1..].iter_mut().for_each(|scale| *scale *= narrower);
-        }
-    } else if rows.iter().all(|row| (row[0] - top).abs() > CLOSE * height)
-        && let Some(section) = wider_between(rows, top, narrower)
-    {
-        let next = rows.partition_point(|row| row[0] < top);
-        rows.insert(next, section);
-    }
-}
-
-/// A section between others, wider than they have it; none beyond them.
-fn wider_between(rows: &[Section], y: f64, wider: f64) -> Option<Section> {
-    let next = rows.partition_point(|row| row[0] < y);
-    if next == 0 || next == rows.len() {
-        return None;
-    }
-    let column = |k: usize| Monotone::new(rows.iter().map(|row| [row[0], row[k]]).collect());
-    let [lateral, front, back] = [1, 2, 3].map(|k| column(k).at(y) * wider);
-    Some([y, lateral, front, back])
 }
 
 /// How much fuller the corners of the sections are over template height: nothing at the shoulders.

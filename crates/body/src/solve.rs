@@ -1,10 +1,9 @@
 //! Solves for the shape whose skin has the measurements asked for.
 
 use crate::BodyError;
-use crate::fences;
 use crate::girths::Girth;
 use crate::levels::{self, Level, Levels, OVER, SkinOffsets};
-use crate::measured::{Shares, TapedSkin};
+use crate::measured::TapedSkin;
 use crate::request::Request;
 use crate::rings::TemplateSkin;
 use crate::shape::{Scales, shape};
@@ -37,11 +36,6 @@ const FORMING: [usize; 2] = [32, 24];
 /// Rounds after that: the girths have the last word.
 const LAST: usize = 16;
 const SHAPING: usize = 12;
-/// The most a girth is corrected by in a round, and one that is looked for beside its level.
-const STEPS: [f64; 2] = [0.25, 4.0];
-const CLOSING: [f64; 2] = [0.99, 1.01];
-/// Rounds between two in which it is looked for where girths lie.
-const LOOKS: usize = 4;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
 
@@ -56,9 +50,6 @@ impl SolveInput<'_> {
         let mut offsets = SkinOffsets::default();
         let crotch = self.crotch_vertices();
         let mut before: Option<[Scales; 2]> = None;
-        let mut known: Option<Shares> = Some([Some(0.5); Girth::COUNT]);
-        // Hips, waist and bust are taken at their levels first, then where they lie.
-        let mut closing = false;
         let slow = self.request.follows_skin();
         let forming = FORMING[usize::from(!slow)];
         for round in 0..forming + LAST {
@@ -71,28 +62,17 @@ impl SolveInput<'_> {
                 &self.skin.parts,
                 &place,
             );
-            let looks = known.is_none();
-            let mut taken = self
-                .taken(&skinned, (&levels, &warp), &crotch)
-                .knowing(known.unwrap_or_default());
-            if !closing {
-                taken = taken.at_levels();
-            }
+            let taken = self.taken(&skinned, (&levels, &warp), &crotch);
             let mut moved = self.correct(&mut scales, &mut offsets, &taken);
             if round < forming {
                 if round < SHAPING {
                     self.form(&mut scales, &taken);
-                    moved = moved.max(fences::correct(&mut scales, &taken, &self.request));
                 }
                 moved = moved.max(self.posture(&mut scales, &taken, round));
             }
-            let is_still = moved < STILL * height;
-            if is_still && looks && closing {
+            if moved < STILL * height {
                 break;
             }
-            closing |= is_still && looks || round + 1 == forming;
-            let looks_next = is_still || round % LOOKS == LOOKS - 1;
-            known = (!looks_next).then(|| taken.shares());
             before = Some(match before {
                 Some([older, old])
                     if slow
@@ -143,12 +123,7 @@ impl SolveInput<'_> {
             if let Some(asked) = q.girth(girth) {
                 let got = taken.girth(girth);
                 miss = miss.max((asked - got).abs());
-                let limits = match taken.is_searched(girth) {
-                    true => CLOSING,
-                    false => STEPS,
-                };
-                let scale = &mut scales.girth[girth as usize];
-                *scale *= ratio(asked, got).clamp(limits[0], limits[1]);
+                scales.girth[girth as usize] *= ratio(asked, got);
             }
         }
         let (tip, neck) = (taken.tip(), taken.neck_side());

@@ -5,7 +5,7 @@ mod common;
 
 use common::freesewing::freesewing;
 use common::survey::people;
-use common::{BESIDE, FENCED, MAY, is_sound, shared};
+use common::{is_sound, shared};
 use toile_body::{Conflict, Figure, Mannequin, Part};
 use toile_geometry::{closed_length, convex_hull, horizontal_section};
 use toile_measure::{Measurements, Origin};
@@ -66,14 +66,6 @@ fn every_freesewing_set_has_its_girths_and_names_what_contradicts() {
         assert_eq!(body.untaken(), ["crotch_depth"], "{name}");
         for row in asked {
             let limit = match (row.is_angle(), row.is_girth()) {
-                _ if BESIDE.contains(&row.name) => {
-                    let named = conflicts.iter().any(|c| c.names.contains(&row.name));
-                    assert!(named || row.deviation().abs() < 0.02, "{name}: {row:?}");
-                    continue;
-                }
-                // Men's high bust is larger than the bust they are said to have.
-                _ if row.name == "bust" && figure == Figure::Man => continue,
-                _ if FENCED.contains(&row.name) => MAY * body.levels().crown / 1.7,
                 (true, _) => 0.02,
                 (_, true) => 5e-4,
                 _ => 1e-3,
@@ -100,17 +92,18 @@ fn every_freesewing_set_has_its_girths_and_names_what_contradicts() {
         assert_eq!(
             conflicts
                 .iter()
-                .any(|c| c.names.len() > 1 && c.names.contains(&"bust_to_underbust")),
+                .any(|c| c.names.contains(&"bust_to_underbust")),
             figure == Figure::Man,
             "{name}: {conflicts:?}"
         );
-        let rows = body.measure();
-        let got = |name: &str| rows.iter().find(|row| row.name == name).unwrap().got;
-        let waist = got("waist_height");
-        for (measure, height) in [("waist", waist), ("hips", waist - got("hips_line"))] {
+        let levels = body.levels();
+        for (measure, height) in [
+            ("bust", levels.chest),
+            ("waist", levels.waist),
+            ("hips", levels.hip),
+        ] {
             let gap = girth(&body, height) - table.get(measure).unwrap();
-            let may = MAY * body.levels().crown / 1.7;
-            assert!(gap.abs() <= may, "{name} {measure}: {gap}");
+            assert!(gap.abs() <= 5e-4, "{name} {measure}: {gap}");
         }
         let high = conflicts.iter().any(|c| c.names == ["bust", "high_bust"]);
         assert_eq!(high, figure == Figure::Man, "{name}");
@@ -177,13 +170,7 @@ fn people_of_the_survey_have_what_was_measured() {
             .into_iter()
             .filter(|row| row.origin == Origin::Asked);
         let missed: Vec<String> = asked
-            .filter(|row| {
-                let limit = match FENCED.contains(&row.name) {
-                    true => MAY,
-                    false => 1e-3,
-                };
-                !BESIDE.contains(&row.name) && row.deviation().abs() > limit
-            })
+            .filter(|row| row.deviation().abs() > 1e-3)
             .map(|row| format!("{} {:.1} mm", row.name, row.deviation() * 1e3))
             .collect();
         if !missed.is_empty() {

@@ -47,35 +47,3 @@ pub fn obj(text: &str) -> TriangleMesh {
     }
     mesh
 }
-
-/// Girths that are the largest or smallest of their range, which a level asked for beside may not be.
-pub const FENCED: [&str; 4] = ["bust", "underbust", "waist", "hips"];
-
-/// Lengths that end where such a girth lies, and parts of one: where they contradict it, it is met, and
-/// they are named.
-pub const BESIDE: [&str; 21] = [
-    "waist_line",
-    "waist_height",
-    "hips_line",
-    "hip_height",
-    "crotch_hip_diff",
-    "vert_bust_line",
-    "bust_height",
-    "bust_line",
-    "bust_to_underbust",
-    "waist_over_bust_line",
-    "waist_to_underbust",
-    "waist_to_armpit",
-    "waist_to_high_hips",
-    "waist_to_crotch",
-    "waist_to_knee",
-    "outside_leg",
-    "back_width",
-    "front_width",
-    "waist_back_width",
-    "hip_back_width",
-    "hip_inclination",
-];
-
-/// What given and measured girths of the trunk may differ by [m].
-pub const MAY: f64 = 5e-3;

@@ -4,7 +4,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-mod girths;
 mod knife;
 mod sides;
 mod sizes;
