@@ -73,21 +73,24 @@ pub fn pages(bytes: &[u8]) -> Vec<Page> {
             layer_name(&file, known.get(key).unwrap())
         };
         let content = Content::decode(&file.get_page_content(id)).unwrap();
-        let (mut layer, mut width) = (None, 0.0);
+        // Marked content is nested: a layer holds the kinds of its lines.
+        let (mut marked, mut width) = (Vec::<Option<String>>::new(), 0.0);
         let mut path: Vec<(Vec<Vec2>, bool)> = Vec::new();
         for operation in &content.operations {
             let given = &operation.operands;
             let at = || Vec2::new(number(&given[0]), number(&given[1])) * unit;
             match operation.operator.as_str() {
-                "BDC" => layer = Some(name(given[1].as_name().unwrap())),
-                "EMC" => layer = None,
+                "BDC" => marked.push(Some(name(given[1].as_name().unwrap()))),
+                "BMC" => marked.push(None),
+                "EMC" => drop(marked.pop().unwrap()),
                 "w" => width = number(&given[0]) * unit,
                 "m" => path.push((vec![at()], false)),
                 "l" => path.last_mut().unwrap().0.push(at()),
                 "h" => path.last_mut().unwrap().1 = true,
                 "S" => {
+                    let layer = marked.iter().rev().flatten().next();
                     let lines = path.drain(..).map(|(points, closed)| Line {
-                        layer: layer.clone(),
+                        layer: layer.cloned(),
                         width,
                         closed,
                         points,
