@@ -93,7 +93,9 @@ impl MarkerCache {
     ) -> Result<(), SessionError> {
         for one in &marker.order {
             let found = self.draft(project, one.size).evaluation.check();
-            project.refuse_faults(&found)?;
+            let sizes = &project.pattern.sizes;
+            let size = sizes.iter().find(|size| Some(size.id) == one.size);
+            project.refuse_faults_in(size.map(|size| &*size.name), &found)?;
         }
         Ok(())
     }

@@ -34,6 +34,8 @@ pub(crate) struct DraftedPart {
     pub source: Option<PathBuf>,
     pub layer: u16,
     pub pattern: Arc<Pattern>,
+    /// The size it is drafted in, if that is one of its own.
+    pub size: Option<String>,
     pub draft: Arc<Draft>,
     pub diagnostics: Arc<Vec<Diagnostic>>,
 }
@@ -46,6 +48,7 @@ impl DraftedPart {
             source: project.source.clone(),
             layer: project.layer,
             pattern: project.pattern.clone(),
+            size: project.size_name().map(str::to_owned),
             draft,
             diagnostics,
         }
@@ -65,6 +68,7 @@ impl DraftedPart {
             source: Some(worn.source.clone()),
             layer: worn.layer,
             pattern: worn.pattern.clone(),
+            size: project.size.clone(),
             draft: Arc::new(draft),
             diagnostics: Arc::new(diagnostics),
         }
@@ -77,7 +81,7 @@ impl DraftedPart {
             source: self.source.clone(),
             ..Project::default()
         };
-        named.refuse_faults(&self.diagnostics)
+        named.refuse_faults_in(self.size.as_deref(), &self.diagnostics)
     }
 }
 

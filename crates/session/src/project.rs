@@ -134,11 +134,19 @@ impl Project {
         }
     }
 
-    /// Refuses a pattern with faults that keep the garment from being made.
+    /// Refuses a pattern with faults that keep the garment from being made in the project's size.
     pub(crate) fn refuse_faults(&self, found: &[Diagnostic]) -> Result<(), SessionError> {
+        self.refuse_faults_in(self.size_name(), found)
+    }
+
+    /// Refuses a pattern with faults that keep the garment from being made in a size.
+    pub(crate) fn refuse_faults_in(
+        &self,
+        size: Option<&str>,
+        found: &[Diagnostic],
+    ) -> Result<(), SessionError> {
         let errors = found.iter().filter(|d| d.severity == Severity::Error);
-        let size = self
-            .size_name()
+        let size = size
             .filter(|_| self.pattern.sizes.len() > 1)
             .map_or_else(String::new, |size| format!("size {size}: "));
         let faults: Vec<String> = errors.map(|fault| format!("{size}{fault}")).collect();
