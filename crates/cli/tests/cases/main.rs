@@ -8,7 +8,6 @@ mod knife;
 mod sides;
 mod sizes;
 mod verdict;
-mod xpbd;
 
 mod put_on;
 

@@ -90,6 +90,7 @@ impl PatchVerlet {
             Some(sheet) => sheet,
             None => Sheet::new(system),
         };
+        state.follow_samples();
         sheet.start(system, state);
         let before = sheet.energy();
         let taken = match self.substeps {

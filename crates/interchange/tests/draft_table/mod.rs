@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::sync::Arc;
 use toile_interchange::read_pattern;
 use toile_measure::Measurements;
 use toile_pattern::{
@@ -13,7 +14,11 @@ pub fn draft_table(text: &str) -> String {
     let mut table = String::new();
     match read_pattern(text) {
         Err(error) => writeln!(table, "refused {}", place_in_file(&error.place)).expect("text"),
-        Ok((pattern, _)) => {
+        Ok((mut pattern, _)) => {
+            // Seams of these files join edges at random: which side of a piece they show is not recorded.
+            for seam in &mut pattern.seams {
+                Arc::make_mut(seam).right_sides_together = false;
+            }
             let adult = Measurements::adult();
             if pattern.sizes.is_empty() {
                 write_size(&mut table, &pattern, "adult", &adult);
