@@ -219,7 +219,10 @@ fn a_mirrored_pair_has_a_left_and_a_right() {
             level: None,
         };
     });
-    alter_seam(&mut pattern, 0, |seam| seam.sides[0][0].copy = 1);
+    alter_seam(&mut pattern, 0, |seam| {
+        seam.sides[0][0].copy = 1;
+        seam.right_sides_together = false;
+    });
     let draft = resolved(&pattern);
     let [left, right] = [&draft.pieces[0], &draft.pieces[1]];
     assert_eq!((&*left.name, &*right.name), ("front", "front mirrored"));

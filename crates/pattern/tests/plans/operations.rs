@@ -134,16 +134,19 @@ fn operations_that_cannot_be_done_are_refused() {
     for (kind, says) in [
         (
             with("right", 0.5, 0.7),
-            "does not fit on its edge: make it narrower",
+            "does not fit on its edge: give it a width of 0 or more",
         ),
-        (with("right", 0.5, 0.0), "does not fit on its edge"),
+        (with("right", 0.5, -0.01), "does not fit on its edge"),
         (with("right", 1.5, 0.01), "does not fit on its edge"),
         (with("top", 0.6, 0.05), "two darts of one edge overlap"),
         (
             dart(&pattern, "top", 0.1, 0.01, Apex::Point(foreign)),
             "point \"p0\" is on sheet \"back\"",
         ),
-        (diamond([own, own]), "has no width or length"),
+        (
+            diamond([own, own]),
+            "is narrower than nothing or has no length",
+        ),
         (
             diamond([own, foreign]),
             "which panel \"front\" is not traced from",

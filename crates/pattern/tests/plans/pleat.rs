@@ -137,7 +137,10 @@ fn pleats_that_reach_beyond_their_edge_are_refused() {
     let edges = ["bottom", "top"].map(|name| sample::edge(&pattern, "front", name));
     let evaluation = evaluated(&pattern);
     let (line, lines) = plan::even_cuts(&evaluation, panel, edges, 1).unwrap();
-    for (depth, words) in [(0.25, "does not reach as far"), (0.0, "no depth")] {
+    for (depth, words) in [
+        (0.25, "does not reach as far"),
+        (-0.01, "less than nothing deep"),
+    ] {
         let wish = plan::PleatWish {
             line,
             lines: lines.clone(),
