@@ -78,8 +78,4 @@ pub const KNOWN: &[Known] = &[
         ],
     ),
     ("crates/picture/src", &[&["image.rs", "ink.rs"]]),
-    (
-        "crates/session/src",
-        &[&["drape.rs", "interactive_run.rs", "outfit.rs", "setup.rs"]],
-    ),
 ];
