@@ -5,9 +5,10 @@ use std::fs;
 use toile_tests::{files_below, root};
 
 /// Our libraries from below: each may at most use those before it.
-const LIBRARIES: [&str; 13] = [
+const LIBRARIES: [&str; 14] = [
     "geometry",
     "measure",
+    "lettering",
     "sparse",
     "pattern",
     "cut",
@@ -44,11 +45,12 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 17] = [
+const LAYERS: [(&str, &[&str]); 18] = [
     ("toile-geometry", &[]),
     ("toile-measure", &[]),
+    ("toile-lettering", &[]),
     ("toile-pattern", &["geometry", "measure"]),
-    ("toile-cut", &["geometry", "pattern"]),
+    ("toile-cut", &["geometry", "lettering", "pattern"]),
     (
         "toile-assembly",
         &["geometry", "measure", "sparse", "pattern"],
@@ -57,13 +59,13 @@ const LAYERS: [(&str, &[&str]); 17] = [
     ("toile-body", &["geometry", "measure"]),
     ("toile-sparse", &["geometry"]),
     ("toile-drape", &["geometry", "sparse"]),
-    ("toile-picture", &["geometry"]),
-    ("toile-interchange", lowest(10)),
+    ("toile-picture", &["geometry", "lettering"]),
+    ("toile-interchange", lowest(11)),
     (
         "toile-marker",
         &["geometry", "pattern", "cut", "nesting", "interchange"],
     ),
-    ("toile-session", lowest(12)),
+    ("toile-session", lowest(13)),
     ("toile", &["geometry", "measure", "session", "lab"]),
     (
         "toile-ui",
@@ -72,7 +74,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
         ],
     ),
     ("toile-tests", &TESTED),
-    ("toile-lab", lowest(13)),
+    ("toile-lab", lowest(14)),
 ];
 
 /// What may stand at the top level besides dot-files.

@@ -22,7 +22,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// One line, letters beyond ASCII by their code.
+/// One line, letters beyond ASCII by their code in UTF-16.
 fn plain(text: &str) -> String {
     let mut safe = String::new();
     for c in text.chars() {
@@ -30,7 +30,9 @@ fn plain(text: &str) -> String {
             c if c.is_control() => safe.push(' '),
             c if c.is_ascii() => safe.push(c),
             c => {
-                let _ = write!(safe, "\\U+{:04X}", c as u32);
+                for part in c.encode_utf16(&mut [0; 2]) {
+                    let _ = write!(safe, "\\U+{part:04X}");
+                }
             }
         }
     }

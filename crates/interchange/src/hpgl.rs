@@ -2,11 +2,14 @@
 
 use std::fmt::Write as _;
 use toile_geometry::Vec2;
+use toile_lettering::{Line, width};
 
 /// User units in a metre \[1/m\].
 const UNITS: f64 = 1e5;
 /// Plotter units in a metre \[1/m\].
 const PLOTTER: f64 = 4e4;
+/// Height of capitals over the size of letters.
+const CAPITALS: f64 = 0.72;
 
 /// A plot in the making.
 pub(crate) struct HpglWriter {
@@ -53,23 +56,35 @@ impl HpglWriter {
         let _ = writeln!(self.text, "{};PU;", all.join(","));
     }
 
-    /// Words with their baseline's middle at a point \[m\], letters of a height \[m\], turned by an
-    /// angle \[rad\]. Letters beyond ASCII become question marks.
-    pub fn text(&mut self, pen: u8, words: &str, (at, height, angle): (Vec2, f64, f64)) {
-        self.select(pen);
-        let plain = |c: char| match c {
-            ' '..='~' => c,
-            _ => '?',
-        };
-        let words: String = words.chars().map(plain).collect();
+    /// Words with their baseline's middle at a point \[m\], letters of a size \[m\], turned by an
+    /// angle \[rad\]. Plotters know ASCII alone: words with other letters are drawn by their outlines.
+    pub fn text(&mut self, pen: u8, words: &str, (at, size, angle): (Vec2, f64, f64)) {
+        let blank = |c: char| if c.is_control() { ' ' } else { c };
+        let words: String = words.chars().map(blank).collect();
         let (sin, cos) = angle.sin_cos();
+        if !words.is_ascii() {
+            let line = Line::new(&words);
+            let place = |[x, y]: [f64; 2]| {
+                let [x, y] = [(x - 0.5 * line.width) * size, y * size];
+                at + Vec2::new(cos * x - sin * y, sin * x + cos * y)
+            };
+            for ring in line.outlines() {
+                let ring: Vec<Vec2> = ring.into_iter().map(place).collect();
+                self.polyline(pen, &ring, true);
+            }
+            return;
+        }
+        self.select(pen);
+        // A plotter's letters are as wide as two thirds of the way from one to the next: so
+        // chosen, the words take the length that they have elsewhere.
+        let step = width(&words) * size / words.len().max(1) as f64;
         let _ = writeln!(
             self.text,
             "PU{},{};DI{cos:.4},{sin:.4};SI{:.3},{:.3};LO4;LB{words}\u{3};",
             unit(at.x),
             unit(at.y),
-            height * 67.0,
-            height * 100.0
+            step / 1.5 * 100.0,
+            CAPITALS * size * 100.0
         );
     }
 

@@ -34,6 +34,7 @@ mod native;
 mod obj;
 mod obj_read;
 mod pdf;
+mod pdf_fonts;
 mod print;
 mod proportions;
 mod recognise;

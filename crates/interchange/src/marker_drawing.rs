@@ -4,6 +4,7 @@ use crate::FormatError;
 use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_geometry::Polygon;
+use toile_lettering::{missing_letters, missing_note};
 use toile_nesting::{Fold, Nap, Pose, Strip};
 
 /// Everything that is drawn on a marker.
@@ -89,6 +90,15 @@ impl MarkerDrawing {
     /// Price of the fabric needed.
     pub fn cost(&self) -> Option<f64> {
         Some(self.facts.price_per_metre? * self.yardage())
+    }
+
+    /// What to tell of letters that no font has, in what is written on prints and plots of it.
+    pub fn missing_note(&self) -> Option<String> {
+        let names = self.pieces.iter().map(|piece| &piece.name);
+        let names = names.chain(self.unplaced.iter().flatten());
+        let facts = [&self.title, &self.facts.fabric, &self.facts.currency];
+        let all = names.chain(facts).chain(&self.facts.roll);
+        missing_note(&missing_letters(all.map(String::as_str)))
     }
 
     /// The marker in words: length and efficiency, then the fabric, then what is missing.

@@ -1,6 +1,6 @@
 //! Breaks a text into lines of a given length.
 
-use crate::pdf::letter_width;
+use toile_lettering::{is_plain, width};
 
 /// How much wider than in Helvetica a line may come out in another sans-serif font: in DejaVu Sans
 /// and Verdana it is about 1.17 times as long.
@@ -10,7 +10,15 @@ const WIDER: f64 = 1.25;
 /// font draws it: broken between words, and within a word that is longer than a line.
 pub(crate) fn lines_within(text: &str, size: f64, length: f64) -> Vec<String> {
     // Letters of other scripts may be as wide as high.
-    let wide = |c: char| letter_width(c).map_or(1.0, |width| width * WIDER) * size;
+    let wide = |c: char| {
+        let letter = c.encode_utf8(&mut [0; 4]).to_owned();
+        let share = if is_plain(&letter) {
+            width(&letter) * WIDER
+        } else {
+            1.0
+        };
+        share * size
+    };
     let width = |text: &str| text.chars().map(wide).sum::<f64>();
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -1,10 +1,12 @@
-//! Sheets of lines, areas and words as PDF. Lengths in metres from the lower left corner; the text
-//! is Helvetica, which every reader has.
+//! Sheets of lines, areas and words as PDF. Lengths in metres from the lower left corner; text is
+//! Helvetica, which every reader has, or of fonts embedded in part where that lacks letters.
 
+use crate::pdf_fonts::PdfFonts;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
-use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
+use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref};
 use std::collections::BTreeSet;
 use toile_geometry::{Bounds2, Vec2};
+use toile_lettering::{shortened, width};
 
 /// Points of a PDF in a metre \[1/m\].
 const POINTS: f64 = 72.0 / 0.0254;
@@ -27,9 +29,25 @@ pub(crate) struct PdfPage {
     size: Vec2,
     /// Points in a unit of the page.
     unit: f64,
+    /// What was drawn before the last text, texts among it.
+    parts: Vec<Part>,
+    /// What was drawn since.
     content: Content,
     /// Layers that have something on it.
     layers: BTreeSet<usize>,
+}
+
+/// A part of a page: drawn, or a text, which is encoded when the fonts of the document are known.
+enum Part {
+    Drawn(Vec<u8>),
+    Text {
+        text: String,
+        /// Size of the letters in units of the page.
+        size: f32,
+        /// From the letters to the page.
+        matrix: [f32; 6],
+        ink: Ink,
+    },
 }
 
 /// Where a text stands on its baseline.
@@ -64,6 +82,7 @@ impl PdfPage {
         Self {
             size,
             unit,
+            parts: Vec::new(),
             content,
             layers: BTreeSet::new(),
         }
@@ -148,8 +167,7 @@ impl PdfPage {
 
     /// Writes words.
     pub fn text(&mut self, text: PdfText<'_>) {
-        let encoded = win_ansi(text.text);
-        let width = text_width(&encoded) * text.size;
+        let width = width(text.text) * text.size;
         let back = match text.align {
             Align::Left => 0.0,
             Align::Middle => 0.5 * width,
@@ -159,13 +177,44 @@ impl PdfPage {
         let at = text.at - Vec2::new(cos, sin) * back;
         let (x, y, size) = (self.units(at.x), self.units(at.y), self.units(text.size));
         let (sin, cos) = (sin as f32, cos as f32);
-        self.content
-            .set_fill_rgb(text.ink[0], text.ink[1], text.ink[2])
-            .begin_text()
-            .set_font(Name(b"F1"), size)
-            .set_text_matrix([cos, sin, -sin, cos, x, y])
-            .show(Str(&encoded))
-            .end_text();
+        let drawn = std::mem::replace(&mut self.content, Content::new());
+        self.parts.push(Part::Drawn(drawn.finish().into_vec()));
+        self.parts.push(Part::Text {
+            text: text.text.to_owned(),
+            size,
+            matrix: [cos, sin, -sin, cos, x, y],
+            ink: text.ink,
+        });
+    }
+
+    /// All that is on it, in fonts of the document.
+    fn encoded(&mut self, fonts: &mut PdfFonts) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut add = |part: &[u8]| {
+            if !bytes.is_empty() && !part.is_empty() {
+                bytes.push(b'\n');
+            }
+            bytes.extend_from_slice(part);
+        };
+        for part in std::mem::take(&mut self.parts) {
+            match part {
+                Part::Drawn(drawn) => add(&drawn),
+                Part::Text {
+                    text,
+                    size,
+                    matrix,
+                    ink,
+                } => {
+                    let mut content = Content::new();
+                    content.set_fill_rgb(ink[0], ink[1], ink[2]);
+                    fonts.show(&mut content, &text, (size, matrix));
+                    add(content.finish().as_slice());
+                }
+            }
+        }
+        let drawn = std::mem::replace(&mut self.content, Content::new());
+        add(drawn.finish().as_slice());
+        bytes
     }
 }
 
@@ -189,11 +238,18 @@ impl PdfSheets {
     }
 
     /// The file.
-    pub fn finish(self, title: &str) -> Vec<u8> {
+    pub fn finish(mut self, title: &str) -> Vec<u8> {
         let mut pdf = Pdf::new();
-        let (catalog, tree, font, info) = (Ref::new(1), Ref::new(2), Ref::new(3), Ref::new(4));
-        let first = 5 + self.layers.len() as i32;
-        let layer_of = |k: usize| Ref::new(5 + k as i32);
+        let mut fonts = PdfFonts::default();
+        let contents: Vec<Vec<u8>> = self
+            .pages
+            .iter_mut()
+            .map(|page| page.encoded(&mut fonts))
+            .collect();
+        let (catalog, tree, info) = (Ref::new(1), Ref::new(2), Ref::new(3));
+        let first_layer = 4 + fonts.objects();
+        let first = first_layer + self.layers.len() as i32;
+        let layer_of = |k: usize| Ref::new(first_layer + k as i32);
         let page_of = |k: usize| Ref::new(first + 2 * k as i32);
         let content_of = |k: usize| Ref::new(first + 1 + 2 * k as i32);
         let mut root = pdf.catalog(catalog);
@@ -219,12 +275,9 @@ impl PdfSheets {
         pdf.pages(tree)
             .kids((0..self.pages.len()).map(page_of))
             .count(self.pages.len() as i32);
-        for (k, sheet) in self.pages.into_iter().enumerate() {
+        for (k, (sheet, content)) in self.pages.into_iter().zip(contents).enumerate() {
             let PdfPage {
-                size,
-                unit,
-                content,
-                layers,
+                size, unit, layers, ..
             } = sheet;
             let units = |metres: f64| (metres * POINTS / unit) as f32;
             let mut page = pdf.page(page_of(k));
@@ -234,7 +287,11 @@ impl PdfSheets {
             }
             page.parent(tree).contents(content_of(k));
             let mut resources = page.resources();
-            resources.fonts().pair(Name(b"F1"), font);
+            let mut named = resources.fonts();
+            for (name, font) in fonts.names(4) {
+                named.pair(Name(name.as_bytes()), font);
+            }
+            named.finish();
             if !layers.is_empty() {
                 let mut properties = resources.insert(Name(b"Properties")).dict();
                 for layer in layers {
@@ -243,58 +300,17 @@ impl PdfSheets {
             }
             resources.finish();
             page.finish();
-            pdf.stream(content_of(k), &content.finish());
+            pdf.stream(content_of(k), &content);
         }
-        pdf.type1_font(font)
-            .base_font(Name(b"Helvetica"))
-            .encoding_predefined(Name(b"WinAnsiEncoding"));
+        fonts.write(&mut pdf, 4);
         pdf.finish()
     }
-}
-
-/// Text in the encoding of the page; letters it does not have become question marks.
-fn win_ansi(text: &str) -> Vec<u8> {
-    let byte = |c: char| match c {
-        ' '..='~' | '\u{a0}'..='\u{ff}' => c as u8,
-        '\u{20ac}' => 0x80,
-        '\u{2013}' => 0x96,
-        '\u{2019}' => 0x92,
-        c if c.is_control() => b' ',
-        _ => b'?',
-    };
-    text.chars().map(byte).collect()
-}
-
-/// Width of Helvetica's letters from the space to the tilde, in thousandths of their size (Adobe
-/// font metrics).
-const WIDTHS: [u16; 95] = [
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556,
-    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
-    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667,
-    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500,
-    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
-];
-
-/// Width of a letter over its size in Helvetica, from the space to the tilde.
-pub(crate) fn letter_width(c: char) -> Option<f64> {
-    let place = u32::from(c).checked_sub(32)?;
-    let width = WIDTHS.get(usize::try_from(place).ok()?)?;
-    Some(f64::from(*width) / 1e3)
-}
-
-/// Width of encoded text over the size of its letters.
-fn text_width(encoded: &[u8]) -> f64 {
-    let width = |&byte: &u8| match byte {
-        b' '..=b'~' => f64::from(WIDTHS[usize::from(byte - b' ')]),
-        _ => 556.0,
-    };
-    encoded.iter().map(width).sum::<f64>() / 1e3
 }
 
 /// A text in lines of at most a width \[m\] at a size \[m\], broken between words; a longer word is
 /// cut.
 pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
-    let fits = |line: &str| text_width(&win_ansi(line)) * size <= width;
+    let fits = |line: &str| toile_lettering::width(line) * size <= width;
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -310,16 +326,5 @@ pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
 
 /// As many letters from the start of a text as fit a width \[m\] at a size \[m\].
 pub(crate) fn fitted(text: &str, size: f64, width: f64) -> String {
-    if text_width(&win_ansi(text)) * size <= width {
-        return text.to_owned();
-    }
-    let mut short = String::new();
-    for c in text.chars() {
-        let longer = format!("{short}{c}");
-        if text_width(&win_ansi(&format!("{longer}..."))) * size > width {
-            break;
-        }
-        short = longer;
-    }
-    short + "..."
+    shortened(text, width / size)
 }

@@ -37,12 +37,18 @@ pub fn marker_files(
     files: &mut Vec<(String, Vec<u8>)>,
 ) -> Result<Vec<Vec<String>>, MarkerError> {
     let mut lost = vec![Vec::new(); finished_markers.len()];
+    // In other formats letters are codes, and the reader's fonts draw them.
+    let drawn = [MarkerFormat::Pdf, MarkerFormat::Hpgl, MarkerFormat::Report];
+    let draws_letters = formats.iter().any(|format| drawn.contains(format));
     for (k, finished) in finished_markers.iter().enumerate() {
         let stem = match k {
             0 => "marker".to_owned(),
             k => format!("marker-{}", k + 1),
         };
         let drawing = finished.drawing(name);
+        if draws_letters {
+            lost[k].extend(drawing.missing_note());
+        }
         for format in formats {
             let (ending, bytes) = match format {
                 MarkerFormat::Svg => ("svg", write_marker_svg(&drawing).map(String::into_bytes)),
@@ -74,7 +80,12 @@ pub fn marker_files(
         }
     }
     if formats.contains(&MarkerFormat::Report) {
-        let drawings: Vec<_> = finished_markers.iter().map(|l| l.drawing(name)).collect();
+        let drawing_of = |(finished, lost): (&FinishedMarker, &Vec<String>)| {
+            let mut drawing = finished.drawing(name);
+            drawing.facts.notes.extend(lost.iter().cloned());
+            drawing
+        };
+        let drawings: Vec<_> = finished_markers.iter().zip(&lost).map(drawing_of).collect();
         let report = write_marker_report(name, &drawings).map_err(cannot("marker-report.pdf"))?;
         files.push(("marker-report.pdf".to_owned(), report));
     }

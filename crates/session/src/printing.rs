@@ -93,12 +93,15 @@ pub fn print_pattern(
 ) -> Result<Printed, SessionError> {
     let remedy = "prints are written as NAME.pdf or NAME.svg";
     check_ending(to, &[".pdf", ".svg"], remedy)?;
-    let (job, printed) = print_job(project, options, watcher)?;
+    let (job, mut printed) = print_job(project, options, watcher)?;
     report_progress(watcher, "writing", ARRANGED, "")?;
     let is_svg = to.to_string_lossy().to_lowercase().ends_with(".svg");
     let bytes = match is_svg {
         true => job.svg().map(String::into_bytes),
-        false => job.pdf(),
+        false => {
+            printed.notes.extend(job.missing_note());
+            job.pdf()
+        }
     };
     write_atomically(to, &bytes.map_err(unprintable)?)?;
     Ok(printed)

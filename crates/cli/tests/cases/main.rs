@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod knife;
+mod letters;
 mod sides;
 mod sizes;
 mod verdict;

@@ -20,6 +20,7 @@ use paper::{clipped, crosses, tiles};
 use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_geometry::{Bounds2, Vec2};
+use toile_lettering::{missing_letters, missing_note};
 use toile_nesting::Pose;
 
 /// Which lines of a piece are printed.
@@ -118,6 +119,15 @@ impl PrintJob {
             &self.pages()?,
             &self.layer_names(),
         ))
+    }
+
+    /// What to tell of letters of its texts that no font has.
+    pub fn missing_note(&self) -> Option<String> {
+        let words = self.pieces.iter().flat_map(|piece| &piece.words);
+        let layers = self.layers.iter().map(|layer| &layer.name);
+        let title = std::iter::once(&self.title.name).chain(&self.title.facts);
+        let all = words.chain(layers).chain(title);
+        missing_note(&missing_letters(all.map(String::as_str)))
     }
 
     fn layer_names(&self) -> Vec<String> {
