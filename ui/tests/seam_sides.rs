@@ -68,5 +68,6 @@ fn a_piece_that_would_be_turned_is_named_while_the_second_side_is_pointed_at() {
     drafter.hover(side);
     let said = drafter.status();
     assert!(said.contains("piece \"back\" is sewn inside out"), "{said}");
+    drafter.key(Key::Escape);
     assert_eq!(drafter.pattern().seams.len(), 0);
 }

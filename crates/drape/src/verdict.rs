@@ -28,6 +28,8 @@ pub enum Aspect {
     Tightness,
     /// Whether the garment reaches below the floor.
     Length,
+    /// Whether the garment was put on otherwise than its file says.
+    Placement,
 }
 
 impl Aspect {
@@ -44,6 +46,7 @@ impl Aspect {
             Self::Hang => ("crumpled", false),
             Self::Tightness => ("too_tight", false),
             Self::Length => ("too_long", false),
+            Self::Placement => ("put_on_otherwise", false),
         }
     }
 
@@ -60,6 +63,7 @@ impl Aspect {
             Self::Hang => "crumpled",
             Self::Tightness => "too tight",
             Self::Length => "too long",
+            Self::Placement => "put on otherwise",
         }
     }
 }

@@ -118,7 +118,8 @@ fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Op
 }
 
 /// Cloth and length of a line that hangs shorter than its cloth, both along straight lines between the same points: a
-/// seam that is cut in a curve is not short.
+/// seam that is cut in a curve is not short. One fold, as under an arm, is no heap: the line must be as short without
+/// the stretch that lost most.
 fn hanging(points: &[Point]) -> Option<[f64; 2]> {
     let (first, last) = (points.first()?, points.last()?);
     let length = last.cloth;
@@ -128,14 +129,20 @@ fn hanging(points: &[Point]) -> Option<[f64; 2]> {
     }
     let pieces = (length / SPACING).round().max(1.0);
     let (mut cloth, mut hangs) = (0.0, 0.0);
+    let mut fold = [0.0; 2];
     let mut from = first;
     for k in 1..=pieces as usize {
         let reached = length * k as f64 / pieces;
         let to = points.iter().find(|point| point.cloth >= reached - 1e-9)?;
         let sides = [0, 1].map(|side| (to.flat[side] - from.flat[side]).norm());
-        cloth += sides[0].min(sides[1]);
-        hangs += (to.place - from.place).norm();
+        let stretch = [sides[0].min(sides[1]), (to.place - from.place).norm()];
+        if stretch[0] - stretch[1] > fold[0] - fold[1] {
+            fold = stretch;
+        }
+        cloth += stretch[0];
+        hangs += stretch[1];
         from = to;
     }
-    (hangs < (1.0 - SHORTER) * cloth).then_some([cloth, hangs])
+    let rest = [cloth - fold[0], hangs - fold[1]];
+    (rest[1] < (1.0 - SHORTER) * rest[0]).then_some([cloth, hangs])
 }

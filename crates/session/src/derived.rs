@@ -367,7 +367,8 @@ impl Derived {
         self.outfit = Some(outfit);
         let words = format!("put on {first}, it fell off the body: put on again {second}");
         made.warnings.insert(0, words.clone());
-        made.verdict.extend([Finding::told(Aspect::Body, words)]);
+        let told = Finding::told(Aspect::Placement, words);
+        made.verdict.extend([told]);
         Ok(made)
     }
 }

@@ -323,6 +323,7 @@ fn a_garment_that_fell_once_is_told_and_so_is_its_replay() {
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("fell off the body: put on again"), "{said}");
     assert_eq!(report["verdict"]["on_body"], true);
+    assert_eq!(report["verdict"]["put_on_otherwise"], true);
     for file in ["garment.obj", "drape.png", "fit.png", "timing.json"] {
         let path = folder.path().join("out").join(file);
         assert!(path.is_file(), "{file}");

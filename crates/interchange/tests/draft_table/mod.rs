@@ -6,7 +6,8 @@ use std::sync::Arc;
 use toile_interchange::read_pattern;
 use toile_measure::Measurements;
 use toile_pattern::{
-    Diagnostic, Draft, DraftSpan, Evaluation, Name, Pattern, Piece, PieceEdge, SeamOrigin, Severity,
+    Code, Diagnostic, Draft, DraftSpan, Evaluation, Name, Pattern, Piece, PieceEdge, SeamOrigin,
+    Severity,
 };
 
 /// The table of one file: a line a fact, words first, then numbers [m] or [rad].
@@ -15,7 +16,8 @@ pub fn draft_table(text: &str) -> String {
     match read_pattern(text) {
         Err(error) => writeln!(table, "refused {}", place_in_file(&error.place)).expect("text"),
         Ok((mut pattern, _)) => {
-            // Seams of these files join edges at random: which side of a piece they show is not recorded.
+            // Seams of these files join edges at random: which side of a piece they show, and whether a ring of
+            // pieces has a half turn, is not recorded.
             for seam in &mut pattern.seams {
                 Arc::make_mut(seam).right_sides_together = false;
             }
@@ -44,7 +46,8 @@ fn write_size(table: &mut String, pattern: &Pattern, name: &str, body: &Measurem
     };
     line(table, format!("size {name:?}"));
     let (draft, _) = pattern.resolve(body);
-    let found = pattern.check(body);
+    let mut found = pattern.check(body);
+    found.retain(|diagnostic| diagnostic.code != Code::InsideOut);
     let unsound = found.iter().any(|d| d.severity == Severity::Error);
     for text in said(pattern, &found) {
         line(table, text);
