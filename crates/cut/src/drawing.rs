@@ -2,9 +2,9 @@
 //! draw a piece from this alone.
 
 use crate::CutNotch;
-use crate::label::{GAP, LINES, SMALLEST, Spot, roomiest_spot};
+use crate::label::Spot;
+use crate::label_block::{Label, Words, label};
 use crate::piece::{CutPiece, PieceRing, PieceSegment};
-use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Polygon, Vec2};
 use toile_pattern::{CornerName, LineName, NotchId};
 
@@ -57,19 +57,6 @@ pub struct Stroke {
     pub closed: bool,
 }
 
-/// Words, the middle of their baseline at a point.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Words {
-    /// The text.
-    pub text: String,
-    /// Middle of the baseline \[m\].
-    pub at: Vec2,
-    /// Height of the letters \[m\].
-    pub size: f64,
-    /// Direction of the baseline \[rad\]: 0 or upwards.
-    pub angle: f64,
-}
-
 /// A piece drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
@@ -83,10 +70,6 @@ pub struct Drawing {
 
 /// Size of the letters on the largest pieces \[m\], and on the smallest.
 const LETTERS: [f64; 2] = [0.022, 0.004];
-/// Size of lines after the first over that of the first.
-const LATER_LINES: f64 = 0.7;
-/// From a line to the next over its size.
-const LINE_STEP: f64 = 1.3;
 /// Arm of the cross at the end of a dart \[m\].
 const DRILL: f64 = 0.003;
 
@@ -137,17 +120,6 @@ impl CutPiece {
         if let Some(ends) = self.on_fold {
             draw(StrokeKind::Fold, StrokeName::Piece, placed(&ends), false);
         }
-        let polygon = self.polygon().mapped(&place);
-        let up = |words: &[Words]| words.first().map_or(Vec2::y(), Words::up);
-        // Words and grain keep clear of seam lines and darts where these are known.
-        let spot = match self.sew.is_empty() {
-            true => roomiest_spot(&polygon),
-            false => roomiest_spot(&self.sewn().mapped(&place)),
-        };
-        let words = words_at(&spot, lines);
-        for points in self.grain_arrow(&place, &spot, up(&words)) {
-            draw(StrokeKind::Grain, StrokeName::Piece, points, false);
-        }
         for drill in &self.drills {
             for arm in [Vec2::new(DRILL, 0.0), Vec2::new(0.0, DRILL)] {
                 let name = StrokeName::Corner(drill.name, drill.half);
@@ -155,10 +127,25 @@ impl CutPiece {
                 draw(StrokeKind::Drill, name, ends, false);
             }
         }
+        let polygon = self.polygon().mapped(&place);
+        // Words and grain keep clear of seam lines and darts where these are known.
+        let inner = match self.sew.is_empty() {
+            true => polygon.clone(),
+            false => self.sewn().mapped(&place),
+        };
+        let label = label(&inner, &inner_lines(&strokes), (lines, letters));
+        let grain = self.grain_arrow(&place, &label).into_iter();
+        strokes.extend(grain.map(|points| Stroke {
+            kind: StrokeKind::Grain,
+            name: StrokeName::Piece,
+            points,
+            closed: false,
+        }));
+        strokes.sort_by_key(|stroke| stroke.kind);
         Drawing {
             fill: Some(polygon),
             strokes,
-            words,
+            words: label.words,
         }
     }
 
@@ -169,17 +156,25 @@ impl CutPiece {
             .map(|(_, notch)| notch)
     }
 
-    /// The grain line above the words at the roomiest spot, and its arrow head.
-    fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, spot: &Spot, up: Vec2) -> Vec<Vec<Vec2>> {
+    /// The grain line at the spot of a label, above its words or alone, and its arrow head.
+    fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, label: &Label) -> Vec<Vec<Vec2>> {
+        let spot = &label.spot;
         let along = Vec2::new(self.grain.cos(), self.grain.sin());
         let way = (place(along) - place(Vec2::zeros())).try_normalize(0.0);
         let Some(way) = way.filter(|_| spot.room > 0.0) else {
             return Vec::new();
         };
-        // All of it lies above the spot and inside the free circle round it.
-        let rise = way.dot(&up).abs();
-        let reach = spot.room * (0.42 / rise.max(1e-9)).min(0.75);
-        let centre = spot.at + up * (0.2 * spot.room).max(reach * rise + 0.08 * spot.room);
+        // All of it lies inside the free circle round the spot, and above that where words are below.
+        let (centre, reach) = match label.above {
+            true => {
+                let up = label.words.first().map_or(Vec2::y(), Words::up);
+                let rise = way.dot(&up).abs();
+                let reach = spot.room * (0.42 / rise.max(1e-9)).min(0.75);
+                let above = (0.2 * spot.room).max(reach * rise + 0.08 * spot.room);
+                (spot.at + up * above, reach)
+            }
+            false => (spot.at, 0.75 * spot.room),
+        };
         let [tail, head] = [centre - way * reach, centre + way * reach];
         let side = Vec2::new(-way.y, way.x);
         let barb = (letters(spot) * 0.6).min(reach * 0.6);
@@ -188,11 +183,14 @@ impl CutPiece {
     }
 }
 
-impl Words {
-    /// Unit vector from their feet to their heads.
-    fn up(&self) -> Vec2 {
-        Vec2::new(-self.angle.sin(), self.angle.cos())
-    }
+/// The lines that words keep clear of, besides the outline.
+fn inner_lines(strokes: &[Stroke]) -> Vec<[Vec2; 2]> {
+    use StrokeKind::{Drill, Inside, Mark, Notch};
+    let inner = |s: &&Stroke| matches!(s.kind, Inside | Notch | Mark | Drill);
+    let lines = strokes.iter().filter(inner);
+    lines
+        .flat_map(|stroke| stroke.points.windows(2).map(|pair| [pair[0], pair[1]]))
+        .collect()
 }
 
 /// A closed line whole, or its parts that do not lie on the fold of the cloth: corners, segments,
@@ -219,36 +217,4 @@ fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
 /// Size of the first line at a spot \[m\].
 fn letters(spot: &Spot) -> f64 {
     (spot.room * 0.3).clamp(LETTERS[1], LETTERS[0])
-}
-
-/// Lines one under another beside the grain line.
-fn words_at(spot: &Spot, lines: &[&str]) -> Vec<Words> {
-    let longest = lines.iter().max_by_key(|line| line.chars().count());
-    let Some(longest) = longest.filter(|_| spot.room > 0.0) else {
-        return Vec::new();
-    };
-    let (first, upright) = match lines {
-        [only] | [only, _] => spot.size_of(only, letters(spot)),
-        _ => spot.size_of(longest, letters(spot)),
-    };
-    // All lines lie between the spot and the outline.
-    let heights = 1.0 + LINE_STEP * LATER_LINES * (lines.len() - 1) as f64;
-    let first = first.min(LINES * spot.room / heights).max(SMALLEST);
-    let angle = if upright { FRAC_PI_2 } else { 0.0 };
-    let down = Vec2::new(angle.sin(), -angle.cos());
-    let mut below = spot.room * GAP + first;
-    let mut words = Vec::with_capacity(lines.len());
-    for (k, line) in lines.iter().enumerate() {
-        let size = if k == 0 { first } else { first * LATER_LINES };
-        if k > 0 {
-            below += LINE_STEP * size;
-        }
-        words.push(Words {
-            text: (*line).to_owned(),
-            at: spot.at + down * below,
-            size,
-            angle,
-        });
-    }
-    words
 }

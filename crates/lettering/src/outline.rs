@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn a_circle_of_curves_is_followed_to_the_tolerance() {
         let mut pen = Contours::new(1.0);
-        let k = 0.552_284_75;
+        let k = 0.552_284_8;
         pen.move_to(1.0, 0.0);
         pen.curve_to(1.0, k, k, 1.0, 0.0, 1.0);
         pen.curve_to(-k, 1.0, -1.0, k, -1.0, 0.0);

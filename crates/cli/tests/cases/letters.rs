@@ -142,3 +142,121 @@ fn a_plotter_draws_letters_that_it_does_not_know() {
         .unwrap();
     assert!(drawn.matches("PD").count() > 40);
 }
+
+/// Words of an SVG print with the middle of their baseline, size and whether they run upwards.
+struct SvgWords {
+    at: [f64; 2],
+    size: f64,
+    upright: bool,
+    text: String,
+}
+
+fn attribute<'t>(tag: &'t str, name: &str) -> Option<&'t str> {
+    let start = tag.find(&format!(" {name}=\""))? + name.len() + 3;
+    tag[start..].split('"').next()
+}
+
+fn numbers(text: &str) -> Vec<f64> {
+    let parts = text.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+    parts.filter_map(|part| part.parse().ok()).collect()
+}
+
+fn middle_words(svg: &str) -> Vec<SvgWords> {
+    let tags = svg.lines().filter(|line| line.starts_with("<text"));
+    let read = |tag: &str| {
+        let number = |name| attribute(tag, name)?.parse::<f64>().ok();
+        (attribute(tag, "text-anchor") == Some("middle")).then_some(())?;
+        Some(SvgWords {
+            at: [number("x")?, number("y")?],
+            size: number("font-size")?,
+            upright: tag.contains("rotate(-90 "),
+            text: tag.split('>').nth(1)?.split('<').next()?.to_owned(),
+        })
+    };
+    tags.filter_map(read).collect()
+}
+
+/// Boxes of the lines of a class: left, right, top, bottom [mm].
+fn boxes(svg: &str, class: &str) -> Vec<[f64; 4]> {
+    let class = format!("class=\"{class}\"");
+    let lines = svg.lines().filter(|line| line.contains(&class));
+    let of = |line: &str| {
+        let all = numbers(attribute(line, "d").unwrap());
+        let side = |k: usize, sign: f64| {
+            let own = all.iter().skip(k).step_by(2);
+            sign * own.map(|x| sign * x).fold(f64::INFINITY, f64::min)
+        };
+        [side(0, 1.0), side(0, -1.0), side(1, 1.0), side(1, -1.0)]
+    };
+    lines.map(of).collect()
+}
+
+#[test]
+fn labels_lie_inside_the_smallest_pieces_and_clear_of_their_notches() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, names) in [
+        ("doll", &["front bodice", "sleeve", "collar", "pocket"][..]),
+        ("long", &["ppp"]),
+    ] {
+        let name = format!("{file}.toile.json");
+        printed(
+            folder.path(),
+            &case("small-pieces-on-paper").join(name),
+            "p.svg",
+        );
+        let svg = std::fs::read_to_string(folder.path().join("p.svg")).unwrap();
+        let pieces = boxes(&svg, "sew");
+        let notches = boxes(&svg, "notch");
+        let all = middle_words(&svg);
+        let is_label = |words: &&SvgWords| {
+            let other = ["cut 1", "cotton"];
+            names
+                .iter()
+                .chain(&other)
+                .any(|name| words.text.starts_with(name))
+        };
+        let labels: Vec<&SvgWords> = all.iter().filter(is_label).collect();
+        assert!(labels.len() >= 3 * names.len(), "{file}: {}", labels.len());
+        for words in labels {
+            // Letters are half as wide as high, about.
+            let (along, tall) = (
+                0.25 * words.text.chars().count() as f64 * words.size,
+                words.size,
+            );
+            let [x, y] = words.at;
+            let own = match words.upright {
+                false => [x - along, x + along, y - 0.7 * tall, y],
+                true => [x - 0.7 * tall, x, y - along, y + along],
+            };
+            let inside =
+                |b: &[f64; 4]| b[0] <= own[0] && own[1] <= b[1] && b[2] <= own[2] && own[3] <= b[3];
+            let meets =
+                |b: &[f64; 4]| b[0] < own[1] && own[0] < b[1] && b[2] < own[3] && own[2] < b[3];
+            assert!(pieces.iter().any(inside), "{file}: {} {own:?}", words.text);
+            assert!(!notches.iter().any(meets), "{file}: {} {own:?}", words.text);
+        }
+        let sheet = all.iter().all(|words| words.at[0] > 0.0);
+        assert!(sheet && svg.contains("row 1, column 1"));
+    }
+}
+
+#[test]
+fn a_name_too_long_for_its_piece_ends_with_an_ellipsis() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = case("small-pieces-on-paper").join("long.toile.json");
+    printed(folder.path(), &input, "p.svg");
+    let svg = std::fs::read_to_string(folder.path().join("p.svg")).unwrap();
+    let all = middle_words(&svg);
+    let name = all
+        .iter()
+        .find(|words| words.text.starts_with("ppp"))
+        .unwrap();
+    assert!(
+        name.text.ends_with('…') && name.size >= 1.5,
+        "{} {}",
+        name.text,
+        name.size
+    );
+    let other = all.iter().filter(|words| words.text == "cotton").count();
+    assert_eq!(other, 1);
+}

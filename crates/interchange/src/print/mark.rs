@@ -3,6 +3,7 @@
 use crate::marker_strokes::Layer;
 use crate::pdf::{Align, Ink};
 use toile_geometry::{Bounds2, Vec2};
+use toile_lettering::width;
 
 /// Ink, width and dashes of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,12 +91,30 @@ impl Mark {
         (corners.map(Vec2::from).to_vec(), true)
     }
 
-    /// A box that holds it, roughly for words \[m\].
+    /// A box that holds it, words in a wider font too \[m\].
     pub fn bounds(&self) -> Bounds2 {
         match &self.shape {
             Shape::Line { points, .. } => Bounds2::of(points.iter().copied()),
-            Shape::Text { text, at, size, .. } => {
-                Bounds2::of([*at]).grown(size * (1.0 + text.chars().count() as f64))
+            Shape::Text {
+                text,
+                at,
+                size,
+                angle,
+                align,
+                ..
+            } => {
+                let length = 1.2 * width(text) * size;
+                let back = match align {
+                    Align::Left => 0.0,
+                    Align::Middle => 0.5 * length,
+                    Align::Right => length,
+                };
+                let along = Vec2::new(angle.cos(), angle.sin());
+                let up = Vec2::new(-along.y, along.x) * *size;
+                let start = at - along * back;
+                let end = start + along * length;
+                let low = up * -0.3;
+                Bounds2::of([start + low, end + low, start + up, end + up])
             }
         }
     }

@@ -20,7 +20,7 @@ use paper::{clipped, crosses, tiles};
 use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_geometry::{Bounds2, Vec2};
-use toile_lettering::{missing_letters, missing_note};
+use toile_lettering::{missing_letters, missing_note, width};
 use toile_nesting::Pose;
 
 /// Which lines of a piece are printed.
@@ -208,13 +208,42 @@ impl PrintJob {
                 page.on_top.push(Mark::line(None, (ends, false), JOIN));
             }
         }
-        let at = window.min + Vec2::repeat(1.5 * PLACE_LETTERS);
         let words = format!("{}: sheet {number} of {count}", page.name);
         let letters = (PLACE_LETTERS, GREY);
+        let at = free_place(&page, width(&words) * PLACE_LETTERS);
         page.on_top
             .push(Mark::text(&words, (at, Align::Left), letters));
         page
     }
+}
+
+/// Where words of a length \[m\] cross nothing on a page: along its lower edge, then higher up; in
+/// the lower left corner if they cross something everywhere.
+fn free_place(page: &Page, length: f64) -> Vec2 {
+    let low = page.window.min + Vec2::repeat(1.5 * PLACE_LETTERS);
+    let room =
+        page.window.size() - Vec2::new(length, PLACE_LETTERS) - (low - page.window.min) * 2.0;
+    let steps = |length: f64, step: f64| 0..=(length.max(0.0) / step) as u32;
+    let columns = steps(room.x, 0.01);
+    let rows = steps(room.y, 2.0 * PLACE_LETTERS);
+    let places = rows.flat_map(|row| {
+        let up = f64::from(row) * 2.0 * PLACE_LETTERS;
+        let columns = columns.clone();
+        columns.map(move |column| low + Vec2::new(f64::from(column) * 0.01, up))
+    });
+    let marks = || page.inside.iter().chain(&page.on_top);
+    let is_free = |at: &Vec2| {
+        let bounds = Bounds2 {
+            min: *at,
+            max: at + Vec2::new(length, PLACE_LETTERS),
+        };
+        let bounds = bounds.grown(0.4 * PLACE_LETTERS);
+        !marks().any(|mark| match &mark.shape {
+            Shape::Line { points, closed, .. } => !clipped(points, *closed, &bounds).is_empty(),
+            Shape::Text { .. } => mark.bounds().meets(&bounds),
+        })
+    };
+    places.into_iter().find(is_free).unwrap_or(low)
 }
 
 /// The part of a mark inside the window of a sheet.

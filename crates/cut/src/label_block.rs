@@ -1,0 +1,336 @@
+//! The words of a piece as a block of lines inside it, at any size: smaller, upright, shortened.
+
+use crate::label::{Spot, cells, roomiest_of};
+use std::f64::consts::FRAC_PI_2;
+use toile_geometry::{Bounds2, Polygon, Vec2};
+use toile_lettering::{shortened, width};
+
+/// Size of lines after the first over that of the first.
+const LATER_LINES: f64 = 0.7;
+/// From a line to the next over its size.
+const LINE_STEP: f64 = 1.3;
+/// Heights of letters over and under the baseline, over their size.
+const ASCENT: f64 = 0.8;
+const DESCENT: f64 = 0.25;
+/// Share of a free length that words take: fonts of other programs are wider.
+const FILLED: f64 = 0.85;
+/// How far below the spot words begin, and how far down they go, over its distance to the outline.
+const GAP: f64 = 0.05;
+const LINES: f64 = 0.85;
+/// Letters that are read with ease \[m\]; words are written by the grain line if they are no smaller.
+const EASY: f64 = 0.003;
+/// Words are shortened rather than written in smaller letters \[m\].
+const SMALL: f64 = 0.0018;
+/// Length that a shortened line has at the least, over the size of its letters.
+const SHORTEST: f64 = 3.0;
+/// Upright words are read less well: they must be so much larger.
+const UPRIGHT: f64 = 1.6;
+/// Smallest size that counts \[m\].
+const LEAST: f64 = 1e-6;
+/// Steps by which the largest size is found.
+const STEPS: u32 = 12;
+
+/// Words, the middle of their baseline at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Words {
+    /// The text.
+    pub text: String,
+    /// Middle of the baseline \[m\].
+    pub at: Vec2,
+    /// Height of the letters \[m\].
+    pub size: f64,
+    /// Direction of the baseline \[rad\]: 0 or upwards.
+    pub angle: f64,
+}
+
+impl Words {
+    /// Unit vector from their feet to their heads.
+    pub(crate) fn up(&self) -> Vec2 {
+        Vec2::new(-self.angle.sin(), self.angle.cos())
+    }
+
+    /// A box that holds them \[m\].
+    fn bounds(&self) -> Bounds2 {
+        let (up, half) = (self.up(), 0.5 * width(&self.text) / FILLED * self.size);
+        let along = Vec2::new(up.y, -up.x) * half;
+        let [low, high] = [-DESCENT, ASCENT].map(|share| self.at + up * (share * self.size));
+        Bounds2::of([low - along, low + along, high - along, high + along])
+    }
+}
+
+/// Where words can stand.
+struct Room<'r> {
+    /// Places far inside, by a grid.
+    cells: &'r [Vec2],
+    /// What words must not lie on, outline included.
+    lines: &'r [[Vec2; 2]],
+}
+
+/// Lines of words with their widths, at size 1 of the first.
+struct Block<'w> {
+    lines: Vec<&'w str>,
+}
+
+/// A place for a block: its middle, the size of its first line, and whether it runs upwards.
+#[derive(Clone, Copy)]
+struct Fit {
+    at: Vec2,
+    size: f64,
+    upright: bool,
+}
+
+fn share(line: usize) -> f64 {
+    if line == 0 { 1.0 } else { LATER_LINES }
+}
+
+/// Height of some lines over the size of the first.
+fn height(count: usize) -> f64 {
+    let last = share(count.saturating_sub(1));
+    ASCENT + LINE_STEP * LATER_LINES * (count.max(1) - 1) as f64 + DESCENT * last
+}
+
+impl Block<'_> {
+    /// Width over the size of the first line, with what other fonts need more.
+    fn width(&self) -> f64 {
+        let widths = self.lines.iter().enumerate();
+        widths
+            .map(|(k, line)| width(line) * share(k))
+            .fold(0.0, f64::max)
+            / FILLED
+    }
+
+    fn placed(&self, fit: Fit) -> Vec<Words> {
+        let angle = if fit.upright { FRAC_PI_2 } else { 0.0 };
+        let down = Vec2::new(angle.sin(), -angle.cos());
+        let mut below = (ASCENT - 0.5 * height(self.lines.len())) * fit.size;
+        let mut words = Vec::with_capacity(self.lines.len());
+        for (k, line) in self.lines.iter().enumerate() {
+            let size = share(k) * fit.size;
+            if k > 0 {
+                below += LINE_STEP * size;
+            }
+            words.push(Words {
+                text: (*line).to_owned(),
+                at: fit.at + down * below,
+                size,
+                angle,
+            });
+        }
+        words
+    }
+}
+
+impl Room<'_> {
+    fn is_free(&self, at: Vec2, half: Vec2) -> bool {
+        let bounds = Bounds2 {
+            min: at - half,
+            max: at + half,
+        };
+        !self.lines.iter().any(|&line| enters(line, &bounds))
+    }
+
+    /// The largest number up to `most` for which a box of a growing half size is free somewhere, and
+    /// where: the place nearest to one that is preferred. Boxes turned upright swap their sides.
+    fn largest(&self, near: Vec2, most: f64, half: impl Fn(f64) -> Vec2) -> Option<Fit> {
+        let mut best: Option<Fit> = None;
+        for &at in self.cells {
+            for upright in [false, true] {
+                let worth = |size: f64, upright: bool| if upright { size / UPRIGHT } else { size };
+                let box_of = |size: f64| match (half(size), upright) {
+                    (half, false) => half,
+                    (half, true) => Vec2::new(half.y, half.x),
+                };
+                let least = best.map_or(0.0, |best| worth(best.size, best.upright));
+                let least = if upright { least * UPRIGHT } else { least };
+                let nearer = best.is_none_or(|best| (at - near).norm() < (best.at - near).norm());
+                let wanted = least * if nearer { 1.0 } else { 1.001 };
+                if wanted > most || !self.is_free(at, box_of(wanted.max(LEAST))) {
+                    continue;
+                }
+                let size = grown([wanted, most], |size| self.is_free(at, box_of(size)));
+                if size > LEAST {
+                    best = Some(Fit { at, size, upright });
+                }
+            }
+        }
+        best
+    }
+
+    /// Lines of words below a spot, in letters that are read with ease.
+    fn below(&self, spot: &Spot, block: &Block<'_>, most: f64) -> Option<Vec<Words>> {
+        let half = Vec2::new(block.width(), height(block.lines.len())) * 0.5;
+        let most = most.min(LINES * spot.room / (2.0 * half.y));
+        let fits = [false, true].map(|upright| {
+            let (down, half) = match upright {
+                false => (-Vec2::y(), half),
+                true => (Vec2::x(), Vec2::new(half.y, half.x)),
+            };
+            let tall = half.component_mul(&down.abs()).sum();
+            let at = |size: f64| spot.at + down * (GAP * spot.room + tall * size);
+            let size = grown([0.0, most], |size| self.is_free(at(size), half * size));
+            Fit {
+                at: at(size),
+                size,
+                upright,
+            }
+        });
+        let fit = fits[usize::from(fits[1].size > UPRIGHT * fits[0].size)];
+        (fit.size >= EASY).then(|| block.placed(fit))
+    }
+
+    fn fit(&self, block: &Block<'_>, (near, most): (Vec2, f64)) -> Option<Fit> {
+        let whole = Vec2::new(block.width(), height(block.lines.len())) * 0.5;
+        self.largest(near, most, |size| whole * size)
+    }
+
+    /// Lines of words somewhere inside, the first in letters of a size at the most \[m\]. They are
+    /// smaller, upright or shortened where they must, and end with an ellipsis where they are cut.
+    fn words(&self, lines: &[&str], (near, most): (Vec2, f64)) -> Vec<Words> {
+        let block = Block {
+            lines: lines.to_vec(),
+        };
+        match self.fit(&block, (near, most)) {
+            Some(fit) if fit.size >= SMALL.min(most) => return block.placed(fit),
+            _ => {}
+        }
+        let size = SMALL.min(most);
+        for count in (1..=lines.len()).rev() {
+            let tall = height(count) * size;
+            let longest = block.width() * size;
+            let half = |length: f64| Vec2::new(length, tall) * 0.5;
+            if let Some(fit) = self.largest(near, longest, half)
+                && fit.size >= SHORTEST * size
+            {
+                let fit = (fit.size, Fit { size, ..fit });
+                return shortened_block(lines, count, fit);
+            }
+        }
+        let line = shortened(lines.first().copied().unwrap_or_default(), SHORTEST);
+        let block = Block { lines: vec![&line] };
+        let fit = self.fit(&block, (near, size));
+        fit.map_or_else(Vec::new, |fit| block.placed(fit))
+    }
+}
+
+/// The first lines, each no longer than a length \[m\] and with an ellipsis if it or what follows is
+/// cut.
+fn shortened_block(lines: &[&str], count: usize, (length, fit): (f64, Fit)) -> Vec<Words> {
+    let short: Vec<String> = lines[..count]
+        .iter()
+        .enumerate()
+        .map(|(k, line)| {
+            let left_out = k + 1 == count && count < lines.len();
+            let line = if left_out {
+                format!("{line} …")
+            } else {
+                (*line).to_owned()
+            };
+            shortened(&line, FILLED * length / (fit.size * share(k)))
+        })
+        .collect();
+    let block = Block {
+        lines: short.iter().map(String::as_str).collect(),
+    };
+    block.placed(fit)
+}
+
+/// The largest of two sizes and those between for which a box that grows with it is free; the
+/// smaller one is.
+fn grown([mut fits, most]: [f64; 2], is_free: impl Fn(f64) -> bool) -> f64 {
+    if is_free(most) {
+        return most;
+    }
+    let mut too_large = most;
+    for _ in 0..STEPS {
+        let middle = 0.5 * (fits + too_large);
+        match is_free(middle) {
+            true => fits = middle,
+            false => too_large = middle,
+        }
+    }
+    fits
+}
+
+/// Whether a segment comes into a box.
+fn enters([from, to]: [Vec2; 2], bounds: &Bounds2) -> bool {
+    let way = to - from;
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let sides = [
+            (-way[axis], from[axis] - bounds.min[axis]),
+            (way[axis], bounds.max[axis] - from[axis]),
+        ];
+        for (speed, room) in sides {
+            if speed == 0.0 {
+                if room <= 0.0 {
+                    return false;
+                }
+            } else if speed < 0.0 {
+                enter = enter.max(room / speed);
+            } else {
+                leave = leave.min(room / speed);
+            }
+        }
+    }
+    enter < leave
+}
+
+/// The words of a piece, and where its grain line goes.
+pub(crate) struct Label {
+    pub words: Vec<Words>,
+    /// The spot of the grain line, which lies above the words there; in its middle where the words
+    /// lie elsewhere.
+    pub spot: Spot,
+    pub above: bool,
+}
+
+/// Lines of words inside a polygon, clear of other lines: by the roomiest spot, the grain line above
+/// them, where they are read with ease there, else wherever they fit best. The first line's letters
+/// have a size at the most \[m\], by the spot.
+pub(crate) fn label(
+    polygon: &Polygon,
+    others: &[[Vec2; 2]],
+    (lines, most): (&[&str], impl Fn(&Spot) -> f64),
+) -> Label {
+    let cells = cells(polygon);
+    let edges: Vec<[Vec2; 2]> = polygon.edges().collect();
+    let spot = roomiest_of(polygon, &cells, &edges);
+    let block = Block {
+        lines: lines.to_vec(),
+    };
+    let by_the_spot = |words| Label {
+        words,
+        spot,
+        above: true,
+    };
+    if lines.is_empty() || spot.room <= 0.0 {
+        return by_the_spot(Vec::new());
+    }
+    let most = most(&spot);
+    let all: Vec<[Vec2; 2]> = edges.iter().chain(others).copied().collect();
+    let [clear, free] = [&all, &edges].map(|lines| Room {
+        cells: &cells,
+        lines,
+    });
+    if let Some(words) = clear.below(&spot, &block, most) {
+        return by_the_spot(words);
+    }
+    // Words on a line inside are better than words that are cut.
+    let fit = clear.fit(&block, (spot.at, most));
+    let crowded = fit.is_none_or(|fit| fit.size < SMALL.min(most));
+    let words = if crowded { &free } else { &clear }.words(lines, (spot.at, most));
+    // The grain line keeps clear of them.
+    let boxes: Vec<Bounds2> = words.iter().map(Words::bounds).collect();
+    let mut around = edges;
+    around.extend(boxes.iter().flat_map(|b| {
+        let sides = Polygon::rectangle(*b);
+        sides.edges().collect::<Vec<_>>()
+    }));
+    let bare = |cell: &Vec2| !boxes.iter().any(|b| b.contains(*cell));
+    let cells: Vec<Vec2> = cells.iter().copied().filter(bare).collect();
+    Label {
+        words,
+        spot: roomiest_of(polygon, &cells, &around),
+        above: false,
+    }
+}
