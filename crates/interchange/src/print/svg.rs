@@ -120,7 +120,7 @@ fn write_mark(text: &mut String, page: &Page, mark: &Mark) {
                 .map_or_else(String::new, |layer| format!(" class=\"{}\"", layer.class()));
             let _ = writeln!(
                 text,
-                "<path{class} d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dash}/>",
+                "<path d=\"{}\"{class} fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dash}/>",
                 path(points, *closed),
                 colour(style.ink),
                 number(style.width * 1e3)
