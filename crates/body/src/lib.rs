@@ -1,11 +1,13 @@
 //! Mannequins: skeleton, ellipsoid primitives, skin.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod arm_rings;
 mod attach;
 mod bands;
 mod bones;
 mod conflict;
 mod curve;
+mod definitions;
 mod deform;
 mod describe;
 mod deviation;
@@ -37,6 +39,7 @@ mod rigging;
 mod rings;
 mod scaling;
 mod scan;
+mod scan_girths;
 mod shape;
 mod skeleton;
 mod skinning;

@@ -2,12 +2,13 @@
 //! found or given, and the same tape as on our own bodies: the convex hull of a section.
 
 use crate::BodyError;
+use crate::definitions::{BodyMarks, KNEE, Taping};
+use crate::girths::Girth;
 use crate::tape::extent;
-use crate::template_marks::{CALF, UNDERBUST};
+use crate::template_marks::UNDERBUST;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
-use toile_measure::{Measurements, Origin};
 
 /// One closed loop of a section of a mesh by a plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,18 +77,21 @@ pub struct ScanLandmarks {
 /// A closed mesh of a person standing upright, facing +Z, measured by sections.
 pub struct Scan {
     mesh: TriangleMesh,
-    floor: f64,
+    pub(crate) floor: f64,
     height: f64,
-    middle: f64,
+    pub(crate) middle: f64,
     landmarks: ScanLandmarks,
 }
 
-/// Steps in which levels are searched, over stature.
-const STEP: f64 = 0.0025;
+/// Steps in which crotch and armpits are looked for, over stature, and halvings of the one they lie in.
+const CROTCH_STEP: f64 = 0.001;
+const ARMPIT_STEP: f64 = 0.002;
+const HALVINGS: usize = 8;
+/// What a trunk is broader at once where arms join in, over stature.
+const ARM_BREADTH: f64 = 0.05;
 /// Where levels of an upright person are looked for, or taken to be where they cannot be found,
-/// over stature: crotch, knee over the crotch, waist and armpits.
+/// over stature: crotch, waist and armpits.
 const CROTCH: f64 = 0.46;
-const KNEE: f64 = 0.58;
 const WAIST: f64 = 0.6;
 const ARMPIT: f64 = 0.74;
 /// No armpit is higher, over stature.
@@ -276,144 +280,88 @@ impl Scan {
             .max_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
     }
 
-    /// The level between two at which a value is largest, in even steps.
-    fn extreme(&self, [low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-        let count = ((high - low) / (STEP * self.height)).ceil().max(1.0) as usize;
-        let mut best: Option<[f64; 2]> = None;
-        for k in 0..=count {
-            let y = low + (high - low) * k as f64 / count as f64;
-            if let Some(v) = value(y)
-                && best.is_none_or(|known| v > known[0])
-            {
-                best = Some([v, y]);
-            }
-        }
-        best.map(|known| known[1])
-    }
-
     /// Finds the heights that were not given.
     fn find(&mut self) {
-        let h = self.height;
         if self.landmarks.crotch.is_none() {
-            // From the hips down, the last level at which one loop as large as a trunk's holds the
-            // middle.
-            let is_trunk = |y: f64| self.trunk(y).is_some_and(|l| l.length() > 0.2 * h);
-            let mut y = WAIST * h;
-            while y > 0.3 * h && is_trunk(y) {
-                y -= 0.001 * h;
-            }
-            self.landmarks.crotch = (y > 0.3 * h).then_some(y + 0.0005 * h);
+            self.landmarks.crotch = self.lowest_trunk();
         }
         if self.landmarks.armpit.is_none() {
-            // From the waist up, the first level with no arm beside the trunk.
-            let from = (WAIST + 0.02) * h;
-            let mut y = from;
-            while y < ARMPIT_MOST * h && self.arm(y).is_some() {
-                y += 0.002 * h;
-            }
-            self.landmarks.armpit = (y > from + 0.01 * h && y < ARMPIT_MOST * h).then_some(y);
+            self.landmarks.armpit = self.under_the_arm();
         }
-        let trunk = |y: f64| Some(self.trunk(y)?.girth());
-        let armpit = self.landmarks.armpit.unwrap_or(ARMPIT * h);
-        let crotch = self.landmarks.crotch.unwrap_or(CROTCH * h);
-        let hips = self
-            .landmarks
-            .hips
-            .or_else(|| self.extreme([crotch + 0.01 * h, crotch + 0.12 * h], trunk));
-        let waist = self.landmarks.waist.or_else(|| {
-            let from = hips.unwrap_or(crotch) + 0.06 * h;
-            self.extreme([from, armpit - 0.08 * h], |y| trunk(y).map(|g| -g))
-        });
-        let bust = self.landmarks.bust.or_else(|| {
-            let from = waist.unwrap_or(WAIST * h) + 0.05 * h;
-            self.extreme([from, armpit - 0.004 * h], trunk)
-        });
-        let knee = self.landmarks.knee.or(Some(KNEE * crotch));
-        let underbust = self.landmarks.underbust.or(bust.map(|y| y - UNDERBUST * h));
+        let body = self.body();
+        let level = |given: Option<f64>, girth: Girth| {
+            given.or_else(|| {
+                let taping = Taping::of(girth, &body)?;
+                taping.find(|y| Some(self.trunk(y)?.girth()))
+            })
+        };
+        let l = self.landmarks.clone();
+        let bust = level(l.bust, Girth::Bust);
         self.landmarks = ScanLandmarks {
-            hips,
-            waist,
+            hips: level(l.hips, Girth::Hips),
+            waist: level(l.waist, Girth::Waist),
+            underbust: l.underbust.or(bust.map(|y| y - UNDERBUST * self.height)),
             bust,
-            knee,
-            underbust,
-            ..self.landmarks.clone()
+            knee: Some(body.knee),
+            ..l
         };
     }
 
-    /// Every measurement the landmarks allow, as a table to make a body from or to draft a
-    /// pattern to [m].
-    pub fn measurements(&self) -> Measurements {
-        let mut table = Measurements::new();
-        let mut put = |name: &str, value: Option<f64>| {
-            if let Some(value) = value.filter(|v| v.is_finite() && *v > 0.0) {
-                let _ = table.set(name, value, Origin::Asked);
-            }
-        };
+    /// What says where its girths lie, but for those of the arm.
+    pub(crate) fn body(&self) -> BodyMarks {
         let (h, l) = (self.height, &self.landmarks);
-        put("height", Some(h));
-        for (name, level) in [
-            ("bust", l.bust),
-            ("underbust", l.underbust),
-            ("waist", l.waist),
-            ("hips", l.hips),
-        ] {
-            put(name, level.and_then(|y| Some(self.trunk(y)?.girth())));
+        let crotch = l.crotch.unwrap_or(CROTCH * h);
+        BodyMarks {
+            stature: h,
+            crotch,
+            armpit: l.armpit.unwrap_or(ARMPIT * h),
+            knee: l.knee.unwrap_or(KNEE * crotch),
+            arm: [0.0; 2],
         }
-        for (names, level) in [
-            (["waist_breadth", "waist_depth"], l.waist),
-            (["hip_breadth", "hip_depth"], l.hips),
-        ] {
-            let found = level.and_then(|y| Some(self.trunk(y)?.extent()));
-            put(names[0], found.map(|e| e[0]));
-            put(names[1], found.map(|e| e[1]));
-        }
-        let leg = |y: f64| Some(self.leg(y)?.girth());
-        put("leg_circ", l.crotch.and_then(|y| leg(y - 0.012 * h)));
-        put("knee", l.knee.and_then(leg));
-        let knee = l.knee.unwrap_or(KNEE * CROTCH * h);
-        let calf = self.extreme(CALF.map(|share| share * knee), leg);
-        put("calf", calf.and_then(leg));
-        let thin = |y: f64| leg(y).map(|g| -g);
-        put(
-            "ankle",
-            self.extreme([0.03 * h, 0.6 * knee], thin).and_then(leg),
-        );
-        let head = |y: f64| Some(self.trunk(y)?.girth());
-        let brow = self.extreme([0.925 * h, 0.97 * h], head);
-        put("head", brow.and_then(head));
-        let neck = self.extreme([0.82 * h, 0.9 * h], |y| head(y).map(|g| -g));
-        put("neck", neck.and_then(head));
-        put("inside_leg", l.crotch);
-        put("waist_height", l.waist);
-        put("hip_height", l.hips);
-        put("bust_height", l.bust);
-        put("armpit_height", l.armpit);
-        let up = |p: [f64; 3]| p[1] - self.floor;
-        put("nape_height", l.nape.map(up));
-        put("head_l", l.nape.map(|p| h - up(p)));
-        put("waist_line", l.nape.zip(l.waist).map(|(p, y)| up(p) - y));
-        put("shoulder_height", l.shoulder_tip.map(up));
-        let across = |p: [f64; 3]| 2.0 * (p[0] - self.middle).abs();
-        put("shoulder_w", l.shoulder_tip.map(across));
-        put("neck_w", l.neck_side.map(across));
-        let far = |(a, b): ([f64; 3], [f64; 3])| (Vec3::from(a) - Vec3::from(b)).norm();
-        put("shoulder_length", l.neck_side.zip(l.shoulder_tip).map(far));
-        put("arm_length", l.shoulder_tip.zip(l.wrist).map(far));
-        let arm = l.shoulder_tip.zip(l.wrist);
-        put("upper_arm", arm.and_then(|ends| self.across_arm(ends, 0.3)));
-        put("wrist", arm.and_then(|ends| self.across_arm(ends, 1.0)));
-        table
     }
 
-    /// Girth across the arm at a share of the way from shoulder to wrist [m].
-    fn across_arm(&self, (tip, wrist): ([f64; 3], [f64; 3]), share: f64) -> Option<f64> {
-        let [tip, wrist] = [tip, wrist].map(Vec3::from);
-        let along = (wrist - tip).try_normalize(1e-9)?;
-        let first = along.cross(&Vec3::z()).try_normalize(1e-9)?;
-        let loops = self.section(tip + (wrist - tip) * share, [first, first.cross(&along)]);
-        let nearest = loops
-            .into_iter()
-            .min_by(|a, b| a.centre().norm().total_cmp(&b.centre().norm()))?;
-        Some(nearest.girth())
+    /// From the hips down, the last level at which one loop as large as a trunk's holds the middle.
+    fn lowest_trunk(&self) -> Option<f64> {
+        let h = self.height;
+        let is_trunk = |y: f64| self.trunk(y).is_some_and(|l| l.length() > 0.2 * h);
+        let mut y = WAIST * h;
+        while y > 0.3 * h && is_trunk(y) {
+            y -= CROTCH_STEP * h;
+        }
+        (y > 0.3 * h).then(|| between([y, y + CROTCH_STEP * h], is_trunk))
     }
+
+    /// From the waist up, the first level with no arm beside the trunk; of arms that are held level, the
+    /// one over which the trunk is broader at once.
+    fn under_the_arm(&self) -> Option<f64> {
+        let h = self.height;
+        let broad = |y: f64| self.trunk(y).map_or(0.0, |l| l.extent()[0]);
+        let from = (WAIST + 0.02) * h;
+        let mut y = from;
+        while y < ARMPIT_MOST * h {
+            let has_arm = self.arm(y).is_some();
+            let next = y + ARMPIT_STEP * h;
+            let joins = |y: f64| match has_arm {
+                true => self.arm(y).is_none(),
+                false => broad(y) > broad(next - ARMPIT_STEP * h) + ARM_BREADTH * h,
+            };
+            if joins(next) {
+                return (y > from + 0.01 * h).then(|| between([y, next], joins));
+            }
+            y = next;
+        }
+        None
+    }
+}
+
+/// The place between two at which what does not hold of the first and holds of the second begins to.
+fn between([mut without, mut with]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (without + with);
+        match holds(middle) {
+            true => with = middle,
+            false => without = middle,
+        }
+    }
+    0.5 * (without + with)
 }

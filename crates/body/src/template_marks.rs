@@ -74,7 +74,7 @@ const BELOW_CHIN: f64 = 0.4;
 /// Distance of the underbust below the bust, over stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
 /// Between which heights the calf is looked for, over the knee's.
-pub(crate) const CALF: [f64; 2] = [0.55, 0.9];
+const CALF: [f64; 2] = [0.55, 0.9];
 
 impl TemplateMarks {
     pub(crate) fn of(template: &Template, skin: &TemplateSkin) -> Result<Self, BodyError> {

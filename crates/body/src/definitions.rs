@@ -1,0 +1,192 @@
+//! What each girth is: where on a standing body that nobody says the levels of it is taped.
+
+use crate::girths::{Girth, THIGH_DROP};
+
+/// What says where the girths of a standing body lie [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BodyMarks {
+    pub(crate) stature: f64,
+    /// Height of the crotch over the floor.
+    pub(crate) crotch: f64,
+    /// Height of the armpits over the floor.
+    pub(crate) armpit: f64,
+    /// Height of the middle of the knee over the floor.
+    pub(crate) knee: f64,
+    /// Places of the armpit and of the finger tips along the arm.
+    pub(crate) arm: [f64; 2],
+}
+
+/// What a tape goes round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cut {
+    /// Level round the trunk, at a height over the floor.
+    Trunk,
+    /// Level round the head, at a height over the floor.
+    Head,
+    /// Round the neck, lower in front by [`NECK_TILT`], at a height over the middle of the neck.
+    Neck,
+    /// Level round one leg, at a height over the floor.
+    Leg,
+    /// Across one arm, at a place along it.
+    Arm,
+}
+
+/// Which of the places a girth may lie at is its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Choice {
+    Largest,
+    Smallest,
+}
+
+/// Where a girth is taped: what round, between which places [m], and which of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Taping {
+    pub(crate) cut: Cut,
+    pub(crate) range: [f64; 2],
+    choice: Choice,
+}
+
+/// Tilt of a tape round the neck, lower in front [rad]: about half of what is square to the axis of a
+/// neck, as on our own bodies.
+pub(crate) const NECK_TILT: f64 = 11.0 * std::f64::consts::PI / 180.0;
+/// How far from the middle of the neck its tape may lie, over stature.
+const NECK_REACH: f64 = 0.03;
+
+/// Shares of the way from crotch to crown.
+const HIPS: [f64; 2] = [0.01, 0.16];
+const WAIST: [f64; 2] = [0.20, 0.38];
+const BUST: f64 = 0.44;
+/// Least depth of the bust under the armpits, over stature.
+const BUST_DROP: f64 = 0.008;
+/// Height of the knee over the crotch's, where nobody says it.
+pub(crate) const KNEE: f64 = 0.58;
+/// Share of the way from knee to crotch.
+const LOWER_THIGH: f64 = 0.15;
+/// Shares of the knee's height.
+const CALF: [f64; 2] = [0.55, 0.9];
+const ANKLE_MOST: f64 = 0.6;
+/// Least height of the ankle, and heights of the head's girth, over stature.
+const ANKLE_LEAST: f64 = 0.03;
+const HEAD: [f64; 2] = [0.925, 0.97];
+/// Shares of the way along the arm from the armpit to the finger tips.
+const UPPER_ARM: [f64; 2] = [0.15, 0.28];
+const FOREARM: [f64; 2] = [0.38, 0.60];
+const WRIST: [f64; 2] = [0.60, 0.78];
+
+/// Even steps in which a range is searched first, and narrowings of the best one by the golden
+/// section (Kiefer 1953).
+const STEPS: usize = 8;
+const NARROWINGS: usize = 5;
+
+impl BodyMarks {
+    /// The height of a share of the way from crotch to crown [m].
+    pub(crate) fn up(&self, share: f64) -> f64 {
+        self.crotch + share * (self.stature - self.crotch)
+    }
+}
+
+impl Taping {
+    /// Where a girth is taped on a body; none where lengths alone say it.
+    ///
+    /// Hips are the largest level girth from the crotch up, the waist is the smallest above them, the
+    /// bust the largest under the armpits, as ISO 8559-1 (2017) has them. Calf and ankle are the
+    /// largest and smallest level girths
+    /// there, the neck the smallest girth by a tilted tape, upper arm and forearm
+    /// the largest and the wrist the smallest girths across the arm.
+    pub(crate) fn of(girth: Girth, marks: &BodyMarks) -> Option<Self> {
+        use Choice::{Largest, Smallest};
+        let h = marks.stature;
+        let along = |share: f64| marks.arm[0] + share * (marks.arm[1] - marks.arm[0]);
+        let reach = NECK_REACH * h;
+        let lower_thigh = marks.knee + LOWER_THIGH * (marks.crotch - marks.knee);
+        let (cut, range, choice) = match girth {
+            Girth::Hips => (Cut::Trunk, HIPS.map(|share| marks.up(share)), Largest),
+            Girth::Waist => (Cut::Trunk, WAIST.map(|share| marks.up(share)), Smallest),
+            Girth::Bust => {
+                let top = marks.armpit - BUST_DROP * h;
+                (Cut::Trunk, [marks.up(BUST).min(top), top], Largest)
+            }
+            Girth::Thigh => (Cut::Leg, [marks.crotch - THIGH_DROP * h; 2], Largest),
+            Girth::LowerThigh => (Cut::Leg, [lower_thigh; 2], Largest),
+            Girth::Knee => (Cut::Leg, [marks.knee; 2], Largest),
+            Girth::Calf => (Cut::Leg, CALF.map(|share| share * marks.knee), Largest),
+            Girth::Ankle => {
+                let range = [ANKLE_LEAST * h, ANKLE_MOST * marks.knee];
+                (Cut::Leg, range, Smallest)
+            }
+            Girth::Head => (Cut::Head, HEAD.map(|share| share * h), Largest),
+            Girth::Neck => (Cut::Neck, [-reach, reach], Smallest),
+            Girth::UpperArm => (Cut::Arm, UPPER_ARM.map(along), Largest),
+            Girth::Forearm => (Cut::Arm, FOREARM.map(along), Largest),
+            Girth::Wrist => (Cut::Arm, WRIST.map(along), Smallest),
+            Girth::HighBust | Girth::Underbust | Girth::HighHips | Girth::Heel | Girth::Elbow => {
+                return None;
+            }
+        };
+        Some(Self { cut, range, choice })
+    }
+
+    /// The place of the girth by what a tape reads at each [m]; none where nothing is round which it
+    /// could go.
+    pub(crate) fn find(&self, around: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+        let [low, high] = self.range;
+        if high <= low {
+            return Some(low);
+        }
+        let sign = match self.choice {
+            Choice::Largest => 1.0,
+            Choice::Smallest => -1.0,
+        };
+        let value = |at: f64| around(at).filter(|g| *g > 0.0).map(|g| sign * g);
+        let step = (high - low) / STEPS as f64;
+        let places = (0..=STEPS).map(|k| low + step * k as f64);
+        let (_, best) = places
+            .filter_map(|at| Some((value(at)?, at)))
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let value = |at: f64| value(at).unwrap_or(f64::NEG_INFINITY);
+        let golden = 0.5 * (5f64.sqrt() - 1.0);
+        let (mut a, mut b) = ((best - step).max(low), (best + step).min(high));
+        let [mut c, mut d] = [b - golden * (b - a), a + golden * (b - a)];
+        let [mut at_c, mut at_d] = [value(c), value(d)];
+        for _ in 0..NARROWINGS {
+            if at_c > at_d {
+                (b, d, at_d) = (d, c, at_c);
+                c = b - golden * (b - a);
+                at_c = value(c);
+            } else {
+                (a, c, at_c) = (c, d, at_d);
+                d = a + golden * (b - a);
+                at_d = value(d);
+            }
+        }
+        let last = [(at_c, c), (at_d, d), (value(best), best)];
+        let found = last.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        found.map(|(_, at)| at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MARKS: BodyMarks = BodyMarks {
+        stature: 1.7,
+        crotch: 0.8,
+        armpit: 1.3,
+        knee: 0.46,
+        arm: [0.1, 0.7],
+    };
+
+    #[test]
+    fn a_girth_lies_where_its_definition_says() {
+        let hips = Taping::of(Girth::Hips, &MARKS).unwrap();
+        let found = hips.find(|y| Some(1.0 - (y - 0.8567).powi(2))).unwrap();
+        assert!((found - 0.8567).abs() < 1e-3, "{found}");
+        // One that goes on falling ends at the end of its range.
+        let waist = Taping::of(Girth::Waist, &MARKS).unwrap();
+        let found = waist.find(|y| Some(2.0 - y)).unwrap();
+        assert!((found - waist.range[1]).abs() < 1e-12, "{found}");
+        assert_eq!(waist.find(|_| None), None);
+        assert_eq!(Taping::of(Girth::HighHips, &MARKS), None);
+    }
+}
