@@ -7,13 +7,10 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Budget, Event, MarkerJob, MarkerSettings, MarkerSummary, NestOptions, Start,
+    Budget, Event, MarkerJob, MarkerSettings, MarkerSummary, NestOptions, Shown, Start,
     is_nesting_instance, nest_instance, nest_marker, nest_patterns, open_marker,
     open_marker_settings, rule_table, study_rules,
 };
-
-/// A yard [m].
-const YARD: f64 = 0.9144;
 
 /// What the arguments ask for.
 fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
@@ -202,11 +199,12 @@ fn yardage(summaries: &[MarkerSummary], output: &Output) {
         let own = || summaries.iter().filter(|l| l.fabric == fabric);
         let length: f64 = own().map(|l| l.yardage).sum();
         let cost: Option<f64> = own().map(|l| l.cost).sum();
+        let unit = own().next().map(|l| l.unit).unwrap_or_default();
+        let [first, other] = Shown(unit).cloth(length);
         let currency = own().next().map_or("", |l| l.currency.as_str());
         let cost = cost.map_or_else(String::new, |c| format!(", cost {c:.2} {currency}"));
         output.say(format!(
-            "{fabric}: {length:.3} m of fabric ({:.2} yd){}",
-            length / YARD,
+            "{fabric}: {first} of fabric ({other}){}",
             cost.trim_end()
         ));
     }

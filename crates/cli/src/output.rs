@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use toile_session::{Event, SessionError, Verdict};
+use toile_session::{Event, SessionError, Shown, Verdict};
 
 /// Why a command was not done, and its exit status.
 #[derive(Debug)]
@@ -218,15 +218,15 @@ fn words(event: &Event) -> Option<String> {
             ),
         }),
         Event::Nested(summary) => Some(format!(
-            "laid out: {} on {}{}, {:.0} cm wide and {:.1} cm long, {:.1} % used",
+            "laid out: {} on {}{}, {} wide and {} long, {:.1} % used",
             count(summary.pieces, "piece"),
             summary.fabric,
             summary
                 .roll
                 .as_ref()
                 .map_or_else(String::new, |roll| format!(" ({roll})")),
-            summary.width * 100.0,
-            summary.length * 100.0,
+            Shown(summary.unit).width(summary.width),
+            Shown(summary.unit).length(summary.length),
             summary.efficiency * 100.0,
         )),
         Event::Assembled(mesh) => Some(format!(

@@ -4,7 +4,7 @@ use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use crate::print_arguments::Print;
 use serde_json::{Value, json};
-use toile_session::{CutList, Printed, Project, print_pattern};
+use toile_session::{CutList, Printed, Project, Shown, print_pattern};
 
 /// Pieces on paper.
 pub fn print(print: &Print, output: &Output) -> Result<Value, Failure> {
@@ -29,13 +29,13 @@ pub fn print(print: &Print, output: &Output) -> Result<Value, Failure> {
             count(columns as usize, "column"),
         ),
         None => {
-            let size = printed.tiles.first().map(|tile| tile.sheet * 1e2);
+            let size = printed.tiles.first().map(|tile| tile.sheet);
             let size = size.unwrap_or_default();
             format!(
-                "{} on one page of {:.1} x {:.1} cm",
+                "{} on one page of {} x {}",
                 count(printed.pieces.len(), "piece"),
-                size.x,
-                size.y
+                printed.shown.length(size.x).trim_end_matches(" cm"),
+                printed.shown.length(size.y)
             )
         }
     });
@@ -45,7 +45,7 @@ pub fn print(print: &Print, output: &Output) -> Result<Value, Failure> {
         _ => String::new(),
     };
     for list in &printed.cut_list {
-        output.say(cut_words(list, &size));
+        output.say(cut_words(list, (&size, printed.shown)));
     }
     output.say(format!("wrote {}", print.out.display()));
     Ok(json!({
@@ -71,7 +71,7 @@ fn extent(printed: &Printed) -> [u32; 2] {
     })
 }
 
-fn cut_words(list: &CutList, size: &str) -> String {
+fn cut_words(list: &CutList, (size, shown): (&str, Shown)) -> String {
     let pieces = list.pieces.iter().map(|piece| match piece.pairs {
         0 => format!("{} x {}", piece.quantity, piece.name),
         1 if piece.quantity == 2 => format!("1 pair of {}", piece.name),
@@ -80,10 +80,10 @@ fn cut_words(list: &CutList, size: &str) -> String {
     });
     let pieces: Vec<String> = pieces.collect();
     format!(
-        "cut from {}{size}: {} ({:.0} cm2)",
+        "cut from {}{size}: {} ({})",
         list.fabric,
         pieces.join(", "),
-        list.area() * 1e4
+        shown.area(list.area())
     )
 }
 

@@ -41,6 +41,7 @@ mod recognise;
 mod scene;
 mod scene_material;
 mod scene_motion;
+mod shown;
 mod svg_text;
 mod x3d;
 mod x3d_nodes;
@@ -88,4 +89,5 @@ pub use scene::{
 };
 pub use scene_material::MaterialFile;
 pub use scene_motion::{GripFile, KeyFile, MotionFile};
+pub use shown::Shown;
 pub use x3d::read_x3d;

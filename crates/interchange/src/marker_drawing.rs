@@ -1,11 +1,12 @@
 //! The drawing of a marker: everything that is drawn of it, whatever the format.
 
-use crate::FormatError;
+use crate::{FormatError, Shown};
 use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_geometry::Polygon;
 use toile_lettering::{missing_letters, missing_note};
 use toile_nesting::{Fold, Nap, Pose, Strip};
+use toile_pattern::DisplayUnit;
 
 /// Everything that is drawn on a marker.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,8 @@ pub struct MarkerFacts {
     pub price_per_metre: Option<f64>,
     /// Currency of the price.
     pub currency: String,
+    /// The unit numbers are shown in.
+    pub unit: DisplayUnit,
     /// Notes for the cutter.
     pub notes: Vec<String>,
 }
@@ -59,6 +62,7 @@ impl Default for MarkerFacts {
             utilisation: 0.0,
             price_per_metre: None,
             currency: String::new(),
+            unit: DisplayUnit::default(),
             notes: Vec::new(),
         }
     }
@@ -92,6 +96,11 @@ impl MarkerDrawing {
         Some(self.facts.price_per_metre? * self.yardage())
     }
 
+    /// How its numbers are shown.
+    pub(crate) fn shown(&self) -> Shown {
+        Shown(self.facts.unit)
+    }
+
     /// What to tell of letters that no font has, in what is written on prints and plots of it.
     pub fn missing_note(&self) -> Option<String> {
         let names = self.pieces.iter().map(|piece| &piece.name);
@@ -104,11 +113,14 @@ impl MarkerDrawing {
     /// The marker in words: length and efficiency, then the fabric, then what is missing.
     pub(crate) fn summary(&self) -> Vec<String> {
         let strip = &self.strip;
+        let shown = self.shown();
+        let [length, width] = match shown.is_inch() {
+            true => [shown.length(self.length), shown.width(strip.width)],
+            false => [self.length, strip.width].map(|metres| format!("{metres:.3} m")),
+        };
         let mut lines = vec![format!(
-            "{} on {:.3} m of fabric {:.3} m wide, efficiency {:.1} %",
+            "{} on {length} of fabric {width} wide, efficiency {:.1} %",
             plural(self.pieces.len()),
-            self.length,
-            strip.width,
             self.efficiency * 100.0
         )];
         let nap = match strip.nap {
@@ -117,10 +129,10 @@ impl MarkerDrawing {
             Nap::PerBundle => "nap: the pieces of a garment point one way",
         };
         lines.push(format!(
-            "Warp runs along the length; selvedge {:.0} mm, end margin {:.0} mm, gap {:.0} mm; {nap}; {}.",
-            strip.selvedge * 1e3,
-            strip.end_margin * 1e3,
-            strip.gap * 1e3,
+            "Warp runs along the length; selvedge {}, end margin {}, gap {}; {nap}; {}.",
+            shown.short(strip.selvedge),
+            shown.short(strip.end_margin),
+            shown.short(strip.gap),
             self.spread()
         ));
         if !self.unplaced.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::marker_plot::{PlotLook, plot};
 use crate::pdf::{Align, Ink, PdfPage, PdfSheets, PdfText, fitted, wrapped};
-use crate::{FormatError, MarkerDrawing, MarkerPiece};
+use crate::{FormatError, MarkerDrawing, MarkerPiece, Shown};
 use toile_geometry::Vec2;
 
 /// A4, upright \[m\].
@@ -158,17 +158,17 @@ impl Report {
 
     fn numbers(&mut self, marker: &MarkerDrawing, scale: f64) {
         let facts = &marker.facts;
-        let cm = |metres: f64| format!("{:.1} cm", metres * 100.0);
+        let shown = marker.shown();
         self.pair("Fabric", &facts.fabric);
         if let Some(roll) = &facts.roll {
             self.pair("Roll", roll);
         }
         self.pair("Spread", &marker.spread());
-        self.pair("Width", &cm(marker.strip.width));
-        self.pair("Length", &cm(marker.length));
+        self.pair("Width", &shown.length(marker.strip.width));
+        self.pair("Length", &shown.length(marker.length));
         self.pair("Efficiency", &percent(marker.efficiency));
         self.pair("Utilisation", &percent(facts.utilisation));
-        self.pair("Fabric needed", &yards(marker.yardage()));
+        self.pair("Fabric needed", &bought(shown, marker.yardage()));
         if let Some(cost) = marker.cost() {
             let price = facts.price_per_metre.unwrap_or_default();
             let currency = &facts.currency;
@@ -188,14 +188,15 @@ impl Report {
             right(0.03),
             right(0.0),
         ];
+        let shown = marker.shown();
         let head = [
-            "Piece",
-            "on the marker",
-            "face down",
-            "length, cm",
-            "area, cm2",
+            "Piece".to_owned(),
+            "on the marker".to_owned(),
+            "face down".to_owned(),
+            "length".to_owned(),
+            format!("area, {}", shown.area_unit()),
         ];
-        self.row(&columns, &head.map(str::to_owned));
+        self.row(&columns, &head);
         self.rule();
         let mut seen: Vec<(usize, &str)> = Vec::new();
         for piece in &marker.pieces {
@@ -213,8 +214,8 @@ impl Report {
                     piece.name.clone(),
                     same().count().to_string(),
                     same().filter(|p| p.pose.mirrored).count().to_string(),
-                    format!("{:.1}", size.x * 100.0),
-                    format!("{:.0}", piece.piece.polygon().area() * 1e4),
+                    shown.length(size.x),
+                    shown.area_number(piece.piece.polygon().area()),
                 ],
             );
         }
@@ -243,7 +244,7 @@ impl Report {
             let own = own.map_or_else(String::new, |c| format!("{c:.2} {}", facts.currency));
             let cells = [
                 name,
-                yards(marker.yardage()),
+                bought(marker.shown(), marker.yardage()),
                 percent(marker.efficiency),
                 own,
             ];
@@ -255,7 +256,12 @@ impl Report {
             true => format!("{cost:.2} {currency}"),
             false => String::new(),
         };
-        let cells = ["all".to_owned(), yards(length), String::new(), cost];
+        let shown = Shown(
+            markers
+                .first()
+                .map_or_else(Default::default, |m| m.facts.unit),
+        );
+        let cells = ["all".to_owned(), bought(shown, length), String::new(), cost];
         self.row(&columns, &cells);
     }
 }
@@ -264,6 +270,8 @@ fn percent(share: f64) -> String {
     format!("{:.1} %", share * 100.0)
 }
 
-fn yards(metres: f64) -> String {
-    format!("{metres:.3} m ({:.2} yd)", metres / 0.9144)
+/// A length of cloth in both units of trade.
+fn bought(shown: Shown, metres: f64) -> String {
+    let [first, other] = shown.cloth(metres);
+    format!("{first} ({other})")
 }

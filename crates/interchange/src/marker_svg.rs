@@ -54,7 +54,11 @@ pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> 
         summary[0]
     );
     let _ = writeln!(text, "<desc>{}</desc>", escape(&summary.join(" ")));
-    heading.write(&mut text, right);
+    let bar = match drawing.shown().is_inch() {
+        true => (101.6, "4 in"),
+        false => (100.0, "100 mm"),
+    };
+    heading.write(&mut text, right, bar);
     let mut inside = String::new();
     fabric(&mut inside, drawing);
     layer(&mut text, ("fabric", "Fabric", ""), &inside);
@@ -115,9 +119,9 @@ impl Heading {
         }
     }
 
-    /// The lines, and a bar of known length to check the scale of a print, which ends at `right`
-    /// \[mm\].
-    fn write(&self, text: &mut String, right: f64) {
+    /// The lines, and a bar of known length \[mm\] to check the scale of a print, which ends at
+    /// `right` \[mm\], with its words.
+    fn write(&self, text: &mut String, right: f64, (bar, words): (f64, &str)) {
         let mut inside = String::new();
         let mut y = -self.height + 14.0;
         for (k, (size, colour, words)) in self.lines.iter().enumerate() {
@@ -134,10 +138,10 @@ impl Heading {
         }
         let _ = writeln!(
             inside,
-            "<g id=\"scale\"><path d=\"M{0} -8v-6M{0} -11H{1}M{1} -8v-6\" fill=\"none\" stroke=\"{BLACK}\" stroke-width=\"1\"/><text x=\"{2}\" y=\"-18\" font-size=\"12\" text-anchor=\"middle\" fill=\"{BLACK}\">100 mm</text></g>",
-            number(right - 100.0),
+            "<g id=\"scale\"><path d=\"M{0} -8v-6M{0} -11H{1}M{1} -8v-6\" fill=\"none\" stroke=\"{BLACK}\" stroke-width=\"1\"/><text x=\"{2}\" y=\"-18\" font-size=\"12\" text-anchor=\"middle\" fill=\"{BLACK}\">{words}</text></g>",
+            number(right - bar),
             number(right),
-            number(right - 50.0)
+            number(right - 0.5 * bar)
         );
         let style = format!(" fill=\"{BLACK}\" stroke=\"none\"");
         layer(text, ("heading", "Heading", &style), &inside);

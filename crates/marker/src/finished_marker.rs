@@ -49,6 +49,7 @@ impl FinishedMarker {
             currency: self.facts.currency.clone(),
             efficiency: self.marker.efficiency,
             utilisation: self.marker.utilisation,
+            unit: self.facts.unit,
             notes: self.facts.notes.clone(),
             sound: self.verdict.is_sound(),
         }

@@ -16,7 +16,7 @@ use toile_nesting::{
     Control, Item, Marker, Nap, NestingError, Progress, Search, Strip, improve_marker, judge,
     make_marker, make_markers_on_rolls,
 };
-use toile_pattern::{Fabric, OrderedPiece, SizeId, Spread};
+use toile_pattern::{DisplayUnit, Fabric, OrderedPiece, SizeId, Spread};
 
 /// Receives the progress of the search on one fabric; returns whether to go on.
 type Report<'a> = &'a mut dyn FnMut(SearchProgress) -> bool;
@@ -28,6 +28,8 @@ pub(crate) struct FabricJob {
     pub items: Vec<Item>,
     pub pieces: Vec<Arc<CutPiece>>,
     pub notes: Vec<String>,
+    /// The unit numbers are shown in.
+    unit: DisplayUnit,
     /// The marker to start from.
     start: Option<Marker>,
 }
@@ -63,6 +65,7 @@ impl FabricJob {
             items,
             pieces,
             notes,
+            unit: to_cut.first().map(|piece| piece.unit).unwrap_or_default(),
             start,
         })
     }
@@ -227,6 +230,7 @@ impl FabricJob {
                 utilisation: marker.utilisation,
                 price_per_metre: roll.price_per_metre,
                 currency: options.settings.currency.clone().unwrap_or_default(),
+                unit: self.unit,
                 notes: self.notes.clone(),
             },
             missing: Vec::new(),

@@ -7,7 +7,7 @@ use toile_cut::{CutOptions, CutPiece, concerns_cutter};
 use toile_geometry::Vec2;
 use toile_interchange::{ANY_NAME, PieceSettings};
 use toile_nesting::{MOST_PIECES, NestingError};
-use toile_pattern::{Diagnostic, Draft, Pattern, Piece};
+use toile_pattern::{Diagnostic, DisplayUnit, Draft, Pattern, Piece};
 
 /// Garments to cut from one draft.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,8 @@ pub(crate) struct PieceToCut {
     pub bundles: Vec<u32>,
     /// Marks on the print: number of the set, and the point [m].
     pub marks: Vec<(usize, Vec2)>,
+    /// The unit of its pattern.
+    pub unit: DisplayUnit,
     /// Faults of its cut line, in words.
     pub notes: Vec<String>,
 }
@@ -102,6 +104,7 @@ pub(crate) fn pieces_to_cut(
                         .collect(),
                     settings: settings.clone(),
                     cut: cut.clone(),
+                    unit: garment.pattern.unit,
                     notes: notes_of(&found, garment.label),
                 };
                 all.extend(

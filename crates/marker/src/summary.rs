@@ -1,5 +1,7 @@
 //! The summary of a marker: length, cost, efficiency, faults.
 
+use toile_pattern::DisplayUnit;
+
 /// The main numbers of a marker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarkerSummary {
@@ -29,6 +31,8 @@ pub struct MarkerSummary {
     pub efficiency: f64,
     /// Area of the pieces over width times length, 0..=1.
     pub utilisation: f64,
+    /// The unit numbers are shown in.
+    pub unit: DisplayUnit,
     /// Notes for the cutter.
     pub notes: Vec<String>,
     /// Whether the referee found no overlap and nothing outside the fabric.

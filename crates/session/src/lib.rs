@@ -98,7 +98,7 @@ pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Sca
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::{Aspect, Finding, Stage, Verdict};
 pub use toile_interchange::{
-    ExpectedKind, Lines, MarkerSettings, Paper, SizeChoice, Tile, write_atomically,
+    ExpectedKind, Lines, MarkerSettings, Paper, Shown, SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
     DocumentMarker, Found, GivenFlaw, LaidPiece, MarkerError, MarkerFormat, MarkerState,

@@ -10,12 +10,13 @@ use std::sync::atomic::AtomicBool;
 use toile_cut::{CutList, CutOptions, CutPiece, Shrinkage, TextKind, concerns_cutter, cut_list};
 use toile_geometry::{Bounds2, Polygon, Vec2, convex_hull, union};
 use toile_interchange::{
-    FormatError, Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock, write_atomically,
+    FormatError, Lines, Paper, PrintJob, PrintLayer, PrintPiece, Shown, Tile, TitleBlock,
+    write_atomically,
 };
 use toile_nesting::{
     Allowed, Budget, Control, Item, Locked, Marker, Progress, Search, Strip, make_marker,
 };
-use toile_pattern::{Draft, Pattern, SizeSelection};
+use toile_pattern::{DisplayUnit, Draft, Pattern, SizeSelection};
 
 /// White between pieces on paper, and to the edge of the drawing \[m\].
 const GAP: f64 = 0.004;
@@ -77,6 +78,8 @@ pub struct Printed {
     pub pieces: Vec<String>,
     /// What is to be cut of each fabric, in the first of the sizes.
     pub cut_list: Vec<CutList>,
+    /// How numbers of the pattern are shown.
+    pub shown: Shown,
     /// What the cut lines do not do as asked.
     pub notes: Vec<String>,
 }
@@ -155,7 +158,8 @@ pub fn print_job(
         size: Vec2::zeros(),
         title: TitleBlock {
             name: pattern.name.clone(),
-            facts: facts(options, &layers, &list),
+            facts: facts(options, &layers, (&list, pattern.unit)),
+            unit: pattern.unit,
         },
         title_at: Vec2::zeros(),
         layers,
@@ -167,6 +171,7 @@ pub fn print_job(
         sizes: sizes.into_iter().filter_map(|size| size.name).collect(),
         pieces: job.pieces.iter().map(|p| p.words[0].clone()).collect(),
         cut_list: list,
+        shown: Shown(pattern.unit),
         notes,
     };
     Ok((job, printed))
@@ -329,7 +334,11 @@ fn grouped(pattern: &Pattern, cuts: &[Vec<Cut>], layers: &[PrintLayer]) -> Vec<P
 }
 
 /// What the title block says.
-fn facts(options: &PrintOptions, layers: &[PrintLayer], list: &[CutList]) -> Vec<String> {
+fn facts(
+    options: &PrintOptions,
+    layers: &[PrintLayer],
+    (list, unit): (&[CutList], DisplayUnit),
+) -> Vec<String> {
     let names: Vec<&str> = layers.iter().map(|layer| &*layer.name).collect();
     let scale = match options.scale {
         1.0 => "true size".to_owned(),
@@ -363,7 +372,13 @@ fn facts(options: &PrintOptions, layers: &[PrintLayer], list: &[CutList]) -> Vec
         ));
     }
     if options.paper.sheet().is_some() {
-        facts.push("Join the sheets so that frames overlap by 10 mm and crosses meet.".to_owned());
+        let overlap = match unit {
+            DisplayUnit::Inch => "0.39 in (10 mm)",
+            _ => "10 mm",
+        };
+        facts.push(format!(
+            "Join the sheets so that frames overlap by {overlap} and crosses meet."
+        ));
     }
     facts
 }

@@ -260,3 +260,43 @@ fn a_name_too_long_for_its_piece_ends_with_an_ellipsis() {
     let other = all.iter().filter(|words| words.text == "cotton").count();
     assert_eq!(other, 1);
 }
+
+#[test]
+fn a_pattern_in_inches_is_told_in_inches() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = case("inch-user").join("inch.toile.json");
+    let said = printed(folder.path(), &input, "p.pdf");
+    // 11.25 x 21.25 in with the allowance, in square inches.
+    assert!(said.contains("(239 in2)") && !said.contains("cm"), "{said}");
+    let sheets = copied(&folder.path().join("p.pdf"));
+    assert!(
+        sheets.contains("2x4in") && !sheets.contains("50x100mm"),
+        "{sheets}"
+    );
+    printed(folder.path(), &input, "p.svg");
+    let svg = std::fs::read_to_string(folder.path().join("p.svg")).unwrap();
+    let is_box = |line: &str| {
+        let all = attribute(line, "d").map(numbers).unwrap_or_default();
+        let [x, y] = [0, 1].map(|k| {
+            let own: Vec<f64> = all.iter().skip(k).step_by(2).copied().collect();
+            let most = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            most - own.iter().copied().fold(f64::INFINITY, f64::min)
+        });
+        (x - 101.6).abs() < 0.01 && (y - 50.8).abs() < 0.01
+    };
+    assert!(svg.lines().any(is_box));
+    let said = nested(folder.path(), &input, "pdf,svg,report");
+    assert!(
+        said.contains("59.1 in wide and ") && said.contains(" yd of fabric ("),
+        "{said}"
+    );
+    let marker = copied(&folder.path().join("n/marker.pdf"));
+    assert!(marker.contains("offabric59.1inwide"), "{marker}");
+    let report = copied(&folder.path().join("n/marker-report.pdf"));
+    assert!(
+        report.contains("area,in2") && !report.contains("cm"),
+        "{report}"
+    );
+    let svg = std::fs::read_to_string(folder.path().join("n/marker.svg")).unwrap();
+    assert!(svg.contains(">4 in</text>"));
+}

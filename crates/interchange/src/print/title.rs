@@ -4,10 +4,12 @@ use super::draw::{BLACK, style};
 use super::mark::{LineStyle, Mark};
 use super::paper::Tile;
 use super::{Lines, PrintJob};
+use crate::Shown;
 use crate::marker_label::lines_within;
 use crate::pdf::{Align, fitted};
 use toile_cut::StrokeKind;
 use toile_geometry::{Bounds2, Vec2};
+use toile_pattern::DisplayUnit;
 
 /// The texts of a title block.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -16,10 +18,10 @@ pub struct TitleBlock {
     pub name: String,
     /// Further lines.
     pub facts: Vec<String>,
+    /// The unit of the box to measure.
+    pub unit: DisplayUnit,
 }
 
-/// The box by which a print's scale is checked \[m\].
-const TEST_BOX: [f64; 2] = [0.100, 0.050];
 /// Room inside the block's border \[m\].
 const INSET: f64 = 0.004;
 const WIDTH: f64 = 0.172;
@@ -28,8 +30,6 @@ const LETTERS: f64 = 0.0035;
 const LINE: f64 = 0.0055;
 /// Most lines of facts and of the legend.
 const MOST_LINES: usize = 10;
-/// Column right of the test box, for the map of sheets \[m\].
-const MAP: f64 = WIDTH - TEST_BOX[0] - 4.0 * INSET;
 
 const THIN: LineStyle = LineStyle {
     layer: None,
@@ -42,8 +42,16 @@ impl TitleBlock {
     /// Size of the block \[m\], for so many sizes.
     pub fn size(&self, sizes: usize) -> Vec2 {
         let rows = self.facts_within().len().max(legend_rows(sizes));
-        let height = TITLE_LETTERS + LINE * rows as f64 + TEST_BOX[1] + 6.0 * INSET;
+        let height = TITLE_LETTERS + LINE * rows as f64 + self.test_box().0.y + 6.0 * INSET;
         Vec2::new(WIDTH, height)
+    }
+
+    /// The box by which a print's scale is checked \[m\], and its words.
+    fn test_box(&self) -> (Vec2, &'static str) {
+        match Shown(self.unit).is_inch() {
+            true => (Vec2::new(0.1016, 0.0508), "2 x 4 in"),
+            false => (Vec2::new(0.100, 0.050), "50 x 100 mm"),
+        }
     }
 
     fn facts_within(&self) -> Vec<String> {
@@ -85,7 +93,7 @@ pub(crate) fn block_marks(job: &PrintJob) -> Vec<Mark> {
         write(line, at, LETTERS);
     }
     marks.extend(legend(job, Vec2::new(high.x - INSET - LEGEND, y)));
-    marks.extend(test_box(low + Vec2::repeat(INSET)));
+    marks.extend(test_box(low + Vec2::repeat(INSET), job.title.test_box()));
     marks
 }
 
@@ -126,8 +134,7 @@ fn legend(job: &PrintJob, at: Vec2) -> Vec<Mark> {
 }
 
 /// The box to measure, at true size whatever the scale.
-fn test_box(low: Vec2) -> Vec<Mark> {
-    let size = Vec2::from(TEST_BOX);
+fn test_box(low: Vec2, (size, name): (Vec2, &str)) -> Vec<Mark> {
     let bounds = Bounds2 {
         min: low,
         max: low + size,
@@ -139,7 +146,7 @@ fn test_box(low: Vec2) -> Vec<Mark> {
     };
     vec![
         Mark::line(None, Mark::rectangle(&bounds), THIN),
-        words("50 x 100 mm", 0.002, 2.0 * LETTERS),
+        words(name, 0.002, 2.0 * LETTERS),
         words("Measure this box before you cut.", -0.008, LETTERS),
         words(
             "Print at 100 %, without fitting to the page.",
@@ -153,15 +160,16 @@ fn test_box(low: Vec2) -> Vec<Mark> {
 pub(crate) fn map_marks(job: &PrintJob, tiles: &[Tile]) -> Vec<Mark> {
     let rows = tiles.iter().map(|t| t.place[0]).max().unwrap_or(1);
     let columns = tiles.iter().map(|t| t.place[1]).max().unwrap_or(1);
-    let low = job.title_at + Vec2::new(TEST_BOX[0] + 3.0 * INSET, INSET);
+    let (box_size, _) = job.title.test_box();
+    let low = job.title_at + Vec2::new(box_size.x + 3.0 * INSET, INSET);
     let Some(step) = job.paper.step() else {
         return Vec::new();
     };
-    let room = Vec2::new(MAP, TEST_BOX[1]);
+    let room = Vec2::new(WIDTH - box_size.x - 4.0 * INSET, box_size.y);
     let whole = Vec2::new(step.x * f64::from(columns), step.y * f64::from(rows));
     let scale = (room.x / whole.x).min(room.y / whole.y);
     let cell = step * scale;
-    let top = low.y + TEST_BOX[1];
+    let top = low.y + box_size.y;
     let letters = (0.3 * cell.x).min(0.3 * cell.y).min(LETTERS);
     let mut marks = Vec::new();
     for (k, tile) in tiles.iter().enumerate() {

@@ -103,7 +103,7 @@ fn print(laid: &[(Arc<CutPiece>, Pose)], size: Vec2, (paper, lines): (Paper, Lin
         pieces: laid.iter().map(piece).collect(),
         title: TitleBlock {
             name: "side by side".into(),
-            facts: Vec::new(),
+            ..TitleBlock::default()
         },
         title_at: Vec2::new(0.0, size.y),
     }
