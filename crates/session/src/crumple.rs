@@ -40,9 +40,17 @@ struct Point {
     cloth: f64,
 }
 
-/// The seams that hang in a heap. `target` has the merged vertex of each of the garment's, `places` where those lie [m].
-pub(crate) fn short_seams(job: &GarmentJob, target: &[u32], places: &[Vec3]) -> Vec<ShortSeam> {
+/// The seams that hang in a heap. `target` has the merged vertex of each of the garment's, `places` where those lie
+/// [m]; `taut` are merged vertices where the cloth is stretched: it grows narrower across, so that a seam there is
+/// shorter without a fold.
+pub(crate) fn short_seams(
+    job: &GarmentJob,
+    target: &[u32],
+    places: &[Vec3],
+    taut: &BTreeSet<u32>,
+) -> Vec<ShortSeam> {
     let near = near_gathers(job);
+    let is_left_out = |v: &u32| near.contains(v) || taut.contains(&target[*v as usize]);
     let stitches = &job.garment.stitches;
     let chains = stitches.chunk_by(|a, b| a.draft_seam == b.draft_seam);
     let short = chains.filter_map(|chain| {
@@ -51,7 +59,7 @@ pub(crate) fn short_seams(job: &GarmentJob, target: &[u32], places: &[Vec3]) -> 
             return None;
         }
         let pairs: Vec<[u32; 2]> = chain.iter().map(|stitch| stitch.vertices).collect();
-        let pieces = pairs.split(|pair| pair.iter().any(|v| near.contains(v)));
+        let pieces = pairs.split(|pair| pair.iter().any(is_left_out));
         let point = |v: u32| places[target[v as usize] as usize];
         pieces
             .filter_map(|piece| hanging(&line(job, piece, &point)?))

@@ -4,6 +4,7 @@
 use crate::crossings::Crossings;
 use crate::crumple::short_seams;
 use crate::{GarmentJob, GarmentPart};
+use std::collections::BTreeSet;
 use toile_drape::{
     Aspect, AttachmentEnd, Finding, GarmentRun, Measures, OpenAttachment, SceneRun, Stage, Support,
     Verdict, Workspace, supports,
@@ -12,6 +13,8 @@ use toile_geometry::Vec3;
 
 /// Stretch beyond which a garment is called too tight: a knit gives as much at ease.
 const TIGHT: f64 = 0.15;
+/// Depth in the body to which cloth that is too tight may be pressed [m].
+const PRESSED: f64 = 0.03;
 /// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth presses
 /// [m].
 const THROUGH: f64 = 0.01;
@@ -50,7 +53,9 @@ pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures
         verdict.judge(Aspect::Parts, in_parts(parts, job.parts.len()));
     }
     verdict.judge(Aspect::Tangle, garment_tangle(run, measures));
-    verdict.judge(Aspect::Tangle, through_solid(measures));
+    if !is_too_tight(measures) {
+        verdict.judge(Aspect::Tangle, through_solid(measures));
+    }
     verdict.judge(Aspect::Tightness, tightness(measures));
     if !measures.layers.is_empty() {
         verdict.judge(Aspect::Layers, disorder(measures, &job.parts));
@@ -191,7 +196,7 @@ fn listed(names: &[String]) -> String {
 
 /// Seams that hang in a heap.
 fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
-    let mut short = short_seams(job, run.target(), &run.state.positions);
+    let mut short = short_seams(job, run.target(), &run.state.positions, &taut(run));
     short.sort_by(|a, b| (a.hangs / a.cloth).total_cmp(&(b.hangs / b.cloth)));
     let worst = short.first()?;
     let more = match short.len() {
@@ -205,6 +210,18 @@ fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
         worst.hangs * 1e2
     );
     Some(Finding::bad(Aspect::Hang, words))
+}
+
+/// The vertices of cloth that is stretched by more than what is told as tight.
+fn taut(run: &GarmentRun) -> BTreeSet<u32> {
+    let system = &run.system;
+    let places = &run.state.positions;
+    let triangles = system.topology.triangles.iter().zip(&system.rest.elements);
+    let stretched = triangles.filter(|(corners, element)| {
+        let strain = element.strain(corners.map(|v| places[v as usize]));
+        strain.warp.max(strain.weft) > TIGHT
+    });
+    stretched.flat_map(|(corners, _)| *corners).collect()
 }
 
 /// More parts than garments.
@@ -242,10 +259,16 @@ fn through_solid(measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Cloth that crosses a solid without lying deep inside.
+/// Whether a garment is stretched so much that it is pressed into the body, which sewing cannot help.
+fn is_too_tight(measures: &Measures) -> bool {
+    let strain = measures.strain_max[0].max(measures.strain_max[1]);
+    strain > TIGHT && measures.penetration_max <= PRESSED
+}
+
+/// Cloth that crosses the body, not deep inside or since it is too tight.
 fn pressed(measures: &Measures) -> Option<Finding> {
-    let pressed = measures.body_intersections > 0 && measures.penetration_max <= THROUGH;
-    pressed.then(|| {
+    let is_shallow = measures.penetration_max <= THROUGH || is_too_tight(measures);
+    (measures.body_intersections > 0 && is_shallow).then(|| {
         let words = format!(
             "{} pairs of cloth and body triangles cross: the cloth is too tight there, or the mesh too coarse; try a larger size, more ease or a finer mesh (--quality final)",
             measures.body_intersections
