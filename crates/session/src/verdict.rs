@@ -4,12 +4,13 @@
 use crate::crossings::Crossings;
 use crate::crumple::short_seams;
 use crate::{GarmentJob, GarmentPart};
+use nalgebra::{Matrix2, Matrix3x2};
 use std::collections::BTreeSet;
 use toile_drape::{
     Aspect, AttachmentEnd, Finding, GarmentRun, Measures, OpenAttachment, SceneRun, Stage, Support,
     Verdict, Workspace, supports,
 };
-use toile_geometry::Vec3;
+use toile_geometry::{Vec2, Vec3};
 
 /// Stretch beyond which a garment is called too tight: a knit gives as much at ease.
 const TIGHT: f64 = 0.15;
@@ -196,7 +197,7 @@ fn listed(names: &[String]) -> String {
 
 /// Seams that hang in a heap.
 fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
-    let mut short = short_seams(job, run.target(), &run.state.positions, &taut(run));
+    let mut short = short_seams(job, run.target(), &run.state.positions, &taut(job, run));
     short.sort_by(|a, b| (a.hangs / a.cloth).total_cmp(&(b.hangs / b.cloth)));
     let worst = short.first()?;
     let more = match short.len() {
@@ -212,16 +213,28 @@ fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
     Some(Finding::bad(Aspect::Hang, words))
 }
 
-/// The vertices of cloth that is stretched by more than what is told as tight.
-fn taut(run: &GarmentRun) -> BTreeSet<u32> {
-    let system = &run.system;
-    let places = &run.state.positions;
-    let triangles = system.topology.triangles.iter().zip(&system.rest.elements);
-    let stretched = triangles.filter(|(corners, element)| {
-        let strain = element.strain(corners.map(|v| places[v as usize]));
-        strain.warp.max(strain.weft) > TIGHT
+/// The merged vertices of cloth that is stretched in some direction by more than what is told as tight.
+fn taut(job: &GarmentJob, run: &GarmentRun) -> BTreeSet<u32> {
+    let garment = &job.garment;
+    let merged = |v: u32| run.target()[v as usize];
+    let stretched = garment.triangles.iter().filter(|corners| {
+        let places = corners.map(|v| run.state.positions[merged(v) as usize]);
+        largest_stretch(corners.map(|v| garment.flat[v as usize]), places) > 1.0 + TIGHT
     });
-    stretched.flat_map(|(corners, _)| *corners).collect()
+    stretched.flatten().map(|&v| merged(v)).collect()
+}
+
+/// The largest ratio of lengths that a triangle drawn flat has grown by: the larger singular value of its deformation
+/// gradient; one where it has no area.
+fn largest_stretch(flat: [Vec2; 3], places: [Vec3; 3]) -> f64 {
+    let edges = |k: usize| (flat[k] - flat[0], places[k] - places[0]);
+    let [(a, x), (b, y)] = [edges(1), edges(2)];
+    let Some(inverse) = Matrix2::from_columns(&[a, b]).try_inverse() else {
+        return 1.0;
+    };
+    let gradient = Matrix3x2::from_columns(&[x, y]) * inverse;
+    let cauchy_green = gradient.transpose() * gradient;
+    cauchy_green.symmetric_eigenvalues().max().sqrt()
 }
 
 /// More parts than garments.
