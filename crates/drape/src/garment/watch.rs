@@ -13,7 +13,7 @@ const FALLEN: f64 = 0.25;
 /// Net force over weight above which a garment that settles must go on falling to it.
 const STUCK_ABOVE: f64 = 100.0;
 /// Steps in which it must fall by half.
-const STUCK_STEPS: usize = 400;
+const STUCK_STEPS: usize = 1000;
 
 /// Memory of how the net force falls while a garment settles.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
