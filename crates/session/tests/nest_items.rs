@@ -64,8 +64,8 @@ fn items_of_markers_are_the_cut_lines() {
 
 #[test]
 fn words_of_pieces_stand_clear_of_seam_lines_and_darts() {
-    // Width of a letter over its height, about.
-    let letter = 0.55;
+    // Height of capital letters and of those that reach highest over the size.
+    let tall = 0.8;
     for path in patterns() {
         let (pattern, _) = read_pattern(&std::fs::read_to_string(&path).unwrap()).unwrap();
         for size in &pattern.sizes {
@@ -80,8 +80,8 @@ fn words_of_pieces_stand_clear_of_seam_lines_and_darts() {
                 assert_eq!(drawing.words.len(), lines.len());
                 for words in &drawing.words {
                     let along = Vec2::new(words.angle.cos(), words.angle.sin());
-                    let up = Vec2::new(-along.y, along.x) * words.size;
-                    let half = along * (0.5 * letter * words.size * words.text.len() as f64);
+                    let up = Vec2::new(-along.y, along.x) * (tall * words.size);
+                    let half = along * (0.5 * words.size * toile_lettering::width(&words.text));
                     let corners = [-half, half, half + up, up - half].map(|p| words.at + p);
                     let inside = corners.iter().all(|&corner| sewn.contains(corner));
                     let label = EdgeTree::of(&Polygon::new(corners.to_vec()));
