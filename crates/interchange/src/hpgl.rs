@@ -68,7 +68,7 @@ impl HpglWriter {
                 let [x, y] = [(x - 0.5 * line.width) * size, y * size];
                 at + Vec2::new(cos * x - sin * y, sin * x + cos * y)
             };
-            for ring in line.outlines() {
+            for ring in line.outlines().flatten() {
                 let ring: Vec<Vec2> = ring.into_iter().map(place).collect();
                 self.polyline(pen, &ring, true);
             }

@@ -111,22 +111,19 @@ impl Line {
         self.runs.push(Run { font, glyphs });
     }
 
-    /// The closed lines of all its letters over their size, from the start of the baseline, y up.
-    /// Inside is what they go round in all an odd or even number of times, but not nought.
-    pub fn outlines(&self) -> Vec<Vec<[f64; 2]>> {
+    /// The closed lines of each of its glyphs over their size, from the start of the baseline, y up.
+    pub fn outlines(&self) -> impl Iterator<Item = Vec<Vec<[f64; 2]>>> {
         let glyphs = self.runs.iter().flat_map(|run| {
             let font = &run.font;
             run.glyphs.iter().map(move |glyph| (font, glyph))
         });
-        glyphs
-            .flat_map(|(font, glyph)| {
-                let [x, y] = glyph.at;
-                let moved = move |ring: Vec<[f64; 2]>| -> Vec<[f64; 2]> {
-                    ring.into_iter().map(|p| [p[0] + x, p[1] + y]).collect()
-                };
-                font.outline(glyph.id).into_iter().map(moved)
-            })
-            .collect()
+        glyphs.map(|(font, glyph)| {
+            let mut rings = font.outline(glyph.id);
+            for p in rings.iter_mut().flatten() {
+                *p = [p[0] + glyph.at[0], p[1] + glyph.at[1]];
+            }
+            rings
+        })
     }
 }
 
@@ -244,7 +241,7 @@ mod tests {
             assert!(line.missing.is_empty(), "{text}: {:?}", line.missing);
             assert_eq!(read(&line), text);
             assert!(line.width > 0.2 * text.chars().count() as f64);
-            let rings = line.outlines();
+            let rings: Vec<_> = line.outlines().flatten().collect();
             let right = rings.iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
             assert!(
                 (right - line.width).abs() < 0.2,

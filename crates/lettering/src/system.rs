@@ -11,7 +11,6 @@ static BROUGHT: LazyLock<Vec<Arc<Font>>> = LazyLock::new(|| {
     let files = [
         epaint_default_fonts::UBUNTU_LIGHT,
         epaint_default_fonts::NOTO_EMOJI_REGULAR,
-        epaint_default_fonts::HACK_REGULAR,
     ];
     let fonts = files.iter().map(|file| Font::new(Cow::Borrowed(*file), 0));
     fonts.flatten().map(Arc::new).collect()

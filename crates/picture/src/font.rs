@@ -111,13 +111,15 @@ const STROKES: [&str; 95] = [
     "~092d678b", // { | } ~
 ];
 
-/// The strokes of a character as lines, x from 0, y up from the baseline, and its advance. What
-/// is not ASCII is shown as a question mark.
-pub(crate) fn glyph(character: char) -> (Vec<Vec<[f64; 2]>>, f64) {
+/// Strokes as lines, x from 0, y up from the baseline, and the advance.
+pub(crate) type Glyph = (Vec<Vec<[f64; 2]>>, f64);
+
+/// The strokes of a character; nothing if it is not ASCII, dashes excepted.
+pub(crate) fn glyph(character: char) -> Option<Glyph> {
     let index = match character {
         ' '..='~' => character as usize - ' ' as usize,
         '\u{2010}'..='\u{2015}' | '\u{2212}' => '-' as usize - ' ' as usize,
-        _ => '?' as usize - ' ' as usize,
+        _ => return None,
     };
     let strokes: Vec<Vec<[f64; 2]>> = STROKES[index]
         .split_ascii_whitespace()
@@ -133,7 +135,7 @@ pub(crate) fn glyph(character: char) -> (Vec<Vec<[f64; 2]>>, f64) {
     } else {
         width + SPACING
     };
-    (strokes, advance)
+    Some((strokes, advance))
 }
 
 fn stroke(text: &str) -> Vec<[f64; 2]> {
@@ -190,7 +192,7 @@ mod tests {
     fn every_character_has_its_own_strokes_inside_the_cell() {
         let mut seen = Vec::new();
         for character in '!'..='~' {
-            let (strokes, advance) = glyph(character);
+            let (strokes, advance) = glyph(character).unwrap();
             assert!(!strokes.is_empty(), "{character}");
             for [x, y] in strokes.iter().flatten() {
                 assert!(
@@ -202,8 +204,8 @@ mod tests {
             assert!(!seen.contains(&STROKES[character as usize - 32]) || "Il".contains(character));
             seen.push(STROKES[character as usize - 32]);
         }
-        assert!(glyph(' ').0.is_empty() && glyph(' ').1 == BLANK);
-        assert_eq!(glyph('\u{e9}').0, glyph('?').0);
+        assert_eq!(glyph(' '), Some((Vec::new(), BLANK)));
+        assert_eq!(glyph('\u{e9}'), None);
     }
 
     #[test]

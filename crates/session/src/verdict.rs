@@ -4,13 +4,12 @@
 use crate::crossings::Crossings;
 use crate::crumple::short_seams;
 use crate::{GarmentJob, GarmentPart};
-use nalgebra::{Matrix2, Matrix3x2};
 use std::collections::BTreeSet;
 use toile_drape::{
     Aspect, AttachmentEnd, Finding, GarmentRun, Measures, OpenAttachment, SceneRun, Stage, Support,
-    Verdict, Workspace, supports,
+    Verdict, Workspace, stretch_per_triangle, supports,
 };
-use toile_geometry::{Vec2, Vec3};
+use toile_geometry::Vec3;
 
 /// Stretch beyond which a garment is called too tight: a knit gives as much at ease.
 const TIGHT: f64 = 0.15;
@@ -54,10 +53,9 @@ pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures
         verdict.judge(Aspect::Parts, in_parts(parts, job.parts.len()));
     }
     verdict.judge(Aspect::Tangle, garment_tangle(run, measures));
-    if !is_too_tight(measures) {
-        verdict.judge(Aspect::Tangle, through_solid(measures));
-    }
-    verdict.judge(Aspect::Tightness, tightness(measures));
+    let deepest = deepest_in_body(measures);
+    verdict.judge(Aspect::Tangle, through_solid(measures, deepest));
+    verdict.judge(Aspect::Tightness, tightness(measures, deepest));
     if !measures.layers.is_empty() {
         verdict.judge(Aspect::Layers, disorder(measures, &job.parts));
     }
@@ -102,7 +100,7 @@ pub(crate) fn of_scene(run: &SceneRun, measures: &Measures, crossings: &Crossing
         Aspect::Tangle,
         tangle.map(|words| Finding::bad(Aspect::Tangle, words)),
     );
-    verdict.judge(Aspect::Tangle, through_solid(measures));
+    verdict.judge(Aspect::Tangle, through_solid(measures, THROUGH));
     verdict
 }
 
@@ -197,7 +195,7 @@ fn listed(names: &[String]) -> String {
 
 /// Seams that hang in a heap.
 fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
-    let mut short = short_seams(job, run.target(), &run.state.positions, &taut(job, run));
+    let mut short = short_seams(job, run.target(), &run.state.positions, &taut(run));
     short.sort_by(|a, b| (a.hangs / a.cloth).total_cmp(&(b.hangs / b.cloth)));
     let worst = short.first()?;
     let more = match short.len() {
@@ -213,28 +211,12 @@ fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
     Some(Finding::bad(Aspect::Hang, words))
 }
 
-/// The merged vertices of cloth that is stretched in some direction by more than what is told as tight.
-fn taut(job: &GarmentJob, run: &GarmentRun) -> BTreeSet<u32> {
-    let garment = &job.garment;
-    let merged = |v: u32| run.target()[v as usize];
-    let stretched = garment.triangles.iter().filter(|corners| {
-        let places = corners.map(|v| run.state.positions[merged(v) as usize]);
-        largest_stretch(corners.map(|v| garment.flat[v as usize]), places) > 1.0 + TIGHT
-    });
-    stretched.flatten().map(|&v| merged(v)).collect()
-}
-
-/// The largest ratio of lengths that a triangle drawn flat has grown by: the larger singular value of its deformation
-/// gradient; one where it has no area.
-fn largest_stretch(flat: [Vec2; 3], places: [Vec3; 3]) -> f64 {
-    let edges = |k: usize| (flat[k] - flat[0], places[k] - places[0]);
-    let [(a, x), (b, y)] = [edges(1), edges(2)];
-    let Some(inverse) = Matrix2::from_columns(&[a, b]).try_inverse() else {
-        return 1.0;
-    };
-    let gradient = Matrix3x2::from_columns(&[x, y]) * inverse;
-    let cauchy_green = gradient.transpose() * gradient;
-    cauchy_green.symmetric_eigenvalues().max().sqrt()
+/// The vertices of cloth that is stretched by more than what is told as tight.
+fn taut(run: &GarmentRun) -> BTreeSet<u32> {
+    let stretch = stretch_per_triangle(&run.system, &run.state.positions);
+    let triangles = run.system.topology.triangles.iter().zip(stretch);
+    let tight = triangles.filter(|(_, stretch)| *stretch > TIGHT);
+    tight.flat_map(|(corners, _)| *corners).collect()
 }
 
 /// More parts than garments.
@@ -260,9 +242,9 @@ fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
 }
 
 /// Cloth inside a solid, deeper than pressing explains.
-fn through_solid(measures: &Measures) -> Option<Finding> {
+fn through_solid(measures: &Measures, deepest: f64) -> Option<Finding> {
     let depth = measures.penetration_max;
-    (depth > THROUGH && measures.body_intersections > 0).then(|| {
+    (depth > deepest && measures.body_intersections > 0).then(|| {
         let words = format!(
             "cloth went through a solid: it lies up to {:.1} cm inside, and {} pairs of cloth and body triangles cross; place it clear of the body, or take a finer mesh or a shorter step",
             depth * 1e2,
@@ -272,15 +254,15 @@ fn through_solid(measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Whether a garment is stretched so much that it is pressed into the body, which sewing cannot help.
-fn is_too_tight(measures: &Measures) -> bool {
-    let strain = measures.strain_max[0].max(measures.strain_max[1]);
-    strain > TIGHT && measures.penetration_max <= PRESSED
+/// How deep in the body the cloth of a garment may lie and be pressed there alone [m].
+fn deepest_in_body(measures: &Measures) -> f64 {
+    let is_tight = measures.strain_max.iter().any(|&strain| strain > TIGHT);
+    if is_tight { PRESSED } else { THROUGH }
 }
 
-/// Cloth that crosses the body, not deep inside or since it is too tight.
-fn pressed(measures: &Measures) -> Option<Finding> {
-    let is_shallow = measures.penetration_max <= THROUGH || is_too_tight(measures);
+/// Cloth that crosses the body without having gone through it.
+fn pressed(measures: &Measures, deepest: f64) -> Option<Finding> {
+    let is_shallow = measures.penetration_max <= deepest;
     (measures.body_intersections > 0 && is_shallow).then(|| {
         let words = format!(
             "{} pairs of cloth and body triangles cross: the cloth is too tight there, or the mesh too coarse; try a larger size, more ease or a finer mesh (--quality final)",
@@ -291,8 +273,8 @@ fn pressed(measures: &Measures) -> Option<Finding> {
 }
 
 /// Cloth that is stretched, or presses through the body.
-fn tightness(measures: &Measures) -> Vec<Finding> {
-    let mut found: Vec<Finding> = pressed(measures).into_iter().collect();
+fn tightness(measures: &Measures, deepest: f64) -> Vec<Finding> {
+    let mut found: Vec<Finding> = pressed(measures, deepest).into_iter().collect();
     for (name, strain) in ["warp", "weft"].iter().zip(measures.strain_max) {
         if strain > TIGHT {
             let words = format!(
