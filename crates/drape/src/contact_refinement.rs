@@ -17,7 +17,6 @@ impl State {
         for triangle in covering(model, triangle) {
             refine(model, samples, triangle);
         }
-        self.follow_samples();
     }
 
     /// Adapts the state to other rest shapes of the same triangles: contact samples and friction anchors stay, the

@@ -4,7 +4,7 @@ use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::memory::Memory as StateMemory;
-use crate::{Collider, ContactSample, Model, PairPolicies, Pose, State};
+use crate::{Collider, ContactSample, Model, PairPolicies, Pose, SolidFriction, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -15,6 +15,8 @@ use toile_geometry::Vec3;
 pub struct Contact {
     /// Index of the sample.
     pub sample: u32,
+    /// Index of the solid.
+    pub solid: u32,
     /// The sample: a point of the cloth.
     pub point: ContactSample,
     /// The surface, linearised at the sample.
@@ -26,13 +28,15 @@ pub struct Contact {
 /// Contacts at the present positions, with caches for the next detection.
 #[derive(Default)]
 pub struct Contacts {
-    /// Contacts in order of their samples.
+    /// Contacts in order of their samples, then of the solids.
     pub active: Vec<Contact>,
     /// Contacts of cloth with cloth.
     pub cloth: ContactSet,
     detector: ContactDetector,
     clearances: Vec<Clearance>,
     measured_for: Option<MeasuredFor>,
+    /// Positions at the start of the present step in time [m].
+    step_start: Option<Vec<Vec3>>,
 }
 
 /// The last measurement of a sample. As long as its displacement since then is below the distance less the reach of
@@ -73,6 +77,18 @@ impl Contacts {
         let (memory, found) = (&state.cloth, &mut self.cloth);
         self.detector.refresh(model, memory, positions, found);
         self.refresh_surfaces(model, state, positions);
+    }
+
+    /// Begins a step in time at some positions [m]. Until [`Self::end_step`] a contact without memory of an earlier step
+    /// is anchored where it was then, and its friction follows its present normal force instead of the last one.
+    pub(crate) fn begin_step(&mut self, positions: &[Vec3]) {
+        self.step_start = Some(positions.to_vec());
+        self.detector.step_start.clone_from(&self.step_start);
+    }
+
+    /// Ends a step in time.
+    pub(crate) fn end_step(&mut self) {
+        (self.step_start, self.detector.step_start) = (None, None);
     }
 
     /// Makes the next detection independent of all earlier ones.
@@ -117,6 +133,7 @@ impl Contacts {
             });
         }
         self.clearances.resize(state.samples.len(), unknown);
+        let step_start = self.step_start.as_deref();
         let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
         if poses.iter().any(Option::is_some) {
             // Clearances are valid for solids at rest only.
@@ -134,6 +151,7 @@ impl Contacts {
                         model,
                         state,
                         poses: &poses,
+                        step_start,
                     };
                     find(&scene, positions, at, clearance, &mut contacts);
                 }
@@ -187,16 +205,17 @@ impl Contacts {
     /// Stores the end of a step in the state: friction anchors, moved along where contacts slide, and normal forces.
     pub fn remember_step(&self, model: &Model, state: &mut State) {
         self.cloth.remember_step(model, state);
-        state.anchors.fill(None);
-        state.normal_forces.fill(0.0);
-        state.follow_samples();
+        state.solid_friction.clear();
         for contact in &self.active {
-            let at = contact.sample as usize;
             let position = contact.point.position(&state.positions);
             let force = contact.law.normal_force(&contact.plane, position);
             if force > 0.0 {
-                state.anchors[at] = Some(contact.law.slide(&contact.plane, position, force));
-                state.normal_forces[at] = force;
+                state.solid_friction.push(SolidFriction {
+                    sample: contact.sample,
+                    solid: contact.solid,
+                    anchor: contact.law.slide(&contact.plane, position, force),
+                    force,
+                });
             }
         }
     }
@@ -216,9 +235,11 @@ struct Surfaces<'a> {
     model: &'a Model,
     state: &'a State,
     poses: &'a [Option<Pose>],
+    /// As in [`Contacts`].
+    step_start: Option<&'a [Vec3]>,
 }
 
-/// Appends the contact of sample `at` with the nearest solid, if it is within reach.
+/// Appends the contacts of sample `at` with the solids within reach.
 fn find(
     scene: &Surfaces,
     positions: &[Vec3],
@@ -230,6 +251,7 @@ fn find(
         model,
         state,
         poses,
+        step_start,
     } = scene;
     let sample = &state.samples[at];
     let position = sample.position(positions);
@@ -239,70 +261,74 @@ fn find(
     if moved.is_finite() && clearance.distance - moved > reach {
         return;
     }
-    let mut nearest: Option<(f64, Vec3)> = None;
-    let mut owner = None;
+    let mut nearest = FIELD_REACH;
     let object = model.policies.object_of_sample(&sample.vertices);
-    for (k, (collider, pose)) in model.colliders.iter().zip(*poses).enumerate() {
-        if model.policies.ignores_solid(object, k) {
+    for (solid, (collider, pose)) in model.colliders.iter().zip(*poses).enumerate() {
+        if model.policies.ignores_solid(object, solid) {
             continue;
         }
-        if let Some(found) = collider.distance(pose.as_ref(), position)
-            && nearest.is_none_or(|(distance, _)| found.0 < distance)
-        {
-            nearest = Some(found);
-            owner = Some((collider, pose));
-        }
-    }
-    let Some((distance, slope)) = nearest else {
-        *clearance = Clearance {
-            position,
-            distance: FIELD_REACH,
+        let Some((distance, slope)) = collider.distance(pose.as_ref(), position) else {
+            continue;
         };
-        return;
-    };
-    // The smooth distance may exceed the exact one by a fraction of a millimetre.
+        // The smooth distance may exceed the exact one by a fraction of a millimetre.
+        nearest = nearest.min(0.9 * distance.max(0.0));
+        if distance > reach || slope.norm() < MIN_SLOPE {
+            continue;
+        }
+        let depth = offset - distance;
+        let [hollow, bulge] = Some(collider)
+            .filter(|_| depth > 0.0)
+            .and_then(|collider| collider.curvature(pose.as_ref(), position))
+            .map_or([Matrix3::zeros(); 2], split_by_sign);
+        let law = law_of(model, sample);
+        let memory = SolidFriction::find(&state.solid_friction, at as u32, solid as u32);
+        let (anchor, force) = match (memory, step_start) {
+            (Some(memory), _) => (memory.anchor, memory.force),
+            (None, Some(from)) => {
+                let force = law.normal * depth.max(0.0) * slope.norm();
+                (sample.position(from), force)
+            }
+            (None, None) => (position, 0.0),
+        };
+        let plane = ContactPlane {
+            point: position,
+            depth,
+            gradient: slope,
+            normal: slope.normalize(),
+            hollow,
+            bulge,
+            anchor,
+            lagged_normal_force: force,
+            returning: false,
+            landing: false,
+        };
+        out.push(Contact {
+            sample: at as u32,
+            solid: solid as u32,
+            point: *sample,
+            plane,
+            law,
+        });
+    }
     *clearance = Clearance {
         position,
-        distance: 0.9 * distance.max(0.0),
+        distance: nearest,
     };
-    if distance > reach || slope.norm() < MIN_SLOPE {
-        return;
-    }
-    let depth = offset - distance;
-    let pressing = owner.filter(|_| depth > 0.0);
-    let [hollow, bulge] = pressing
-        .and_then(|(collider, pose)| collider.curvature(pose.as_ref(), position))
-        .map_or([Matrix3::zeros(); 2], split_by_sign);
+}
+
+/// The laws of contact of a sample with a solid.
+fn law_of(model: &Model, sample: &ContactSample) -> ContactLaw {
     let normal = model.contact.stiffness * sample.area;
-    let plane = ContactPlane {
-        point: position,
-        depth,
-        gradient: slope,
-        normal: slope.normalize(),
-        hollow,
-        bulge,
-        anchor: state.anchors[at].unwrap_or(position),
-        lagged_normal_force: state.normal_forces[at],
-        returning: false,
-        landing: false,
-    };
-    let friction = if model.contact.friction {
-        sample.friction
-    } else {
-        0.0
-    };
-    let law = ContactLaw {
+    ContactLaw {
         normal,
         tangential: 0.5 * normal,
-        friction,
+        friction: if model.contact.friction {
+            sample.friction
+        } else {
+            0.0
+        },
         hard_from: f64::INFINITY,
-    };
-    out.push(Contact {
-        sample: at as u32,
-        point: *sample,
-        plane,
-        law,
-    });
+    }
 }
 
 /// The negative and the positive part of a symmetric matrix, both positive semidefinite: it is the second minus the

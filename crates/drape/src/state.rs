@@ -1,7 +1,7 @@
 //! The state of a simulation: all data that change with time and are needed to continue.
 
 use crate::collision::ClothMemory;
-use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model};
+use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model, SolidFriction};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::Vec3;
@@ -17,10 +17,8 @@ pub struct State {
     pub velocities: Vec<Vec3>,
     /// Contact samples: at the vertices, and within triangles that crossed a solid.
     pub samples: Arc<Vec<ContactSample>>,
-    /// Friction anchor of each contact sample [m]; none without contact.
-    pub anchors: Vec<Option<Vec3>>,
-    /// Normal force on each contact sample in the last step [N].
-    pub normal_forces: Vec<f64>,
+    /// Friction of the samples that pressed on solids, in order of [`SolidFriction::key`].
+    pub solid_friction: Vec<SolidFriction>,
     /// Memory of contact of cloth with cloth.
     pub cloth: ClothMemory,
     /// Internal strain of each triangle's standard linear solid; empty unless a material relaxes.
@@ -44,8 +42,7 @@ impl Clone for State {
             positions,
             velocities,
             samples,
-            anchors,
-            normal_forces,
+            solid_friction,
             cloth,
             internal_strain,
             time,
@@ -54,8 +51,7 @@ impl Clone for State {
         self.positions.clone_from(positions);
         self.velocities.clone_from(velocities);
         self.samples.clone_from(samples);
-        self.anchors.clone_from(anchors);
-        self.normal_forces.clone_from(normal_forces);
+        self.solid_friction.clone_from(solid_friction);
         self.cloth.clone_from(cloth);
         self.internal_strain.clone_from(internal_strain);
         self.time = *time;
@@ -70,8 +66,7 @@ impl State {
             velocities: vec![Vec3::zeros(); positions.len()],
             positions,
             samples: model.rest.samples.clone(),
-            anchors: vec![None; model.rest.samples.len()],
-            normal_forces: vec![0.0; model.rest.samples.len()],
+            solid_friction: Vec::new(),
             cloth: ClothMemory::default(),
             internal_strain: Vec::new(),
             time: 0.0,
@@ -86,12 +81,6 @@ impl State {
         }
     }
 
-    /// Adds friction memory for new contact samples.
-    pub fn follow_samples(&mut self) {
-        self.anchors.resize(self.samples.len(), None);
-        self.normal_forces.resize(self.samples.len(), 0.0);
-    }
-
     /// Refuses a state that does not fit a model, and names the field.
     pub(crate) fn check(&self, model: &Model) -> Result<(), DrapeError> {
         // Exhaustive patterns: a new field does not compile before it is checked or ignored by name.
@@ -99,8 +88,7 @@ impl State {
             positions,
             velocities,
             samples,
-            anchors,
-            normal_forces,
+            solid_friction,
             cloth,
             internal_strain,
             time: _,
@@ -118,6 +106,10 @@ impl State {
             let corners = sample.vertices.iter().all(|&v| (v as usize) < count);
             corners && sample.triangle.is_none_or(|t| (t as usize) < triangles)
         };
+        let is_contact = |friction: &SolidFriction| {
+            (friction.sample as usize) < samples.len()
+                && (friction.solid as usize) < model.colliders.len()
+        };
         let is_vertex = |v: u32| (v as usize) < count;
         let mut pairs = friction.iter().map(|contact| contact.pair.vertices());
         let mut recovering = recovery_directions.iter().map(|entry| entry.vertex);
@@ -126,8 +118,11 @@ impl State {
             ("positions", positions.len() == count),
             ("velocities", velocities.len() == count),
             ("samples", samples.iter().all(of_sample)),
-            ("anchors", anchors.len() == samples.len()),
-            ("normal_forces", normal_forces.len() == samples.len()),
+            ("solid_friction", solid_friction.iter().all(is_contact)),
+            (
+                "solid_friction",
+                solid_friction.is_sorted_by(|a, b| a.key() < b.key()),
+            ),
             ("cloth.positions", is_full(previous.len(), count)),
             (
                 "cloth.friction",

@@ -5,7 +5,7 @@ use crate::collision::ClothContact;
 use crate::laws::elastic::ElasticLaw;
 use crate::{
     Attachment, Attachments, ContactSample, ContactSettings, Control, ElasticCouplings, Materials,
-    Model, ModelParts, Prescribed, RestData, State, System, Topology,
+    Model, ModelParts, Prescribed, RestData, SolidFriction, State, System, Topology,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -133,6 +133,21 @@ impl Numbers {
     }
 }
 
+/// The friction with solids of some samples, given by their former number, in their order.
+fn own_friction(
+    friction: &[SolidFriction],
+    samples: &[(usize, ContactSample)],
+) -> Vec<SolidFriction> {
+    let mut own = Vec::new();
+    for (sample, &(former, _)) in (0..).zip(samples) {
+        let first = friction.partition_point(|one| (one.sample as usize) < former);
+        let of_sample = friction[first..].iter();
+        let of_sample = of_sample.take_while(|one| one.sample as usize == former);
+        own.extend(of_sample.map(|&one| SolidFriction { sample, ..one }));
+    }
+    own
+}
+
 impl SubModel {
     /// The submodel of some free vertices; `contacts` are those of cloth with cloth. It has no viscosity, no internal
     /// strain of bending and no wind: [`crate::newton::elimination`] refuses systems with these.
@@ -158,10 +173,7 @@ impl SubModel {
         let own_samples = Arc::new(own_samples);
         let state = State {
             samples: own_samples.clone(),
-            anchors: samples.iter().map(|&(at, _)| state.anchors[at]).collect(),
-            normal_forces: (samples.iter())
-                .map(|&(at, _)| state.normal_forces[at])
-                .collect(),
+            solid_friction: own_friction(&state.solid_friction, &samples),
             internal_strain: match state.internal_strain.is_empty() {
                 true => Vec::new(),
                 false => used

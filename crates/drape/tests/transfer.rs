@@ -15,7 +15,7 @@ use sheets::{object, sheet};
 use std::collections::BTreeMap;
 use toile_drape::{
     AttachmentEnd, Cloth, ContactSettings, Material, MeshVertex, MethodKind, Object,
-    ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, WorldEdit,
+    ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, SolidFriction, WorldEdit,
 };
 use toile_geometry::Vec3;
 
@@ -82,9 +82,11 @@ fn remembered(run: &SceneRun, id: ObjectId) -> Vec<u64> {
     let number: BTreeMap<u32, usize> = own.iter().copied().zip(0..).collect();
     for (index, sample) in state.samples.iter().enumerate() {
         if sample.vertices.iter().all(|v| number.contains_key(v)) {
-            let none = Vec3::repeat(f64::NAN);
-            write(&state.anchors[index].unwrap_or(none));
-            write(&Vec3::x().scale(state.normal_forces[index]));
+            let of_sample = |one: &&SolidFriction| one.sample as usize == index;
+            for friction in state.solid_friction.iter().filter(of_sample) {
+                write(&friction.anchor);
+                write(&Vec3::x().scale(friction.force));
+            }
             write(&Vec3::new(
                 sample.area,
                 sample.extra_offset,

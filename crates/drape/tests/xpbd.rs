@@ -292,7 +292,14 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
         } else {
             assert!(moved.abs() < 1e-5, "{moved}");
         }
-        assert!(state.normal_forces.iter().sum::<f64>() > 0.0);
+        assert!(
+            state
+                .solid_friction
+                .iter()
+                .map(|one| one.force)
+                .sum::<f64>()
+                > 0.0
+        );
     }
 }
 

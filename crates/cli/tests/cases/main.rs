@@ -9,6 +9,7 @@ mod letters;
 mod sides;
 mod sizes;
 mod verdict;
+mod xpbd;
 
 mod put_on;
 

@@ -19,7 +19,7 @@ use super::step_truncation::truncate_moves;
 use super::surface::ClothSurface;
 use super::trajectories::LinearTrajectories;
 use crate::Model;
-use crate::laws::contact::{ContactLaw, ContactPlane};
+use crate::laws::contact::{ContactLaw, ContactPlane, normal_spring};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub struct ContactDetector {
     surface: ClothSurface,
     /// Model that the surface was made for.
     made_for: Option<Model>,
+    /// Positions at the start of the present step in time [m]: contacts without memory are anchored there.
+    pub(crate) step_start: Option<Vec<Vec3>>,
 }
 
 /// Reach of [`ContactDetector::refresh`], in contact offsets: pairs are contacts before they press.
@@ -130,6 +132,9 @@ impl ContactDetector {
             let factor = edge_mollifier(contact, x);
             contact.law.normal *= factor;
             contact.law.tangential *= factor;
+            if friction_memory::is_new(memory, contact) {
+                contact.plane.lagged_normal_force *= factor;
+            }
         }
     }
 
@@ -154,7 +159,15 @@ impl ContactDetector {
         // Vertices of both sides make contacts with faces of the other side, so each contact has half of the area.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
-        let (anchor, force) = friction_memory::anchor(memory, near, x).unwrap_or((between, 0.0));
+        let hard_from = HARD_FROM * offset;
+        let remembered = friction_memory::anchor(memory, near, x);
+        let (anchor, force) = remembered.unwrap_or_else(|| match &self.step_start {
+            Some(from) => {
+                let [_, force, _] = normal_spring(normal, hard_from, offset - near.distance);
+                (between - near.slid(from, x), force)
+            }
+            None => (between, 0.0),
+        });
         let friction = if model.contact.friction {
             of(&self.surface.friction)
         } else {
@@ -181,7 +194,7 @@ impl ContactDetector {
                 // longer in the hard range of a contact than at the end of the soft range.
                 tangential: 0.5 * normal.max(force / offset),
                 friction,
-                hard_from: HARD_FROM * offset,
+                hard_from,
             },
             restitution: self.restitution(vertices, near.weights),
             pair: Some(near.pair),

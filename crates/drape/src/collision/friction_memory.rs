@@ -2,6 +2,7 @@
 //! state by [`super::ContactSet::remember_step`] and carried over edits by `world/transfer.rs`.
 
 use super::cloth_contact::ClothContact;
+use super::feature_pair::FeaturePair;
 use super::memory::{ClothMemory, ContactFrictionState};
 use super::nearness::Nearness;
 use toile_geometry::Vec3;
@@ -14,12 +15,15 @@ pub(super) fn anchor(memory: &ClothMemory, near: &Nearness, x: &[Vec3]) -> Optio
         .binary_search_by(|state| state.pair.cmp(&near.pair))
         .ok()?;
     let state = &memory.friction[at];
-    let four = near.pair.vertices().into_iter().zip(near.weights);
-    let slid: Vec3 = four
-        .map(|(v, w)| (x[v as usize] - memory.positions[v as usize]) * w)
-        .sum();
     let between = near.normal * near.distance;
+    let slid = near.slid(&memory.positions, x);
     Some((between - state.slip - slid, state.force))
+}
+
+/// Whether the features of a contact did not press in the last step.
+pub(super) fn is_new(memory: &ClothMemory, contact: &ClothContact) -> bool {
+    let of = |pair: &FeaturePair| memory.friction.binary_search_by(|one| one.pair.cmp(pair));
+    contact.pair.is_some_and(|pair| of(&pair).is_err())
 }
 
 /// The friction of contacts that press at positions `x`, in order of their features.

@@ -38,6 +38,13 @@ pub fn closest(pair: FeaturePair, p: &[Vec3; 4]) -> [f64; 4] {
 const TOUCHING: f64 = 1e-12;
 
 impl Nearness {
+    /// Displacement of the first feature relative to the second at the closest points, between two positions [m].
+    pub fn slid(&self, from: &[Vec3], to: &[Vec3]) -> Vec3 {
+        let four = self.pair.vertices().into_iter().zip(self.weights);
+        four.map(|(v, w)| (to[v as usize] - from[v as usize]) * w)
+            .sum()
+    }
+
     /// The closest points of two features at positions `x`; none where they are farther apart than `reach` [m] or
     /// touch, or where the closest point of an edge is one of its ends: vertex-face pairs cover those.
     pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {

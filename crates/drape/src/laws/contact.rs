@@ -82,16 +82,21 @@ pub fn damped_push(elastic: f64, normal: f64, mass: f64, leaving: f64) -> f64 {
 /// just at the limit and must not be treated as sticking.
 const AT_LIMIT: f64 = 0.99;
 
+/// Energy [J], force \[N\] and stiffness [N/m] of the normal spring of a stiffness `normal` [N/m], harder from a depth
+/// `hard_from` [m], at a depth [m].
+pub fn normal_spring(normal: f64, hard_from: f64, depth: f64) -> [f64; 3] {
+    let (soft, hard) = (depth.max(0.0), (depth - hard_from).max(0.0));
+    let harder = HARDER * normal;
+    [
+        0.5 * (normal * soft * soft + harder * hard * hard),
+        normal * soft + harder * hard,
+        normal + if hard > 0.0 { harder } else { 0.0 },
+    ]
+}
+
 impl ContactLaw {
-    /// Energy [J], force [N] and stiffness [N/m] of the normal spring at a depth [m].
     fn normal_spring(&self, depth: f64) -> [f64; 3] {
-        let (soft, hard) = (depth.max(0.0), (depth - self.hard_from).max(0.0));
-        let harder = HARDER * self.normal;
-        [
-            0.5 * (self.normal * soft * soft + harder * hard * hard),
-            self.normal * soft + harder * hard,
-            self.normal + if hard > 0.0 { harder } else { 0.0 },
-        ]
+        normal_spring(self.normal, self.hard_from, depth)
     }
 
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
@@ -127,7 +132,14 @@ impl ContactLaw {
                 gradient += slip * (limit / length);
             }
             if plane.returning || self.tangential * length <= AT_LIMIT * limit {
-                hessian += tangent * self.tangential;
+                // Of a point that slid beyond the limit the secant, which majorises the energy on the way back.
+                let sticks = self.tangential * length <= limit;
+                let stiffness = if sticks {
+                    self.tangential
+                } else {
+                    limit / length
+                };
+                hessian += tangent * stiffness;
             } else {
                 // Friction is constant along the slip, so it has no stiffness in that direction.
                 let along = slip / length;
@@ -156,7 +168,9 @@ impl ContactLaw {
         if limit <= 0.0 || plane.returning || self.tangential * length <= AT_LIMIT * limit {
             return 0.0;
         }
-        let back = -step.dot(&slip) / length;
+        // A point beyond the limit enters the cone only after the way back to it.
+        let beyond = (length - limit / self.tangential).max(0.0);
+        let back = -step.dot(&slip) / length - beyond;
         // Beyond the far side of the cone it slides in the opposite direction.
         let width = 2.0 * limit / self.tangential;
         let spring = back.clamp(0.0, width);

@@ -136,7 +136,6 @@ impl<S: Scheme> Method for Explicit<S> {
     ) -> Result<StepReport, DrapeError> {
         let substeps = self.substep_count(system, state, step)?;
         let h = step / f64::from(substeps);
-        state.follow_samples();
         for (v, &pinned) in state.velocities.iter_mut().zip(&system.prescribed.pinned) {
             if pinned {
                 *v = Vec3::zeros();

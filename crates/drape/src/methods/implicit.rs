@@ -210,9 +210,26 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         };
         let rate = 1.0 / R::unknown_time(h);
         self.workspace.increment.begin_step(system, state, rate);
+        // A single linear solve cannot follow the friction of a contact that it does not yet know.
+        if self.limits.iterations > 1 {
+            (self.workspace.contacts).begin_step(&self.before.positions);
+        }
         let report = self.solver.minimise(&problem, state, &mut self.workspace);
         self.workspace.increment.begin_static(system, state);
         R::finish(&self.before, state, h);
+        let outcome = self.end_piece(system, state, &report, h);
+        self.workspace.contacts.end_step();
+        outcome.map(|()| report)
+    }
+
+    /// Checks the new state of a piece of `h` [s], and stores its contacts.
+    fn end_piece(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        report: &NewtonReport,
+        h: f64,
+    ) -> Result<(), Failure> {
         if let Some(vertex) = state
             .first_not_finite()
             .or_else(|| first_impossible_speed(state))
@@ -234,7 +251,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         // `is_possible` has detected the contacts at the new positions.
         self.workspace.contacts.remember_step(system, state);
         state.time += h;
-        Ok(report)
+        Ok(())
     }
 
     fn error(&mut self, system: &System, state: &State, failure: Failure, h: f64) -> DrapeError {
@@ -273,7 +290,6 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
-        state.follow_samples();
         // A step must depend on the state alone, not on pairs detected before it.
         self.workspace.forget_pairs();
         let mut total = StepReport::default();

@@ -113,12 +113,14 @@ mod tests {
         contacts.active = vec![
             Contact {
                 sample: 0,
+                solid: 0,
                 point: system.rest.samples[0],
                 plane: plane(0, 2e-4),
                 law,
             },
             Contact {
                 sample: 1,
+                solid: 0,
                 point: system.rest.samples[1],
                 plane: plane(1, -1e-3),
                 law,

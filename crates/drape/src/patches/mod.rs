@@ -90,7 +90,6 @@ impl PatchVerlet {
             Some(sheet) => sheet,
             None => Sheet::new(system),
         };
-        state.follow_samples();
         sheet.start(system, state);
         let before = sheet.energy();
         let taken = match self.substeps {

@@ -5,7 +5,7 @@ use super::Lane;
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{damped_push, gentle_push};
 use crate::memory::Memory;
-use crate::{State, System};
+use crate::{SolidFriction, State, System};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -129,12 +129,14 @@ struct Chunk {
     plane_error: Option<f64>,
 }
 
-/// A vertex that can meet a surface, and the nearest surface as last queried.
+/// A vertex that can meet the surface of a solid, and that surface as last queried.
 #[derive(Clone, Copy)]
 struct SurfaceSample {
     vertex: u32,
     /// Index of the contact sample in the state.
     number: u32,
+    /// Index of the solid.
+    solid: u32,
     /// Normal stiffness [N/m].
     stiffness: f64,
     /// Friction coefficient.
@@ -152,8 +154,6 @@ struct SurfaceSample {
     force: f64,
     /// Whether a solid was put over it and it has not come out since.
     buried: bool,
-    /// Its object, where any object ignores a solid.
-    object: Option<u16>,
 }
 
 /// Least norm of the distance gradient: below it the point lies between two sides of a solid and the
@@ -197,15 +197,24 @@ impl PatchContacts {
             return;
         }
         let buried = state.memory.buried();
-        for (number, sample) in state.samples.iter().enumerate() {
+        let solids = 0..system.colliders.len() as u32;
+        let pairs = (0..)
+            .zip(state.samples.iter())
+            .flat_map(|sample| solids.clone().map(move |solid| (sample, solid)));
+        for ((number, sample), solid) in pairs {
             let vertex = sample.vertices[0];
-            if sample.triangle.is_some() || system.prescribed.pinned[vertex as usize] {
+            let object = system.policies.object_of_sample(&sample.vertices);
+            if sample.triangle.is_some()
+                || system.prescribed.pinned[vertex as usize]
+                || system.policies.ignores_solid(object, solid as usize)
+            {
                 continue;
             }
-            let anchor = state.anchors[number];
+            let memory = SolidFriction::find(&state.solid_friction, number, solid);
             self.samples.push(SurfaceSample {
                 vertex,
-                number: number as u32,
+                number,
+                solid,
                 stiffness: system.contact.stiffness * sample.area,
                 friction: if system.contact.friction {
                     sample.friction
@@ -216,28 +225,29 @@ impl PatchContacts {
                 last: Vec3::repeat(f64::INFINITY),
                 clearance: 0.0,
                 plane: None,
-                anchor: anchor.map_or(Lane::default(), Lane::from),
-                force: if anchor.is_some() {
-                    state.normal_forces[number]
-                } else {
-                    0.0
-                },
-                buried: buried.binary_search(&(number as u32)).is_ok(),
-                object: system.policies.object_of_sample(&sample.vertices),
+                anchor: memory.map_or(Lane::default(), |memory| memory.anchor.into()),
+                force: memory.map_or(0.0, |memory| memory.force),
+                buried: buried.binary_search(&number).is_ok(),
             });
         }
     }
 
     /// Stores the friction state in `state`.
     pub fn finish(&self, state: &mut State) {
-        state.anchors.fill(None);
-        state.normal_forces.fill(0.0);
         let buried = self.samples.iter().filter(|sample| sample.buried);
-        state.memory = Memory::of_buried(buried.map(|sample| sample.number));
-        for sample in self.samples.iter().filter(|sample| sample.force > 0.0) {
-            state.anchors[sample.number as usize] = Some(sample.anchor.into());
-            state.normal_forces[sample.number as usize] = sample.force;
-        }
+        let mut buried: Vec<u32> = buried.map(|sample| sample.number).collect();
+        buried.dedup();
+        state.memory = Memory::of_buried(buried.into_iter());
+        let pressing = self.samples.iter().filter(|sample| sample.force > 0.0);
+        state.solid_friction.clear();
+        state
+            .solid_friction
+            .extend(pressing.map(|sample| SolidFriction {
+                sample: sample.number,
+                solid: sample.solid,
+                anchor: sample.anchor.into(),
+                force: sample.force,
+            }));
     }
 
     /// Detects the contacts of all vertices that can reach a surface within `time` [s], and adapts the
@@ -386,36 +396,29 @@ impl SurfaceSample {
         })
     }
 
-    /// Queries the nearest surface: sets its plane at `position` [m] and the clearance there.
+    /// Queries the surface: sets its plane at `position` [m] and the clearance there.
     fn query_surface(&mut self, system: &System, position: Vec3) {
         let was_near = self.plane.is_some();
         (self.last, self.plane, self.clearance) = (position, None, FIELD_REACH);
-        let policies = &system.policies;
-        for (k, collider) in system.colliders.iter().enumerate() {
-            if policies.ignores_solid(self.object, k) {
-                continue;
+        let collider = &system.colliders[self.solid as usize];
+        // Far from the solid the exact distance is enough, and the distance field need not be sampled there.
+        if !was_near {
+            let exact = collider.surface.closest_point(position, FIELD_REACH);
+            let distance = exact.map_or(FIELD_REACH, |found| found.signed_distance);
+            if distance > self.offset + FIELD_RANGE {
+                self.clearance = self.clearance.min(0.9 * (distance - self.offset));
+                return;
             }
-            // Far from the solid the exact distance is enough, and the distance field need not be sampled there.
-            if !was_near {
-                let exact = collider.surface.closest_point(position, FIELD_REACH);
-                let distance = exact.map_or(FIELD_REACH, |found| found.signed_distance);
-                if distance > self.offset + FIELD_RANGE {
-                    self.clearance = self.clearance.min(0.9 * (distance - self.offset));
-                    continue;
-                }
-            }
-            let Some((distance, slope)) = collider.field.distance(position) else {
-                continue;
-            };
-            // The smooth distance may exceed the exact one by a fraction of a millimetre.
-            let beyond = 0.9 * (distance - self.offset);
-            self.clearance = self.clearance.min(beyond.max(0.0));
-            if distance < self.offset + FIELD_RANGE
-                && self.plane.is_none_or(|(nearest, _)| distance < nearest)
-                && let Some(normal) = slope.try_normalize(FLAT_SLOPE)
-            {
-                self.plane = Some((distance, normal));
-            }
+        }
+        let Some((distance, slope)) = collider.field.distance(position) else {
+            return;
+        };
+        // The smooth distance may exceed the exact one by a fraction of a millimetre.
+        let beyond = 0.9 * (distance - self.offset);
+        self.clearance = self.clearance.min(beyond.max(0.0));
+        if distance < self.offset + FIELD_RANGE {
+            let normal = slope.try_normalize(FLAT_SLOPE);
+            self.plane = normal.map(|normal| (distance, normal));
         }
     }
 }

@@ -166,7 +166,6 @@ impl Method for Relaxation {
         state: &mut State,
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
-        state.follow_samples();
         state.velocities.fill(Vec3::zeros());
         let mut run = self.resume(system, state);
         let first = run.iterations;

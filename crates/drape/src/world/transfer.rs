@@ -3,7 +3,7 @@
 
 use super::{ObjectId, VertexMap, World};
 use crate::collision::{ClothMemory, ContactFrictionState, FeaturePair, RecoveryDirection};
-use crate::{ContactSample, InternalStrain, Memory, Model, State};
+use crate::{Collider, ContactSample, InternalStrain, Memory, Model, SolidFriction, State};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::Vec3;
@@ -156,8 +156,7 @@ impl Transfer {
         State {
             memory: self.memory(&old.memory, &mass, &samples.successors),
             samples: Arc::new(samples.all),
-            anchors: samples.anchors,
-            normal_forces: samples.normal_forces,
+            solid_friction: samples.friction,
             cloth,
             internal_strain: match old.internal_strain.len() == former.topology.triangles.len() {
                 true => self.internal_strain(&old.internal_strain, [former, model]),
@@ -281,10 +280,10 @@ impl Transfer {
     fn samples(&self, (old, former): (&State, &Model), model: &Model) -> CarriedSamples {
         let mut carried = CarriedSamples {
             all: model.rest.samples.to_vec(),
-            anchors: Vec::new(),
-            normal_forces: Vec::new(),
+            friction: Vec::new(),
             successors: vec![None; old.samples.len()],
         };
+        let friction = FormerFriction::new(old, [former, model]);
         let mut at_vertex = vec![None; self.successors.len()];
         for (index, sample) in old.samples.iter().enumerate() {
             if sample.triangle.is_none() {
@@ -299,17 +298,27 @@ impl Transfer {
                     of.collect()
                 }
             };
-            let mut merged_anchor = MergedAnchor::default();
+            let mut merged: BTreeMap<u32, MergedAnchor> = BTreeMap::new();
             for former in from {
                 let before = &old.samples[former];
                 sample.extra_offset = sample.extra_offset.max(before.extra_offset);
                 // A divided vertex takes a share of the force by area.
                 let share = (sample.area / before.area).min(1.0);
-                merged_anchor.add(old.anchors[former], share * old.normal_forces[former]);
+                for (solid, memory) in friction.of_sample(former) {
+                    let anchor = merged.entry(solid).or_default();
+                    anchor.add(memory.anchor, share * memory.force);
+                }
                 carried.successors[former] = Some(index as u32);
             }
-            carried.anchors.push(merged_anchor.anchor());
-            carried.normal_forces.push(merged_anchor.force);
+            let of_solids = merged.iter().filter_map(|(&solid, merged)| {
+                Some(SolidFriction {
+                    sample: index as u32,
+                    solid,
+                    anchor: merged.anchor()?,
+                    force: merged.force,
+                })
+            });
+            carried.friction.extend(of_solids);
         }
         self.carry_triangle_samples((old, former), model, &mut carried);
         carried
@@ -326,6 +335,7 @@ impl Transfer {
         for (new, old) in self.triangles.iter().enumerate() {
             successors.extend(old.map(|old| (old, new as u32)));
         }
+        let friction = FormerFriction::new(old, [former, model]);
         for (index, sample) in old.samples.iter().enumerate() {
             let Some(triangle) = sample.triangle else {
                 continue;
@@ -336,15 +346,22 @@ impl Transfer {
             else {
                 continue;
             };
-            carried.successors[index] = Some(carried.all.len() as u32);
+            let number = carried.all.len() as u32;
+            carried.successors[index] = Some(number);
+            let of_solids = friction.of_sample(index);
+            carried
+                .friction
+                .extend(of_solids.map(|(solid, memory)| SolidFriction {
+                    sample: number,
+                    solid,
+                    ..*memory
+                }));
             carried.all.push(ContactSample {
                 triangle: Some(new),
                 vertices: model.topology.triangles[new as usize],
                 area: model.rest_area(new as usize) / 3.0,
                 ..*sample
             });
-            carried.anchors.push(old.anchors[index]);
-            carried.normal_forces.push(old.normal_forces[index]);
         }
     }
 }
@@ -362,10 +379,37 @@ fn has_same_diagonal(models: [&Model; 2], triangles: [u32; 2]) -> bool {
 /// Contact samples of the new structure with their friction memory.
 struct CarriedSamples {
     all: Vec<ContactSample>,
-    anchors: Vec<Option<Vec3>>,
-    normal_forces: Vec<f64>,
+    friction: Vec<SolidFriction>,
     /// The new sample of each former one.
     successors: Vec<Option<u32>>,
+}
+
+/// The friction of the former samples with the solids that are still there.
+struct FormerFriction<'a> {
+    all: &'a [SolidFriction],
+    /// The new index of each former solid.
+    solids: Vec<Option<u32>>,
+}
+
+impl<'a> FormerFriction<'a> {
+    fn new(old: &'a State, [former, model]: [&Model; 2]) -> Self {
+        let successor = |one: &Collider| {
+            let same = |other: &Collider| Arc::ptr_eq(&one.surface, &other.surface);
+            Some(model.colliders.iter().position(same)? as u32)
+        };
+        Self {
+            all: &old.solid_friction,
+            solids: former.colliders.iter().map(successor).collect(),
+        }
+    }
+
+    /// The friction of a former sample, with the new index of each solid.
+    fn of_sample(&self, former: usize) -> impl Iterator<Item = (u32, &'a SolidFriction)> {
+        let first = (self.all).partition_point(|one| (one.sample as usize) < former);
+        let all = self.all[first..].iter();
+        all.take_while(move |one| one.sample as usize == former)
+            .filter_map(|one| Some((self.solids[one.solid as usize]?, one)))
+    }
 }
 
 /// The friction anchor of merged samples: the mean of theirs, weighted by their normal forces.
@@ -374,24 +418,20 @@ struct MergedAnchor {
     only: Option<Vec3>,
     count: usize,
     weighted: Vec3,
-    weight: f64,
     force: f64,
 }
 
 impl MergedAnchor {
-    fn add(&mut self, anchor: Option<Vec3>, force: f64) {
+    fn add(&mut self, anchor: Vec3, force: f64) {
         self.force += force;
-        if let Some(anchor) = anchor {
-            self.only = Some(anchor);
-            self.count += 1;
-            self.weighted += anchor * force;
-            self.weight += force;
-        }
+        self.only = Some(anchor);
+        self.count += 1;
+        self.weighted += anchor * force;
     }
 
     fn anchor(&self) -> Option<Vec3> {
-        match self.count > 1 && self.weight > 0.0 {
-            true => Some(self.weighted / self.weight),
+        match self.count > 1 && self.force > 0.0 {
+            true => Some(self.weighted / self.force),
             false => self.only,
         }
     }

@@ -1,19 +1,22 @@
 //! Contact and friction as constraints on single points of the cloth.
 //!
-//! A contact is the inequality C = n . sum a_i x_i - d >= 0 with compliance 1/k. Friction is
-//! position based (Müller et al. 2020, section 3.5): an impulse of at most mu times the normal one undoes the
-//! tangential displacement since the start of the substep, so that a sticking point does not creep. Contacts of
-//! cloth with cloth are stencils of the same form with other weights.
+//! A contact is the inequality C = n . sum a_i x_i - d >= 0 with compliance 1/k. Friction is the constraint that the
+//! displacement along the surface since the point stuck, its slip, is zero, with the compliance of the law's
+//! tangential spring and a multiplier of at most mu times the normal one. Where the multiplier is at that limit the
+//! slip follows (return mapping, Wriggers 2006, section 5.2). The slip lasts from substep to substep, so that a sticking
+//! point does not creep, whatever moves it between its constraint and the end of the substep. Contacts of cloth with
+//! cloth are stencils of the same form with other weights.
 
 use crate::lanes::Point;
-use crate::{ContactSample, Pose, System};
+use crate::laws::contact::HARDER;
+use crate::{ContactSample, Pose, SolidFriction, State, System};
 use toile_geometry::Vec3;
 
-/// The contact of a point with the tangent plane of the nearest surface, and its multipliers.
+/// The contact of a point with the tangent plane of a surface, and its multipliers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct ContactConstraint {
-    /// Outward unit normal; zero while no surface is near.
+    /// Outward unit normal; zero while the surface is not near.
     pub normal: [f32; 3],
     /// The plane n . x = d of the offset surface: d [m].
     pub level: f32,
@@ -23,22 +26,33 @@ pub struct ContactConstraint {
     pub radius2: f32,
     /// 1 / k [m/N].
     pub compliance: f32,
+    /// Compliance of the spring that holds a sticking point [m/N].
+    pub tangential_compliance: f32,
+    /// Depth from which the normal stiffness is [`HARDER`] times larger [m].
+    pub hard_from: f32,
     /// Friction coefficient.
     pub friction: f32,
     /// Distance between cloth and surface at rest [m].
     pub offset: f32,
     /// The sample of the model, or [`NO_SAMPLE`].
     pub sample: u32,
+    /// The solid, where there is a sample.
+    pub solid: u32,
     /// XPBD multiplier of the normal constraint over the substep: force times h^2 [N s2].
     pub lambda_normal: f32,
     /// Multiplier of friction in the plane over the substep [N s2], at most `friction` times the normal one.
     pub lambda_tangent: [f32; 3],
+    /// Displacement along the surface since the point stuck, at the start of the substep [m].
+    pub slip: [f32; 3],
     /// Displacement of the surface at the point in the substep [m].
     pub surface_displacement: [f32; 3],
 }
 
 /// In place of a sample's number: the contact does not belong to a sample of the model.
 pub const NO_SAMPLE: u32 = u32::MAX;
+
+/// Ratio of the tangential to the normal compliance of contact with solids, as for every other method.
+pub const TANGENTIAL_SOFTNESS: f32 = 2.0;
 
 /// Largest speed at which a contact moves cloth out of a solid [m/s].
 const MAX_OUTWARD_SPEED: f32 = 1.0;
@@ -55,18 +69,30 @@ const REACH_IN_OFFSETS: f64 = 2.0;
 const FLAT_SLOPE: f64 = 0.05;
 
 impl ContactConstraint {
-    /// The contact of a sample with the surfaces, to be queried before its first use.
-    pub fn of_sample(system: &System, (number, found): (usize, &ContactSample)) -> Self {
+    /// The contact of a sample with a solid, to be queried before its first use; with no surface where the two ignore
+    /// each other.
+    pub fn of_sample(
+        system: &System,
+        (number, found): (usize, &ContactSample),
+        solid: usize,
+    ) -> Self {
+        let object = system.policies.object_of_sample(&found.vertices);
+        if system.policies.ignores_solid(object, solid) {
+            return Self::none();
+        }
         let friction = if system.contact.friction {
             found.friction
         } else {
             0.0
         };
+        let compliance = (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32;
         Self {
-            compliance: (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32,
+            compliance,
+            tangential_compliance: TANGENTIAL_SOFTNESS * compliance,
             friction: friction as f32,
             offset: (system.contact.offset + found.extra_offset) as f32,
             sample: number as u32,
+            solid: solid as u32,
             ..Self::none()
         }
     }
@@ -79,11 +105,15 @@ impl ContactConstraint {
             queried_at: [0.0; 3],
             radius2: f32::INFINITY,
             compliance: 1.0,
+            tangential_compliance: 1.0,
+            hard_from: f32::INFINITY,
             friction: 0.0,
             offset: 0.0,
             sample: NO_SAMPLE,
+            solid: 0,
             lambda_normal: 0.0,
             lambda_tangent: [0.0; 3],
+            slip: [0.0; 3],
             surface_displacement: [0.0; 3],
         }
     }
@@ -112,33 +142,19 @@ impl ContactConstraint {
         distance2 > self.radius2
     }
 
-    /// Queries the nearest surface to a point and sets its tangent plane.
+    /// Queries the surface at a point and sets its tangent plane.
     #[inline(never)]
     pub fn query_surface(&mut self, solid: &Solid, point: [f32; 3]) {
-        let origin = solid.origin;
-        let position = origin + Vec3::from(point.map(f64::from));
+        let position = solid.origin + Vec3::from(point.map(f64::from));
         let offset = f64::from(self.offset);
         let reach = crate::contact_settings::FIELD_REACH;
-        let mut nearest: Option<(f64, Vec3)> = None;
-        let mut surface_displacement = Vec3::zeros();
-        let policies = &solid.system.policies;
-        let sample = solid.samples.get(self.sample as usize);
-        let object = sample.and_then(|sample| policies.object_of_sample(&sample.vertices));
-        for (k, collider) in solid.system.colliders.iter().enumerate() {
-            if policies.ignores_solid(object, k) {
-                continue;
-            }
-            let poses = solid.poses.get(k).and_then(Option::as_ref);
-            if let Some(found) = collider.distance(poses.map(|[_, to]| to), position)
-                && nearest.is_none_or(|(distance, _)| found.0 < distance)
-            {
-                nearest = Some(found);
-                surface_displacement = poses.map_or(Vec3::zeros(), |[from, to]| {
-                    let own = to.undo(position);
-                    to.apply(own) - from.apply(own)
-                });
-            }
-        }
+        let collider = &solid.system.colliders[self.solid as usize];
+        let poses = solid.poses_of(self.solid);
+        let found = collider.distance(poses.map(|[_, to]| to), position);
+        let surface_displacement = poses.map_or(Vec3::zeros(), |[from, to]| {
+            let own = to.undo(position);
+            to.apply(own) - from.apply(own)
+        });
         self.surface_displacement = [
             surface_displacement.x as f32,
             surface_displacement.y as f32,
@@ -147,7 +163,7 @@ impl ContactConstraint {
         self.queried_at = point;
         self.normal = [0.0; 3];
         self.level = -1.0;
-        let (distance, slope) = nearest.unwrap_or((reach, Vec3::zeros()));
+        let (distance, slope) = found.unwrap_or((reach, Vec3::zeros()));
         // The smooth distance may exceed the exact one by a fraction of a millimetre.
         let gap = 0.9 * distance - offset;
         let radius = (0.5 * gap).max(PLANE_REACH * offset).max(1e-5);
@@ -186,22 +202,102 @@ impl ContactConstraint {
         let moved = [0, 1, 2].map(|k| point[k] - start[k] - self.surface_displacement[k]);
         let compliance = self.compliance * step.kappa;
         let mut change = -(depth + compliance * self.lambda_normal) / (weight + compliance);
+        if -depth - weight * change > self.hard_from {
+            // The stiffer part of the law: c lambda = (1 + H) d - H h at the depth d after the change.
+            let free = weight * self.lambda_normal - depth;
+            let harder = HARDER as f32;
+            let sum = (1.0 + harder) * free - harder * self.hard_from;
+            change = sum / (compliance + (1.0 + harder) * weight) - self.lambda_normal;
+        }
         let outward = dot(n, moved);
         let limit = (step.outward - outward).max(0.0) / weight;
         change = change.min(limit).max(-self.lambda_normal);
         self.lambda_normal += change;
-        let slip = [0, 1, 2].map(|k| moved[k] - n[k] * outward);
-        let free = [0, 1, 2].map(|k| self.lambda_tangent[k] - slip[k] / weight);
-        let length = dot(free, free).sqrt();
+        let tangent = self.rub(weight, moved, step);
+        [0, 1, 2].map(|k| n[k] * change + tangent[k])
+    }
+
+    /// Solves friction under the present normal multiplier; `moved` is the displacement relative to the surface since
+    /// the start of the substep. Returns the change of the multiplier.
+    #[inline(always)]
+    pub fn rub(&mut self, weight: f32, moved: [f32; 3], step: &ContactStep) -> [f32; 3] {
+        let slip = self.slip_after(moved);
+        let compliance = step.tangential(self.tangential_compliance, weight);
+        let free = [0, 1, 2].map(|k| {
+            let old = self.lambda_tangent[k];
+            old - (slip[k] + compliance * old) / (weight + compliance)
+        });
+        let length = (free[0] * free[0] + free[1] * free[1] + free[2] * free[2]).sqrt();
         let limit = self.friction * self.lambda_normal;
         let share = if length > limit { limit / length } else { 1.0 };
-        let mut out = [0.0; 3];
+        let mut change = [0.0; 3];
         for k in 0..3 {
             let lambda_tangent = free[k] * share;
-            out[k] = n[k] * change + lambda_tangent - self.lambda_tangent[k];
+            change[k] = lambda_tangent - self.lambda_tangent[k];
             self.lambda_tangent[k] = lambda_tangent;
         }
-        out
+        change
+    }
+
+    /// The slip in the plane after a displacement relative to the surface since the start of the substep.
+    #[inline(always)]
+    fn slip_after(&self, moved: [f32; 3]) -> [f32; 3] {
+        let n = self.normal;
+        let slip = [0, 1, 2].map(|k| self.slip[k] + moved[k]);
+        let along = n[0] * slip[0] + n[1] * slip[1] + n[2] * slip[2];
+        [0, 1, 2].map(|k| slip[k] - n[k] * along)
+    }
+
+    /// Ends a substep in which the point moved by `moved` relative to the surface: the slip becomes that at its end, at
+    /// most the one at which the spring has the limit of friction, and zero where nothing presses.
+    #[inline(always)]
+    pub fn end_substep(&mut self, weight: f32, moved: [f32; 3], step: &ContactStep) {
+        let slip = self.slip_after(moved);
+        let length = (slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]).sqrt();
+        let compliance = step.tangential(self.tangential_compliance, weight);
+        let limit = compliance * self.friction * self.lambda_normal;
+        let share = if length > limit { limit / length } else { 1.0 };
+        self.slip = slip.map(|x| x * share);
+    }
+
+    /// Turns the slip with a solid that turns in the coming substep.
+    pub fn turn(&mut self, solid: &Solid) {
+        if self.sample != NO_SAMPLE
+            && self.slip != [0.0; 3]
+            && let Some([from, to]) = solid.poses_of(self.solid)
+        {
+            let slip = Vec3::from(self.slip.map(f64::from));
+            let slip = to.rotation * (from.rotation.inverse() * slip);
+            self.slip = [slip.x as f32, slip.y as f32, slip.z as f32];
+        }
+    }
+
+    /// Takes the slip of a sample from a state; coordinates are relative to `origin` [m].
+    pub fn recall(&mut self, state: &State) {
+        self.slip = [0.0; 3];
+        if self.sample == NO_SAMPLE {
+            return;
+        }
+        let memory = SolidFriction::find(&state.solid_friction, self.sample, self.solid);
+        if let Some(memory) = memory {
+            let position = state.samples[self.sample as usize].position(&state.positions);
+            let slip = position - memory.anchor;
+            self.slip = [slip.x as f32, slip.y as f32, slip.z as f32];
+        }
+    }
+
+    /// The friction of a sample that presses, for a state; `kappa` is that of the last substep [1/s2].
+    pub fn remember(&self, state: &State, kappa: f64) -> Option<SolidFriction> {
+        if self.sample == NO_SAMPLE || self.lambda_normal <= 0.0 {
+            return None;
+        }
+        let position = state.samples[self.sample as usize].position(&state.positions);
+        Some(SolidFriction {
+            sample: self.sample,
+            solid: self.solid,
+            anchor: position - Vec3::from(self.slip.map(f64::from)),
+            force: kappa * f64::from(self.lambda_normal),
+        })
     }
 }
 
@@ -221,8 +317,6 @@ pub fn radius2_after_motion(radius2: f32, travel: f32, near: bool) -> f32 {
 pub struct Solid<'a> {
     /// The model.
     pub system: &'a System,
-    /// The samples of the state.
-    pub samples: &'a [ContactSample],
     /// Origin of the points' coordinates [m].
     pub origin: Vec3,
     /// Poses of each moving collider at the start and the end of the substep; empty where none moves.
@@ -233,6 +327,11 @@ impl Solid<'_> {
     /// Whether there are any solids.
     pub fn has_surfaces(&self) -> bool {
         !self.system.colliders.is_empty()
+    }
+
+    /// The poses of a moving solid at the start and the end of the substep.
+    fn poses_of(&self, solid: u32) -> Option<&[Pose; 2]> {
+        self.poses.get(solid as usize).and_then(Option::as_ref)
     }
 }
 
@@ -253,6 +352,14 @@ impl ContactStep {
             outward: MAX_OUTWARD_SPEED * step,
         }
     }
+
+    /// The compliance of the spring that holds a sticking point of inverse mass `weight` [1/kg], times kappa: the law's,
+    /// and at most the inverse mass. A point on a softer spring would vibrate for many substeps, undamped, and slide
+    /// under less than its friction, for a slip of that length is lost wherever the normal force falls for a moment.
+    #[inline(always)]
+    pub fn tangential(&self, compliance: f32, weight: f32) -> f32 {
+        (compliance * self.kappa).min(weight)
+    }
 }
 
 /// A contact of a point sum a_i x_i of up to four vertices: a sample within a triangle, or a contact of cloth with
@@ -265,6 +372,10 @@ pub struct ContactStencil {
     pub weights: [f32; 4],
     /// The plane and its multipliers.
     pub constraint: ContactConstraint,
+    /// The point at the start of the substep [m].
+    pub begun_at: [f32; 3],
+    /// Its number among the contacts of cloth with cloth; none for a sample.
+    pub number: u32,
     /// Coefficient of restitution of a contact without a sample of the model.
     pub restitution: Option<f32>,
 }
@@ -281,21 +392,29 @@ impl ContactStencil {
         }
         sum
     }
+
+    /// Inverse mass of the point [1/kg].
+    #[inline(always)]
+    fn weight(&self, points: &[Point]) -> f32 {
+        (self.vertices.iter().zip(self.weights))
+            .map(|(&v, a)| a * a * points[v as usize][3])
+            .sum()
+    }
+
+    /// [`ContactConstraint::end_substep`] at the points at the end of the substep.
+    pub fn end_substep(&mut self, points: &[Point], step: &ContactStep) {
+        let (point, from) = (self.point(points), self.begun_at);
+        let moved = [0, 1, 2].map(|k| point[k] - from[k] - self.constraint.surface_displacement[k]);
+        let weight = self.weight(points);
+        self.constraint.end_substep(weight, moved, step);
+    }
 }
 
-/// Solves contact stencils one after the other; `points` are the vertices, `starts` their positions at the start
-/// of the substep.
-pub fn solve_stencils(
-    stencils: &mut [ContactStencil],
-    points: &mut [Point],
-    starts: &[Point],
-    step: &ContactStep,
-) {
+/// Solves contact stencils one after the other; `points` are the vertices.
+pub fn solve_stencils(stencils: &mut [ContactStencil], points: &mut [Point], step: &ContactStep) {
     for stencil in stencils {
-        let weight: f32 = (stencil.vertices.iter().zip(stencil.weights))
-            .map(|(&v, a)| a * a * points[v as usize][3])
-            .sum();
-        let (point, start) = (stencil.point(points), stencil.point(starts));
+        let weight = stencil.weight(points);
+        let (point, start) = (stencil.point(points), stencil.begun_at);
         let change = stencil.constraint.solve(weight, point, start, step);
         for (&v, a) in stencil.vertices.iter().zip(stencil.weights) {
             let point = &mut points[v as usize];

@@ -1,10 +1,13 @@
-//! Contacts of sixteen vertices with solids, solved side by side in vector registers.
+//! Contacts of sixteen vertices with a solid, solved side by side in vector registers.
 
-use super::contact::{ContactConstraint, ContactStep, NO_SAMPLE, Solid, radius2_after_motion};
+use super::contact::{
+    ContactConstraint, ContactStep, NO_SAMPLE, Solid, TANGENTIAL_SOFTNESS, radius2_after_motion,
+};
+use crate::State;
 use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
 use pulp::Simd;
 
-/// The contacts of sixteen vertices, a lane each; fields as in [`ContactConstraint`].
+/// The contacts of sixteen vertices with one solid, a lane each; fields as in [`ContactConstraint`].
 #[derive(Clone, Debug)]
 pub struct ContactBlock {
     normal: [Row; 3],
@@ -16,8 +19,10 @@ pub struct ContactBlock {
     offset: Row,
     lambda_normal: Row,
     lambda_tangent: [Row; 3],
+    slip: [Row; 3],
     surface_displacement: [Row; 3],
     sample: [u32; LANES],
+    solid: u32,
 }
 
 impl ContactBlock {
@@ -34,8 +39,10 @@ impl ContactBlock {
             offset: zero,
             lambda_normal: zero,
             lambda_tangent: [zero; 3],
+            slip: [zero; 3],
             surface_displacement: [zero; 3],
             sample: [NO_SAMPLE; LANES],
+            solid: 0,
         };
         for lane in 0..LANES {
             block.set(lane, &ContactConstraint::none());
@@ -52,12 +59,25 @@ impl ContactBlock {
             queried_at: three(&self.queried_at),
             radius2: self.radius2.0[lane],
             compliance: self.compliance.0[lane],
+            tangential_compliance: TANGENTIAL_SOFTNESS * self.compliance.0[lane],
+            hard_from: f32::INFINITY,
             friction: self.friction.0[lane],
             offset: self.offset.0[lane],
             sample: self.sample[lane],
+            solid: self.solid,
             lambda_normal: self.lambda_normal.0[lane],
             lambda_tangent: three(&self.lambda_tangent),
+            slip: three(&self.slip),
             surface_displacement: three(&self.surface_displacement),
+        }
+    }
+
+    /// [`ContactConstraint::recall`] for all lanes.
+    pub fn recall(&mut self, state: &State) {
+        for lane in 0..LANES {
+            let mut contact = self.get(lane);
+            contact.recall(state);
+            self.set(lane, &contact);
         }
     }
 
@@ -72,6 +92,7 @@ impl ContactBlock {
             self.normal[k].0[lane] = contact.normal[k];
             self.queried_at[k].0[lane] = contact.queried_at[k];
             self.lambda_tangent[k].0[lane] = contact.lambda_tangent[k];
+            self.slip[k].0[lane] = contact.slip[k];
             self.surface_displacement[k].0[lane] = contact.surface_displacement[k];
         }
         self.level.0[lane] = contact.level;
@@ -80,6 +101,9 @@ impl ContactBlock {
         self.friction.0[lane] = contact.friction;
         self.offset.0[lane] = contact.offset;
         self.sample[lane] = contact.sample;
+        if contact.sample != NO_SAMPLE {
+            self.solid = contact.solid;
+        }
         self.lambda_normal.0[lane] = contact.lambda_normal;
     }
 
@@ -106,6 +130,69 @@ impl ContactBlock {
     pub fn clear(&mut self) {
         self.lambda_normal = Row::splat(0.0);
         self.lambda_tangent = [Row::splat(0.0); 3];
+    }
+
+    /// Whether a point of a lane group is below the surface or was pushed by it.
+    #[inline(always)]
+    pub fn touches<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> S::m32s {
+        let [x, y, z, weight] = load(simd, points, lane_group);
+        let n = [
+            self.normal[0].lane_group::<S>(lane_group),
+            self.normal[1].lane_group::<S>(lane_group),
+            self.normal[2].lane_group::<S>(lane_group),
+        ];
+        let zero = simd.splat_f32s(0.0);
+        let lambda_normal = self.lambda_normal.lane_group::<S>(lane_group);
+        let level = self.level.lane_group::<S>(lane_group);
+        let depth = simd.sub_f32s(dot(simd, n, [x, y, z]), level);
+        let touching = simd.or_m32s(
+            simd.less_than_f32s(depth, zero),
+            simd.less_than_f32s(zero, lambda_normal),
+        );
+        simd.and_m32s(touching, simd.less_than_f32s(zero, weight))
+    }
+
+    /// [`ContactConstraint::end_substep`] for all lanes.
+    #[inline(always)]
+    pub fn end_substep(
+        &mut self,
+        points: &[Point; LANES],
+        starts: &[Point; LANES],
+        step: &ContactStep,
+    ) {
+        if self.lambda_normal.0.iter().all(|&lambda| lambda == 0.0) {
+            self.slip = [Row::splat(0.0); 3];
+            return;
+        }
+        for lane in 0..LANES {
+            let (point, start) = (points[lane], starts[lane]);
+            let moved =
+                [0, 1, 2].map(|k| point[k] - start[k] - self.surface_displacement[k].0[lane]);
+            let n = [0, 1, 2].map(|k| self.normal[k].0[lane]);
+            let slip = [0, 1, 2].map(|k| self.slip[k].0[lane] + moved[k]);
+            let along = n[0] * slip[0] + n[1] * slip[1] + n[2] * slip[2];
+            let slip = [0, 1, 2].map(|k| slip[k] - n[k] * along);
+            let length = (slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]).sqrt();
+            let compliance =
+                step.tangential(TANGENTIAL_SOFTNESS * self.compliance.0[lane], point[3]);
+            let limit = compliance * self.friction.0[lane] * self.lambda_normal.0[lane];
+            let share = if length > limit { limit / length } else { 1.0 };
+            for k in 0..3 {
+                self.slip[k].0[lane] = slip[k] * share;
+            }
+        }
+    }
+
+    /// [`ContactConstraint::turn`] for all lanes.
+    pub fn turn(&mut self, solid: &Solid) {
+        let moves = |slip: &[Row; 3]| slip.iter().any(|row| row.0.iter().any(|&x| x != 0.0));
+        if moves(&self.slip) {
+            for lane in 0..LANES {
+                let mut contact = self.get(lane);
+                contact.turn(solid);
+                self.set(lane, &contact);
+            }
+        }
     }
 
     /// Whether the surface has to be queried again for one of the points of a lane group.
@@ -165,11 +252,7 @@ pub fn solve_block<S: Simd>(
         dot(simd, n, [x, y, z]),
         contact.level.lane_group::<S>(lane_group),
     );
-    let touching = simd.or_m32s(
-        simd.less_than_f32s(depth, zero),
-        simd.less_than_f32s(zero, lambda_normal),
-    );
-    let active = simd.and_m32s(touching, simd.less_than_f32s(zero, weight));
+    let active = contact.touches(simd, points, lane_group);
     let flag = simd.select_f32s(active, simd.splat_f32s(1.0), zero);
     if simd.reduce_max_f32s(flag) == 0.0 {
         return;
@@ -206,13 +289,21 @@ pub fn solve_block<S: Simd>(
     contact
         .lambda_normal
         .set_lane_group::<S>(lane_group, lambda_normal);
-    let slip = add_scaled(simd, moved, n, simd.sub_f32s(zero, outward));
+    let slip =
+        [0, 1, 2].map(|k| simd.add_f32s(contact.slip[k].lane_group::<S>(lane_group), moved[k]));
+    let along = dot(simd, n, slip);
+    let slip = add_scaled(simd, slip, n, simd.sub_f32s(zero, along));
     let lambda_tangent = [
         contact.lambda_tangent[0].lane_group::<S>(lane_group),
         contact.lambda_tangent[1].lane_group::<S>(lane_group),
         contact.lambda_tangent[2].lane_group::<S>(lane_group),
     ];
-    let free = add_scaled(simd, lambda_tangent, slip, simd.sub_f32s(zero, per_weight));
+    let compliance = simd.mul_f32s(compliance, simd.splat_f32s(TANGENTIAL_SOFTNESS));
+    let compliance = simd.min_f32s(compliance, weight);
+    let violation = add_scaled(simd, slip, lambda_tangent, compliance);
+    let softness = simd.add_f32s(weight, compliance);
+    let per_softness = simd.div_f32s(simd.splat_f32s(-1.0), softness);
+    let free = add_scaled(simd, lambda_tangent, violation, per_softness);
     let length = simd.sqrt_f32s(dot(simd, free, free));
     let limit = simd.mul_f32s(contact.friction.lane_group::<S>(lane_group), lambda_normal);
     let share = simd.select_f32s(

@@ -59,12 +59,14 @@ impl Divide for PredictSlices<'_> {
 
 impl Divide for FinishSlices<'_> {
     fn divide(self, slots: usize, _: usize) -> (Self, Self) {
+        let all_slots = self.start.len();
         let (start, start_) = self.start.split_at_mut(slots);
         let (ahead, ahead_) = self.ahead.split_at_mut(slots);
         let (now, now_) = self.now.split_at_mut(slots);
         let (free, free_) = self.free.split_at(slots);
         let (velocity, velocity_) = self.velocity.split_at_mut(slots);
-        let (contacts, contacts_) = self.contacts.split_at_mut(slots / LANES);
+        let solids = self.contacts.len() * LANES / all_slots.max(1);
+        let (contacts, contacts_) = self.contacts.split_at_mut(slots / LANES * solids);
         (
             Self {
                 start,

@@ -32,12 +32,13 @@ mod membrane;
 mod particles;
 mod region;
 mod run;
+mod several_solids;
 mod vertex_partition;
 
 use crate::collision::Tally;
 use crate::lanes::LANES;
 use crate::method::{Method, MethodSettings, StepReport};
-use crate::{ContactSample, DrapeError, Model, State, System};
+use crate::{ContactSample, DrapeError, Model, SolidFriction, State, System};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
 pub(crate) use cloth::{ClothContacts, Substeps};
@@ -138,7 +139,7 @@ impl BuiltFor {
             && self.model.has_couplings_of(model)
             && self.model.contact == model.contact
             && Arc::ptr_eq(&self.model.policies, &model.policies)
-            && self.model.colliders.is_empty() == model.colliders.is_empty()
+            && self.model.colliders.len() == model.colliders.len()
             && Arc::ptr_eq(&self.samples, samples)
     }
 }
@@ -169,15 +170,18 @@ impl Xpbd {
         let mut regions = Regions::new(&partition);
         regions.add_membranes(system, &partition);
         regions.add_elastics(system, &partition);
-        let mut particles = Particles::new(partition.len());
+        let solids = system.colliders.len();
+        let mut particles = Particles::new(partition.len(), solids);
         if !system.colliders.is_empty() {
             regions.add_samples(system, samples, &partition);
             for (index, sample) in samples.iter().enumerate() {
                 if sample.triangle.is_none() {
                     let slot = partition.slot_of[sample.vertices[0] as usize];
                     let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-                    particles.contacts[block]
-                        .set(lane, &ContactConstraint::of_sample(system, (index, sample)));
+                    for solid in 0..solids {
+                        let contact = ContactConstraint::of_sample(system, (index, sample), solid);
+                        particles.contacts[block * solids + solid].set(lane, &contact);
+                    }
                 }
             }
         }
@@ -260,12 +264,14 @@ impl Xpbd {
             let stage = "XPBD, before the step";
             return Err(DrapeError::NotFinite { stage, vertex });
         }
-        state.follow_samples();
         let mut failed = 0;
         for halvings in 0..=MAX_STEP_HALVINGS {
             let pieces = 1u32 << halvings;
             if halvings > 0 {
                 self.invalidate_surfaces();
+                for region in self.regions.all_mut() {
+                    region.forget_slips();
+                }
             }
             self.load(system, state, origin);
             self.set_prescribed_velocities(system, state, substep * f64::from(count));
@@ -344,6 +350,12 @@ impl Xpbd {
         let iterated = self.settings.iterations > 1;
         for region in self.regions.all_mut() {
             region.begin(iterated);
+            for contact in &mut region.contacts {
+                contact.constraint.recall(state);
+            }
+        }
+        for block in &mut self.particles.contacts {
+            block.recall(state);
         }
     }
 
@@ -364,8 +376,8 @@ impl Xpbd {
         }
     }
 
-    /// Stores the particles in the state, with normal forces and friction anchors of contacts.
-    fn store(&self, system: &System, state: &mut State, origin: Vec3) -> XpbdReport {
+    /// Stores the particles in the state, with the friction of contacts with solids.
+    fn store(&mut self, system: &System, state: &mut State, origin: Vec3) -> XpbdReport {
         let particles = &self.particles;
         let mut fastest = 0f64;
         for (slot, vertex) in self.partition.vertex_of.iter().enumerate() {
@@ -389,27 +401,31 @@ impl Xpbd {
             state.velocities[v as usize] = wide(velocity);
             fastest = fastest.max(wide(velocity).norm_squared());
         }
-        let kappa = self.kappa;
-        let vertices = particles.contacts.iter();
-        let vertices = vertices.flat_map(|block| (0..LANES).map(|lane| block.get(lane)));
-        let in_triangles = self.regions.all().flat_map(|r| &r.contacts);
-        for contact in vertices.chain(in_triangles.map(|c| c.constraint)) {
-            let at = contact.sample as usize;
-            if contact.sample == contact::NO_SAMPLE {
-                continue;
-            }
-            state.normal_forces[at] = kappa * f64::from(contact.lambda_normal);
-            state.anchors[at] = (contact.lambda_normal > 0.0).then(|| {
-                let stiffness = 0.5 * system.contact.stiffness * state.samples[at].area;
-                let lambda_tangent = Vec3::from(contact.lambda_tangent.map(f64::from)) * kappa;
-                state.samples[at].position(&state.positions) + lambda_tangent / stiffness
-            });
-        }
+        self.store_friction(state);
         XpbdReport {
             pieces: 1,
             kinetic_energy: state.kinetic_energy(system),
             fastest: fastest.sqrt(),
         }
+    }
+
+    /// Stores the friction of contacts with solids in a state with the positions of the particles.
+    fn store_friction(&mut self, state: &mut State) {
+        let (points, step) = (
+            &self.particles.start,
+            ContactStep::new(self.kappa as f32, 0.0),
+        );
+        for (partition, region) in self.partition.partitions().zip(self.regions.all_mut()) {
+            region.end_substep(&points[self.partition.start(partition)..], &step);
+        }
+        let vertices = self.particles.contacts.iter();
+        let vertices = vertices.flat_map(|block| block.loaded().map(|lane| block.get(lane)));
+        let in_triangles = self.regions.all().flat_map(|region| &region.contacts);
+        let contacts = vertices.chain(in_triangles.map(|stencil| stencil.constraint));
+        let found = contacts.filter_map(|contact| contact.remember(state, self.kappa));
+        let mut found: Vec<SolidFriction> = found.collect();
+        found.sort_unstable_by_key(SolidFriction::key);
+        state.solid_friction = found;
     }
 
     /// The vertex of the first particle with a position or velocity that is not finite.
@@ -438,7 +454,6 @@ impl Xpbd {
             sweep: SweepStep {
                 solid: Solid {
                     system,
-                    samples: &self.built_for.samples,
                     origin,
                     poses: &[],
                 },

@@ -3,6 +3,7 @@
 use super::bending::{BendingForce, Filter};
 use super::contact::{ContactStep, Solid};
 use super::contact_block::{ContactBlock, solve_block};
+use super::several_solids::solve_several;
 use crate::lanes::{LANES, Point, lane_groups, load, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
@@ -29,7 +30,7 @@ pub struct Particles {
     pub velocity: Vec<Point>,
     /// Velocities without the contact impulses of the substep [m/s]; only where cloth has restitution.
     pub velocity_without_contact: Vec<Point>,
-    /// Contact of each vertex with the solids, sixteen a block.
+    /// Contact of each vertex with each solid: for sixteen vertices a block for every solid.
     pub contacts: Vec<ContactBlock>,
     /// Displacement by the unfiltered bending force, h^2 W K x [m].
     pub unfiltered: Vec<Point>,
@@ -38,8 +39,8 @@ pub struct Particles {
 }
 
 impl Particles {
-    /// Zero particles in `count` slots, a multiple of sixteen.
-    pub fn new(count: usize) -> Self {
+    /// Zero particles in `count` slots, a multiple of sixteen, without contact with any of `solids` solids.
+    pub fn new(count: usize, solids: usize) -> Self {
         let points = vec![[0.0; 4]; count];
         Self {
             start: points.clone(),
@@ -51,7 +52,7 @@ impl Particles {
             filtered: [points.clone(), points.clone()],
             velocity: points,
             velocity_without_contact: Vec::new(),
-            contacts: vec![ContactBlock::none(); count / LANES],
+            contacts: vec![ContactBlock::none(); count / LANES * solids],
         }
     }
 }
@@ -324,24 +325,61 @@ impl WithSimd for FinishIteration<'_, '_> {
         let (now, _) = self.fields.now.as_chunks_mut::<LANES>();
         let (free, _) = self.fields.free.as_chunks::<LANES>();
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
+        let solids = self.fields.contacts.len() / now.len().max(1);
         for b in 0..now.len() {
+            let contacts = &mut self.fields.contacts[b * solids..(b + 1) * solids];
             if let Some(solid) = &self.solid {
                 for lane_group in 0..lane_groups::<S>() {
-                    let contact = &mut self.fields.contacts[b];
-                    let now = &mut now[b];
-                    if contact.is_stale(simd, now, lane_group) {
-                        let first = lane_group * S::F32_LANES;
-                        contact.query_surfaces(solid, now, first..first + S::F32_LANES);
-                    }
-                    solve_block(simd, contact, now, &start[b], self.contact, lane_group);
+                    let (now, start) = (&mut now[b], &start[b]);
+                    solve_contacts(
+                        simd,
+                        contacts,
+                        (now, start),
+                        (solid, self.contact),
+                        lane_group,
+                    );
                 }
             }
             if let Some(step) = self.finish {
+                for contact in contacts {
+                    contact.end_substep(&now[b], &start[b], self.contact);
+                }
                 step.finish(simd, &now[b], &free[b], &mut velocity[b]);
                 start[b] = now[b];
                 step.extrapolate(&start[b], &velocity[b], &mut ahead[b]);
             }
         }
+    }
+}
+
+/// Queries the surfaces anew where planes are stale, and solves the contacts of the points of a lane group with all
+/// solids.
+#[inline(always)]
+fn solve_contacts<S: Simd>(
+    simd: S,
+    contacts: &mut [ContactBlock],
+    (now, start): (&mut [Point; LANES], &[Point; LANES]),
+    (solid, step): (&Solid, &ContactStep),
+    lane_group: usize,
+) {
+    let first = lane_group * S::F32_LANES;
+    let lanes = first..first + S::F32_LANES;
+    let mut any = simd.less_than_f32s(simd.splat_f32s(0.0), simd.splat_f32s(0.0));
+    let mut several = any;
+    for contact in &mut *contacts {
+        if contact.is_stale(simd, now, lane_group) {
+            contact.query_surfaces(solid, now, lanes.clone());
+        }
+        let touches = contact.touches(simd, now, lane_group);
+        several = simd.or_m32s(several, simd.and_m32s(any, touches));
+        any = simd.or_m32s(any, touches);
+    }
+    let [zero, one] = [0.0, 1.0].map(|x| simd.splat_f32s(x));
+    if simd.reduce_max_f32s(simd.select_f32s(several, one, zero)) > 0.0 {
+        return solve_several(contacts, now, start, step, lanes);
+    }
+    for contact in contacts {
+        solve_block(simd, contact, now, start, step, lane_group);
     }
 }
 

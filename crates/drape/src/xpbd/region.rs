@@ -26,6 +26,8 @@ pub struct Region {
     pub contacts: Vec<ContactStencil>,
     /// Contacts of cloth with cloth.
     pub cloth: Vec<ContactStencil>,
+    /// Whether the stencils have begun a substep whose end their slips do not yet contain.
+    has_begun: bool,
 }
 
 /// The regions of a model.
@@ -185,7 +187,7 @@ impl Regions {
         }
     }
 
-    /// Adds the contact samples that lie within triangles.
+    /// Adds the contacts of the samples that lie within triangles, one with each solid.
     pub fn add_samples(
         &mut self,
         system: &System,
@@ -202,12 +204,16 @@ impl Regions {
                 .vertices
                 .map(|v| numbering.slot_of[v as usize] - start);
             let [p, q, r] = sample.weights.map(|x| x as f32);
-            self.at(partition).contacts.push(ContactStencil {
-                vertices: [a, b, c, 0],
-                weights: [p, q, r, 0.0],
-                constraint: ContactConstraint::of_sample(system, (index, sample)),
-                restitution: None,
-            });
+            for solid in 0..system.colliders.len() {
+                self.at(partition).contacts.push(ContactStencil {
+                    vertices: [a, b, c, 0],
+                    weights: [p, q, r, 0.0],
+                    constraint: ContactConstraint::of_sample(system, (index, sample), solid),
+                    begun_at: [0.0; 3],
+                    number: 0,
+                    restitution: None,
+                });
+            }
         }
     }
 
@@ -233,6 +239,7 @@ impl Regions {
             members
                 .map(|one| stencil(one, start))
                 .collect_into_vec(contacts);
+            self.at(partition).has_begun = false;
         }
     }
 
@@ -333,22 +340,42 @@ impl Region {
         }
     }
 
-    /// Sets all multipliers to zero: nothing is carried over from one substep to the next.
-    fn clear(&mut self) {
+    /// Ends the last substep for the friction of the stencils, at the points at its end.
+    pub fn end_substep(&mut self, points: &[Point], step: &ContactStep) {
+        if std::mem::take(&mut self.has_begun) {
+            for contact in self.contacts.iter_mut().chain(&mut self.cloth) {
+                contact.end_substep(points, step);
+            }
+        }
+    }
+
+    /// Clears the slips of cloth on cloth after a failed substep.
+    pub fn forget_slips(&mut self) {
+        self.has_begun = false;
+        for contact in &mut self.cloth {
+            contact.constraint.slip = [0.0; 3];
+        }
+    }
+
+    /// Begins a substep: sets all multipliers to zero. Only slips are carried over from one substep to the next.
+    fn clear(&mut self, starts: &[Point]) {
+        self.has_begun = true;
         self.membrane_multipliers.fill([Row::splat(0.0); 3]);
         self.bending_multipliers.fill([[Row::splat(0.0); 3]; 3]);
         for constraint in self.elastics.iter_mut().chain(&mut self.attachments) {
             constraint.lambda = [0.0; 3];
         }
         for contact in self.contacts.iter_mut().chain(&mut self.cloth) {
+            contact.begun_at = contact.point(starts);
             contact.constraint.lambda_normal = 0.0;
             contact.constraint.lambda_tangent = [0.0; 3];
         }
     }
 
     /// Accounts for surfaces that move by up to `travel` [m] in the coming substep.
-    fn expect_motion(&mut self, travel: f32) {
+    fn expect_motion(&mut self, travel: f32, solid: &Solid) {
         for contact in &mut self.contacts {
+            contact.constraint.turn(solid);
             contact.constraint.expect_motion(travel);
         }
     }
@@ -356,9 +383,10 @@ impl Region {
     /// Solves every constraint once.
     pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
         if let Some(travel) = step.first_with_travel {
-            self.clear();
+            self.end_substep(starts, &step.contact);
+            self.clear(starts);
             if travel > 0.0 {
-                self.expect_motion(travel);
+                self.expect_motion(travel, &step.solid);
             }
         }
         for contact in &mut self.contacts {
@@ -374,8 +402,8 @@ impl Region {
         });
         solve_attachments(&mut self.elastics, points, step.contact.kappa);
         solve_attachments(&mut self.attachments, points, step.contact.kappa);
-        solve_stencils(&mut self.contacts, points, starts, &step.contact);
-        solve_stencils(&mut self.cloth, points, starts, &step.contact);
+        solve_stencils(&mut self.contacts, points, &step.contact);
+        solve_stencils(&mut self.cloth, points, &step.contact);
     }
 }
 

@@ -63,6 +63,7 @@ impl Run<'_> {
                 for contact in &mut particles.contacts {
                     contact.clear();
                     if travel > 0.0 {
+                        contact.turn(&sweep.solid);
                         contact.expect_motion(travel);
                     }
                 }

@@ -2,7 +2,7 @@
 
 use crate::fixtures::{ball, cloth, sheet};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, MethodKind, MethodSettings, State, System};
+use toile_drape::{Collider, Material, MethodKind, MethodSettings, SolidFriction, State, System};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// Methods that run, at their own settings: all but the one that is never stable.
@@ -72,9 +72,15 @@ fn on_a_slope(slope: f64) -> (System, State) {
         builder.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(plane)))];
     });
     system.control.gravity = Vec3::new(slope.sin(), -slope.cos(), 0.0) * 9.81;
-    for (force, sample) in state.normal_forces.iter_mut().zip(state.samples.iter()) {
-        *force = depth * 1e6 * sample.area;
-    }
+    let pressed = (0..)
+        .zip(state.samples.iter())
+        .map(|(number, sample)| SolidFriction {
+            sample: number,
+            solid: 0,
+            anchor: sample.position(&state.positions),
+            force: depth * 1e6 * sample.area,
+        });
+    state.solid_friction = pressed.collect();
     (system, state)
 }
 

@@ -1,9 +1,9 @@
-//! Friction on an incline.
+//! Friction on an incline, and of cloth on cloth.
 
 use crate::check::{Cases, Expected};
 use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, MethodKind, State, SystemBuilder};
+use toile_drape::{Cloth, Collider, Material, MethodKind, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
 /// Friction coefficient of the cloth.
@@ -50,18 +50,61 @@ fn slide(angle: f64) -> Result<[f64; 2], LabError> {
     // The board stays; gravity is inclined.
     builder.control.gravity = Vec3::new(angle.sin(), -angle.cos(), 0.0) * 9.81;
     let system = builder.build();
-    let mut state = State::at_rest(&system, cloth.positions);
-    let settings = MethodKind::ImplicitEuler.into();
-    let velocity =
-        |s: &State| s.velocities.iter().map(|v| v.x).sum::<f64>() / s.velocities.len() as f64;
-    let step = 1.0 / 500.0;
-    crate::settle::in_time(&system, &mut state, settings, [step, 0.1], |_| {})?;
-    let before = velocity(&state);
     let all: Vec<u32> = (0..flat.points.len() as u32).collect();
-    let from = crate::settle::mean(&state.positions, &all);
-    crate::settle::in_time(&system, &mut state, settings, [step, 0.2], |_| {})?;
-    let moved = crate::settle::mean(&state.positions, &all) - from;
-    Ok([(velocity(&state) - before) / 0.2, moved.x])
+    let state = State::at_rest(&system, cloth.positions);
+    motion(&system, state, MethodKind::ImplicitEuler, &all)
+}
+
+/// Mean acceleration of some vertices along x [m/s2] in the fifth of a second after the first tenth, and how far they
+/// move in it [m].
+fn motion(
+    system: &System,
+    mut state: State,
+    kind: MethodKind,
+    vertices: &[u32],
+) -> Result<[f64; 2], LabError> {
+    let velocity = |s: &State| crate::settle::mean(&s.velocities, vertices).x;
+    let place = |s: &State| crate::settle::mean(&s.positions, vertices).x;
+    let step = 1.0 / 500.0;
+    crate::settle::in_time(system, &mut state, kind.into(), [step, 0.1], |_| {})?;
+    let before = [velocity(&state), place(&state)];
+    crate::settle::in_time(system, &mut state, kind.into(), [step, 0.2], |_| {})?;
+    Ok([
+        (velocity(&state) - before[0]) / 0.2,
+        place(&state) - before[1],
+    ])
+}
+
+/// [`slide`] of a cloth on another that is held, by a method.
+fn slide_on_cloth(kind: MethodKind, angle: f64) -> Result<[f64; 2], LabError> {
+    let sheet = |half: f64, cells| {
+        let (low, high) = (Vec2::new(-half, -half), Vec2::new(half, half));
+        rectangle(MeshKind::Alternating, low, high, cells)
+    };
+    let (below, above) = (sheet(0.2, [9, 9])?, sheet(0.05, [4, 4])?);
+    let thickness = 1e-3;
+    let mut mesh = TriangleMesh::default();
+    for (flat, height) in [(&below, 0.0), (&above, thickness)] {
+        let first = mesh.positions.len() as u32;
+        let places = flat.points.iter().map(|p| Vec3::new(p.x, height, p.y));
+        mesh.positions.extend(places);
+        let corners = flat.triangles.iter().map(|t| t.map(|v| v + first));
+        mesh.triangles.extend(corners);
+    }
+    let material = Material {
+        friction: MU,
+        thickness,
+        ..Material::default()
+    };
+    let cloth = Cloth::from_mesh("two", &mesh, material)?;
+    let mut builder = SystemBuilder::new("two", &cloth)?;
+    builder.contact.cloth_offset = thickness;
+    builder.pinned[..below.points.len()].fill(true);
+    builder.control.gravity = Vec3::new(angle.sin(), -angle.cos(), 0.0) * 9.81;
+    let system = builder.build();
+    let moving: Vec<u32> = (below.points.len() as u32..mesh.positions.len() as u32).collect();
+    let state = State::at_rest(&system, mesh.positions);
+    motion(&system, state, kind, &moving)
 }
 
 /// How far a cloth that sticks moves, and how one that slides gathers speed.
@@ -71,19 +114,41 @@ pub(super) const INCLINE: [Tolerance; 2] = [STICKS, SLIDES];
 
 /// A cloth on a board sticks while tan(angle) <= mu, else slides by g (sin - mu cos).
 pub(super) fn incline(cases: &mut Cases) -> Result<(), LabError> {
+    coulomb(cases, "", &[1.01, 1.5, 2.5], slide)
+}
+
+/// The same of a cloth on a cloth, by two methods.
+pub(super) fn cloth_on_cloth(cases: &mut Cases) -> Result<(), LabError> {
+    // A hundredth above the angle gravity and friction nearly cancel, to the rounding of single precision.
+    let [all, fast]: [&[f64]; 2] = [&[1.01, 1.5, 2.5], &[1.5, 2.5]];
+    for (kind, slides) in [(MethodKind::ImplicitEuler, all), (MethodKind::Xpbd, fast)] {
+        let name = format!(", {}", kind.name());
+        coulomb(cases, &name, slides, |angle| slide_on_cloth(kind, angle))?;
+    }
+    Ok(())
+}
+
+/// Sticking below the angle of friction, and sliding at some tangents over its own; `slide` gives acceleration and
+/// displacement.
+fn coulomb(
+    cases: &mut Cases,
+    name: &str,
+    slides: &[f64],
+    slide: impl Fn(f64) -> Result<[f64; 2], LabError>,
+) -> Result<(), LabError> {
     for share in [0.5, 0.99] {
         let angle = (share * MU).atan();
         cases.measure(
-            format!("tan(angle) {share} of mu"),
+            format!("tan(angle) {share} of mu{name}"),
             Expected::zero(STICKS, 0.5 * 9.81 * 0.04),
             || slide(angle).map(|[_, moved]| moved),
         )?;
     }
-    for share in [1.01, 1.5, 2.5] {
+    for share in slides {
         let angle = (share * MU).atan();
         let expected = 9.81 * (angle.sin() - MU * angle.cos());
         cases.measure(
-            format!("tan(angle) {share} of mu"),
+            format!("tan(angle) {share} of mu{name}"),
             Expected::value(SLIDES, expected),
             || slide(angle).map(|[acceleration, _]| acceleration),
         )?;

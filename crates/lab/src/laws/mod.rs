@@ -33,7 +33,7 @@ pub struct Law {
 }
 
 /// Every law.
-pub static LAWS: [Law; 23] = [
+pub static LAWS: [Law; 24] = [
     Law {
         name: "cantilever",
         title: "a strip clamped horizontally bends by its weight: drop over reach against the heavy elastica, four kinds of mesh",
@@ -147,6 +147,12 @@ pub static LAWS: [Law; 23] = [
         title: "a cloth on an incline sticks or slides by Coulomb's law",
         tolerances: &friction::INCLINE,
         run: friction::incline,
+    },
+    Law {
+        name: "cloth-on-cloth",
+        title: "a cloth on a cloth sticks or slides by Coulomb's law",
+        tolerances: &friction::INCLINE,
+        run: friction::cloth_on_cloth,
     },
     Law {
         name: "capstan",

@@ -114,9 +114,14 @@ pub fn note_stages(record: &mut Record) {
     }
     note(record, "rest", &state);
     record.numbers("rest, residual", &[rest.residual()]);
-    let anchors = state.anchors.iter().map(|a| a.unwrap_or_else(Vec3::zeros));
-    record.vectors("rest, anchors", &anchors.collect::<Vec<_>>());
-    record.list("rest, normal forces", state.normal_forces.iter().copied());
+    let mut anchors = vec![Vec3::zeros(); state.samples.len()];
+    let mut forces = vec![0.0; state.samples.len()];
+    for friction in &state.solid_friction {
+        anchors[friction.sample as usize] = friction.anchor;
+        forces[friction.sample as usize] = friction.force;
+    }
+    record.vectors("rest, anchors", &anchors);
+    record.list("rest, normal forces", forces);
 }
 
 fn surface_of(collider: &Collider) -> std::sync::Arc<toile_geometry::SurfaceTree> {
