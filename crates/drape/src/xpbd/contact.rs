@@ -260,6 +260,11 @@ impl ContactConstraint {
         self.slip = slip.map(|x| x * share);
     }
 
+    /// The slip at which the spring of the law, which every other method has, bears as much as this one [m].
+    fn law_slip(&self, weight: f32, step: &ContactStep) -> Vec3 {
+        Vec3::from(self.slip.map(f64::from)) * step.softness(self.tangential_compliance, weight)
+    }
+
     /// Turns the slip with a solid that turns in the coming substep.
     pub fn turn(&mut self, solid: &Solid) {
         if self.sample != NO_SAMPLE
@@ -272,8 +277,8 @@ impl ContactConstraint {
         }
     }
 
-    /// Takes the slip of a sample from a state; coordinates are relative to `origin` [m].
-    pub fn recall(&mut self, state: &State) {
+    /// Takes the slip of a sample, of inverse mass `weight` [1/kg], from a state.
+    pub fn recall(&mut self, state: &State, weight: f32, step: &ContactStep) {
         self.slip = [0.0; 3];
         if self.sample == NO_SAMPLE {
             return;
@@ -282,12 +287,18 @@ impl ContactConstraint {
         if let Some(memory) = memory {
             let position = state.samples[self.sample as usize].position(&state.positions);
             let slip = position - memory.anchor;
+            let slip = slip / step.softness(self.tangential_compliance, weight);
             self.slip = [slip.x as f32, slip.y as f32, slip.z as f32];
         }
     }
 
-    /// The friction of a sample that presses, for a state; `kappa` is that of the last substep [1/s2].
-    pub fn remember(&self, state: &State, kappa: f64) -> Option<SolidFriction> {
+    /// The friction of a sample that presses, of inverse mass `weight` [1/kg], for a state after the last substep.
+    pub fn remember(
+        &self,
+        state: &State,
+        weight: f32,
+        step: &ContactStep,
+    ) -> Option<SolidFriction> {
         if self.sample == NO_SAMPLE || self.lambda_normal <= 0.0 {
             return None;
         }
@@ -295,8 +306,8 @@ impl ContactConstraint {
         Some(SolidFriction {
             sample: self.sample,
             solid: self.solid,
-            anchor: position - Vec3::from(self.slip.map(f64::from)),
-            force: kappa * f64::from(self.lambda_normal),
+            anchor: position - self.law_slip(weight, step),
+            force: f64::from(step.kappa) * f64::from(self.lambda_normal),
         })
     }
 }
@@ -360,6 +371,14 @@ impl ContactStep {
     pub fn tangential(&self, compliance: f32, weight: f32) -> f32 {
         (compliance * self.kappa).min(weight)
     }
+
+    /// How many times softer the spring of the law is than the one of [`Self::tangential`].
+    pub fn softness(&self, compliance: f32, weight: f32) -> f64 {
+        match weight > 0.0 {
+            true => f64::from((compliance * self.kappa / weight).max(1.0)),
+            false => 1.0,
+        }
+    }
 }
 
 /// A contact of a point sum a_i x_i of up to four vertices: a sample within a triangle, or a contact of cloth with
@@ -395,7 +414,7 @@ impl ContactStencil {
 
     /// Inverse mass of the point [1/kg].
     #[inline(always)]
-    fn weight(&self, points: &[Point]) -> f32 {
+    pub fn weight(&self, points: &[Point]) -> f32 {
         (self.vertices.iter().zip(self.weights))
             .map(|(&v, a)| a * a * points[v as usize][3])
             .sum()

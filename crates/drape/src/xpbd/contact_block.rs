@@ -73,10 +73,10 @@ impl ContactBlock {
     }
 
     /// [`ContactConstraint::recall`] for all lanes.
-    pub fn recall(&mut self, state: &State) {
-        for lane in 0..LANES {
+    pub fn recall(&mut self, state: &State, points: &[Point], step: &ContactStep) {
+        for (lane, point) in points.iter().enumerate() {
             let mut contact = self.get(lane);
-            contact.recall(state);
+            contact.recall(state, point[3], step);
             self.set(lane, &contact);
         }
     }

@@ -28,6 +28,7 @@ mod cloth;
 mod contact;
 mod contact_block;
 mod domains;
+mod friction;
 mod membrane;
 mod particles;
 mod region;
@@ -38,7 +39,7 @@ mod vertex_partition;
 use crate::collision::Tally;
 use crate::lanes::LANES;
 use crate::method::{Method, MethodSettings, StepReport};
-use crate::{ContactSample, DrapeError, Model, SolidFriction, State, System};
+use crate::{ContactSample, DrapeError, Model, State, System};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
 pub(crate) use cloth::{ClothContacts, Substeps};
@@ -124,6 +125,11 @@ pub struct Xpbd {
 struct BuiltFor {
     model: Model,
     samples: Arc<Vec<ContactSample>>,
+}
+
+/// (1 + drag h) / h^2 of a substep h [s] under a drag per mass [1/s], in 1/s2.
+fn kappa(h: f64, drag: f64) -> f64 {
+    (1.0 + drag * h) / (h * h)
 }
 
 impl BuiltFor {
@@ -273,9 +279,10 @@ impl Xpbd {
                     region.forget_slips();
                 }
             }
-            self.load(system, state, origin);
-            self.set_prescribed_velocities(system, state, substep * f64::from(count));
             let h = substep / f64::from(pieces);
+            self.load(system, state, origin);
+            self.recall_friction(state, &ContactStep::new(kappa(h, drag) as f32, h as f32));
+            self.set_prescribed_velocities(system, state, substep * f64::from(count));
             let motion = SubstepSize {
                 h,
                 drag,
@@ -350,12 +357,6 @@ impl Xpbd {
         let iterated = self.settings.iterations > 1;
         for region in self.regions.all_mut() {
             region.begin(iterated);
-            for contact in &mut region.contacts {
-                contact.constraint.recall(state);
-            }
-        }
-        for block in &mut self.particles.contacts {
-            block.recall(state);
         }
     }
 
@@ -409,25 +410,6 @@ impl Xpbd {
         }
     }
 
-    /// Stores the friction of contacts with solids in a state with the positions of the particles.
-    fn store_friction(&mut self, state: &mut State) {
-        let (points, step) = (
-            &self.particles.start,
-            ContactStep::new(self.kappa as f32, 0.0),
-        );
-        for (partition, region) in self.partition.partitions().zip(self.regions.all_mut()) {
-            region.end_substep(&points[self.partition.start(partition)..], &step);
-        }
-        let vertices = self.particles.contacts.iter();
-        let vertices = vertices.flat_map(|block| block.loaded().map(|lane| block.get(lane)));
-        let in_triangles = self.regions.all().flat_map(|region| &region.contacts);
-        let contacts = vertices.chain(in_triangles.map(|stencil| stencil.constraint));
-        let found = contacts.filter_map(|contact| contact.remember(state, self.kappa));
-        let mut found: Vec<SolidFriction> = found.collect();
-        found.sort_unstable_by_key(SolidFriction::key);
-        state.solid_friction = found;
-    }
-
     /// The vertex of the first particle with a position or velocity that is not finite.
     fn first_not_finite(&self) -> Option<usize> {
         let particles = &self.particles;
@@ -440,7 +422,7 @@ impl Xpbd {
 
     fn run(&mut self, system: &System, origin: Vec3, motion: &SubstepSize, count: u32) {
         let &SubstepSize { h, drag, time } = motion;
-        let kappa = (1.0 + drag * h) / (h * h);
+        let kappa = kappa(h, drag);
         self.set_step(system, h, kappa);
         let g = system.control.gravity;
         let motion = MotionStep {
