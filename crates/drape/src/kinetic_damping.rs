@@ -157,6 +157,8 @@ impl KineticDamping {
         }
         if self.finished() {
             stop(state);
+            // What friction bears where a swing is stopped came of the swing: rest finds its own.
+            state.solid_friction.clear();
         }
         Ok(())
     }
