@@ -17,6 +17,7 @@ fn the_quick_laws_hold_for_every_method() {
         "uniaxial",
         "flight",
         "incline",
+        "cloth-on-cloth",
         "fall",
     ];
     let checks = checks(&quick);
