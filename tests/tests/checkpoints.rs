@@ -271,7 +271,7 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     advance_to(&mut run, within(Stage::Sewing, 0, 1));
     check("sewing", &mut run, task(2));
     advance_to(&mut run, within(Stage::Swinging, 0, 0));
-    check("merged", &mut run, task(43));
+    check("merged", &mut run, task(13));
     advance_to(&mut run, within(Stage::Swinging, 0, 0));
     check("swinging", &mut run, task(25));
     advance_to(&mut run, within(Stage::Swinging, 0, 0));
@@ -281,7 +281,11 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     advance_to(&mut run, within(Stage::Swinging, 1, 0));
     let hand = hand(&run, 40);
     run.control_mut().attachments = [hand].into_iter().collect();
-    check("swinging on the fine mesh, held", &mut run, task(7));
+    check(
+        "swinging on the fine mesh, held, beyond a checkpoint",
+        &mut run,
+        task(43),
+    );
     advance_to(&mut run, within(Stage::Settling, 1, 1));
     run.control_mut().attachments = Default::default();
     check("settling", &mut run, task(19));
