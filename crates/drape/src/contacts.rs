@@ -256,7 +256,8 @@ fn find(
     let sample = &state.samples[at];
     let position = sample.position(positions);
     let offset = model.contact.offset + sample.extra_offset;
-    let reach = offset * REACH_IN_OFFSETS;
+    // A negative offset lies inside the solid; the reach is on its outer side all the same.
+    let reach = offset + (REACH_IN_OFFSETS - 1.0) * offset.abs();
     let moved = (position - clearance.position).norm();
     if moved.is_finite() && clearance.distance - moved > reach {
         return;

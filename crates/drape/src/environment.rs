@@ -27,6 +27,9 @@ pub struct Environment {
     /// Extra contact offset from solids of each layer over that of the next inner one [m], while layers pass through
     /// each other; none where contact keeps their order. It applies when a structure is compiled.
     pub(crate) layers_apart: Option<f64>,
+    /// By how much solids are thinner than they are drawn [m]: contact with them begins so much deeper. A garment that
+    /// is tight is sewn round a thinner body; the steps of sewing heed it, XPBD and explicit methods do not.
+    pub(crate) recess: f64,
 }
 
 /// Refuses a number that is not finite or below `least`.

@@ -239,6 +239,7 @@ impl Scene {
             damping: self.damping,
             contact: self.contact,
             layers_apart: None,
+            recess: 0.0,
         }
     }
 

@@ -31,6 +31,9 @@ pub struct Checkpoint {
     #[serde(with = "crate::exact")]
     gap_before_merging: f64,
     share: f64,
+    /// By how much the body is thinner than it is [m].
+    #[serde(default)]
+    recess: f64,
     findings: Vec<Finding>,
     steps: [usize; 2],
     tally: Tally,
@@ -74,6 +77,7 @@ impl GarmentRun {
             eliminated_pairs: self.workspace.eliminated_pairs(&self.system),
             gap_before_merging: self.gap_before_merging,
             share: self.share,
+            recess: self.recess,
             findings: self.findings.clone(),
             steps: self.steps,
             tally: self.cloth_tally(),
@@ -102,7 +106,8 @@ impl GarmentRun {
         let mut stage = checkpoint.stage;
         let is_sewn = matches!(stage, StageState::Sewing(_));
         let structure = (is_sewn, checkpoint.layout, edited.as_ref());
-        let (mut simulation, garment) = restored(&setup, level, structure)?;
+        let stand = (level, checkpoint.recess);
+        let (mut simulation, garment) = restored(&setup, stand, structure)?;
         if let StageState::Sewing(sewing) = &mut stage {
             sewing.resume(&mut simulation.system, setup.levels[level].stitches.clone());
         }
@@ -125,6 +130,7 @@ impl GarmentRun {
             stage,
             gap_before_merging: checkpoint.gap_before_merging,
             share: checkpoint.share,
+            recess: checkpoint.recess,
             findings: checkpoint.findings,
             steps: checkpoint.steps,
             tally: checkpoint.tally,
@@ -154,7 +160,7 @@ impl EditedShapes {
 /// the positions at compilation, and the edited rest shapes.
 fn restored(
     setup: &GarmentSetup,
-    level: usize,
+    (level, recess): (usize, f64),
     (is_sewn, layout, edited): (bool, Vec<Vec3>, Option<&EditedShapes>),
 ) -> Result<(Simulation, ObjectId), DrapeError> {
     let mut original = setup.clone();
@@ -165,10 +171,10 @@ fn restored(
         mut world,
         garment,
         solids,
-    } = original.world(level);
+    } = original.world(level, recess);
     if !is_sewn {
         world.merge(original.levels[level].seams(garment));
-        world.set_environment(original.worn_environment());
+        world.set_environment(original.worn_environment(recess));
     }
     let simulation = Simulation::laid_out(world, layout, solids);
     let mut simulation = simulation.map_err(|error| damaged("layout", &error.to_string()))?;

@@ -7,6 +7,7 @@ mod digest;
 mod edit;
 mod setup;
 mod stage;
+mod tight;
 mod watch;
 
 pub use checkpoint::Checkpoint;
@@ -52,6 +53,8 @@ pub struct GarmentRun {
     made_for: Option<Vec<[Vec2; 3]>>,
     gap_before_merging: f64,
     share: f64,
+    /// By how much the body is thinner than it is [m], while a tight garment is put on.
+    recess: f64,
     findings: Vec<Finding>,
     /// Steps of sewing and of settling in finished stages.
     steps: [usize; 2],
@@ -112,7 +115,7 @@ impl GarmentRun {
             world,
             garment,
             solids,
-        } = setup.world(0);
+        } = setup.world(0, 0.0);
         let mut simulation = Simulation::with_solids(world, solids)?;
         let sewing = SewRun::new(&mut simulation.system, Vec::new(), setup.sew);
         let mut run = Self {
@@ -123,6 +126,7 @@ impl GarmentRun {
             made_for: None,
             gap_before_merging: 0.0,
             share: 0.0,
+            recess: 0.0,
             findings: Vec::new(),
             steps: [0; 2],
             tally: Tally::default(),
@@ -156,7 +160,7 @@ impl GarmentRun {
     fn replace_mesh(&mut self, level: &GarmentLevel) -> Result<(), DrapeError> {
         let cloth = Box::new(level.cloth.clone());
         let edits = vec![
-            WorldEdit::SetEnvironment(Box::new(self.setup.sewing_environment())),
+            WorldEdit::SetEnvironment(Box::new(self.setup.sewing_environment(self.recess))),
             WorldEdit::ReplaceMesh(self.garment, cloth, level.layers()),
         ];
         self.simulation.edit_all(edits, MeetingPoint::Midpoint)?;
@@ -280,6 +284,9 @@ impl GarmentRun {
     }
 
     fn swing(&mut self) -> Result<(), DrapeError> {
+        if self.recess > 0.0 {
+            return self.grow_body();
+        }
         let StageState::Swinging(Swinging { damping, attempts }) = &mut self.stage else {
             return Ok(());
         };
@@ -322,6 +329,9 @@ impl GarmentRun {
         let (residual, steps) = (continuation.residual(), continuation.steps());
         settling.fall.note(residual, steps);
         let finished = continuation.finished() || settling.fall.is_stuck;
+        if settling.fall.is_stuck && settling.attempts.is_sunk {
+            return self.sew_round_thinner_body();
+        }
         if settling.cut_short && self.workspace.contacts.cloth.is_in_order() {
             settling.cut_short = false;
             if settling.attempts.swings < MOST_SWINGS {
@@ -423,15 +433,19 @@ impl GarmentRun {
             return Ok(());
         };
         let (gap, steps) = (sewing.last_gap(), sewing.steps());
+        let attempts = Attempts {
+            is_sunk: self.is_sunk(),
+            ..Attempts::default()
+        };
         let edits = vec![
-            WorldEdit::SetEnvironment(Box::new(self.setup.worn_environment())),
+            WorldEdit::SetEnvironment(Box::new(self.setup.worn_environment(self.recess))),
             WorldEdit::Merge(self.setup.levels[self.level].seams(self.garment)),
         ];
         self.simulation.edit_all(edits, MeetingPoint::Midpoint)?;
         self.simulation.reset_motion();
         self.steps[0] += steps;
         self.gap_before_merging = gap;
-        self.stage = self.swinging(Attempts::default());
+        self.stage = self.swinging(attempts);
         self.clear_caches();
         self.set_progress(0.5);
         Ok(())

@@ -84,9 +84,9 @@ impl GarmentSetup {
         Ok(self)
     }
 
-    /// The environment of sewing: no gravity, no friction. Layers pass through each other; the contact offset from
+    /// The environment of sewing round solids thinner by `recess` [m]: no gravity, no friction. Layers pass through each other; the contact offset from
     /// solids grows with the layer, so that most of each comes to lie in order.
-    pub(super) fn sewing_environment(&self) -> Environment {
+    pub(super) fn sewing_environment(&self, recess: f64) -> Environment {
         Environment {
             gravity: Vec3::zeros(),
             contact: ContactSettings {
@@ -95,24 +95,25 @@ impl GarmentSetup {
                 ..self.contact
             },
             layers_apart: Some(self.contact.cloth_offset),
-            ..self.worn_environment()
+            ..self.worn_environment(recess)
         }
     }
 
-    /// The environment of the merged garment: gravity and friction.
-    pub(super) fn worn_environment(&self) -> Environment {
+    /// The environment of the merged garment round solids thinner by `recess` [m]: gravity and friction.
+    pub(super) fn worn_environment(&self, recess: f64) -> Environment {
         Environment {
             gravity: self.gravity,
             air: Air::default(),
             damping: Damping::default(),
             contact: self.contact,
             layers_apart: None,
+            recess,
         }
     }
 
-    /// The world of sewing: the solids, and the panels of a level with open seams.
-    pub(super) fn world(&self, level: usize) -> GarmentWorld {
-        let mut world = World::new("garment", self.sewing_environment());
+    /// The world of sewing: the solids, thinner by `recess` [m], and the panels of a level with open seams.
+    pub(super) fn world(&self, level: usize, recess: f64) -> GarmentWorld {
+        let mut world = World::new("garment", self.sewing_environment(recess));
         let mut solids = Solids::new();
         for (index, surface) in self.colliders.iter().enumerate() {
             let solid = Object::fixed(format!("solid {index}"), surface.mesh().clone());

@@ -62,6 +62,9 @@ pub(super) struct Attempts {
     pub refinements: usize,
     /// Residual below which crossings of the body are searched next.
     pub check_below: f64,
+    /// Whether the panels placed round the body lay in it once they were sewn, round the body as it is.
+    #[serde(default)]
+    pub is_sunk: bool,
 }
 
 /// Residual below which crossings of the body are first searched: samples refined early need no steps of their own.
@@ -74,6 +77,7 @@ impl Default for Attempts {
             swings: 0,
             refinements: 0,
             check_below: FIRST_CHECK,
+            is_sunk: false,
         }
     }
 }

@@ -74,6 +74,7 @@ impl World {
         builder.colliders = self.solids(solids);
         let materials = self.cloths().flat_map(|(_, cloth)| &cloth.materials);
         builder.contact = environment.contact.for_cloth(materials);
+        builder.contact.offset -= environment.recess;
         let layers = self.layers(map);
         match environment.layers_apart {
             None => builder.layer = merged_layers(&layers, &map.target, map.count),
