@@ -3,7 +3,7 @@
 use crate::boundary::Boundary;
 use crate::creases::Creases;
 use crate::edges::EdgeTable;
-use crate::planar::{Frame, Planar, PlanarError};
+use crate::planar::{Frame, Planar};
 use crate::quality::{MeshQuality, smallest_angle};
 use crate::refinement::refine;
 use crate::sampling::{Sampling, sample};
@@ -12,7 +12,7 @@ use crate::size_field::SizeField;
 use crate::source::{EdgeSource, MeshSource};
 use crate::{AssemblyError, Diagnostic, Stitch};
 use std::sync::Arc;
-use toile_geometry::Vec2;
+use toile_geometry::{TriangulationError, Vec2};
 use toile_pattern::{Draft, Piece, PieceId};
 
 /// Most vertices a draft may ask for.
@@ -201,11 +201,12 @@ fn mesh_piece(
     refine(points, seeds, &frame, &field).map_err(|e| planar_error(piece, e))
 }
 
-fn planar_error(piece: &Piece, error: PlanarError) -> AssemblyError {
+fn planar_error(piece: &Piece, error: TriangulationError) -> AssemblyError {
     let reason = match error {
-        PlanarError::Duplicate => "two points of the outline coincide",
-        PlanarError::Conflict(_) => "the outline crosses itself",
-        PlanarError::Coordinate => "a coordinate is too large or too small",
+        TriangulationError::Duplicate => "two points of the outline coincide",
+        TriangulationError::Conflict(_) => "the outline crosses itself",
+        TriangulationError::Flat => "the outline has no area",
+        TriangulationError::Coordinate => "a coordinate is too large or too small",
     };
     AssemblyError::Outline {
         piece: piece.name.clone(),

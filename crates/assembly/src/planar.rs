@@ -1,9 +1,8 @@
 //! A plane triangulation that can be smoothed: triangles with their neighbours, edge flips and
-//! vertex stars. Built by spade's constrained Delaunay triangulation (Delaunay 1934, Chew 1989).
+//! vertex stars.
 
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::HashSet;
-use toile_geometry::{Vec2, orient2d};
+use toile_geometry::{TriangulationError, Vec2, delaunay_triangles, orient2d};
 
 /// No triangle on the other side of an edge.
 pub(crate) const NONE: usize = usize::MAX;
@@ -30,52 +29,11 @@ pub(crate) struct Planar {
     pub locked: Vec<[bool; 3]>,
 }
 
-/// Why no triangulation could be built.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PlanarError {
-    /// Two vertices coincide.
-    Duplicate,
-    /// Two fixed segments cross.
-    Conflict([usize; 2]),
-    /// A coordinate cannot be used.
-    Coordinate,
-}
-
-#[derive(Clone, Copy)]
-struct Numbered(Vec2);
-
-impl HasPosition for Numbered {
-    type Scalar = f64;
-    fn position(&self) -> Point2<f64> {
-        // Coordinates too small for exact predicates are zero for any garment.
-        let clean = |x: f64| if x.abs() < 1e-20 { 0.0 } else { x };
-        Point2::new(clean(self.0.x), clean(self.0.y))
-    }
-}
-
 impl Planar {
     /// Constrained Delaunay triangulation of the inside of a frame.
-    pub fn new(points: Vec<Vec2>, frame: &Frame) -> Result<Self, PlanarError> {
-        let constraints: Vec<[usize; 2]> =
-            frame.walls.iter().chain(&frame.creases).copied().collect();
-        let mut conflict = None;
-        let numbered = points.iter().map(|&p| Numbered(p)).collect();
-        let cdt: ConstrainedDelaunayTriangulation<Numbered> =
-            ConstrainedDelaunayTriangulation::try_bulk_load_cdt(numbered, constraints, |edge| {
-                conflict.get_or_insert(edge);
-            })
-            .map_err(|_| PlanarError::Coordinate)?;
-        if cdt.num_vertices() != points.len() {
-            return Err(PlanarError::Duplicate);
-        }
-        if let Some(edge) = conflict {
-            return Err(PlanarError::Conflict(edge));
-        }
-        let mut all: Vec<[usize; 3]> = cdt
-            .inner_faces()
-            .map(|face| face.vertices().map(|v| v.fix().index()))
-            .collect();
-        all.sort_unstable();
+    pub fn new(points: Vec<Vec2>, frame: &Frame) -> Result<Self, TriangulationError> {
+        let segments = frame.walls.iter().chain(&frame.creases).copied().collect();
+        let all = delaunay_triangles(&points, segments)?;
         let mut planar = Self {
             points,
             triangles: all,

@@ -1,10 +1,10 @@
 //! Interior vertices of a piece: seeded, added where triangles are too large, removed where
 //! they crowd, smoothed until triangles are nearly equilateral.
 
-use crate::planar::{Frame, NONE, Planar, PlanarError};
+use crate::planar::{Frame, NONE, Planar};
 use crate::size_field::SizeField;
 use crate::smoothing;
-use toile_geometry::{Vec2, orient2d};
+use toile_geometry::{TriangulationError, Vec2, orient2d};
 
 /// Rounds of adding and removing vertices.
 const ROUNDS: usize = 10;
@@ -22,7 +22,7 @@ pub(crate) fn refine(
     seeds: Vec<Vec2>,
     frame: &Frame,
     field: &SizeField,
-) -> Result<Planar, PlanarError> {
+) -> Result<Planar, TriangulationError> {
     let mut points = fixed;
     points.extend(seeds);
     let mut planar = Planar::new(points, frame)?;

@@ -117,7 +117,9 @@ impl Scan {
         }
         let height = high.y - low.y;
         if !(0.12..6.0).contains(&height) {
-            return bad("is not between 0.12 and 6 m tall along Y: give metres, Y up");
+            return bad(
+                "is not between 0.12 and 6 m tall along Y: give metres, Y up, or say its unit and which axis is up",
+            );
         }
         if mesh.volume() <= 0.0 {
             return bad("is inside out: turn its triangles round");

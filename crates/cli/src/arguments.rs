@@ -1,6 +1,6 @@
 //! The commands of the command line with their options.
 
-use crate::body_options::BodyOptions;
+use crate::body_options::{BodyOptions, StanceOptions};
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
 use crate::values::{blend, one_size, panel_origin, sizes};
@@ -373,12 +373,12 @@ pub struct Body {
     /// A mannequin file (JSON) to make the body from, as --out NAME.json writes it.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "mesh"])]
     pub mannequin: Option<PathBuf>,
-    /// Measure somebody's mesh instead: a closed OBJ file (m, Y up, facing +Z). --out then is the
+    /// Measure somebody's mesh instead: a closed OBJ or PLY file of someone standing. --out then is the
     /// table of measurements (JSON), ready for --measurements.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "motion"])]
     pub mesh: Option<PathBuf>,
-    /// Fit a mannequin of 150 ellipsoids to somebody's mesh: a closed OBJ file (m, Y up, facing
-    /// +Z, arms held off the trunk). Both sides become alike. Says how far it lies from the mesh.
+    /// Fit a mannequin of 150 ellipsoids to somebody's mesh: a closed OBJ or PLY file of someone
+    /// standing, arms held off the trunk. Both sides become alike. Says how far it lies from the mesh.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "mesh", "mannequin"])]
     pub fit: Option<PathBuf>,
     /// Landmarks of --mesh or --fit (JSON): heights over the sole (m) crotch, hips, waist, underbust, bust,
@@ -386,6 +386,8 @@ pub struct Body {
     /// Default: heights are found, what needs points is left out.
     #[arg(long, value_name = "FILE")]
     pub landmarks: Option<PathBuf>,
+    #[command(flatten)]
+    pub stance: StanceOptions,
     #[command(flatten)]
     pub stretch: BodyOptions,
     /// Edits of its ellipsoids, made last (JSON list, m and rad), as in

@@ -3,7 +3,34 @@
 use crate::output::Failure;
 use clap::Args;
 use toile_geometry::Length;
-use toile_session::{BodyStretch, Scaling, proportions_named, proportions_of_heads};
+use toile_session::{
+    AskedStance, Axis, BodyStretch, MeshUnit, Scaling, proportions_named, proportions_of_heads,
+};
+
+/// How a mesh stands in its file.
+#[derive(Debug, Args)]
+pub struct StanceOptions {
+    /// Axis of the mesh that is up: x, y, z, -x, -y or -z. Default: seen by legs, trunk and head, else y.
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    up: Option<Axis>,
+    /// Axis of the mesh that the person faces along. Default: seen by the feet, else z (-y if z is up).
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    forward: Option<Axis>,
+    /// Unit of the mesh: m, cm, mm, in or ft. Default: told by the person's height.
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<MeshUnit>,
+}
+
+impl StanceOptions {
+    /// What is asked for.
+    pub fn asked(&self) -> AskedStance {
+        AskedStance {
+            up: self.up,
+            forward: self.forward,
+            unit: self.unit,
+        }
+    }
+}
 
 /// A proportion box and five ratios, applied in this order to joints and ellipsoids of a fitted
 /// mannequin or of the figure's own.

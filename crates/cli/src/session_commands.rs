@@ -5,7 +5,7 @@ use crate::bar::Bar;
 use crate::output::{Failure, Made, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use toile_session::{Command, Event, ExpectedKind, Session, read_input, read_journal};
+use toile_session::{Command, Event, Session, is_input, open_journal};
 
 /// The whole job.
 pub fn make(make: &Make, output: &Output) -> Result<Made, Failure> {
@@ -80,7 +80,7 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
             measurements: Some(file),
             ..
         } = command
-            && !file.exists()
+            && !is_input(file)
         {
             return Err(Failure::bad_input(format!(
                 "--body: there is no file {}; give woman, man, mean, child-2 to child-14, a file of measurements, or \
@@ -95,9 +95,10 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
 /// A journal done again.
 pub fn replay(replay: &Replay, output: &Output) -> Result<Made, Failure> {
     let about = |error: toile_session::SessionError| Failure::from(error).about(&replay.journal);
-    let text = read_input(&replay.journal, ExpectedKind::Journal).map_err(about)?;
-    let commands = read_journal(&text).map_err(about)?;
-    let (_, events) = Session::replay(&commands, &replay.out, &mut Bar::new()).map_err(about)?;
+    let (commands, notes) = open_journal(&replay.journal).map_err(about)?;
+    let (_, made) = Session::replay(&commands, &replay.out, &mut Bar::new()).map_err(about)?;
+    let warned = notes.into_iter().map(|message| Event::Warned { message });
+    let events: Vec<Event> = warned.chain(made).collect();
     output.print_events(&events);
     Ok(outcome(&events, &replay.out))
 }

@@ -9,10 +9,10 @@ use std::sync::Arc;
 use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project, RunOptions,
-    SizeChoice, convert as convert_file, edit_body, figure_named, fit_mesh, make_body,
-    measure_mesh, mesh_panels, open_body_edits, open_mannequin, open_measurements, run_scene,
-    stretch_body,
+    AskedStance, BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, PersonFile,
+    Project, RunOptions, SizeChoice, convert as convert_file, edit_body, figure_named, fit_mesh,
+    make_body, measure_mesh, mesh_panels, open_body_edits, open_mannequin, open_measurements,
+    run_scene, stretch_body,
 };
 
 /// A pattern in another format.
@@ -78,9 +78,10 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         blend: body.blend.clone(),
         time: body.time.map_or(0.0, Duration::as_seconds),
     });
-    if body.landmarks.is_some() && body.fit.is_none() {
+    let is_of_mesh = body.landmarks.is_some() || body.stance.asked() != AskedStance::default();
+    if is_of_mesh && body.fit.is_none() {
         return Err(Failure::bad_input(
-            "--landmarks goes with --mesh or --fit".to_owned(),
+            "--landmarks, --up, --forward and --unit go with --mesh or --fit".to_owned(),
         ));
     }
     let fit = match &body.fit {
@@ -127,7 +128,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
     let missed = asked.map_or_else(Vec::new, |asked| asked.missed_by(&report.proportions));
     for (name, asked, got) in &missed {
         output.warn(format!(
-            "note: {name}: asked {asked:.2}, got {got:.2} head lengths, the nearest that this body comes to"
+            "note: {name}: asked {asked:.2}, got {got:.2} head lengths, the nearest that this body comes to: its chin moves from ring to ring of the skin"
         ));
     }
     output.say(format!(
@@ -206,9 +207,21 @@ fn edited_body(
     edit_body(described, project, &list).map_err(|error| Failure::from(error).about(edits))
 }
 
+/// The file of somebody's mesh, with what the options say of it.
+fn person<'a>(mesh: &'a Path, body: &'a Body) -> PersonFile<'a> {
+    PersonFile {
+        mesh,
+        landmarks: body.landmarks.as_deref(),
+        stance: body.stance.asked(),
+    }
+}
+
 /// A mannequin fitted to a mesh, with what it misses it by.
 fn fitted_mesh(mesh: &Path, figure: Figure, body: &Body, output: &Output) -> Result<Fit, Failure> {
-    let fit = fit_mesh(mesh, body.landmarks.as_deref(), figure).map_err(Failure::from)?;
+    let (fit, notes) = fit_mesh(&person(mesh, body), figure).map_err(Failure::from)?;
+    for note in notes {
+        output.warn(format!("note: {note}"));
+    }
     let m = &fit.misfit;
     output.say(format!(
         "{} primitives; over {} level sections from ankles to chin, without hands: radial {:.2} mm rms ({:.1} at most), girth {:.2} mm rms ({:.1} at most)",
@@ -242,7 +255,10 @@ fn fitted_mesh(mesh: &Path, figure: Figure, body: &Body, output: &Output) -> Res
 
 /// What a tape finds on somebody's mesh.
 fn measured_mesh(mesh: &Path, body: &Body, output: &Output) -> Result<Value, Failure> {
-    let found = measure_mesh(mesh, body.landmarks.as_deref(), &body.out).map_err(Failure::from)?;
+    let found = measure_mesh(&person(mesh, body), &body.out).map_err(Failure::from)?;
+    for note in &found.notes {
+        output.warn(format!("note: {note}"));
+    }
     for (name, measured) in found.measurements.iter() {
         output.say(format!("{name:<22} {:>10.2} cm", measured.value * 100.0));
     }
@@ -256,6 +272,7 @@ fn measured_mesh(mesh: &Path, body: &Body, output: &Output) -> Result<Value, Fai
         "files": [body.out],
         "measurements": listed,
         "landmarks": found.landmarks,
+        "notes": found.notes,
     }))
 }
 

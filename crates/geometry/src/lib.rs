@@ -25,6 +25,7 @@ mod rings;
 mod section;
 mod tree;
 mod triangle;
+mod triangulate;
 mod units;
 
 pub use closest::{closest_on_face, closest_on_segments};
@@ -49,6 +50,7 @@ pub use rings::{RingCrossings, Rings};
 pub use section::{closed_length, horizontal_section};
 pub use tree::{ClosestPoint, SurfaceTree};
 pub use triangle::{Feature, closest_point_on_triangle, tetrahedron_volume, triangle_area};
+pub use triangulate::{TriangulationError, delaunay_triangles, polygon_triangles};
 pub use units::{Angle, Duration, Length, UnitError};
 
 /// Point or vector in the plane \[m\].

@@ -256,6 +256,69 @@ impl TriangleMesh {
         vertices - self.topology().edges.len() as i64 + self.triangles.len() as i64
     }
 
+    /// Turns triangles round so that neighbours agree, the fewer to the side of the more, and so that a closed mesh faces
+    /// outward. Triangles that hang together without two sides, as a band with a half turn, stay. Gives how many were
+    /// turned.
+    pub fn orient(&mut self) -> usize {
+        let mut turned = self.odd_ones();
+        let mut trial = self.clone();
+        trial.turn(&turned);
+        if trial.is_closed_and_oriented() && trial.volume() < 0.0 {
+            turned.iter_mut().for_each(|t| *t = !*t);
+        }
+        self.turn(&turned);
+        turned.into_iter().filter(|t| *t).count()
+    }
+
+    fn turn(&mut self, turned: &[bool]) {
+        for (triangle, _) in self.triangles.iter_mut().zip(turned).filter(|(_, t)| **t) {
+            triangle.swap(1, 2);
+        }
+    }
+
+    /// Triangles that face another way than most of those they hang together with across edges of two triangles.
+    fn odd_ones(&self) -> Vec<bool> {
+        let topology = self.topology();
+        let walks = |t: u32, [a, b]: [u32; 2]| {
+            let [p, q, r] = self.triangles[t as usize];
+            [[p, q], [q, r], [r, p]].contains(&[a, b])
+        };
+        let mut side: Vec<Option<bool>> = vec![None; self.triangles.len()];
+        for start in 0..self.triangles.len() {
+            if side[start].is_some() {
+                continue;
+            }
+            side[start] = Some(false);
+            let (mut part, mut has_sides) = (vec![start], true);
+            let mut at = 0;
+            while let Some(&t) = part.get(at) {
+                at += 1;
+                for &edge in &topology.triangle_edges[t] {
+                    let [one, two] = topology.edge_triangles[edge as usize][..] else {
+                        continue;
+                    };
+                    let ends = topology.edges[edge as usize];
+                    let agree = walks(one, ends) != walks(two, ends);
+                    let other = if one as usize == t { two } else { one } as usize;
+                    let expected = side[t].map(|s| s == agree);
+                    match side[other] {
+                        None => {
+                            side[other] = expected;
+                            part.push(other);
+                        }
+                        known => has_sides &= known == expected,
+                    }
+                }
+            }
+            let odd = part.iter().filter(|&&t| side[t] == Some(true)).count();
+            for &t in &part {
+                let is_odd = side[t] == Some(2 * odd <= part.len());
+                side[t] = Some(has_sides && odd > 0 && is_odd);
+            }
+        }
+        side.into_iter().map(|s| s == Some(true)).collect()
+    }
+
     /// Whether every edge has exactly two triangles that walk it in opposite directions.
     pub fn is_closed_and_oriented(&self) -> bool {
         let mut directed: HashMap<[u32; 2], u32> = HashMap::new();
@@ -295,6 +358,39 @@ pub(crate) mod tests {
             (corner - Vec3::repeat(1.0 / 3f64.sqrt())).norm() < 1e-14,
             "{corner:?}"
         );
+    }
+
+    #[test]
+    fn a_mesh_is_turned_outward_and_its_odd_triangles_to_the_others() {
+        let whole = cube();
+        let mut mesh = cube();
+        assert_eq!(mesh.orient(), 0);
+        mesh.triangles[3].swap(1, 2);
+        mesh.triangles[7].swap(1, 2);
+        assert_eq!(mesh.orient(), 2);
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        assert_eq!(mesh.orient(), 12);
+        assert!(mesh.is_closed_and_oriented());
+        assert!((mesh.volume() - whole.volume()).abs() < 1e-15);
+        // An open one stays on the side of the more.
+        mesh.triangles.truncate(10);
+        mesh.triangles[..7].iter_mut().for_each(|t| t.swap(1, 2));
+        assert_eq!(mesh.orient(), 3);
+        // A band with a half turn has one side.
+        let mut band = TriangleMesh {
+            positions: (0..6)
+                .map(|k| Vec3::new(f64::from(k / 2), f64::from(k % 2), 0.0))
+                .collect(),
+            triangles: vec![
+                [0, 1, 2],
+                [1, 3, 2],
+                [2, 3, 4],
+                [3, 5, 4],
+                [4, 5, 1],
+                [5, 0, 1],
+            ],
+        };
+        assert_eq!(band.orient(), 0);
     }
 
     #[test]

@@ -27,14 +27,18 @@ mod marker_settings;
 mod marker_strokes;
 mod marker_svg;
 mod measurements_foreign;
+mod measurements_formulas;
 mod measurements_garmentcode;
 mod measurements_json;
 mod measurements_seamly;
+mod mesh_read;
 mod native;
 mod obj;
 mod obj_read;
 mod pdf;
 mod pdf_fonts;
+mod ply;
+mod polygon;
 mod print;
 mod proportions;
 mod recognise;
@@ -78,14 +82,17 @@ pub use measurements_foreign::read_freesewing;
 pub use measurements_garmentcode::read_body_yaml;
 pub use measurements_json::{read_measurements, read_sized_measurements, write_measurements};
 pub use measurements_seamly::{SizeChoice, read_seamly};
+pub use mesh_read::read_mesh;
 pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
+pub use ply::read_ply;
 pub use print::{Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock};
 pub use proportions::{proportion_boxes, read_proportions};
 pub use recognise::{ExpectedKind, FileKind};
 pub use scene::{
-    AirFile, DampingFile, ElasticFile, EndFile, ObjectFile, SceneFile, TransformFile, read_scene,
+    AirFile, DampingFile, ElasticFile, EndFile, MeshesFile, ObjectFile, SceneFile, TransformFile,
+    read_scene,
 };
 pub use scene_material::MaterialFile;
 pub use scene_motion::{GripFile, KeyFile, MotionFile};

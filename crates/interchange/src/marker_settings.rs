@@ -61,12 +61,10 @@ pub struct FabricSettings {
     pub price_per_metre: Option<f64>,
     /// Print that repeats.
     pub print: Option<PrintSettings>,
-    /// Flaws no piece may lie on.
-    #[serde(default)]
-    pub flaws: Vec<FlawSettings>,
+    /// Flaws no piece may lie on; none where the list is empty.
+    pub flaws: Option<Vec<FlawSettings>>,
     /// Rolls at hand, filled in this order. Without any, as much as it takes.
-    #[serde(default)]
-    pub rolls: Vec<RollSettings>,
+    pub rolls: Option<Vec<RollSettings>>,
 }
 
 /// A roll of fabric.
@@ -81,9 +79,8 @@ pub struct RollSettings {
     pub length: Option<Metres>,
     /// Price of a metre of length; the fabric's if it is not given.
     pub price_per_metre: Option<f64>,
-    /// Its flaws, beside those of the fabric.
-    #[serde(default)]
-    pub flaws: Vec<FlawSettings>,
+    /// Its flaws, none where the list is empty; the fabric's if they are not given.
+    pub flaws: Option<Vec<FlawSettings>>,
 }
 
 /// A print that repeats.
@@ -230,7 +227,8 @@ fn check(settings: &MarkerSettings) -> Result<(), FormatError> {
     let refuse = |place: String, what: String, hint: &str| Err(FormatError::new(place, what, hint));
     for (name, fabric) in &settings.fabrics {
         let place = format!("fabrics.{name}");
-        let prices = fabric.rolls.iter().map(|r| r.price_per_metre);
+        let rolls = fabric.rolls.iter().flatten();
+        let prices = rolls.map(|r| r.price_per_metre);
         for price in prices.chain([fabric.price_per_metre]).flatten() {
             if !(price.is_finite() && price >= 0.0) {
                 let what = format!("the price is {price}");
@@ -285,8 +283,11 @@ mod tests {
         assert_eq!(twill.width, Some(Metres(1.5)));
         assert_eq!(twill.nap, Some(NapField(Nap::PerBundle)));
         assert_eq!(twill.spread, Some(Spread::FaceToFace));
-        assert_eq!(twill.flaws[0].size, [Metres(0.03), Metres(0.0254)]);
-        assert_eq!(twill.rolls.len(), 2);
+        assert_eq!(
+            twill.flaws.as_ref().unwrap()[0].size,
+            [Metres(0.03), Metres(0.0254)]
+        );
+        assert_eq!(twill.rolls.as_ref().unwrap().len(), 2);
         assert_eq!(settings.pieces["*"].tilt, Some(2.0));
         assert_eq!(settings.pieces["front"].block, Some(Metres(0.02)));
         assert_eq!(settings.matched[0][1], "back.hip");

@@ -2,6 +2,7 @@
 
 use crate::FormatError;
 use crate::measurements_foreign::{put, refuse_empty};
+use crate::measurements_formulas::{Written, values_of};
 use crate::xml::Xml;
 use roxmltree::Node;
 use toile_measure::{Measurements, SEAMLY, translated};
@@ -47,7 +48,7 @@ pub(crate) fn one_size() -> FormatError {
 /// since no body has it.
 ///
 /// # Errors
-/// A unit other than mm, cm and inch, a value that is not a number (a formula), no value at all;
+/// A unit other than mm, cm and inch, a value that is no number and no formula on others, no value at all;
 /// a size or height that the table does not have.
 pub fn read_seamly(
     text: &str,
@@ -62,10 +63,7 @@ pub fn read_seamly(
         None => [0.0; 2],
         Some(sizes) => sizes.choose(choice, &mut notes)?,
     };
-    let mut rows = Vec::new();
-    for node in xml.elements().filter(|node| is(*node, "m")) {
-        rows.push(Row::read(node, xml.line(node), steps)?);
-    }
+    let mut rows = rows_of(&xml, steps)?;
     rows.retain(|row| row.number != 0.0);
     if sizes.is_some() {
         leave_out(&mut rows, scale, &mut notes);
@@ -210,6 +208,24 @@ fn words([size, height]: [f64; 2]) -> String {
     format!("size {} of height {} cm", in_cm(size), in_cm(height))
 }
 
+/// The measurements of a file at so many steps of size and height from its base.
+fn rows_of(xml: &Xml<'_>, steps: [f64; 2]) -> Result<Vec<Row>, FormatError> {
+    let (mut written, mut growths) = (Vec::new(), Vec::new());
+    for node in xml.elements().filter(|node| is(*node, "m")) {
+        let row = written_of(node, xml.line(node))?;
+        growths.push(growth(node, &row, steps)?);
+        written.push(row);
+    }
+    let values = values_of(&written)?;
+    let grown = values.into_iter().zip(growths);
+    let row = |(row, (value, growth)): (Written, (f64, f64))| Row {
+        line: row.line,
+        name: row.name,
+        number: value + growth,
+    };
+    Ok(written.into_iter().zip(grown).map(row).collect())
+}
+
 /// A measurement of a file, in its own name and unit.
 struct Row {
     line: usize,
@@ -217,40 +233,37 @@ struct Row {
     number: f64,
 }
 
-impl Row {
-    /// The measurement at so many steps of size and height from the base.
-    fn read(node: Node<'_, '_>, line: usize, steps: [f64; 2]) -> Result<Self, FormatError> {
-        let Some(name) = node.attribute("name").filter(|name| !name.is_empty()) else {
-            return Err(FormatError::new(
-                place(line),
-                "a measurement without a name",
-                "name it",
-            ));
-        };
-        let number = |field: &str| number_of(node, (field, name), line);
-        let base = match number("value")? {
-            Some(value) => Some(value),
-            None => number("base")?,
-        };
-        let Some(base) = base else {
-            return Err(FormatError::new(
-                place(line),
-                format!("{name:?} has no value"),
-                "give it a number",
-            ));
-        };
-        let increments = [number("size_increase")?, number("height_increase")?];
-        let grown: f64 = increments
-            .into_iter()
-            .zip(steps)
-            .map(|(increment, step)| increment.unwrap_or_default() * step)
-            .sum();
-        Ok(Self {
-            line,
-            name: name.to_owned(),
-            number: base + grown,
-        })
-    }
+/// The value of a measurement as it is written.
+fn written_of(node: Node<'_, '_>, line: usize) -> Result<Written, FormatError> {
+    let Some(name) = node.attribute("name").filter(|name| !name.is_empty()) else {
+        return Err(FormatError::new(
+            place(line),
+            "a measurement without a name",
+            "name it",
+        ));
+    };
+    let Some(text) = node.attribute("value").or(node.attribute("base")) else {
+        return Err(FormatError::new(
+            place(line),
+            format!("{name:?} has no value"),
+            "give it a number",
+        ));
+    };
+    Ok(Written {
+        line,
+        name: name.to_owned(),
+        text: text.to_owned(),
+    })
+}
+
+/// What a measurement grows by over so many steps of size and height.
+fn growth(node: Node<'_, '_>, row: &Written, steps: [f64; 2]) -> Result<f64, FormatError> {
+    let number = |field: &str| number_of(node, (field, &row.name), row.line);
+    let increments = [number("size_increase")?, number("height_increase")?];
+    let each = increments.into_iter().zip(steps);
+    Ok(each
+        .map(|(increment, step)| increment.unwrap_or_default() * step)
+        .sum())
 }
 
 /// A field of an element as a number; nothing if it does not have it.
@@ -268,7 +281,7 @@ fn number_of(
         None => Err(FormatError::new(
             place(line),
             format!("the {field} of {name:?} is {text:?}, not a number"),
-            "replace the formula by the number it gives",
+            "give a number",
         )),
     }
 }

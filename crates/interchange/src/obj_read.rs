@@ -1,14 +1,17 @@
 //! Reads Wavefront OBJ.
 
+use crate::polygon::{distinct_corners, triangles_of};
 use crate::{FormatError, ObjGroup, ObjMesh};
+use std::ops::Range;
 use toile_geometry::{Vec2, Vec3};
 
-/// Reads OBJ text. Polygons are cut into a fan from their first corner; materials, smoothing
-/// groups, lines and points are passed over.
+/// Reads OBJ text. Polygons of any shape become triangles; materials, smoothing groups, lines and
+/// points are passed over.
 ///
 /// # Errors
 /// With the line number: a number that is missing or not finite, an index that points nowhere, a
-/// polygon of fewer than three corners, free-form surfaces, an unknown keyword; or no face at all.
+/// polygon of fewer than three corners, without area or that crosses itself, free-form surfaces, an
+/// unknown keyword; or no face at all.
 pub fn read_obj(bytes: &[u8]) -> Result<ObjMesh, FormatError> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -40,9 +43,15 @@ const LIST_NAMES: [&str; 3] = ["position", "texture coordinate", "normal"];
 #[derive(Default)]
 struct Reader {
     mesh: ObjMesh,
-    /// Corners of triangles with the line they stand on.
-    faces: Vec<([Corner; 3], usize)>,
-    polygon: Vec<Corner>,
+    /// Corners of all faces, one after another.
+    corners: Vec<Corner>,
+    faces: Vec<Face>,
+}
+
+/// A polygon: its corners and the line it stands on.
+struct Face {
+    corners: Range<usize>,
+    line: usize,
 }
 
 impl Reader {
@@ -115,35 +124,18 @@ impl Reader {
         words: impl Iterator<Item = &'a str>,
         number: usize,
     ) -> Result<(), FormatError> {
-        self.polygon.clear();
+        let mut polygon = Vec::new();
         for word in words {
-            let corner = self.corner(word, number)?;
-            // Some exporters write a triangle as a quad with one corner twice.
-            if self.polygon.last().is_none_or(|last| last[0] != corner[0]) {
-                self.polygon.push(corner);
-            }
+            polygon.push(self.corner(word, number)?);
         }
-        if self.polygon.len() > 1 && self.polygon[0][0] == self.polygon[self.polygon.len() - 1][0] {
-            self.polygon.pop();
-        }
-        if self.polygon.len() < 3 {
-            return Err(at_line(
-                number,
-                format!("a face of {} different corners", self.polygon.len()),
-                "give at least three, or remove the line",
-            ));
-        }
-        for k in 1..self.polygon.len() - 1 {
-            let fan = [self.polygon[0], self.polygon[k], self.polygon[k + 1]];
-            if fan[0][0] == fan[1][0] || fan[0][0] == fan[2][0] {
-                return Err(at_line(
-                    number,
-                    "a face comes back to its first corner midway",
-                    "split it into simple polygons",
-                ));
-            }
-            self.faces.push((fan, number));
-        }
+        distinct_corners(&mut polygon, |corner| corner[0])
+            .map_err(|fault| fault.at(format!("line {number}")))?;
+        let start = self.corners.len();
+        self.corners.extend(polygon);
+        self.faces.push(Face {
+            corners: start..self.corners.len(),
+            line: number,
+        });
         Ok(())
     }
 
@@ -176,7 +168,6 @@ impl Reader {
 
     /// Faces may come before their vertices, so indices are compared with the final counts.
     fn finish(mut self) -> Result<ObjMesh, FormatError> {
-        let mesh = &mut self.mesh;
         if self.faces.is_empty() {
             return Err(FormatError::new(
                 "end of the file",
@@ -184,39 +175,57 @@ impl Reader {
                 "check that this is an OBJ file of a surface",
             ));
         }
+        self.check_indices()?;
+        let mesh = &mut self.mesh;
+        let has = |k: usize| self.corners.iter().all(|corner| corner[k].is_some());
+        let (textured, with_normals) = (has(1), has(2));
+        // Triangles before each face, for the groups.
+        let mut before = vec![0];
+        for face in &self.faces {
+            let corners = &self.corners[face.corners.clone()];
+            let place = |corner: &Corner| mesh.positions[corner[0].unwrap_or_default() as usize];
+            let places: Vec<Vec3> = corners.iter().map(place).collect();
+            let triangles =
+                triangles_of(&places).map_err(|fault| fault.at(format!("line {}", face.line)))?;
+            for triangle in triangles {
+                let of = |k: usize| triangle.map(|c| corners[c][k].unwrap_or_default());
+                mesh.triangles.push(of(0));
+                if textured {
+                    mesh.texture_triangles.push(of(1));
+                }
+                if with_normals {
+                    mesh.normal_triangles.push(of(2));
+                }
+            }
+            before.push(mesh.triangles.len());
+        }
+        if let Some(last) = mesh.groups.last_mut() {
+            last.triangles.end = self.faces.len();
+        }
+        for group in &mut mesh.groups {
+            group.triangles = before[group.triangles.start]..before[group.triangles.end];
+        }
+        mesh.groups.retain(|group| !group.triangles.is_empty());
+        Ok(self.mesh)
+    }
+
+    /// Refuses the first index that points nowhere.
+    fn check_indices(&self) -> Result<(), FormatError> {
+        let mesh = &self.mesh;
         let counts = [mesh.positions.len(), mesh.texture.len(), mesh.normals.len()];
-        for (corners, number) in &self.faces {
-            for corner in corners {
+        for face in &self.faces {
+            for corner in &self.corners[face.corners.clone()] {
                 for k in 0..3 {
                     if let Some(index) = corner[k]
                         && index as usize >= counts[k]
                     {
-                        return Err(missing_entry(k, i64::from(index) + 1, counts[k], *number));
+                        let index = i64::from(index) + 1;
+                        return Err(missing_entry(k, index, counts[k], face.line));
                     }
                 }
             }
         }
-        let has = |k: usize| {
-            self.faces
-                .iter()
-                .all(|(corners, _)| corners.iter().all(|c| c[k].is_some()))
-        };
-        let (textured, with_normals) = (has(1), has(2));
-        for (corners, _) in &self.faces {
-            let list = |k: usize| corners.map(|c| c[k].unwrap_or_default());
-            mesh.triangles.push(list(0));
-            if textured {
-                mesh.texture_triangles.push(list(1));
-            }
-            if with_normals {
-                mesh.normal_triangles.push(list(2));
-            }
-        }
-        if let Some(last) = mesh.groups.last_mut() {
-            last.triangles.end = mesh.triangles.len();
-        }
-        mesh.groups.retain(|group| !group.triangles.is_empty());
-        Ok(self.mesh)
+        Ok(())
     }
 }
 
@@ -347,7 +356,7 @@ mod tests {
             ("f 1//1 2//1 3//1", "normal 1 does not exist"),
             ("f 1 2", "a face of 2 different corners"),
             ("f 1 2 2 1", "a face of 2 different corners"),
-            ("f 1 2 1 3", "midway"),
+            ("f 1 2 1 3", "a corner twice"),
             ("f 1/1/1/1 2 3", "cannot be read"),
             ("f /1 2 3", "cannot be read"),
             ("f 1.5 2 3", "cannot be read"),
@@ -355,6 +364,34 @@ mod tests {
             let got = failure(&format!("{three}{face}\n"));
             assert!(got.contains(expected), "{face:?} gave {got}");
         }
+    }
+
+    #[test]
+    fn polygons_that_are_none_are_refused_with_their_remedy() {
+        let corners = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\n";
+        for (face, expected) in [
+            ("f 1 2 3 4", "line 8: a polygon without area"),
+            (
+                "f 1 2 6 7 5",
+                "line 8: two corners of a polygon lie in one place",
+            ),
+            ("f 1 6 2 5", "line 8: a polygon that crosses itself"),
+        ] {
+            let got = failure(&format!("{corners}{face}\n"));
+            assert!(got.contains(expected), "{face:?} gave {got}");
+        }
+    }
+
+    #[test]
+    fn groups_hold_the_triangles_of_their_polygons() {
+        let corners = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nvt 7 7\n";
+        let text = format!("{corners}g l\nf 1/1 2/1 3/1 4/1 5/1 6/1\ng one\nf 1/1 2/1 3/1\n");
+        let mesh = read_obj(text.as_bytes()).unwrap();
+        let groups: Vec<_> = mesh.groups.iter().map(|g| g.triangles.clone()).collect();
+        assert_eq!(groups, [0..4, 4..5]);
+        assert_eq!(mesh.texture_triangles.len(), 5);
+        let area = mesh.into_triangle_mesh().area();
+        assert!((area - 4.0).abs() < 1e-12, "{area}");
     }
 
     #[test]

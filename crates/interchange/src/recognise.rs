@@ -43,6 +43,8 @@ pub enum FileKind {
     Measurements,
     /// A Wavefront mesh.
     Obj,
+    /// A PLY mesh.
+    Ply,
     /// A BVH motion.
     Bvh,
     /// A VRML 97 or X3D file.
@@ -105,6 +107,7 @@ impl FileKind {
             Self::Stl => "an STL mesh",
             Self::Measurements => "a table of measurements",
             Self::Obj => "an OBJ mesh",
+            Self::Ply => "a PLY mesh",
             Self::Bvh => "a BVH motion",
             Self::X3d => "a VRML or X3D file",
             Self::Pattern => "a Toile pattern",
@@ -126,7 +129,7 @@ impl FileKind {
             Self::Measurements => {
                 Some("`toile make --body` and `toile body --measurements` take it")
             }
-            Self::Obj => Some("`toile body --mesh` and scenes take it"),
+            Self::Obj | Self::Ply => Some("`toile body --mesh` and scenes take it"),
             Self::Bvh | Self::X3d => Some("`toile body --motion` takes it"),
             Self::Pattern | Self::GarmentCode => Some("`toile make`, `check` and `nest` take it"),
             Self::Mannequin => Some("`toile make --body` and `toile body --mannequin` take it"),
@@ -170,6 +173,8 @@ pub enum ExpectedKind {
     Marker,
     /// Marker settings.
     MarkerSettings,
+    /// A nesting instance.
+    NestingInstance,
     /// A journal.
     Journal,
     /// A fabric file.
@@ -184,11 +189,12 @@ impl ExpectedKind {
             Self::Pattern => matches!(kind, FileKind::Pattern | FileKind::GarmentCode),
             Self::Measurements => kind == FileKind::Measurements,
             Self::Mannequin => kind == FileKind::Mannequin,
-            Self::Mesh => kind == FileKind::Obj,
+            Self::Mesh => matches!(kind, FileKind::Obj | FileKind::Ply),
             Self::Motion => matches!(kind, FileKind::Bvh | FileKind::X3d),
             Self::Scene => kind == FileKind::Scene,
             Self::Marker => kind == FileKind::Marker,
             Self::MarkerSettings => kind == FileKind::MarkerSettings,
+            Self::NestingInstance => kind == FileKind::NestingInstance,
             Self::Journal => kind == FileKind::Journal,
             Self::Fabric => kind == FileKind::Fabric,
             Self::SmallJson => false,
@@ -207,11 +213,12 @@ impl ExpectedKind {
             Self::Mannequin => {
                 "mannequins are read from JSON that `toile body --out NAME.json` wrote"
             }
-            Self::Mesh => "meshes are read from OBJ",
+            Self::Mesh => "meshes are read from OBJ and PLY",
             Self::Motion => "motions are read from BVH, VRML 97 and X3D",
             Self::Scene => "scenes are read from JSON, see docs/FORMATS.md",
             Self::Marker => "markers are read from a marker.json that `toile nest` wrote",
             Self::MarkerSettings => "marker settings are read from JSON, see docs/FORMATS.md",
+            Self::NestingInstance => "nesting instances are read from JSON of jagua-rs",
             Self::Journal => "journals are read from journal.jsonl, one command a line",
             Self::Fabric => "fabrics are read from JSON or CSV, see docs/FORMATS.md",
             Self::SmallJson => "this is read from JSON, see docs/FORMATS.md",
@@ -241,7 +248,9 @@ impl ExpectedKind {
 
 /// Kinds that begin with certain bytes.
 fn of_magic(bytes: &[u8]) -> Option<FileKind> {
-    const STARTS: [(&[u8], FileKind); 16] = [
+    const STARTS: [(&[u8], FileKind); 18] = [
+        (b"ply\n", FileKind::Ply),
+        (b"ply\r", FileKind::Ply),
         (b"\x89PNG", FileKind::Picture),
         (b"\xff\xd8\xff", FileKind::Picture),
         (b"GIF8", FileKind::Picture),
@@ -372,7 +381,7 @@ mod tests {
 
     #[test]
     fn files_are_known_by_their_content() {
-        let cases: [(&[u8], FileKind); 26] = [
+        let cases: [(&[u8], FileKind); 27] = [
             (b"  \n", FileKind::Empty),
             (b"\xff\xfe<\0s\0", FileKind::Utf16),
             (b"\x89PNG\r\n\x1a\n", FileKind::Picture),
@@ -400,6 +409,7 @@ mod tests {
             (b"<broken", FileKind::OtherXml),
             (b"IN;SP1;PU0,0;", FileKind::Hpgl),
             (b"# mesh\no a\nv 0 0 1\nf 1 1 1\n", FileKind::Obj),
+            (b"ply\r\nformat ascii 1.0\r\n", FileKind::Ply),
             (b"HIERARCHY\nROOT Hips\n", FileKind::Bvh),
             (b"body:\n  height: 171\n", FileKind::Measurements),
             (br#"{"toile": 1, "kind": "pattern"}"#, FileKind::Pattern),

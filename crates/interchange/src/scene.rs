@@ -6,6 +6,7 @@
 use crate::scene_motion::{GripFile, MotionFile, Unknown};
 use crate::{FormatError, MaterialFile};
 use serde::{Deserialize, Serialize};
+use toile_body::AskedStance;
 use toile_drape::{Air, ContactSettings, Damping, MethodKind, MethodSettings, Scene};
 use toile_geometry::Vec3;
 
@@ -36,6 +37,9 @@ pub struct SceneFile {
     /// How cloth meets surfaces.
     #[serde(default)]
     pub collision: CollisionFile,
+    /// How mesh files stand; what is left out is found by a person among them.
+    #[serde(default)]
+    pub meshes: MeshesFile,
     /// The objects.
     pub objects: Vec<ObjectFile>,
     /// Attachment forces.
@@ -43,6 +47,46 @@ pub struct SceneFile {
     pub elastics: Vec<ElasticFile>,
     #[serde(flatten)]
     unknown: Unknown,
+}
+
+/// Axes and unit of a scene's mesh files.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct MeshesFile {
+    /// The axis that is up: `x`, `y`, `z`, `-x`, `-y` or `-z`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub up: Option<String>,
+    /// `m`, `cm`, `mm`, `in` or `ft`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+impl MeshesFile {
+    /// What is said of how they stand.
+    ///
+    /// # Errors
+    /// No axis, or no unit.
+    pub fn asked(&self) -> Result<AskedStance, FormatError> {
+        let wrong = |field: &str, what: String| {
+            FormatError::new(
+                format!("meshes.{field}"),
+                what,
+                "correct it, or leave it out",
+            )
+        };
+        Ok(AskedStance {
+            up: read_word(&self.up).map_err(|what| wrong("up", what))?,
+            forward: None,
+            unit: read_word(&self.unit).map_err(|what| wrong("unit", what))?,
+        })
+    }
+}
+
+fn read_word<T: std::str::FromStr<Err = String>>(
+    text: &Option<String>,
+) -> Result<Option<T>, String> {
+    text.as_deref().map(str::parse).transpose()
 }
 
 /// The air of a scene.

@@ -169,12 +169,8 @@ impl NestOptions {
         one.plies = one.plies.or(more.plies);
         one.price_per_metre = one.price_per_metre.or(more.price_per_metre);
         one.print = one.print.or(more.print);
-        if one.flaws.is_empty() {
-            one.flaws = more.flaws;
-        }
-        if one.rolls.is_empty() {
-            one.rolls = more.rolls;
-        }
+        one.flaws = one.flaws.or(more.flaws);
+        one.rolls = one.rolls.or(more.rolls);
         one
     }
 
@@ -222,7 +218,7 @@ impl NestOptions {
             }
             false => vec![PlannedRoll {
                 name: None,
-                strip: self.strip(&given, &cloth, &given.flaws)?,
+                strip: self.strip(&given, &cloth, given.flaws.as_deref().unwrap_or_default())?,
                 price_per_metre: self.price_per_metre.or(given.price_per_metre),
             }],
         };
@@ -241,7 +237,8 @@ impl NestOptions {
         given: &FabricSettings,
     ) -> Result<Vec<RollSettings>, MarkerError> {
         if self.rolls.is_empty() {
-            let has = |field: fn(&RollSettings) -> bool| given.rolls.iter().any(field);
+            let rolls = given.rolls.as_deref().unwrap_or_default();
+            let has = |field: fn(&RollSettings) -> bool| rolls.iter().any(field);
             let width = self.width.is_some() && has(|roll| roll.width.is_some());
             let length = self.length.is_some() && has(|roll| roll.length.is_some());
             if width || length {
@@ -250,7 +247,7 @@ impl NestOptions {
                     if width { "width" } else { "length" }
                 )));
             }
-            return Ok(given.rolls.clone());
+            return Ok(rolls.to_vec());
         }
         let roll = |&(length, width): &(f64, Option<f64>)| RollSettings {
             width: width.map(Metres),
@@ -271,8 +268,8 @@ impl NestOptions {
             width: roll.width.map_or(cloth.width, |w| w.0),
             ..*cloth
         };
-        let flaws: Vec<FlawSettings> = given.flaws.iter().chain(&roll.flaws).copied().collect();
-        let mut strip = self.strip(given, &cloth, &flaws)?;
+        let flaws = roll.flaws.as_ref().or(given.flaws.as_ref());
+        let mut strip = self.strip(given, &cloth, flaws.map_or(&[], |list| list))?;
         let own = metres(roll.length).map(|length| length / f64::from(cloth.plies));
         strip.max_length = own.or(strip.max_length);
         let name = roll.name.clone();

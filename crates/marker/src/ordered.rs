@@ -127,15 +127,17 @@ fn options_of(cloth: &MarkerCloth, fabric: &str) -> NestOptions {
             repeat: metres(print.repeat),
             origin: metres(print.origin),
         }),
-        flaws: cloth
-            .flaws
-            .iter()
-            .map(|flaw| FlawSettings {
-                at: metres(flaw.at),
-                size: metres(flaw.size),
-                clearance: Metres(flaw.clearance),
-            })
-            .collect(),
+        flaws: Some(
+            cloth
+                .flaws
+                .iter()
+                .map(|flaw| FlawSettings {
+                    at: metres(flaw.at),
+                    size: metres(flaw.size),
+                    clearance: Metres(flaw.clearance),
+                })
+                .collect(),
+        ),
         ..FabricSettings::default()
     };
     NestOptions {

@@ -1,5 +1,6 @@
 //! Bodies of the user's own: mannequin files, edits of their primitives, and figures brought to proportions.
 
+use crate::input::read_file;
 use crate::open::{open_measurements, read_input};
 use crate::tools::open_mannequin;
 use crate::{BodyChoice, Project, SessionError};
@@ -7,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_body::{BodyError, Description, Figure, Mannequin, PrimitiveEdit, ProportionBox};
 use toile_interchange::{
-    ExpectedKind, FileError, FileKind, FormatError, SizeChoice, proportion_boxes, read_proportions,
+    ExpectedKind, FileKind, FormatError, SizeChoice, proportion_boxes, read_proportions,
 };
 use toile_measure::{Measurements, Origin};
 
@@ -32,7 +33,7 @@ pub(crate) fn shaped(
 
 /// The description in a file that is a mannequin's; none where it is something else.
 fn described(path: &Path) -> Result<Option<Description>, SessionError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::from_io("read", path, &error))?;
+    let bytes = read_file(path)?;
     match FileKind::of(&bytes) {
         Some(FileKind::Mannequin) => open_mannequin(path).map(Some),
         _ => Ok(None),

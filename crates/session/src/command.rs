@@ -158,6 +158,24 @@ impl Command {
         }
     }
 
+    /// Gives every file that it reads; a fabric is one where it is no name.
+    pub(crate) fn each_input(&mut self, take: &mut dyn FnMut(&mut PathBuf)) {
+        match self {
+            Self::OpenPattern { path } => take(path),
+            Self::SetBody {
+                measurements: Some(path),
+                ..
+            } => take(path),
+            Self::SetLayers { others, .. } => others.iter_mut().for_each(|o| take(&mut o.path)),
+            Self::SetFabric { fabric: Some(name) } => {
+                let mut path = PathBuf::from(&*name);
+                take(&mut path);
+                *name = path.to_string_lossy().into_owned();
+            }
+            _ => {}
+        }
+    }
+
     /// The stage its time is counted under.
     pub(crate) fn stage(&self) -> Option<&'static str> {
         match self {

@@ -94,26 +94,23 @@ pub(crate) fn cannot(file: &'static str) -> impl Fn(FormatError) -> SessionError
     move |error| SessionError::Write { file, error }
 }
 
-/// The journal as it is written beside what it made: places to write to are named by the file name
-/// alone, so that the journal does not depend on where it lies.
-pub(crate) fn portable(commands: &[Command]) -> Vec<Command> {
-    let mut commands = commands.to_vec();
-    for command in &mut commands {
-        let is_folder = matches!(command, Command::Export { .. });
-        if let Some(output) = command.output_mut() {
-            *output = match output.file_name() {
-                _ if is_folder => ".".into(),
-                Some(name) => name.into(),
-                None => continue,
-            };
+/// A command as it is written beside what it made: a place to write to is named by the file name alone, so that the
+/// journal does not depend on where it lies.
+pub(crate) fn portable(mut command: Command) -> Command {
+    let is_folder = matches!(command, Command::Export { .. });
+    if let Some(output) = command.output_mut() {
+        match output.file_name() {
+            _ if is_folder => *output = ".".into(),
+            Some(name) => *output = name.into(),
+            None => {}
         }
     }
-    commands
+    command
 }
 
 /// The commands with everything that is written going into one folder.
 pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
-    let mut commands = portable(commands);
+    let mut commands: Vec<Command> = commands.iter().cloned().map(portable).collect();
     for command in &mut commands {
         let is_folder = matches!(command, Command::Export { .. });
         if let Some(output) = command.output_mut() {

@@ -1,6 +1,7 @@
 //! Fabrics by name: a pattern's own, then the library's, then those of files.
 
 use crate::SessionError;
+use crate::input::is_input;
 use crate::open::read_input;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -64,7 +65,7 @@ pub(crate) fn chosen(
         return Ok((FabricChoice::Named(asked.to_owned()), Vec::new()));
     }
     let path = Path::new(asked);
-    if !path.is_file() {
+    if !is_input(path) {
         let names = fabric_names(pattern);
         return Err(SessionError::Unknown {
             kind: "fabric",

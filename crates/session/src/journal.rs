@@ -1,26 +1,38 @@
 //! The journal: what was done, in order; in a file one command a line as JSON.
 
+use crate::file_stamp::Stamp;
 use crate::{Command, SessionError};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Most commands that are kept.
 pub(crate) const MOST_COMMANDS: usize = 1000;
 
+/// A command, and the files it reads as they were.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Entry {
+    #[serde(flatten)]
+    pub command: Command,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<Stamp>,
+}
+
 /// The commands that were done: all of them, or the latest if there were too many.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Journal {
-    commands: VecDeque<Command>,
+    entries: VecDeque<Entry>,
     dropped: usize,
 }
 
 impl Journal {
-    /// Notes a command that was done.
-    pub fn push(&mut self, command: Command) {
-        if self.commands.len() == MOST_COMMANDS {
-            self.commands.pop_front();
+    /// Notes a command that was done, with the files it read.
+    pub fn push(&mut self, mut command: Command) {
+        if self.entries.len() == MOST_COMMANDS {
+            self.entries.pop_front();
             self.dropped += 1;
         }
-        self.commands.push_back(command);
+        let files = Stamp::of_inputs(&mut command);
+        self.entries.push_back(Entry { command, files });
     }
 
     /// Whether every command is kept, so that doing them again gives the same project.
@@ -30,7 +42,15 @@ impl Journal {
 
     /// The commands that are kept, the oldest first.
     pub fn commands(&self) -> Vec<Command> {
-        self.commands.iter().cloned().collect()
+        self.entries
+            .iter()
+            .map(|entry| entry.command.clone())
+            .collect()
+    }
+
+    /// The same with the files they read.
+    pub fn entries(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter()
     }
 }
 
@@ -39,9 +59,18 @@ impl Journal {
 /// # Errors
 /// A command cannot be written, as with a path that is no text.
 pub fn journal_lines(commands: &[Command]) -> Result<String, SessionError> {
+    let bare = commands.iter().map(|command| Entry {
+        command: command.clone(),
+        files: Vec::new(),
+    });
+    entry_lines(&bare.collect::<Vec<_>>())
+}
+
+/// Entries as text, one JSON object a line.
+pub(crate) fn entry_lines(entries: &[Entry]) -> Result<String, SessionError> {
     let mut text = String::new();
-    for (k, command) in commands.iter().enumerate() {
-        let line = serde_json::to_string(command).map_err(|error| SessionError::Journal {
+    for (k, entry) in entries.iter().enumerate() {
+        let line = serde_json::to_string(entry).map_err(|error| SessionError::Journal {
             line: k + 1,
             what: error.to_string(),
         })?;
@@ -51,11 +80,17 @@ pub fn journal_lines(commands: &[Command]) -> Result<String, SessionError> {
     Ok(text)
 }
 
-/// Reads a journal. Empty lines are skipped.
+/// Reads a journal. Empty lines are skipped; paths stay as they are written.
 ///
 /// # Errors
 /// The first line that is not a command.
 pub fn read_journal(text: &str) -> Result<Vec<Command>, SessionError> {
+    let entries = read_entries(text)?;
+    Ok(entries.into_iter().map(|entry| entry.command).collect())
+}
+
+/// The entries of a journal.
+pub(crate) fn read_entries(text: &str) -> Result<Vec<Entry>, SessionError> {
     text.lines()
         .enumerate()
         .filter(|(_, line)| !line.trim().is_empty())

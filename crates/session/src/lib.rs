@@ -16,16 +16,20 @@ mod error;
 mod event;
 mod export;
 mod fabrics;
+mod file_stamp;
 mod garment_edit;
 mod gesture;
 mod history;
+mod input;
 mod interactive_run;
 mod journal;
+mod journal_files;
 mod live;
 mod mannequin_source;
 mod marker_cache;
 mod marker_file_check;
 mod markers;
+mod mesh_file;
 mod nest_patterns;
 mod open;
 mod outfit;
@@ -65,8 +69,10 @@ pub use error::SessionError;
 pub use event::{Assembled, Draped, Event};
 pub use fabrics::FabricChoice;
 pub use garment_edit::{CannotFollow, GarmentEdit};
+pub use input::is_input;
 pub use interactive_run::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
+pub use journal_files::open_journal;
 pub use live::{LiveFrame, LiveRun};
 pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use markers::{FoundMarker, MarkerSearch};
@@ -94,7 +100,9 @@ pub use stored_marker::{MarkerJob, nest_marker};
 pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
-pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
+pub use toile_body::{
+    AskedStance, Axis, Description, Figure, Fit, MeshUnit, PrimitiveEdit, ProportionBox, Scaling,
+};
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::{Aspect, Finding, Stage, Verdict};
 pub use toile_interchange::{
@@ -108,7 +116,7 @@ pub use toile_marker::{
 pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
 pub use toile_pattern::{Severity, SizeSelection, Spread};
 pub use tools::{
-    BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,
-    measure_mesh, mesh_panels, open_mannequin, stretch_body,
+    BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, PersonFile, convert, fit_mesh,
+    make_body, measure_mesh, mesh_panels, open_mannequin, stretch_body,
 };
 pub use watcher::{Silent, Watcher};

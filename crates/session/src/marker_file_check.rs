@@ -2,9 +2,10 @@
 
 use crate::SessionError;
 use crate::export::cannot;
+use crate::input::read_file;
 use crate::open::open_marker;
 use std::path::{Path, PathBuf};
-use toile_interchange::{read_text, write_all_atomically, write_marker_svg};
+use toile_interchange::{write_all_atomically, write_marker_svg};
 use toile_marker::{MarkerSummary, judge_file};
 
 /// The result of a check of a marker file.
@@ -24,7 +25,8 @@ pub fn is_marker_file(path: &Path) -> bool {
         let head = text.get(..400.min(text.len())).unwrap_or(text);
         head.contains("\"toile-marker\"")
     };
-    read_text(path).is_ok_and(|text| marked(&text))
+    let bytes = read_file(path).unwrap_or_default();
+    std::str::from_utf8(&bytes).is_ok_and(marked)
 }
 
 /// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap of each garment, print,

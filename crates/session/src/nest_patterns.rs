@@ -1,6 +1,7 @@
 //! Markers of several patterns and sizes laid together, and solutions of published nesting instances.
 
 use crate::export::{cannot, file_name};
+use crate::input::read_file;
 use crate::open::read_input;
 use crate::sizes::selected;
 use crate::tools::{project_of, sound_draft};
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use toile_interchange::{
-    ExpectedKind, MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
+    ExpectedKind, MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings,
     write_all_atomically, write_jagua,
 };
 use toile_marker::{Garments, MarkerError, marker_files};
@@ -139,7 +140,8 @@ pub fn open_marker_settings(path: &Path) -> Result<MarkerSettings, SessionError>
 
 /// Whether a file is a nesting instance rather than a pattern.
 pub fn is_nesting_instance(path: &Path) -> bool {
-    read_text(path).is_ok_and(|text| is_jagua_instance(&text))
+    let bytes = read_file(path).unwrap_or_default();
+    std::str::from_utf8(&bytes).is_ok_and(is_jagua_instance)
 }
 
 /// Lays the items of an instance and writes the solution in the instance's own format, as
@@ -154,7 +156,8 @@ pub fn nest_instance(
     (folder, watcher): (&Path, &mut dyn Watcher),
 ) -> Result<(MarkerSummary, Vec<String>, PathBuf), SessionError> {
     let started = std::time::Instant::now();
-    let mut instance = read_jagua(&read_text(path)?).map_err(|error| SessionError::Format {
+    let text = read_input(path, ExpectedKind::NestingInstance)?;
+    let mut instance = read_jagua(&text).map_err(|error| SessionError::Format {
         path: path.to_owned(),
         error,
     })?;

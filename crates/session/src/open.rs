@@ -1,6 +1,7 @@
 //! Opens patterns, markers and measurements; the format is recognised from the content.
 
 use crate::SessionError;
+use crate::input::{is_pipe, read_file};
 use crate::placed_panels::PanelOrigin;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
@@ -100,18 +101,27 @@ pub fn open_marker(path: &Path) -> Result<MarkerFile, SessionError> {
     })
 }
 
-/// Reads a whole text file that should be of a kind.
+/// Reads a whole file that should be of a kind.
 ///
 /// # Errors
-/// It is missing, may not be read, is plainly of another kind, or is not text in UTF-8.
-pub fn read_input(path: &Path, expected: ExpectedKind) -> Result<String, SessionError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::from_io("read", path, &error))?;
+/// It is missing, may not be read, or is plainly of another kind.
+pub(crate) fn read_bytes(path: &Path, expected: ExpectedKind) -> Result<Vec<u8>, SessionError> {
+    let bytes = read_file(path)?;
     expected
         .check(&bytes)
         .map_err(|error| SessionError::Format {
             path: PathBuf::from(path),
             error,
         })?;
+    Ok(bytes)
+}
+
+/// Reads a whole text file that should be of a kind.
+///
+/// # Errors
+/// It is missing, may not be read, is plainly of another kind, or is not text in UTF-8.
+pub fn read_input(path: &Path, expected: ExpectedKind) -> Result<String, SessionError> {
+    let bytes = read_bytes(path, expected)?;
     let mut text = String::from_utf8(bytes).map_err(|error| {
         let cause = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
         FileError::from_io("read", path, &cause)
@@ -125,6 +135,9 @@ pub fn read_input(path: &Path, expected: ExpectedKind) -> Result<String, Session
 
 /// A file's name without folder and endings, as a title.
 fn stem(path: &Path) -> String {
+    if is_pipe(path) {
+        return "pattern".to_owned();
+    }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name = name.split('.').next().unwrap_or_default();
     let name = name.strip_suffix("_specification").unwrap_or(name);

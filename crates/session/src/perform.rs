@@ -1,16 +1,17 @@
 //! What each command does.
 
 use crate::bodies::{body_of, description_of, shaped};
-use crate::export::{cannot, files, portable};
+use crate::export::{cannot, files};
 use crate::fabrics::chosen;
 use crate::history::History;
-use crate::journal::MOST_COMMANDS;
+use crate::journal::{Entry, MOST_COMMANDS};
+use crate::journal_files::journal_beside;
 use crate::open::{open_pattern_from, read_pattern_text};
 use crate::outfit::DraftedPart;
 use crate::watcher::{ProgressShare, report_progress};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, Project, Session,
-    SessionError, StampedInput, Watcher, WornGarment, journal_lines,
+    SessionError, StampedInput, Watcher, WornGarment,
 };
 use std::fmt::Display;
 use std::path::Path;
@@ -386,14 +387,15 @@ impl Session {
         let start = Instant::now();
         let mut files = files(&self.project, &mut self.derived, watcher)?;
         if self.journal.is_whole() {
-            let mut commands = portable(&self.journal.commands());
-            commands.extend(portable(&[Command::Export {
-                dir: dir.to_owned(),
-            }]));
-            files.push((
-                "journal.jsonl".into(),
-                journal_lines(&commands)?.into_bytes(),
-            ));
+            let export = Entry {
+                command: Command::Export {
+                    dir: dir.to_owned(),
+                },
+                files: Vec::new(),
+            };
+            let entries = self.journal.entries().chain([&export]);
+            let text = journal_beside(entries, dir)?;
+            files.push(("journal.jsonl".into(), text.into_bytes()));
         }
         let mut timing = self.timing.clone();
         timing.add("export", start);

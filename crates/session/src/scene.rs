@@ -56,15 +56,10 @@ pub fn run_scene(
         error,
     };
     let (file, unknown) = read_scene(&text).map_err(wrong)?;
-    let mut builder = Builder {
-        path,
-        base: path.parent().unwrap_or(Path::new(".")),
-        file: &file,
-        notes: unknown
-            .iter()
-            .map(|field| format!("the field {field} is not known and was left out"))
-            .collect(),
-    };
+    let notes = unknown
+        .iter()
+        .map(|field| format!("the field {field} is not known and was left out"));
+    let mut builder = Builder::new(path, &file, notes.collect());
     let scene = builder.scene(watcher)?;
     timing.add("read", start);
     let start = Instant::now();

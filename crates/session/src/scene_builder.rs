@@ -4,31 +4,48 @@ use crate::bodies::body_of;
 use crate::choice::figure_named;
 use crate::derived::Derived;
 use crate::fabrics::open_fabric;
-use crate::open::read_input;
+use crate::input::is_input;
+use crate::mesh_file::{open_mesh, stance_error};
 use crate::watcher::report_progress;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
+use std::collections::BTreeMap;
 use std::path::Path;
+use toile_body::{AskedStance, Stance};
 use toile_drape::{
     Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
     Stage,
 };
 use toile_geometry::{TriangleMesh, Vec3};
-use toile_interchange::{
-    EndFile, ExpectedKind, FormatError, MaterialFile, ObjectFile, SceneFile, read_obj,
-};
+use toile_interchange::{EndFile, FormatError, MaterialFile, ObjectFile, SceneFile};
 /// Turns a scene file into a scene.
 pub(crate) struct Builder<'a> {
     /// The scene file.
-    pub path: &'a Path,
+    path: &'a Path,
     /// The folder that other files are named from.
-    pub base: &'a Path,
+    base: &'a Path,
     /// What it says.
-    pub file: &'a SceneFile,
+    file: &'a SceneFile,
     /// What is worth telling.
     pub notes: Vec<String>,
+    /// How its mesh files stand.
+    stance: Stance,
+    /// The mesh files read, as they are.
+    meshes: BTreeMap<String, TriangleMesh>,
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    /// A builder of what a scene file says.
+    pub fn new(path: &'a Path, file: &'a SceneFile, notes: Vec<String>) -> Self {
+        Self {
+            path,
+            base: path.parent().unwrap_or(Path::new(".")),
+            file,
+            notes,
+            stance: Stance::default(),
+            meshes: BTreeMap::new(),
+        }
+    }
+
     fn wrong(&self, place: String, what: String, hint: &str) -> SessionError {
         SessionError::Format {
             path: self.path.to_owned(),
@@ -47,6 +64,7 @@ impl Builder<'_> {
             path: path.to_owned(),
             error,
         };
+        self.stance = self.stance_of_meshes()?;
         let mut objects = Vec::new();
         for (index, object) in file.objects.iter().enumerate() {
             objects.push(self.object(index, object, watcher)?);
@@ -147,7 +165,7 @@ impl Builder<'_> {
             }
         };
         let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
-            (Some(mesh), None, None) => (self.obj(mesh)?, None),
+            (Some(mesh), None, None) => (self.mesh(mesh)?, None),
             (None, None, Some(body)) if !deformable => (self.skin(body)?, None),
             (None, Some(pattern), None) if deformable => {
                 let cloth = self.garment(pattern, watcher)?;
@@ -215,7 +233,7 @@ impl Builder<'_> {
             error,
         };
         let fabric_file = file.fabric.as_ref().map(|name| self.base.join(name));
-        let base = match (fabric_file.filter(|path| path.is_file()), &file.fabric) {
+        let base = match (fabric_file.filter(|path| is_input(path)), &file.fabric) {
             (Some(path), _) => {
                 let fabric = open_fabric(&path)?;
                 self.notes.extend(fabric.notes);
@@ -231,12 +249,71 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn obj(&self, name: &str) -> Result<TriangleMesh, SessionError> {
-        let path = self.base.join(name);
-        let text = read_input(&path, ExpectedKind::Mesh)?;
-        let mesh =
-            read_obj(text.as_bytes()).map_err(|error| SessionError::Format { path, error })?;
-        Ok(mesh.into_triangle_mesh())
+    /// The mesh of a file as it stands in the scene.
+    fn mesh(&mut self, name: &str) -> Result<TriangleMesh, SessionError> {
+        let stance = self.stance;
+        let mut mesh = self.opened(name)?.clone();
+        for p in &mut mesh.positions {
+            *p = stance.place(*p);
+        }
+        Ok(mesh)
+    }
+
+    /// The mesh of a file as it is, which is read once.
+    fn opened(&mut self, name: &str) -> Result<&TriangleMesh, SessionError> {
+        let mesh = match self.meshes.remove(name) {
+            Some(mesh) => mesh,
+            None => {
+                let mut opened = open_mesh(&self.base.join(name))?;
+                self.notes.append(&mut opened.notes);
+                opened.mesh
+            }
+        };
+        Ok(self.meshes.entry(name.to_owned()).or_insert(mesh))
+    }
+
+    /// How the scene's mesh files stand: as the scene says, else as a person among its bodies is seen to. They
+    /// come of one program, so that all are turned as the first person is.
+    fn stance_of_meshes(&mut self) -> Result<Stance, SessionError> {
+        let path = self.path;
+        let asked = self
+            .file
+            .meshes
+            .asked()
+            .map_err(|error| SessionError::Format {
+                path: path.to_owned(),
+                error,
+            })?;
+        let [x, y, z] = self.file.gravity;
+        // Whoever says which way is down has settled the axes.
+        let is_settled = (x, z) != (0.0, 0.0) || y > 0.0;
+        let hint = "say how the meshes of the scene stand, as in \"meshes\": {\"up\": \"z\", \"unit\": \"cm\"}";
+        let file = self.file;
+        let bodies = file.objects.iter().filter(|o| o.kind != "deformable");
+        let is_given = asked != AskedStance::default();
+        for object in bodies.filter(|_| !is_settled && !is_given) {
+            let is_turned = object.transform.rotation != [0.0; 3] || object.transform.scale != 1.0;
+            let Some(name) = object.mesh.as_ref().filter(|_| !is_turned) else {
+                continue;
+            };
+            let at = self.base.join(name);
+            let seen = Stance::seen(self.opened(name)?, &asked);
+            let Some(stance) = seen.map_err(|error| stance_error(&at, &error, hint))? else {
+                continue;
+            };
+            let stance = stance.facing_anywhere();
+            if !stance.is_ours() {
+                self.notes.push(format!(
+                    "{}: a person of whom {stance}: all meshes of the scene are set upright in metres, y up; \
+                     \"meshes\": {{\"up\": \"y\", \"unit\": \"m\"}} keeps them as they are",
+                    at.display()
+                ));
+            }
+            return Ok(stance);
+        }
+        Stance::of(&TriangleMesh::default(), &asked)
+            .map(Stance::facing_anywhere)
+            .map_err(|error| stance_error(self.path, &error, hint))
     }
 
     fn skin(&mut self, body: &str) -> Result<TriangleMesh, SessionError> {
@@ -314,12 +391,7 @@ mod tests {
             r#"{{ "objects": [ {{ "name": "poncho", "kind": "deformable", "pattern": "{pattern}" {more} }} ] }}"#
         );
         let (file, _) = read_scene(&text).unwrap();
-        let mut builder = Builder {
-            path: Path::new("scene.json"),
-            base: Path::new("."),
-            file: &file,
-            notes: Vec::new(),
-        };
+        let mut builder = Builder::new(Path::new("./scene.json"), &file, Vec::new());
         builder.object(0, &file.objects[0], &mut Silent)
     }
 
@@ -365,12 +437,8 @@ mod tests {
             { "name": "a", "kind": "deformable", "mesh": "mesh.obj",
               "material": { "fabric": "ponte.json", "thickness": 0.001 } } ] }"#;
         let (file, _) = read_scene(text).unwrap();
-        let mut builder = Builder {
-            path: Path::new("scene.json"),
-            base: folder.path(),
-            file: &file,
-            notes: Vec::new(),
-        };
+        let path = folder.path().join("scene.json");
+        let mut builder = Builder::new(&path, &file, Vec::new());
         let scene = builder.scene(&mut Silent).unwrap();
         assert!(scene.objects[0].mesh.positions.len() > 1000);
         let ObjectKind::Deformable { material, .. } = &scene.objects[1].kind else {

@@ -1,7 +1,9 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
 use crate::derived::Derived;
+use crate::export::cannot;
 use crate::history::History;
+use crate::input::is_pipe;
 use crate::journal::Journal;
 use crate::sizes::{SizedDiagnostic, sized_diagnostics, sizes_to_check};
 use crate::timing::Timing;
@@ -13,6 +15,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
+use toile_interchange::write_pattern;
 use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, Pattern, SizeSelection};
 
 /// Edits that are shown and not taken over yet.
@@ -176,8 +179,19 @@ impl Session {
         if let Some(stage) = command.stage() {
             self.timing.add(stage, start);
         }
-        self.journal.push(command);
+        self.journal.push(self.lasting(command)?);
         Ok(events)
+    }
+
+    /// A command as it can be done again: a pattern that came through a pipe is kept as a whole.
+    fn lasting(&self, command: Command) -> Result<Command, SessionError> {
+        match &command {
+            Command::OpenPattern { path } if is_pipe(path) => Ok(Command::RestorePattern {
+                text: write_pattern(&self.project.pattern).map_err(cannot("journal.jsonl"))?,
+                source: None,
+            }),
+            _ => Ok(command),
+        }
     }
 
     /// Does several commands; progress runs once from 0 to 1 over all of them.

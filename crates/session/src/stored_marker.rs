@@ -1,6 +1,7 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
 use crate::export::File;
+use crate::input::is_pipe;
 use crate::markers::there_are;
 use crate::watched_search::watched;
 use crate::{
@@ -45,6 +46,13 @@ pub fn nest_marker(
         name: job.name.clone(),
         hint: there_are(pattern.markers.iter().map(|m| m.name.clone()).collect()),
     })?;
+    if job.search.is_some() && is_pipe(path) {
+        return Err(SessionError::Conflict(
+            "a pattern that came through a pipe has no file to store the marker in: save it first, or lay the marker \
+             with --stored as it is"
+                .to_owned(),
+        ));
+    }
     if job.search.is_some() {
         refuse_loss(path, (opened.format, &opened.notes))?;
     }

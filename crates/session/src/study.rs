@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_interchange::{ANY_NAME, Metres, PieceSettings};
 use toile_marker::{FinishedMarker, Garments};
-use toile_nesting::Fold;
+use toile_nesting::{Fold, Marker, judge};
 use toile_pattern::Pattern;
 
 /// What a rule costs.
@@ -24,7 +24,7 @@ pub struct RuleCost {
     pub efficiency: f64,
     /// Efficiency without the rule less that with it; not a number where that is none.
     pub cost: f64,
-    /// Pieces that found no place.
+    /// Pieces of one set of garments that found no place, at most over the seeds.
     pub unplaced: usize,
     /// Why it could not be done, if so.
     pub refused: Option<String>,
@@ -138,53 +138,109 @@ pub fn study_rules(
     let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
     let seeds = seeds.max(1);
     let try_rule = |change: &dyn Fn(&mut NestOptions), watcher: &mut dyn Watcher| {
-        let mut found = Found::default();
-        for seed in 0..seeds {
+        let lay = |seed: u64| {
             let mut own = options.clone();
             change(&mut own);
             own.seed = options.seed.wrapping_add(seed);
-            for finished in lay_watched(&garments, &own, watcher)? {
-                found.add(&finished);
-            }
-        }
-        Ok::<_, SessionError>(found.mean(seeds as f64))
+            lay_watched(&garments, &own, watcher)
+        };
+        (0..seeds).map(lay).collect::<Result<Tried, _>>()
     };
-    let base = try_rule(&|_| {}, &mut ProgressShare::new(watcher, 0.0, 0.06))?;
-    let area = base.area;
-    // Pieces that lie nowhere take no fabric: then there is nothing to compare.
-    let efficiency = |found: &Found| match found.unplaced {
-        0 => area / found.fabric_area,
-        _ => f64::NAN,
-    };
-    let row = |rule: &str, found: &Found| RuleCost {
-        rule: rule.to_owned(),
-        fabric: found.fabric,
-        efficiency: efficiency(found),
-        cost: efficiency(&base) - efficiency(found),
-        unplaced: found.unplaced,
-        refused: None,
-    };
-    let mut rows = vec![row("none", &base)];
+    let first = try_rule(&|_| {}, &mut ProgressShare::new(watcher, 0.0, 0.06))?;
     let known: Vec<&Pattern> = garments.iter().map(|g| g.pattern).collect();
-    let rules = rules(&known, &base);
+    let rules = rules(&known, &Found::of(&first));
     let count = rules.len() as f64;
-    for (k, (words, change)) in rules.iter().enumerate() {
+    let mut tried = vec![Ok(first)];
+    for (k, (_, change)) in rules.iter().enumerate() {
         let share = |k: f64| 0.06 + 0.94 * k / count;
         let mut part = ProgressShare::new(watcher, share(k as f64), share(k as f64 + 1.0));
         match try_rule(change, &mut part) {
-            Ok(found) => rows.push(row(words, &found)),
             Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
-            Err(error) => rows.push(RuleCost {
-                rule: words.clone(),
-                fabric: f64::NAN,
-                efficiency: f64::NAN,
-                cost: f64::NAN,
-                unplaced: 0,
-                refused: Some(error.to_string()),
-            }),
+            other => tried.push(other),
         }
     }
-    Ok(rows)
+    let words = ["none"]
+        .into_iter()
+        .chain(rules.iter().map(|(words, _)| &**words));
+    Ok(rows(words, carried_over(tried)))
+}
+
+/// The markers of each seed, of every fabric and roll.
+type Tried = Vec<Vec<FinishedMarker>>;
+
+/// A row for each rule.
+fn rows<'a>(
+    words: impl Iterator<Item = &'a str>,
+    tried: Vec<Result<Tried, SessionError>>,
+) -> Vec<RuleCost> {
+    let found: Vec<Result<Found, SessionError>> = tried
+        .into_iter()
+        .map(|tried| tried.map(|markers| Found::of(&markers)))
+        .collect();
+    let nothing = Found::default();
+    let base = match found.first() {
+        Some(Ok(base)) => base,
+        _ => &nothing,
+    };
+    // Pieces that lie nowhere take no fabric: then there is nothing to compare.
+    let efficiency = |found: &Found| match found.unplaced {
+        0 => base.area / found.fabric_area,
+        _ => f64::NAN,
+    };
+    let row = |(words, found): (&str, &Result<Found, SessionError>)| match found {
+        Ok(found) => RuleCost {
+            rule: words.to_owned(),
+            fabric: found.fabric,
+            efficiency: efficiency(found),
+            cost: efficiency(base) - efficiency(found),
+            unplaced: found.unplaced,
+            refused: None,
+        },
+        Err(error) => RuleCost {
+            rule: words.to_owned(),
+            fabric: f64::NAN,
+            efficiency: f64::NAN,
+            cost: f64::NAN,
+            unplaced: 0,
+            refused: Some(error.to_string()),
+        },
+    };
+    words.zip(&found).map(row).collect()
+}
+
+/// The markers with each taken from another rule where that is shorter and keeps this rule, too: a search ends
+/// somewhere, and more freedom would seem to cost fabric.
+fn carried_over(mut tried: Vec<Result<Tried, SessionError>>) -> Vec<Result<Tried, SessionError>> {
+    let all: Vec<Tried> = tried.iter().flatten().cloned().collect();
+    for (seed, own) in tried
+        .iter_mut()
+        .flatten()
+        .flat_map(|t| t.iter_mut().enumerate())
+    {
+        let same = all.iter().map(|markers| &markers[seed]);
+        let others: Vec<_> = same.filter(|other| other.len() == own.len()).collect();
+        for (k, finished) in own.iter_mut().enumerate() {
+            for other in others.iter().map(|other| &other[k]) {
+                if let Some(marker) = under_the_rules_of(finished, other) {
+                    finished.marker = marker;
+                    finished.missing.clear();
+                }
+            }
+        }
+    }
+    tried
+}
+
+/// Another marker of the same fabric as one under the rules of this, where it is sound and better.
+fn under_the_rules_of(own: &FinishedMarker, other: &FinishedMarker) -> Option<Marker> {
+    let is_whole = own.sources.is_none() && other.sources.is_none() && other.missing.is_empty();
+    if own.fabric != other.fabric || own.items.len() != other.items.len() || !is_whole {
+        return None;
+    }
+    let mut marker = other.marker.clone();
+    marker.measure(&own.items, &own.strip);
+    let is_better = !own.missing.is_empty() || marker.length < own.marker.length;
+    (is_better && judge(&own.items, &own.strip, &marker).is_sound()).then_some(marker)
 }
 
 /// What markers came to.
@@ -198,10 +254,22 @@ struct Found {
     fabric_area: f64,
     /// Length of the longest marker of each fabric, and its width laid open [m].
     fabrics: BTreeMap<String, [f64; 2]>,
+    /// Most pieces of one seed that found no place.
     unplaced: usize,
 }
 
 impl Found {
+    /// The mean over seeds; of pieces that found no place, the most of one seed.
+    fn of(tried: &Tried) -> Self {
+        let mut found = Self::default();
+        for markers in tried {
+            markers.iter().for_each(|finished| found.add(finished));
+            let unplaced = markers.iter().map(|m| m.summary().unplaced).sum();
+            found.unplaced = found.unplaced.max(unplaced);
+        }
+        found.mean(tried.len() as f64)
+    }
+
     fn add(&mut self, finished: &FinishedMarker) {
         let summary = finished.summary();
         let layers = match finished.strip.fold {
@@ -214,7 +282,6 @@ impl Found {
         own[0] = own[0].max(summary.length);
         own[1] = own[1].max(summary.width * layers);
         self.fabric_area += summary.length * summary.width * layers;
-        self.unplaced += summary.unplaced;
     }
 
     fn mean(self, seeds: f64) -> Self {

@@ -1,6 +1,7 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
 
 use crate::export::cannot;
+use crate::mesh_file::{OpenedMesh, open_person};
 use crate::open::{open_pattern_from, read_input};
 use crate::product::body_obj;
 use crate::{PanelOrigin, PatternFormat, Project, SessionError};
@@ -8,14 +9,14 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
-    BodyError, Conflict, Description, Deviation, Figure, Fit, Mannequin, Motion, ProportionBox,
-    Scaling, Scan, ScanLandmarks, Skeleton,
+    AskedStance, BodyError, Conflict, Description, Deviation, Figure, Fit, Mannequin, Motion,
+    ProportionBox, Scaling, Scan, ScanLandmarks, Skeleton,
 };
-use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
+use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
-    ExpectedKind, FileError, FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj,
-    read_x3d, write_atomically, write_body_glb, write_garmentcode, write_mannequin,
-    write_measurements, write_obj, write_pattern,
+    ExpectedKind, FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_x3d,
+    write_atomically, write_body_glb, write_garmentcode, write_mannequin, write_measurements,
+    write_obj, write_pattern,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
@@ -238,32 +239,51 @@ pub struct MeshMeasured {
     pub measurements: Measurements,
     /// Where they were taken.
     pub landmarks: ScanLandmarks,
+    /// What of the mesh was set right.
+    pub notes: Vec<String>,
 }
 
-/// A closed mesh of a standing person (OBJ, metres, Y up, facing +Z), with landmarks from a file
-/// (JSON) or found.
-fn open_scan(mesh: &Path, landmarks: Option<&Path>) -> Result<Scan, SessionError> {
-    let at = |path: &Path, error: FormatError| SessionError::Format {
-        path: path.to_owned(),
-        error,
-    };
-    let bytes = std::fs::read(mesh).map_err(|error| FileError::from_io("read", mesh, &error))?;
-    ExpectedKind::Mesh
-        .check(&bytes)
-        .map_err(|error| at(mesh, error))?;
-    let read = read_obj(&bytes).map_err(|error| at(mesh, error))?;
-    let given = match landmarks {
-        None => ScanLandmarks::default(),
-        Some(path) => serde_json::from_str(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| {
-            let remedy = "give heights such as \"waist\": 1.05 and points such as \"nape\": [0, 1.4, -0.05] in metres";
-            at(path, FormatError::new("the landmarks", error.to_string(), remedy))
-        })?,
-    };
-    let surface = TriangleMesh {
-        positions: read.positions,
-        triangles: read.triangles,
-    };
-    Scan::new(surface, given).map_err(|error| scan_error(mesh, &error))
+/// A file of somebody's mesh, and what is said of it.
+#[derive(Clone, Copy, Debug)]
+pub struct PersonFile<'a> {
+    /// The mesh (OBJ or PLY): closed, of a standing person.
+    pub mesh: &'a Path,
+    /// Landmarks (JSON); what is left out is found.
+    pub landmarks: Option<&'a Path>,
+    /// How it stands in its file; what is left out is seen.
+    pub stance: AskedStance,
+}
+
+impl PersonFile<'_> {
+    /// The scan, with what was set right. Points among the landmarks are the file's own.
+    fn open(&self) -> Result<(Scan, Vec<String>), SessionError> {
+        let mut given = match self.landmarks {
+            None => ScanLandmarks::default(),
+            Some(path) => open_landmarks(path)?,
+        };
+        let (OpenedMesh { mesh, notes }, stance) = open_person(self.mesh, &self.stance)?;
+        let points = [
+            &mut given.nape,
+            &mut given.shoulder_tip,
+            &mut given.neck_side,
+            &mut given.wrist,
+        ];
+        for point in points.into_iter().flatten() {
+            *point = stance.place(Vec3::from(*point)).into();
+        }
+        let scan = Scan::new(mesh, given).map_err(|error| scan_error(self.mesh, &error))?;
+        Ok((scan, notes))
+    }
+}
+
+fn open_landmarks(path: &Path) -> Result<ScanLandmarks, SessionError> {
+    serde_json::from_str(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| {
+        let remedy = "give heights such as \"waist\": 1.05 and points such as \"nape\": [0, 1.4, -0.05] in metres";
+        SessionError::Format {
+            path: path.to_owned(),
+            error: FormatError::new("the landmarks", error.to_string(), remedy),
+        }
+    })
 }
 
 fn scan_error(mesh: &Path, error: &BodyError) -> SessionError {
@@ -278,34 +298,29 @@ fn scan_error(mesh: &Path, error: &BodyError) -> SessionError {
 ///
 /// # Errors
 /// A file that cannot be read, a mesh that is not closed, or the table cannot be written.
-pub fn measure_mesh(
-    mesh: &Path,
-    landmarks: Option<&Path>,
-    to: &Path,
-) -> Result<MeshMeasured, SessionError> {
+pub fn measure_mesh(person: &PersonFile, to: &Path) -> Result<MeshMeasured, SessionError> {
     check_ending(to, &[".json"], "measurements are written as NAME.json")?;
-    let scan = open_scan(mesh, landmarks)?;
+    let (scan, notes) = person.open()?;
     let measurements = scan.measurements();
     let text = write_measurements(&measurements).map_err(cannot("the measurements"))?;
     write_atomically(to, text.as_bytes())?;
     Ok(MeshMeasured {
         measurements,
         landmarks: scan.landmarks().clone(),
+        notes,
     })
 }
 
-/// Fits a mannequin to a closed mesh of a standing person.
+/// Fits a mannequin to a closed mesh of a standing person; also tells what of the mesh was set right.
 ///
 /// # Errors
 /// As [`measure_mesh`]; and a limb or a landmark that cannot be found.
-pub fn fit_mesh(
-    mesh: &Path,
-    landmarks: Option<&Path>,
-    figure: Figure,
-) -> Result<Fit, SessionError> {
-    open_scan(mesh, landmarks)?
+pub fn fit_mesh(person: &PersonFile, figure: Figure) -> Result<(Fit, Vec<String>), SessionError> {
+    let (scan, notes) = person.open()?;
+    let fit = scan
         .fit(figure)
-        .map_err(|error| scan_error(mesh, &error))
+        .map_err(|error| scan_error(person.mesh, &error))?;
+    Ok((fit, notes))
 }
 
 /// The description in a mannequin file.

@@ -5,7 +5,7 @@ mod support;
 
 use std::path::Path;
 use support::{BAND, files, lasting};
-use toile_session::{Command, OtherGarment, Quality, Session, SessionError, Silent, read_journal};
+use toile_session::{Command, OtherGarment, Quality, Session, SessionError, Silent, open_journal};
 
 /// The band, and a wider one for over it.
 fn bands(folder: &Path) -> [std::path::PathBuf; 2] {
@@ -92,8 +92,8 @@ fn a_belt_over_a_band_in_order_as_files_and_again_from_the_journal() {
         .collect();
     assert_eq!(names, ["Band", "Belt"]);
 
-    let journal = String::from_utf8(made["journal.jsonl"].clone()).unwrap();
-    let journal = read_journal(&journal).unwrap();
+    let (journal, notes) = open_journal(&out.join("journal.jsonl")).unwrap();
+    assert!(notes.is_empty(), "{notes:?}");
     let again = folder.path().join("again");
     Session::replay(&journal, &again, &mut Silent).unwrap();
     assert_eq!(lasting(&out), lasting(&again));

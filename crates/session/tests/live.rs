@@ -10,7 +10,7 @@ use toile_drape::GarmentRun;
 use toile_geometry::Vec3;
 use toile_session::{
     Command, DrapeResult, GarmentJob, LiveInput, LiveRun, Quality, Session, Silent, Stage,
-    StampedInput, read_journal,
+    StampedInput, open_journal,
 };
 
 /// A session with the band in it, meshed coarsely.
@@ -338,8 +338,8 @@ fn a_result_is_exported_without_draping_again_and_replayed_to_the_same_bytes() {
     assert!(stages.iter().all(|stage| stage == "writing"), "{stages:?}");
 
     let exported = lasting(&dir);
-    let journal = String::from_utf8(exported["journal.jsonl"].clone()).unwrap();
-    let journal = read_journal(&journal).unwrap();
+    let (journal, notes) = open_journal(&dir.join("journal.jsonl")).unwrap();
+    assert!(notes.is_empty(), "{notes:?}");
     let again = folder.path().join("again");
     Session::replay(&journal, &again, &mut Silent).unwrap();
     assert_eq!(exported, lasting(&again));

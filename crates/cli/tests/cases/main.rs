@@ -6,8 +6,11 @@
 mod common;
 mod knife;
 mod letters;
+mod meshes;
+mod roads;
 mod sides;
 mod sizes;
+mod study;
 mod verdict;
 mod xpbd;
 

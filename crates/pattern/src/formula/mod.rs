@@ -10,6 +10,7 @@ mod compute;
 mod cursor;
 mod names;
 mod parse;
+mod plain;
 mod print;
 mod written;
 

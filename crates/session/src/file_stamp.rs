@@ -1,0 +1,131 @@
+//! Stamps of files that commands read: digests by which a later look tells what was changed.
+
+use crate::Command;
+use crate::input::read_file;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A file as it was when a command read it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Stamp {
+    /// Its path, as the command names it.
+    pub path: PathBuf,
+    /// Digest of its bytes.
+    digest: String,
+    /// Digest of each part of a JSON file: `panels front`, `unit`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    parts: BTreeMap<String, String>,
+}
+
+impl Stamp {
+    /// Stamps of the files that a command reads. Paths of samples, and of what came through a pipe, are none.
+    pub fn of_inputs(command: &mut Command) -> Vec<Self> {
+        let mut stamps = Vec::new();
+        command.each_input(&mut |path| stamps.extend(Self::of(path)));
+        stamps
+    }
+
+    /// The stamp of a file as it is now; none of what is no file.
+    pub fn of(path: &Path) -> Option<Self> {
+        if !path.is_file() {
+            return None;
+        }
+        let bytes = read_file(path).ok()?;
+        Some(Self {
+            path: path.to_owned(),
+            digest: digest(&bytes),
+            parts: parts(&bytes),
+        })
+    }
+
+    /// What differs between the file as it was and as it is; nothing where it is the same.
+    pub fn difference(&self, now: &Self) -> Option<String> {
+        if self.digest == now.digest {
+            return None;
+        }
+        let keys = self.parts.keys().chain(now.parts.keys());
+        let mut differing: Vec<&str> = keys
+            .filter(|key| self.parts.get(*key) != now.parts.get(*key))
+            .map(String::as_str)
+            .collect();
+        differing.sort_unstable();
+        differing.dedup();
+        let what = match &differing[..] {
+            [] => "its text".to_owned(),
+            [few @ ..] if few.len() <= MOST_NAMED => few.join(", "),
+            many => format!(
+                "{} and {} more",
+                many[..MOST_NAMED].join(", "),
+                many.len() - MOST_NAMED
+            ),
+        };
+        Some(format!(
+            "{} is not the file that the journal was made with, and is replayed as it is now; what differs: {what}",
+            now.path.display()
+        ))
+    }
+}
+
+/// Parts of a changed file that are named one by one.
+const MOST_NAMED: usize = 8;
+
+/// FNV-1a of bytes, 64 bits in hexadecimal digits (Fowler, Noll and Vo 1991).
+fn digest(bytes: &[u8]) -> String {
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step))
+}
+
+/// Digests of the fields of a JSON object, and of each thing with a name in its lists.
+fn parts(bytes: &[u8]) -> BTreeMap<String, String> {
+    let Ok(Value::Object(fields)) = serde_json::from_slice(bytes) else {
+        return BTreeMap::new();
+    };
+    let mut parts = BTreeMap::new();
+    for (field, value) in fields {
+        let mut put = |key: String, value: &Value| {
+            parts.insert(key, digest(value.to_string().as_bytes()));
+        };
+        let Value::Array(list) = &value else {
+            put(field, &value);
+            continue;
+        };
+        for (k, one) in list.iter().enumerate() {
+            match one.get("name").and_then(Value::as_str) {
+                Some(name) => put(format!("{field} {name}"), one),
+                None => put(format!("{field} {}", k + 1), one),
+            }
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_changed_file_says_what_differs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("p.json");
+        let write = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            Stamp::of(&path).unwrap()
+        };
+        let was =
+            write(r#"{"unit": "cm", "panels": [{"name": "front", "x": 1}, {"name": "back"}]}"#);
+        assert_eq!(was.difference(&was), None);
+        let now =
+            write(r#"{"unit": "mm", "panels": [{"name": "front", "x": 2}, {"name": "back"}]}"#);
+        let said = was.difference(&now).unwrap();
+        assert!(said.ends_with("what differs: panels front, unit"), "{said}");
+        let respaced =
+            write(r#"{ "unit": "cm", "panels": [{"name": "front", "x": 1}, {"name": "back"}]}"#);
+        assert!(
+            was.difference(&respaced)
+                .unwrap()
+                .ends_with("what differs: its text")
+        );
+    }
+}
