@@ -54,7 +54,7 @@ impl Stamp {
         differing.dedup();
         let what = match &differing[..] {
             [] => "its text".to_owned(),
-            [few @ ..] if few.len() <= MOST_NAMED => few.join(", "),
+            few if few.len() <= MOST_NAMED => few.join(", "),
             many => format!(
                 "{} and {} more",
                 many[..MOST_NAMED].join(", "),
