@@ -11,6 +11,7 @@ mod flare;
 mod flared_row;
 mod flat_pieces;
 mod garment;
+mod gores;
 mod harmonic;
 mod links;
 mod mesh;

@@ -3,6 +3,7 @@
 
 use crate::Diagnostic;
 use crate::flat_pieces::{FlatPiece, Tie};
+use crate::gores::ring_facings;
 use crate::mesh::PieceMeshes;
 use crate::wearer_side::wearer_sides;
 use toile_geometry::Rigid;
@@ -54,9 +55,10 @@ pub(crate) fn roles(
         let facing: Vec<_> = pieces.iter().map(told_facing).collect();
         let told: Vec<_> = pieces.iter().map(told_side).collect();
         let sides = wearer_sides((meshes, laid), ties, &facing, &told);
-        let guesses = pieces.iter().zip(sides);
+        let in_rings = ring_facings(laid, ties, &facing);
+        let guesses = pieces.iter().zip(sides).zip(in_rings);
         let guesses: Vec<Guess> = guesses
-            .map(|((piece, _), left)| Guess::from_name(piece, left))
+            .map(|(((piece, _), left), in_ring)| Guess::from_name(piece, left).on_trunk(in_ring))
             .collect();
         let sewn = SewnLengths::new(meshes);
         let areas: Vec<f64> = meshes.pieces.iter().map(crate::PieceMesh::area).collect();
@@ -190,6 +192,14 @@ impl Guess {
         };
         Self { part, facing }
     }
+
+    /// The place with a facing for a piece of the trunk whose name tells none.
+    fn on_trunk(mut self, facing: Option<Facing>) -> Self {
+        if matches!(self.part, None | Some(BodyPart::Trunk)) {
+            self.facing = self.facing.or(facing);
+        }
+        self
+    }
 }
 
 /// How many stitches join each pair of meshed pieces.
@@ -233,7 +243,7 @@ fn opposite(facing: Facing) -> Facing {
 }
 
 /// Fills in unknown roles, largest piece first: a part from the name, else from the piece it is
-/// sewn to most; a facing from the name, else opposite to that piece.
+/// sewn to most; a facing from the name, else from the ring of gores it is one of, else opposite to that piece.
 fn guess(
     known: &mut [Option<Role>],
     guesses: &[Guess],
