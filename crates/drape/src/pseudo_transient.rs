@@ -119,6 +119,11 @@ impl PseudoTransientContinuation {
         self.memory.residual <= self.settings.residual || self.memory.steps >= self.settings.steps
     }
 
+    /// Whether the steps are used up above the residual of the settings.
+    pub(crate) fn is_used_up(&self) -> bool {
+        self.finished() && self.memory.residual > self.settings.residual
+    }
+
     /// Continues to a residual, with a number of further steps.
     pub fn continue_to(&mut self, residual: f64, more_steps: usize) {
         self.settings.residual = residual;

@@ -211,6 +211,8 @@ impl GarmentRun {
                 .continuation
                 .continue_to(settings.residual, settings.steps);
             settling.fall = Fall::default();
+            // What hands hold is not taken off and put on again.
+            settling.attempts.is_sunk = false;
             self.stage = StageState::Settling(settling);
             self.findings.clear();
         }
@@ -328,8 +330,9 @@ impl GarmentRun {
         continuation.advance(system, state, &mut self.workspace)?;
         let (residual, steps) = (continuation.residual(), continuation.steps());
         settling.fall.note(residual, steps);
+        let failed = continuation.is_used_up() || settling.fall.is_stuck;
         let finished = continuation.finished() || settling.fall.is_stuck;
-        if settling.fall.is_stuck && settling.attempts.is_sunk {
+        if failed && settling.attempts.is_sunk {
             return self.sew_round_thinner_body();
         }
         if settling.cut_short && self.workspace.contacts.cloth.is_in_order() {

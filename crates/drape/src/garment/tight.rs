@@ -216,6 +216,41 @@ mod tests {
         assert_eq!(measures.self_intersections, 0);
     }
 
+    /// A tight garment that may take so many steps to rest, run to its end, and how often its panels were sewn.
+    fn run_to_end(steps: usize) -> (GarmentRun, usize) {
+        let mut setup = tube(0.2);
+        setup.rest.steps = steps;
+        let mut run = GarmentRun::new(setup).unwrap();
+        let (mut is_sewing, mut count) = (false, 0);
+        while run.progress().stage != Stage::Finished {
+            run.advance().unwrap();
+            let was_sewing = is_sewing;
+            is_sewing = run.progress().stage == Stage::Sewing;
+            count += usize::from(is_sewing && !was_sewing);
+        }
+        (run, count)
+    }
+
+    #[test]
+    fn a_tight_tube_that_uses_up_its_steps_is_sewn_round_a_thinner_post_once() {
+        let (run, count) = run_to_end(1);
+        assert!(run.progress().residual > run.setup.rest.residual);
+        assert_eq!(count, 2);
+    }
+
+    #[test]
+    fn a_tight_tube_that_comes_to_rest_or_is_held_by_a_hand_is_not_sewn_again() {
+        let (mut run, count) = run_to_end(400);
+        assert!(run.progress().residual <= run.setup.rest.residual);
+        assert_eq!(count, 1);
+        run.setup.rest.steps = 1;
+        run.unsettle();
+        while run.progress().stage != Stage::Finished {
+            run.advance().unwrap();
+            assert_ne!(run.progress().stage, Stage::Sewing);
+        }
+    }
+
     #[test]
     fn a_tube_with_ease_does_not_lie_in_the_post() {
         assert!(!sewn(0.34).1);
