@@ -4,7 +4,7 @@ use crate::contact_settings::FIELD_REACH;
 use crate::{Motion, Pose};
 use nalgebra::Matrix3;
 use std::sync::Arc;
-use toile_geometry::{DistanceField, SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{ClosestPoint, DistanceField, SurfaceTree, TriangleMesh, Vec3};
 
 /// A solid surface: the exact mesh for counts of crossings, a smooth distance field for forces.
 #[derive(Clone)]
@@ -101,9 +101,15 @@ impl Collider {
 
     /// Exact signed distance of a point from the surface [m], under a pose of the surface.
     pub fn exact_distance(&self, pose: Option<&Pose>, point: Vec3) -> f64 {
-        let point = pose.map_or(point, |pose| pose.undo(point));
-        let closest = self.surface.closest_point(point, f64::INFINITY);
+        let closest = self.closest_point(pose, point);
         closest.map_or(f64::INFINITY, |c| c.signed_distance)
+    }
+
+    /// The closest point of the surface, in the frame of the solid, to a point [m] under a pose of the surface; none to
+    /// a point that is not finite.
+    pub(crate) fn closest_point(&self, pose: Option<&Pose>, point: Vec3) -> Option<ClosestPoint> {
+        let point = pose.map_or(point, |pose| pose.undo(point));
+        self.surface.closest_point(point, f64::INFINITY)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::collision::{ClothSurface, layer_violations_of, layers_of};
 use crate::{State, System, Workspace};
 use rayon::prelude::*;
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
 
 /// Measures of one state. Crossings and depths of objects that ignore each other
 /// ([`PairPolicies`](crate::PairPolicies)) do not count.
@@ -26,6 +26,9 @@ pub struct Measures {
     pub penetration_max: f64,
     /// Pairs of a cloth triangle and a solid triangle that intersect, exactly.
     pub body_intersections: usize,
+    /// Edges of cloth with both ends more than 5 mm inside a solid that lie nearest to opposite sides of it (outward
+    /// normals there more than 90 degrees apart): such cloth is not pressed in from one side, it goes through.
+    pub edges_through_body: usize,
     /// Pairs of cloth triangles that intersect and share no vertex, exactly.
     pub self_intersections: usize,
     /// Measures by layer, innermost first; empty where all cloth is in one layer.
@@ -49,6 +52,11 @@ pub struct LayerMeasures {
 
 /// Distance from a layer within which outer vertices on its inside are counted [m].
 const ORDER_REACH: f64 = 0.05;
+/// Depth inside a solid from which the side that a vertex lies nearest to counts [m].
+const DEPTH_OF_SIDES: f64 = 5e-3;
+/// Cosine between the normals of two sides of a solid below which they are opposite: at the edge of a block it is 0 up
+/// to rounding.
+const OPPOSITE: f64 = -1e-3;
 
 /// Net force over weight, both as norms over all free vertices.
 pub fn residual(system: &System, state: &State, workspace: &mut Workspace) -> f64 {
@@ -114,33 +122,58 @@ pub fn measure(
         ) = top_of(&mut stretch);
     }
     let mesh = system.mesh(x);
-    let mut on_body = Vec::new();
-    let policies = &system.policies;
-    let meets = |vertices: &[u32], collider: usize| {
-        !policies.ignores_solid(policies.object_of_sample(vertices), collider)
-    };
-    for (number, collider) in system.colliders.iter().enumerate() {
-        let pairs = collider.crossings(state.time, &mesh);
-        let pair_meets = |pair: &[u32; 2]| meets(&mesh.triangles[pair[0] as usize], number);
-        on_body.extend(pairs.into_iter().filter(pair_meets));
-        let pose = collider.pose(state.time);
-        let depths: Vec<f64> = x
-            .par_iter()
-            .enumerate()
-            .filter(|&(v, _)| meets(&[v as u32], number))
-            .map(|(_, &p)| -collider.exact_distance(pose.as_ref(), p))
-            .collect();
-        measures.penetration_max = depths
-            .iter()
-            .copied()
-            .fold(measures.penetration_max, f64::max);
-    }
-    measures.body_intersections = on_body.len();
+    let on_body = measure_solids(system, state, &mesh, &mut measures);
     let tree = SurfaceTree::new(mesh);
     let own = self_intersections(system, &tree);
     measures.self_intersections = own.len();
     measures.layers = by_layer(system, tree.mesh(), &on_body, &own);
     measures
+}
+
+/// Measures the cloth against the solids, and returns the pairs of a cloth triangle and a solid triangle that intersect.
+fn measure_solids(
+    system: &System,
+    state: &State,
+    mesh: &TriangleMesh,
+    measures: &mut Measures,
+) -> Vec<[u32; 2]> {
+    let policies = &system.policies;
+    let meets = |vertices: &[u32], collider: usize| {
+        !policies.ignores_solid(policies.object_of_sample(vertices), collider)
+    };
+    let edges = mesh.topology().edges;
+    let mut on_body = Vec::new();
+    for (number, collider) in system.colliders.iter().enumerate() {
+        let pairs = collider.crossings(state.time, mesh);
+        let pair_meets = |pair: &[u32; 2]| meets(&mesh.triangles[pair[0] as usize], number);
+        on_body.extend(pairs.into_iter().filter(pair_meets));
+        let pose = collider.pose(state.time);
+        let nearest = |(v, &p): (usize, &Vec3)| {
+            let is_met = meets(&[v as u32], number);
+            (is_met.then(|| collider.closest_point(pose.as_ref(), p))).flatten()
+        };
+        let closest: Vec<Option<ClosestPoint>> =
+            (mesh.positions.par_iter().enumerate().map(nearest)).collect();
+        let depths = closest.iter().flatten().map(|c| -c.signed_distance);
+        measures.penetration_max = depths.fold(measures.penetration_max, f64::max);
+        measures.edges_through_body += edges_through(&edges, &closest);
+    }
+    measures.body_intersections = on_body.len();
+    on_body
+}
+
+/// Edges whose ends lie nearest to opposite sides of a solid, by the closest point of its surface to each vertex: they
+/// cross its medial axis.
+fn edges_through(edges: &[[u32; 2]], closest: &[Option<ClosestPoint>]) -> usize {
+    let deep = |v: u32| {
+        let closest = closest[v as usize].as_ref();
+        closest.filter(|c| -c.signed_distance > DEPTH_OF_SIDES)
+    };
+    let goes_through = |&&[a, b]: &&[u32; 2]| match (deep(a), deep(b)) {
+        (Some(a), Some(b)) => a.normal.dot(&b.normal) < OPPOSITE,
+        _ => false,
+    };
+    edges.iter().filter(goes_through).count()
 }
 
 /// Pairs of cloth triangles that intersect and share no vertex, by exact predicates, without pairs of objects that
@@ -216,4 +249,100 @@ pub fn stretch_per_triangle(system: &System, positions: &[Vec3]) -> Vec<f64> {
             s.warp.max(s.weft)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Cloth, Collider, Material, Motion, MotionKey, PairPolicies, SystemBuilder, Workspace,
+    };
+    use std::sync::Arc;
+
+    /// An upright bar, 8 cm by 8.1 cm by 60 cm, round the origin.
+    fn bar() -> Arc<SurfaceTree> {
+        let corner = |k: usize| {
+            let at = |axis: usize, half: f64| if k >> axis & 1 == 1 { half } else { -half };
+            Vec3::new(at(0, 0.04), at(1, 0.3), at(2, 0.0405))
+        };
+        let sides = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        Arc::new(SurfaceTree::new(TriangleMesh {
+            positions: (0..8).map(corner).collect(),
+            triangles: (sides.iter())
+                .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+                .collect(),
+        }))
+    }
+
+    /// A square sheet of cells of 2.5 cm whose vertices lie at odd multiples of 1.25 cm of two coordinates, which
+    /// `place` takes to space.
+    fn sheet(place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+        const COUNT: u32 = 10;
+        let at = |k: u32| 0.025 * f64::from(k) - 0.1125;
+        let vertices = (0..COUNT * COUNT).map(|v| place(at(v % COUNT), at(v / COUNT)));
+        let cells = (0..COUNT * (COUNT - 1)).filter(|v| v % COUNT + 1 < COUNT);
+        TriangleMesh {
+            positions: vertices.collect(),
+            triangles: cells
+                .flat_map(|a| [[a, a + 1, a + COUNT + 1], [a, a + COUNT + 1, a + COUNT]])
+                .collect(),
+        }
+    }
+
+    fn measured(sheet: &TriangleMesh, bar: Collider, policies: PairPolicies) -> Measures {
+        let cloth = Cloth::from_mesh("sheet", sheet, Material::default()).unwrap();
+        let mut builder = SystemBuilder::new("sheet", &cloth).unwrap();
+        builder.colliders = vec![bar];
+        builder.policies = policies;
+        let system = builder.build();
+        let state = State::at_rest(&system, sheet.positions.clone());
+        measure(&system, &state, &mut Workspace::default(), &[])
+    }
+
+    #[test]
+    fn cloth_that_a_solid_goes_through_is_told_from_cloth_that_is_pressed_in() {
+        let alone = PairPolicies::default;
+        // Four vertices lie deep inside: two edges and a diagonal go from one broad side to the other.
+        let skewered = sheet(|u, v| Vec3::new(u, 0.0, v));
+        let found = measured(&skewered, Collider::new(bar()), alone());
+        assert_eq!(found.edges_through_body, 3);
+        assert!((found.penetration_max - 0.0275).abs() < 1e-12);
+
+        // As deep inside, along one side.
+        let pressed = sheet(|u, v| Vec3::new(0.0125, u, v));
+        let found = measured(&pressed, Collider::new(bar()), alone());
+        assert_eq!(found.edges_through_body, 0);
+        assert!((found.penetration_max - 0.0275).abs() < 1e-12);
+        assert!(found.body_intersections > 0);
+    }
+
+    #[test]
+    fn a_solid_that_moved_counts_where_it_is_and_one_that_is_ignored_does_not() {
+        let at = Vec3::new(0.4, 0.1, -0.2);
+        let turned = MotionKey {
+            time: 0.0,
+            translation: at,
+            rotation: Vec3::z() * std::f64::consts::FRAC_PI_2,
+        };
+        let motion = Motion {
+            pivot: Vec3::zeros(),
+            keys: vec![turned],
+        };
+        // The bar lies along x now.
+        let skewered = sheet(|u, v| at + Vec3::new(0.0, u, v));
+        let moved = || Collider::moving(bar(), motion.clone());
+        let found = measured(&skewered, moved(), PairPolicies::default());
+        assert_eq!(found.edges_through_body, 3);
+        let objects = vec![0; skewered.positions.len()];
+        let ignored = PairPolicies::new(objects, [], [(0, 0)]);
+        let found = measured(&skewered, moved(), ignored);
+        assert_eq!((found.edges_through_body, found.body_intersections), (0, 0));
+    }
 }

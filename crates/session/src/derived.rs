@@ -354,14 +354,20 @@ impl Derived {
         inputs: &[StampedInput],
         watcher: &mut dyn Watcher,
     ) -> Result<Drape, SessionError> {
-        let (put_on, [first, second]) = PutOn::otherwise(&self.sound_parts(project)?);
+        let (put_on, [first, second]) = PutOn::otherwise(&self.sound_parts(project)?)
+            .map_err(|place| SessionError::falls_off(&place, None))?;
         let fell = |error| match error {
             SessionError::Drape(DrapeError::LeftBody { .. }) => {
-                SessionError::FallsOff { first, second }
+                SessionError::falls_off(first, Some(second))
             }
             error => error,
         };
+        let given = self.outfit(project)?;
         let outfit = self.outfit_put_on(project, &put_on)?;
+        if put_on.hangs_from_chest && outfit.garment.positions == given.garment.positions {
+            // What hangs neither from the waist nor from the chest hangs from the neck.
+            return Err(SessionError::falls_off("from the neck", None));
+        }
         let job = self.job_put_on(project, &outfit, &put_on)?;
         let mut made = drape(job, inputs, watcher).map_err(fell)?;
         self.outfit = Some(outfit);

@@ -73,13 +73,11 @@ pub enum SessionError {
     Drape(toile_drape::DrapeError),
     /// The garment falls off the body whichever way it is put on.
     #[error(
-        "the garment falls off the body: it was put on {first}, then {second}, and fell within a second both times; give it a waist, straps or shoulders that hold it, or say where its panels are worn"
+        "the garment falls off the body: it was put on {tried}; give it a waist, straps or shoulders that hold it, or say where its panels are worn"
     )]
     FallsOff {
-        /// How it was put on first.
-        first: &'static str,
-        /// How it was put on then.
-        second: &'static str,
+        /// How it was put on, and that it fell.
+        tried: String,
     },
     /// A picture cannot be drawn.
     #[error("picture: {0}")]
@@ -106,6 +104,15 @@ pub enum SessionError {
 }
 
 impl SessionError {
+    /// The garment falls off, put on so and, where there is another way, so again.
+    pub(crate) fn falls_off(first: &str, second: Option<&str>) -> Self {
+        let tried = match second {
+            Some(second) => format!("{first}, then {second}, and fell within a second both times"),
+            None => format!("{first}, and fell within a second"),
+        };
+        Self::FallsOff { tried }
+    }
+
     /// Whether what was given is at fault, and not the work on it.
     pub fn is_bad_input(&self) -> bool {
         match self {

@@ -2,7 +2,7 @@
 
 use crate::outfit::DraftedPart;
 use std::sync::Arc;
-use toile_assembly::PlacementBody;
+use toile_assembly::{PlacementBody, body_part_by_name};
 use toile_pattern::{BodyPart, Draft, Facing, Worn};
 
 /// How garments are put on a body.
@@ -22,8 +22,8 @@ impl PutOn {
         }
     }
 
-    /// The other way round, with words for the first way and for this one.
-    pub fn otherwise(parts: &[DraftedPart]) -> (Self, [&'static str; 2]) {
+    /// The other way round, with words for the first way and for this one; where there is none, for the first alone.
+    pub fn otherwise(parts: &[DraftedPart]) -> Result<(Self, [&'static str; 2]), String> {
         let any = |is: fn(&Worn) -> bool| {
             let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
             pieces.filter(|piece| piece.sewn).any(|p| is(&p.worn))
@@ -49,7 +49,7 @@ impl PutOn {
                 "where its file places its panels",
                 "wrapped round the body by the names and seams of its panels",
             ];
-            return (otherwise, words);
+            return Ok((otherwise, words));
         }
         if any(is_over) {
             let otherwise = changed(|worn| {
@@ -59,7 +59,7 @@ impl PutOn {
                     (*facing, *level) = (Facing::Around, None);
                 }
             });
-            return (otherwise, ["over the head", "round the trunk"]);
+            return Ok((otherwise, ["over the head", "round the trunk"]));
         }
         if any(has_level) {
             let otherwise = changed(|worn| {
@@ -68,13 +68,23 @@ impl PutOn {
                 }
             });
             let words = ["at the level given", "at the level its kind hangs from"];
-            return (otherwise, words);
+            return Ok((otherwise, words));
+        }
+        Self::from_chest(parts)
+    }
+
+    /// From the chest instead of the waist, where a piece goes round the trunk.
+    fn from_chest(parts: &[DraftedPart]) -> Result<(Self, [&'static str; 2]), String> {
+        let told = told_body_parts(parts);
+        if !told.is_empty() && !told.contains(&BodyPart::Trunk) {
+            let each: Vec<&str> = told.into_iter().map(place_on).collect();
+            return Err(each.join(" and "));
         }
         let otherwise = Self {
             parts: Arc::new(parts.to_vec()),
             hangs_from_chest: true,
         };
-        (otherwise, ["from the waist", "from the chest"])
+        Ok((otherwise, ["from the waist", "from the chest"]))
     }
 
     /// The body with the levels that garments are hung at.
@@ -86,6 +96,34 @@ impl PutOn {
     }
 }
 
+/// The body parts that sewn pieces go round, as the patterns or the names of the pieces tell, in the order of the
+/// pieces; others go where their neighbours do, or else round the trunk.
+fn told_body_parts(parts: &[DraftedPart]) -> Vec<BodyPart> {
+    let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
+    let mut told = Vec::new();
+    for piece in pieces.filter(|piece| piece.sewn) {
+        let part = match piece.worn {
+            Worn::Wrapped { part, .. } => Some(part),
+            Worn::Automatic => body_part_by_name(piece),
+            Worn::Placed(_) => None,
+        };
+        told.extend(part.filter(|part| !told.contains(part)));
+    }
+    told
+}
+
+/// How a garment is put on that goes round a part alone.
+fn place_on(part: BodyPart) -> &'static str {
+    match part {
+        BodyPart::Trunk => "round the trunk",
+        BodyPart::LeftArm => "round the left arm",
+        BodyPart::RightArm => "round the right arm",
+        BodyPart::LeftLeg => "round the left leg",
+        BodyPart::RightLeg => "round the right leg",
+        BodyPart::Head => "round the head",
+    }
+}
+
 fn is_over(worn: &Worn) -> bool {
     matches!(worn, Worn::Wrapped { facing, .. } if *facing == Facing::Over)
 }
@@ -94,4 +132,80 @@ fn is_over(worn: &Worn) -> bool {
 fn has_level(worn: &Worn) -> bool {
     matches!(worn, Worn::Wrapped { part, level, .. }
         if level.is_some() && !matches!(part, BodyPart::LeftArm | BodyPart::RightArm))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Project;
+    use toile_geometry::Rigid;
+    use toile_pattern::{Pattern, Piece, PieceId};
+
+    /// A garment of sewn pieces with names and places.
+    fn garment(pieces: &[(&str, Worn)]) -> Vec<DraftedPart> {
+        let mut pattern = Pattern::new("garment");
+        let mut piece = |&(name, worn): &(&str, Worn)| Piece {
+            id: PieceId {
+                panel: pattern.ids.take(),
+                copy: 0,
+            },
+            name: name.to_owned(),
+            outline: Vec::new(),
+            holes: Vec::new(),
+            internal_lines: Vec::new(),
+            notches: Vec::new(),
+            darts: Vec::new(),
+            folds: Vec::new(),
+            grain: 0.0,
+            fabric: 0,
+            worn,
+            sewn: true,
+        };
+        let draft = Draft {
+            pieces: pieces.iter().map(&mut piece).collect(),
+            ..Draft::default()
+        };
+        let project = Project::default();
+        vec![DraftedPart::own(&project, Arc::new(draft), Arc::default())]
+    }
+
+    fn round(part: BodyPart) -> Worn {
+        Worn::Wrapped {
+            part,
+            facing: Facing::Around,
+            level: None,
+        }
+    }
+
+    #[test]
+    fn only_what_goes_round_the_trunk_is_hung_from_the_chest() {
+        let trunk = ("waistband", Worn::Automatic);
+        let leg = ("front", round(BodyPart::LeftLeg));
+        let arm = ("right sleeve", Worn::Automatic);
+        let unnamed = ("a", Worn::Automatic);
+        for pieces in [
+            &[trunk, leg][..],
+            &[unnamed],
+            &[trunk],
+            &[arm, unnamed, trunk],
+        ] {
+            let (otherwise, words) = PutOn::otherwise(&garment(pieces)).ok().unwrap();
+            assert!(otherwise.hangs_from_chest, "{pieces:?}");
+            assert_eq!(words, ["from the waist", "from the chest"]);
+        }
+        for (pieces, place) in [
+            (&[leg, leg][..], "round the left leg"),
+            (
+                &[arm, unnamed, leg],
+                "round the right arm and round the left leg",
+            ),
+        ] {
+            let place_told = PutOn::otherwise(&garment(pieces)).err().unwrap();
+            assert_eq!(place_told, place);
+        }
+        // Placed pieces are wrapped instead.
+        let placed = ("front", Worn::Placed(Rigid::identity()));
+        let (otherwise, _) = PutOn::otherwise(&garment(&[placed])).ok().unwrap();
+        assert!(!otherwise.hangs_from_chest);
+    }
 }

@@ -96,6 +96,7 @@ struct DrapeReport {
     seam_gap_max_m: f64,
     body_penetration_max_m: f64,
     body_intersections: usize,
+    edges_through_body: usize,
     self_intersections: usize,
     /// Garments worn over one another, innermost first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -277,6 +278,7 @@ impl Report {
             seam_gap_max_m: drape.seam_gap,
             body_penetration_max_m: measures.penetration_max.max(0.0),
             body_intersections: measures.body_intersections,
+            edges_through_body: measures.edges_through_body,
             self_intersections: measures.self_intersections,
             layers: layer_reports(drape),
             tangles: Tangles::of(&drape.tally),

@@ -351,6 +351,7 @@ fn report(
         "seam_gap_max_m": run.elastic_gap(),
         "body_penetration_max_m": measures.penetration_max,
         "body_intersections": measures.body_intersections,
+        "edges_through_body": measures.edges_through_body,
         "self_intersections": measures.self_intersections,
         "crossings": crossings,
         "layers": layers,

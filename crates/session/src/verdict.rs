@@ -18,6 +18,8 @@ const PRESSED: f64 = 0.03;
 /// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth presses
 /// [m].
 const THROUGH: f64 = 0.01;
+/// Stretch beyond which the cloth of a scene is pulled as none bears: woven cloth tears long before.
+const OVERSTRETCHED: f64 = 1.0;
 /// Depth below the floor up to which a hem only touches it [m].
 const ON_FLOOR: f64 = 0.02;
 /// Distance from the body within which cloth touches it, in contact offsets.
@@ -53,9 +55,13 @@ pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures
         verdict.judge(Aspect::Parts, in_parts(parts, job.parts.len()));
     }
     verdict.judge(Aspect::Tangle, garment_tangle(run, measures));
-    let deepest = deepest_in_body(measures);
-    verdict.judge(Aspect::Tangle, through_solid(measures, deepest));
-    verdict.judge(Aspect::Tightness, tightness(measures, deepest));
+    let remedy = "say where its panels are worn, so that they hang clear of arms and legs, or give it more ease (a larger size) where it is narrower than the body";
+    let through = through_solid("the body", (measures, deepest_in_body(measures)), remedy);
+    // How tight it is cannot be told of cloth that hangs on what goes through it.
+    if through.is_none() {
+        verdict.judge(Aspect::Tightness, tightness(measures));
+    }
+    verdict.judge(Aspect::Tangle, through);
     if !measures.layers.is_empty() {
         verdict.judge(Aspect::Layers, disorder(measures, &job.parts));
     }
@@ -100,8 +106,32 @@ pub(crate) fn of_scene(run: &SceneRun, measures: &Measures, crossings: &Crossing
         Aspect::Tangle,
         tangle.map(|words| Finding::bad(Aspect::Tangle, words)),
     );
-    verdict.judge(Aspect::Tangle, through_solid(measures, THROUGH));
+    let remedy = match settings.method.kind.is_equilibrium() {
+        true => "place it clear of the solid, or take a finer mesh",
+        false => "place it clear of the solid, or take a finer mesh or a shorter step",
+    };
+    verdict.judge(
+        Aspect::Tangle,
+        through_solid("a solid", (measures, THROUGH), remedy),
+    );
+    verdict.judge(Aspect::Tightness, overstretched(measures));
     verdict
+}
+
+/// Cloth of a scene that is stretched to many times its length.
+fn overstretched(measures: &Measures) -> Option<Finding> {
+    let [warp, weft] = measures.strain_max;
+    let (name, strain) = match warp >= weft {
+        true => ("warp", warp),
+        false => ("weft", weft),
+    };
+    (strain > OVERSTRETCHED).then(|| {
+        let words = format!(
+            "cloth is stretched to {:.1} times its length along the {name} at the worst place, which no cloth bears: let what holds it move less far, or give its material more stiffness",
+            1.0 + strain
+        );
+        Finding::told(Aspect::Tightness, words)
+    })
 }
 
 /// A net force above the one that counts as rest.
@@ -241,14 +271,24 @@ fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Cloth inside a solid, deeper than pressing explains.
-fn through_solid(measures: &Measures, deepest: f64) -> Option<Finding> {
-    let depth = measures.penetration_max;
-    (depth > deepest && measures.body_intersections > 0).then(|| {
+/// Cloth inside a solid otherwise than pressed in: deeper than a limit [m], or from one side to the other.
+fn through_solid(
+    solid: &str,
+    (measures, deepest): (&Measures, f64),
+    remedy: &str,
+) -> Option<Finding> {
+    let (depth, through) = (measures.penetration_max, measures.edges_through_body);
+    let is_through = depth > deepest || through > 0;
+    (is_through && measures.body_intersections > 0).then(|| {
+        let reach = match through {
+            0 => String::new(),
+            1 => ", an edge of it reaches from one side to the other".to_owned(),
+            many => format!(", {many} edges of it reach from one side to the other"),
+        };
         let words = format!(
-            "cloth went through a solid: it lies up to {:.1} cm inside, and {} pairs of cloth and body triangles cross; place it clear of the body, or take a finer mesh or a shorter step",
+            "cloth went through {solid}: it lies up to {:.1} cm inside{reach}, and {} pairs of triangles of both cross; {remedy}",
             depth * 1e2,
-            measures.body_intersections
+            measures.body_intersections,
         );
         Finding::bad(Aspect::Tangle, words)
     })
@@ -260,21 +300,16 @@ fn deepest_in_body(measures: &Measures) -> f64 {
     if is_tight { PRESSED } else { THROUGH }
 }
 
-/// Cloth that crosses the body without having gone through it.
-fn pressed(measures: &Measures, deepest: f64) -> Option<Finding> {
-    let is_shallow = measures.penetration_max <= deepest;
-    (measures.body_intersections > 0 && is_shallow).then(|| {
+/// Cloth that is stretched, or crosses the body without having gone through it.
+fn tightness(measures: &Measures) -> Vec<Finding> {
+    let mut found = Vec::new();
+    if measures.body_intersections > 0 {
         let words = format!(
             "{} pairs of cloth and body triangles cross: the cloth is too tight there, or the mesh too coarse; try a larger size, more ease or a finer mesh (--quality final)",
             measures.body_intersections
         );
-        Finding::told(Aspect::Tightness, words)
-    })
-}
-
-/// Cloth that is stretched, or presses through the body.
-fn tightness(measures: &Measures, deepest: f64) -> Vec<Finding> {
-    let mut found: Vec<Finding> = pressed(measures, deepest).into_iter().collect();
+        found.push(Finding::told(Aspect::Tightness, words));
+    }
     for (name, strain) in ["warp", "weft"].iter().zip(measures.strain_max) {
         if strain > TIGHT {
             let words = format!(
@@ -381,6 +416,47 @@ fn elastic_name(run: &SceneRun, index: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Cloth in a body: depth [m], edges from one side to the other, stretch.
+    fn in_body(depth: f64, through: usize, strain: f64) -> Measures {
+        Measures {
+            penetration_max: depth,
+            edges_through_body: through,
+            body_intersections: 165,
+            strain_max: [strain, 0.0],
+            ..Measures::default()
+        }
+    }
+
+    #[test]
+    fn cloth_that_goes_through_the_body_is_bad_however_it_is_stretched() {
+        let judged = |measures: &Measures| {
+            through_solid("the body", (measures, deepest_in_body(measures)), "mend it")
+        };
+        let skewered = judged(&in_body(0.0216, 6, 0.61)).unwrap();
+        assert!(skewered.is_bad && skewered.aspect == Aspect::Tangle);
+        for told in ["2.2 cm inside", "6 edges", "165 pairs", "mend it"] {
+            assert!(skewered.words.contains(told), "{told}: {}", skewered.words);
+        }
+        // Pressed in as deep by cloth that is too tight, and deeper than that explains.
+        assert_eq!(judged(&in_body(0.0205, 0, 0.61)), None);
+        assert!(judged(&in_body(0.031, 0, 0.61)).is_some());
+        assert!(judged(&in_body(0.0205, 0, 0.1)).is_some());
+        // All of it in the hollow of a solid: nothing crosses.
+        let inside = Measures {
+            body_intersections: 0,
+            ..in_body(0.5, 9, 0.0)
+        };
+        assert_eq!(judged(&inside), None);
+    }
+
+    #[test]
+    fn cloth_of_a_scene_is_told_from_twice_its_length_on() {
+        assert_eq!(overstretched(&in_body(0.0, 0, 0.99)), None);
+        let told = overstretched(&in_body(0.0, 0, 17.6)).unwrap();
+        assert!(!told.is_bad);
+        assert!(told.words.contains("18.6 times its length along the warp"));
+    }
 
     #[test]
     fn a_report_names_what_was_judged() {

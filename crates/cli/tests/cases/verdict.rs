@@ -251,8 +251,8 @@ fn a_run_that_is_given_up_leaves_its_files_and_goes_on_from_them() {
     assert!(words(&refused.stderr).contains("give a time above zero"));
 }
 
-/// A tube of a length [cm] round the trunk, of two pieces, as a pattern.
-fn tube(folder: &Path, girth: f64, length: f64) {
+/// A tube of a girth and a length [cm] round a part of the body, of two pieces, as a pattern.
+fn tube(folder: &Path, part: &str, [girth, length]: [f64; 2]) {
     let width = 0.5 * girth;
     let sheet = |first: u32| {
         let corners = [[0.0, 0.0], [width, 0.0], [width, length], [0.0, length]];
@@ -273,7 +273,7 @@ fn tube(folder: &Path, girth: f64, length: f64) {
             json!({ "id": first + 11 + k, "name": format!("e{k}"), "curve": first + 5 + k, "from": from, "to": to })
         };
         json!({ "id": first + 9, "name": name, "sheet": first, "fabric": 1, "allowance": 1,
-            "worn": { "part": "trunk", "facing": name },
+            "worn": { "part": part, "facing": name },
             "lines": [{ "id": first + 10, "name": "outline", "kind": "outline",
                 "edges": (0..4).map(edge).collect::<Vec<_>>() }] })
     };
@@ -294,19 +294,19 @@ fn tube(folder: &Path, girth: f64, length: f64) {
     std::fs::write(folder.join("tube.toile.json"), pattern.to_string()).unwrap();
 }
 
+/// The arguments that drape the tube.
+const DRAPE: [&str; 6] = [
+    "drape",
+    "tube.toile.json",
+    "--quality",
+    "preview",
+    "--out",
+    "out",
+];
+
 /// Drapes the tube: exit status, what was said, report.
 fn drape(folder: &Path) -> (Option<i32>, String, Value) {
-    let output = toile(
-        folder,
-        &[
-            "drape",
-            "tube.toile.json",
-            "--quality",
-            "preview",
-            "--out",
-            "out",
-        ],
-    );
+    let output = toile(folder, &DRAPE);
     let report = std::fs::read(folder.join("out/report.json")).unwrap();
     (
         output.status.code(),
@@ -316,9 +316,56 @@ fn drape(folder: &Path) -> (Option<i32>, String, Value) {
 }
 
 #[test]
+fn a_garment_that_the_arms_go_through_is_told_so_and_not_as_tight() {
+    let folder = tempfile::tempdir().unwrap();
+    tube(folder.path(), "trunk", [180.0, 12.0]);
+    let (status, said, report) = drape(folder.path());
+    assert_eq!(status, Some(3), "{said}");
+    assert!(said.contains("cloth went through the body"), "{said}");
+    for other in ["too tight", "stretched", "shorter step"] {
+        assert!(!said.contains(other), "{other}: {said}");
+    }
+    assert!(report["edges_through_body"].as_u64().unwrap() > 0);
+    let verdict = &report["verdict"];
+    assert_eq!(verdict["sound"], false);
+    assert_eq!(verdict["tangled"], true);
+    assert_eq!(verdict["too_tight"], Value::Null);
+    assert!(folder.path().join("out/garment.obj").is_file());
+}
+
+#[test]
+fn a_garment_that_falls_off_a_leg_is_not_put_on_the_chest() {
+    let folder = tempfile::tempdir().unwrap();
+    tube(folder.path(), "left_leg", [100.0, 30.0]);
+    let output = toile(folder.path(), &DRAPE);
+    let said = words(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("it was put on round the left leg, and fell within a second;"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_scene_whose_cloth_is_pulled_to_many_times_its_length_says_so_and_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    meshes(folder.path());
+    let key = |time: f64, rise: f64| json!({ "time": time, "translation": [0, rise, 0], "rotation": [0, 0, 0] });
+    let motion = json!({ "pivot": [0, 0, 0], "keys": [key(0.0, 0.0), key(0.2, 3.0)] });
+    let mut pulled = cloth("left", &[0, 1, 2, 3, 4]);
+    pulled["grips"] = json!([{ "vertices": [20, 21, 22, 23, 24], "motion": motion }]);
+    let more = json!({ "duration": 0.3, "method": { "name": "xpbd" } });
+    let (status, said, report) = run(folder.path(), &scene(&[pulled], more), &[]);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("times its length along the"), "{said}");
+    assert_eq!(report["warnings"].as_array().unwrap().len(), 1, "{said}");
+    assert_eq!(report["verdict"]["sound"], true);
+}
+
+#[test]
 fn a_garment_that_fell_once_is_told_and_so_is_its_replay() {
     let folder = tempfile::tempdir().unwrap();
-    tube(folder.path(), 230.0, 12.0);
+    tube(folder.path(), "trunk", [230.0, 12.0]);
     let (status, said, report) = drape(folder.path());
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("fell off the body: put on again"), "{said}");
@@ -338,7 +385,7 @@ fn a_garment_that_fell_once_is_told_and_so_is_its_replay() {
 #[test]
 fn a_garment_worn_has_no_warning() {
     let folder = tempfile::tempdir().unwrap();
-    tube(folder.path(), 88.0, 25.0);
+    tube(folder.path(), "trunk", [88.0, 25.0]);
     let (status, said, report) = drape(folder.path());
     assert_eq!((status, &*said), (Some(0), ""));
     assert_eq!(report["warnings"], json!([]));
