@@ -318,7 +318,7 @@ fn drape(folder: &Path) -> (Option<i32>, String, Value) {
 #[test]
 fn a_garment_that_the_arms_go_through_is_told_so_and_not_as_tight() {
     let folder = tempfile::tempdir().unwrap();
-    tube(folder.path(), "trunk", [180.0, 12.0]);
+    tube(folder.path(), "trunk", [210.0, 20.0]);
     let (status, said, report) = drape(folder.path());
     assert_eq!(status, Some(3), "{said}");
     assert!(said.contains("cloth went through the body"), "{said}");
