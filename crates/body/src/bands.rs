@@ -16,11 +16,6 @@ pub(crate) enum Near {
 }
 
 impl Near {
-    /// Round a height.
-    pub(crate) fn level(height: f64, reach: f64) -> Self {
-        Self::Level([height - reach, height + reach])
-    }
-
     /// Round places of a body at some distance from the middle, between a least and a largest
     /// sideways scale, and between heights of the template.
     pub(crate) fn side(places: [f64; 2], [least, most]: [f64; 2], heights: [f64; 2]) -> Self {

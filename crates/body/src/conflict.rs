@@ -34,6 +34,18 @@ const RULES: &[Rule] = &[
         "the girth under the bust is larger than the bust: measure both anew",
     ),
     (
+        &[("underbust", 1.35), ("waist", -1.0)],
+        0.0,
+        "the waist has over 1.35 of the girth under the bust, where it is the smallest girth below \
+         it: measure both anew",
+    ),
+    (
+        &[("underbust", 0.55), ("hips", 0.55), ("waist", -1.0)],
+        0.0,
+        "the waist is far larger than the girth under the bust and the hips, where it is the \
+         smallest girth between them: measure all three anew",
+    ),
+    (
         &[("hips", 1.0), ("high_hips", -1.0)],
         0.0,
         "the high hips are larger than the hips, which are the largest girth there: measure both \
@@ -84,9 +96,9 @@ const RULES: &[Rule] = &[
          vert_bust_line",
     ),
     (
-        &[("hips", 0.8), ("leg_circ", -1.0)],
+        &[("hips", 0.72), ("leg_circ", -1.0)],
         0.0,
-        "a thigh cannot have over 0.8 of the hip girth: lessen leg_circ",
+        "a thigh cannot have over 0.72 of the hip girth: lessen leg_circ",
     ),
     (
         &[("leg_circ", 1.0), ("calf", -1.0)],

@@ -1,6 +1,7 @@
-//! What each girth is: where on a standing body that nobody says the levels of it is taped.
+//! What each girth is: where on a standing body it is taped. Our own bodies are solved, reported
+//! and, as anybody's mesh, measured by these.
 
-use crate::girths::{Girth, THIGH_DROP};
+use crate::girths::Girth;
 
 /// What says where the girths of a standing body lie [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,18 +47,21 @@ pub(crate) struct Taping {
     choice: Choice,
 }
 
-/// Tilt of a tape round the neck, lower in front [rad]: about half of what is square to the axis of a
-/// neck, as on our own bodies.
-pub(crate) const NECK_TILT: f64 = 11.0 * std::f64::consts::PI / 180.0;
+/// Tilt of a tape round the neck, lower in front [rad]: about square to the axis of a neck, so that
+/// necks have their least girth within 2 mm of it.
+pub(crate) const NECK_TILT: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// How far from the middle of the neck its tape may lie, over stature.
 const NECK_REACH: f64 = 0.03;
 
 /// Shares of the way from crotch to crown.
-const HIPS: [f64; 2] = [0.01, 0.16];
-const WAIST: [f64; 2] = [0.20, 0.38];
-const BUST: f64 = 0.44;
+const HIPS: [f64; 2] = [0.035, 0.11];
+const WAIST: [f64; 2] = [0.28, 0.35];
+const UNDERBUST: f64 = 0.415;
+const BUST: [f64; 2] = [0.44, 0.50];
 /// Least depth of the bust under the armpits, over stature.
-const BUST_DROP: f64 = 0.008;
+pub(crate) const BUST_DROP: f64 = 0.008;
+/// Depth below the crotch at which the thigh is taped, over stature.
+pub(crate) const THIGH_DROP: f64 = 0.012;
 /// Height of the knee over the crotch's, where nobody says it.
 pub(crate) const KNEE: f64 = 0.58;
 /// Share of the way from knee to crotch.
@@ -78,20 +82,26 @@ const WRIST: [f64; 2] = [0.60, 0.78];
 const STEPS: usize = 8;
 const NARROWINGS: usize = 5;
 
-impl BodyMarks {
-    /// The height of a share of the way from crotch to crown [m].
-    pub(crate) fn up(&self, share: f64) -> f64 {
-        self.crotch + share * (self.stature - self.crotch)
-    }
+/// Between which heights a girth round the trunk lies, over heights of crotch and crown [m]; none
+/// where lengths alone say its level.
+pub(crate) fn trunk_range(girth: Girth, [crotch, crown]: [f64; 2]) -> Option<[f64; 2]> {
+    let shares = match girth {
+        Girth::Hips => HIPS,
+        Girth::Waist => WAIST,
+        Girth::Bust => BUST,
+        Girth::Underbust => [UNDERBUST; 2],
+        _ => return None,
+    };
+    Some(shares.map(|share| crotch + share * (crown - crotch)))
 }
 
 impl Taping {
     /// Where a girth is taped on a body; none where lengths alone say it.
     ///
     /// Hips are the largest level girth from the crotch up, the waist is the smallest above them, the
-    /// bust the largest under the armpits, as ISO 8559-1 (2017) has them. Calf and ankle are the
-    /// largest and smallest level girths
-    /// there, the neck the smallest girth by a tilted tape, upper arm and forearm
+    /// bust the largest under the armpits, as ISO 8559-1 (2017) has them; the girth under the bust lies
+    /// at a share of the height from crotch to crown. Calf and ankle are the largest and smallest level girths
+    /// there, the neck the smallest girth about square to its axis, upper arm and forearm
     /// the largest and the wrist the smallest girths across the arm.
     pub(crate) fn of(girth: Girth, marks: &BodyMarks) -> Option<Self> {
         use Choice::{Largest, Smallest};
@@ -99,12 +109,13 @@ impl Taping {
         let along = |share: f64| marks.arm[0] + share * (marks.arm[1] - marks.arm[0]);
         let reach = NECK_REACH * h;
         let lower_thigh = marks.knee + LOWER_THIGH * (marks.crotch - marks.knee);
+        let trunk = || trunk_range(girth, [marks.crotch, h]);
         let (cut, range, choice) = match girth {
-            Girth::Hips => (Cut::Trunk, HIPS.map(|share| marks.up(share)), Largest),
-            Girth::Waist => (Cut::Trunk, WAIST.map(|share| marks.up(share)), Smallest),
+            Girth::Hips | Girth::Underbust => (Cut::Trunk, trunk()?, Largest),
+            Girth::Waist => (Cut::Trunk, trunk()?, Smallest),
             Girth::Bust => {
                 let top = marks.armpit - BUST_DROP * h;
-                (Cut::Trunk, [marks.up(BUST).min(top), top], Largest)
+                (Cut::Trunk, trunk()?.map(|y| y.min(top)), Largest)
             }
             Girth::Thigh => (Cut::Leg, [marks.crotch - THIGH_DROP * h; 2], Largest),
             Girth::LowerThigh => (Cut::Leg, [lower_thigh; 2], Largest),
@@ -119,9 +130,7 @@ impl Taping {
             Girth::UpperArm => (Cut::Arm, UPPER_ARM.map(along), Largest),
             Girth::Forearm => (Cut::Arm, FOREARM.map(along), Largest),
             Girth::Wrist => (Cut::Arm, WRIST.map(along), Smallest),
-            Girth::HighBust | Girth::Underbust | Girth::HighHips | Girth::Heel | Girth::Elbow => {
-                return None;
-            }
+            Girth::HighBust | Girth::HighHips | Girth::Heel | Girth::Elbow => return None,
         };
         Some(Self { cut, range, choice })
     }
@@ -163,6 +172,21 @@ impl Taping {
         let found = last.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
         found.map(|(_, at)| at)
     }
+
+    /// The place of a share of the range [m].
+    pub(crate) fn at(&self, share: f64) -> f64 {
+        self.range[0] + share * (self.range[1] - self.range[0])
+    }
+
+    /// The share of the range at which a place lies [1].
+    pub(crate) fn share(&self, place: f64) -> f64 {
+        let wide = self.range[1] - self.range[0];
+        if wide > 0.0 {
+            (place - self.range[0]) / wide
+        } else {
+            0.0
+        }
+    }
 }
 
 #[cfg(test)]
@@ -182,6 +206,7 @@ mod tests {
         let hips = Taping::of(Girth::Hips, &MARKS).unwrap();
         let found = hips.find(|y| Some(1.0 - (y - 0.8567).powi(2))).unwrap();
         assert!((found - 0.8567).abs() < 1e-3, "{found}");
+        assert!((hips.at(hips.share(found)) - found).abs() < 1e-12);
         // One that goes on falling ends at the end of its range.
         let waist = Taping::of(Girth::Waist, &MARKS).unwrap();
         let found = waist.find(|y| Some(2.0 - y)).unwrap();

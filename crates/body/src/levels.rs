@@ -1,6 +1,8 @@
 //! Heights of the landmarks, solved from the lengths that are asked for.
 
 use crate::conflict::gives_way;
+use crate::definitions::trunk_range;
+use crate::girths::Girth;
 use crate::request::Request;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 use nalgebra::{SMatrix, SVector};
@@ -31,15 +33,42 @@ use Level::{
 
 const COUNT: usize = 13;
 
-/// Heights above the floor [m].
+/// Heights above the floor [m], and whether the waist is smaller than the girth under the bust.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Levels([f64; COUNT]);
+pub(crate) struct Levels {
+    heights: [f64; COUNT],
+    pub(crate) is_waisted: bool,
+}
 
 impl Levels {
     pub(crate) fn at(&self, level: Level) -> f64 {
-        self.0[level as usize]
+        self.heights[level as usize]
+    }
+
+    /// Whether a girth round the trunk is looked for on a body of these levels with its crotch and crown
+    /// at heights [m]; else it is taped at its level, as a waist at the navel is. Hips always are.
+    pub(crate) fn is_looked_for(&self, girth: Girth, [crotch, crown]: [f64; 2]) -> bool {
+        let share = |level: Level| (self.at(level) - crotch) / (crown - crotch);
+        let within = |level: Level, [low, high]: [f64; 2]| (low..=high).contains(&share(level));
+        match girth {
+            Girth::Hips => true,
+            Girth::Waist => {
+                let range = WAIST_RANGE[usize::from(self.is_waisted)];
+                within(Waist, range) && share(Underbust) > UNDERBUST_LEAST
+            }
+            Girth::Bust => within(Bust, BUST_RANGE),
+            _ => false,
+        }
     }
 }
+
+/// Between which shares of the way from crotch to crown the level of a waist lies that is the smallest
+/// girth there: of a belly, and of a waist smaller than the girth under the bust.
+const WAIST_RANGE: [[f64; 2]; 2] = [[0.30, 0.37], [0.28, 0.37]];
+/// The same of the bust.
+const BUST_RANGE: [f64; 2] = [0.44, 0.56];
+/// Where the girth under the bust lies lower, the smallest girth below it is not the waist.
+const UNDERBUST_LEAST: f64 = 0.385;
 
 /// Differences of measurements on the skin from the differences of their levels [m].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -186,7 +215,22 @@ pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffs
         .normal
         .cholesky()
         .map_or(SVector::zeros(), |factor| factor.solve(&system.right));
-    in_order(solved.into(), height)
+    let mut heights = in_order(solved.into(), height);
+    if !["bust_to_underbust", "waist_to_underbust"]
+        .into_iter()
+        .any(asked)
+    {
+        let at = |level: Level| heights[level as usize];
+        let crotch = at(Crotch) + offsets.level[Crotch as usize];
+        let lies = trunk_range(Girth::Underbust, [crotch, at(Crown)]).map_or(0.0, |range| range[0]);
+        let room = [at(Waist) + 0.012 * height, at(Bust) - 0.012 * height];
+        heights[Underbust as usize] = lies.max(room[0]).min(room[1]);
+    }
+    let [waist, underbust] = [Girth::Waist, Girth::Underbust].map(|girth| request.girth(girth));
+    Levels {
+        heights,
+        is_waisted: waist < underbust,
+    }
 }
 
 /// What holds of any body: definitions, then the template's proportions.
@@ -248,8 +292,7 @@ fn proportions(
 const ROOM: [(Level, f64); 9] = [
     (Knee, 0.12),
     (Crotch, 0.10),
-    // The fullest buttocks may lie under the crotch.
-    (Hips, -0.025),
+    (Hips, 0.008),
     (Waist, 0.03),
     (Underbust, 0.012),
     (Bust, 0.012),
@@ -259,7 +302,7 @@ const ROOM: [(Level, f64); 9] = [
 ];
 
 /// Heights with the least room between them.
-fn in_order(mut heights: [f64; COUNT], height: f64) -> Levels {
+fn in_order(mut heights: [f64; COUNT], height: f64) -> [f64; COUNT] {
     let mut floor = 0.0;
     for (level, room) in ROOM {
         let least = floor + room * height;
@@ -277,5 +320,5 @@ fn in_order(mut heights: [f64; COUNT], height: f64) -> Levels {
     let bust = heights[Bust as usize];
     let high = &mut heights[HighBust as usize];
     *high = high.clamp(bust + 0.008 * height, tip - 0.008 * height);
-    Levels(heights)
+    heights
 }

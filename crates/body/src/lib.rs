@@ -7,6 +7,7 @@ mod bands;
 mod bones;
 mod conflict;
 mod curve;
+mod cuts;
 mod definitions;
 mod deform;
 mod describe;

@@ -2,6 +2,8 @@
 
 use crate::Part;
 use crate::bands::Near;
+use crate::cuts::CutPlane;
+use crate::definitions::{BodyMarks, KNEE, Taping};
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::tape::{
@@ -22,16 +24,26 @@ pub(crate) struct TapedSkin<'a> {
     pub(crate) warp: &'a Warp,
     /// Vertices in the middle of the crotch.
     pub(crate) crotch: &'a [u32],
+    /// Shares of their ranges at which girths are known to lie; the others are looked for.
+    shares: Shares,
+    body: OnceCell<BodyMarks>,
+    /// Cache of places.
+    places: RefCell<[Option<f64>; Girth::COUNT]>,
     /// Cache of hulls.
-    pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
+    hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
     /// Cache of lengths.
     known: RefCell<Vec<(String, Option<f64>)>>,
     around: OnceCell<Option<Around>>,
     bust: OnceCell<Option<Vec3>>,
+    /// Cache of girths round the trunk where they are found.
+    found: [OnceCell<f64>; Girth::COUNT],
     through_neck: OnceCell<Vec<[Vec3; 2]>>,
-    /// Vertex in the left armpit.
-    pub(crate) armpit: u32,
+    /// Vertices in the left armpit from front to back.
+    armpit: &'a [u32],
 }
+
+/// Shares of their ranges at which girths lie [1].
+pub(crate) type Shares = [Option<f64>; Girth::COUNT];
 
 /// The tight way in the middle from the waist in front round the crotch to the waist behind.
 struct Around {
@@ -50,6 +62,13 @@ impl Around {
     }
 }
 
+/// What share of the hips' girth their level may lack: a tape set there finds them, a few millimetres
+/// up or down.
+const LEVEL_SLACK: f64 = 0.01;
+
+/// How far below their level hips lie there all the same, over stature: a centimetre.
+const BELOW: f64 = 0.006;
+
 /// Halvings of a range: to a billionth of it.
 const HALVINGS: usize = 30;
 
@@ -65,7 +84,7 @@ impl<'a> TapedSkin<'a> {
     /// The tape on a skin of a cast template.
     pub(crate) fn new(
         skinned: &'a Skinned<'a>,
-        (marks, armpit): (&'a TemplateMarks, u32),
+        (marks, armpit): (&'a TemplateMarks, &'a [u32]),
         (levels, warp): (&'a Levels, &'a Warp),
         crotch: &'a [u32],
     ) -> Self {
@@ -75,10 +94,14 @@ impl<'a> TapedSkin<'a> {
             levels,
             warp,
             crotch,
+            shares: Shares::default(),
+            body: OnceCell::new(),
+            places: Default::default(),
             hulls: Default::default(),
             known: Default::default(),
             around: OnceCell::new(),
             bust: OnceCell::new(),
+            found: Default::default(),
             through_neck: OnceCell::new(),
             armpit,
         }
@@ -99,16 +122,22 @@ impl<'a> TapedSkin<'a> {
         match level {
             Level::Tip => self.tip().y,
             Level::NeckSide => self.neck_side().y,
-            Level::Armpit => self.skinned.at(self.armpit).y,
+            Level::Armpit => self.armpit_fold().y,
             Level::Crotch => {
                 let heights = self.crotch.iter().map(|&v| self.skinned.at(v).y);
                 heights.fold(f64::INFINITY, f64::min)
             }
+            Level::Hips => self.hip_height(),
             _ => self.levels.at(level),
         }
     }
 
-    /// The hull of a girth's section.
+    /// The middle of the left armpit [m].
+    fn armpit_fold(&self) -> Vec3 {
+        self.skinned.at(self.armpit[self.armpit.len() / 2])
+    }
+
+    /// The hull of a girth's section: round the trunk at the level that lengths give it.
     pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
         if let Some(known) = &self.hulls.borrow()[girth as usize] {
             return known.clone();
@@ -119,14 +148,133 @@ impl<'a> TapedSkin<'a> {
     }
 
     fn taken_hull(&self, girth: Girth) -> Vec<Vec2> {
-        let (part, plane) = girth.plane(self.marks, self.levels, self.warp);
-        self.skinned
-            .hull(part, plane, Some(girth.near(self.marks, plane, self.warp)))
+        let found = match girth.level() {
+            None => self.taping(girth).zip(self.place(girth)),
+            Some(_) => None,
+        };
+        let cut = match found {
+            Some((taping, place)) => CutPlane::of(taping.cut, place, self.marks, self.warp),
+            None => CutPlane::placed(girth, self.marks, self.levels, self.warp),
+        };
+        self.skinned.hull(cut.part, cut.plane, Some(cut.near))
+    }
+
+    /// What says where the girths lie.
+    pub(crate) fn body(&self) -> &BodyMarks {
+        self.body.get_or_init(|| {
+            let crotch = self.height(Level::Crotch);
+            let stature = self.levels.at(Level::Crown);
+            let heights = self.armpit.iter().map(|&v| self.skinned.at(v).y);
+            let arm = [self.armpit_fold(), self.skinned.at(self.marks.finger_tip)];
+            BodyMarks {
+                stature,
+                crotch,
+                armpit: heights.fold(f64::INFINITY, f64::min),
+                knee: KNEE * crotch,
+                arm: arm.map(|p| self.warp.along_arm(p)),
+            }
+        })
+    }
+
+    /// Girth of a taping at a place [m].
+    pub(crate) fn taped(&self, taping: &Taping, place: f64) -> f64 {
+        let cut = CutPlane::of(taping.cut, place, self.marks, self.warp);
+        closed_length(&self.skinned.hull(cut.part, cut.plane, Some(cut.near)))
+    }
+
+    /// Where a girth is looked for; none where lengths alone say its level, as they do round the trunk.
+    fn taping(&self, girth: Girth) -> Option<Taping> {
+        let body = self.body();
+        let ends = [body.crotch, body.stature];
+        let is_level = |_| !self.levels.is_looked_for(girth, ends);
+        if girth.level().is_some_and(is_level) {
+            return None;
+        }
+        Taping::of(girth, body)
+    }
+
+    /// The place of a girth [m]; none where lengths alone say it.
+    fn place(&self, girth: Girth) -> Option<f64> {
+        if let Some(known) = self.places.borrow()[girth as usize] {
+            return Some(known);
+        }
+        let taping = self.taping(girth)?;
+        let place = match self.shares[girth as usize] {
+            Some(share) => taping.at(share),
+            None => taping.find(|place| Some(self.taped(&taping, place)))?,
+        };
+        self.places.borrow_mut()[girth as usize] = Some(place);
+        Some(place)
+    }
+
+    /// What a girth of the trunk that is looked for is at the level lengths give it [m].
+    pub(crate) fn at_level(&self, girth: Girth) -> Option<f64> {
+        self.taping(girth)?;
+        girth.level()?;
+        Some(closed_length(&self.hull(girth)))
+    }
+
+    /// What it is where its scale is set: at that level, or at the end of where it may lie that is
+    /// nearest to it [m].
+    pub(crate) fn at_section(&self, girth: Girth) -> Option<f64> {
+        let taping = self.taping(girth)?;
+        let y = self.levels.at(girth.level()?);
+        let [low, high] = taping.range;
+        if (low..=high).contains(&y) {
+            return self.at_level(girth);
+        }
+        Some(self.taped(&taping, if y < low { low } else { high }))
+    }
+
+    /// Whether the hips' girth lies clearly below the level that lengths give them.
+    pub(crate) fn hips_lie_below(&self) -> bool {
+        let level = self.levels.at(Level::Hips) - BELOW * self.levels.at(Level::Crown);
+        self.place(Girth::Hips).is_some_and(|place| place < level)
+    }
+
+    /// Height of the hips: where lengths have them, if they are as large there [m].
+    fn hip_height(&self) -> f64 {
+        let level = self.levels.at(Level::Hips);
+        let most = self.girth(Girth::Hips);
+        let least = (1.0 - LEVEL_SLACK) * most;
+        match self.place(Girth::Hips) {
+            Some(place)
+                if self
+                    .at_level(Girth::Hips)
+                    .is_some_and(|there| there < least) =>
+            {
+                place
+            }
+            _ => level,
+        }
+    }
+
+    /// The shares of their ranges at which girths lie, for the next body that is much the same.
+    pub(crate) fn shares(&self) -> Shares {
+        Girth::ALL.map(|girth| {
+            let taping = self.taping(girth)?;
+            let known = self.places.borrow()[girth as usize];
+            known.map(|place| taping.share(place))
+        })
+    }
+
+    /// The same tape where girths are known to lie.
+    pub(crate) fn knowing(mut self, shares: Shares) -> Self {
+        self.shares = shares;
+        self
     }
 
     /// A girth [m].
     pub(crate) fn girth(&self, girth: Girth) -> f64 {
-        closed_length(&self.hull(girth))
+        let found = girth
+            .level()
+            .and_then(|_| self.taping(girth).zip(self.place(girth)));
+        match found {
+            Some((taping, place)) => {
+                *self.found[girth as usize].get_or_init(|| self.taped(&taping, place))
+            }
+            None => closed_length(&self.hull(girth)),
+        }
     }
 
     /// The point of the bust on the left [m].
@@ -399,7 +547,7 @@ impl<'a> TapedSkin<'a> {
 
     /// The hindmost point of the left buttock [m].
     fn hindmost(&self) -> Option<Vec3> {
-        let y = self.levels.at(Level::Hips);
+        let y = self.hip_height();
         self.skinned
             .section(
                 &[Part::Trunk, Part::LeftLeg],

@@ -37,8 +37,8 @@ pub(crate) struct TemplateSkin {
     pub(crate) leg: Vec<f64>,
     /// The mirror image of each vertex; itself in the middle.
     pub(crate) mirror: Vec<u32>,
-    /// The vertex in the left armpit.
-    pub(crate) armpit: u32,
+    /// Vertices in the left armpit, where the trunk ends and the arm begins, from front to back.
+    pub(crate) armpit: Vec<u32>,
     /// The vertex at the front fold of the left armpit: where the arm's border turns up.
     pub(crate) fold: u32,
     /// The left half's triangles by their place.
@@ -160,7 +160,7 @@ pub(crate) fn crossings(mesh: &TriangleMesh) -> usize {
 
 /// Rings where limbs begin, in the limbs' own order of walking.
 struct Borders {
-    armpit: u32,
+    armpit: Vec<u32>,
     fold: u32,
     /// Columns of the trunk's side under the arm, front to back, each from below up to the hole.
     side: Vec<Vec<u32>>,
@@ -343,7 +343,7 @@ impl Half<'_> {
         arm.extend((c0..c1).map(|i| grid[r0][i]));
         arm.extend((r0..r1).map(|t| grid[t][c1]));
         let bottom = grid[0].iter().rev().copied().collect();
-        let armpit = grid[r0][(c0 + c1) / 2];
+        let armpit = grid[r0][c0..=c1].to_vec();
         Ok(Borders {
             side: (c0..=c1)
                 .map(|i| (0..=r0).map(|t| grid[t][i]).collect())
@@ -503,7 +503,7 @@ impl Half<'_> {
             arm,
             leg,
             mirror,
-            armpit: border.armpit,
+            armpit: border.armpit.clone(),
             fold: border.fold,
         }
     }

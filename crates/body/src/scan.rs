@@ -5,7 +5,6 @@ use crate::BodyError;
 use crate::definitions::{BodyMarks, KNEE, Taping};
 use crate::girths::Girth;
 use crate::tape::extent;
-use crate::template_marks::UNDERBUST;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
@@ -298,12 +297,11 @@ impl Scan {
             })
         };
         let l = self.landmarks.clone();
-        let bust = level(l.bust, Girth::Bust);
         self.landmarks = ScanLandmarks {
             hips: level(l.hips, Girth::Hips),
             waist: level(l.waist, Girth::Waist),
-            underbust: l.underbust.or(bust.map(|y| y - UNDERBUST * self.height)),
-            bust,
+            underbust: level(l.underbust, Girth::Underbust),
+            bust: level(l.bust, Girth::Bust),
             knee: Some(body.knee),
             ..l
         };

@@ -111,7 +111,6 @@ impl Scan {
             body.arm = [arm.along(fold), arm.along[arm.along.len() - 1]];
         }
         let neck = self.neck_middle(&body);
-        let underbust = l.underbust.and_then(|y| Some(self.trunk(y)?.girth()));
         let found = Girth::ALL.into_iter().filter_map(|girth| {
             let taping = Taping::of(girth, &body)?;
             let around = |place: f64| match taping.cut {
@@ -122,13 +121,14 @@ impl Scan {
             };
             let given = match girth {
                 Girth::Bust => l.bust,
+                Girth::Underbust => l.underbust,
                 Girth::Waist => l.waist,
                 Girth::Hips => l.hips,
                 _ => taping.find(around),
             };
             Some((girth, given.and_then(around)))
         });
-        found.chain([(Girth::Underbust, underbust)]).collect()
+        found.collect()
     }
 
     /// The fold between the left arm and the trunk [m].

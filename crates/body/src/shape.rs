@@ -2,7 +2,8 @@
 
 use crate::BodyError;
 use crate::curve::Monotone;
-use crate::girths::{Girth, Site, THIGH_DROP};
+use crate::definitions::{THIGH_DROP, trunk_range};
+use crate::girths::Girth;
 use crate::levels::{Level, Levels};
 use crate::solve::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
@@ -22,6 +23,9 @@ pub(crate) struct Scales {
     pub(crate) folds: f64,
     /// Front over back: the front's share of the scale beyond one half.
     pub(crate) split: [f64; Girth::COUNT],
+    /// How much narrower the trunk is at the crotch than at the hips, so that nothing there is larger
+    /// round than they are.
+    pub(crate) seat: f64,
     /// Lateral, at the ends of the shoulders.
     pub(crate) shoulder: f64,
     /// Lateral, at the sides of the neck.
@@ -54,6 +58,7 @@ impl Scales {
             corners: [0.0; Girth::COUNT],
             folds: 0.0,
             split: [0.0; Girth::COUNT],
+            seat: 1.0,
             shoulder: global,
             neck: global,
             elbow: global * marks.elbow,
@@ -78,6 +83,7 @@ impl Scales {
             &mut self.armpit,
             &mut self.bulge,
             &mut self.flat,
+            &mut self.seat,
         ];
         self.girth.iter_mut().chain(single)
     }
@@ -160,7 +166,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         ],
         arm_angle: q.get("arm_pose_angle"),
         global,
-        stance: s.of(Girth::Hips) * aspect,
+        stance: (s.of(Girth::Hips) * aspect).max(0.75 * s.of(Girth::Thigh)),
         // An asked crotch length says how deep the seat is.
         leg_form: if q.is_asked("crotch_length") {
             1.0
@@ -225,7 +231,10 @@ fn trunk(
         let [front, back] = [1.0 + 2.0 * s.split[k], 1.0 - 2.0 * s.split[k]];
         [y, scale * form, frontal * front, frontal * back]
     };
-    let mut rows = vec![section(m.crotch, Girth::Hips)];
+    let [y, crotch @ ..] = section(m.crotch, Girth::Hips);
+    let [lateral, front, back] = crotch.map(|scale| scale * s.seat);
+    let mut rows = vec![[y, lateral, front, back]];
+    let ends = [Level::Crotch, Level::Crown].map(|level| levels.at(level));
     for girth in [
         Girth::Hips,
         Girth::Waist,
@@ -234,8 +243,15 @@ fn trunk(
         Girth::HighBust,
         Girth::HighHips,
     ] {
-        if let (Some(_), Site::Trunk(level)) = (input.request.girth(girth), girth.site(m)) {
-            let y = on_template(levels.at(level));
+        if let (Some(_), Some(level)) = (input.request.girth(girth), girth.level()) {
+            // Hips have their girth wherever lengths put their level.
+            let range = match girth {
+                Girth::Hips => trunk_range(girth, ends),
+                _ => None,
+            };
+            let at = levels.at(level);
+            let at = range.map_or(at, |[low, high]| at.clamp(low, high));
+            let y = on_template(at);
             if rows.iter().all(|row| (row[0] - y).abs() > APART * t.height) {
                 rows.push(section(y, girth));
             }
@@ -252,9 +268,9 @@ fn trunk(
     rows.push(tip);
     let between = 0.5 * (s.neck + neck);
     rows.push([m.neck_side.y, s.neck, between, between]);
-    rows.push([m.neck[0].y.max(m.neck_side.y + 0.01), neck, neck, neck]);
+    rows.push([m.neck.y.max(m.neck_side.y + 0.01), neck, neck, neck]);
     let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
-    rows.push([chin.max(m.neck[0].y + 0.02), head, head, head]);
+    rows.push([chin.max(m.neck.y + 0.02), head, head, head]);
     rows.push([m.crown, head, head, head]);
     rows
 }

@@ -3,7 +3,7 @@
 use crate::BodyError;
 use crate::girths::Girth;
 use crate::levels::{self, Level, Levels, OVER, SkinOffsets};
-use crate::measured::TapedSkin;
+use crate::measured::{Shares, TapedSkin};
 use crate::request::Request;
 use crate::rings::TemplateSkin;
 use crate::shape::{Scales, shape};
@@ -36,6 +36,8 @@ const FORMING: [usize; 2] = [32, 24];
 /// Rounds after that: the girths have the last word.
 const LAST: usize = 16;
 const SHAPING: usize = 12;
+/// Rounds between two in which it is looked for where girths lie.
+const LOOKS: usize = 4;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
 
@@ -50,8 +52,10 @@ impl SolveInput<'_> {
         let mut offsets = SkinOffsets::default();
         let crotch = self.crotch_vertices();
         let mut before: Option<[Scales; 2]> = None;
+        let mut known: Option<Shares> = Some([Some(0.5); Girth::COUNT]);
         let slow = self.request.follows_skin();
         let forming = FORMING[usize::from(!slow)];
+        let extrapolating = if slow { forming } else { forming + LAST };
         for round in 0..forming + LAST {
             let levels = levels::solve(&self.request, &self.marks, &offsets);
             let shape = shape(self, &scales, &levels)?;
@@ -62,7 +66,10 @@ impl SolveInput<'_> {
                 &self.skin.parts,
                 &place,
             );
-            let taken = self.taken(&skinned, (&levels, &warp), &crotch);
+            let looks = known.is_none();
+            let taken = self
+                .taken(&skinned, (&levels, &warp), &crotch)
+                .knowing(known.unwrap_or_default());
             let mut moved = self.correct(&mut scales, &mut offsets, &taken);
             if round < forming {
                 if round < SHAPING {
@@ -70,14 +77,16 @@ impl SolveInput<'_> {
                 }
                 moved = moved.max(self.posture(&mut scales, &taken, round));
             }
-            if moved < STILL * height {
+            let is_still = moved < STILL * height;
+            if is_still && looks {
                 break;
             }
+            let looks_next = is_still || round % LOOKS == 0;
+            known = (!looks_next).then(|| taken.shares());
             before = Some(match before {
                 Some([older, old])
-                    if slow
-                        && round % EXTRAPOLATION_INTERVAL == EXTRAPOLATION_INTERVAL - 1
-                        && round + EXTRAPOLATION_INTERVAL < forming =>
+                    if round % EXTRAPOLATION_INTERVAL == EXTRAPOLATION_INTERVAL - 1
+                        && round + EXTRAPOLATION_INTERVAL < extrapolating =>
                 {
                     extrapolate(&mut scales, [older, old]);
                     [scales.clone(), scales.clone()]
@@ -112,7 +121,7 @@ impl SolveInput<'_> {
         on: (&'a Levels, &'a Warp),
         crotch: &'a [u32],
     ) -> TapedSkin<'a> {
-        TapedSkin::new(skinned, (&self.marks, self.skin.armpit), on, crotch)
+        TapedSkin::new(skinned, (&self.marks, &self.skin.armpit), on, crotch)
     }
 
     /// Corrects scales and offsets by the values of the tape. Returns the largest error [m].
@@ -123,7 +132,13 @@ impl SolveInput<'_> {
             if let Some(asked) = q.girth(girth) {
                 let got = taken.girth(girth);
                 miss = miss.max((asked - got).abs());
-                scales.girth[girth as usize] *= ratio(asked, got);
+                scales.girth[girth as usize] *= match taken.at_section(girth) {
+                    Some(there) => {
+                        let [low, high] = BESIDE.map(|share| share * asked / there);
+                        ratio(asked, got).clamp(low.min(1.0), high.max(1.0))
+                    }
+                    None => ratio(asked, got),
+                };
             }
         }
         let (tip, neck) = (taken.tip(), taken.neck_side());
@@ -294,6 +309,16 @@ impl SolveInput<'_> {
             let by = 0.8 * (back - front);
             step(&mut scales.lean, by, of_height([-LEAN, LEAN]), 1.0);
         }
+        if let Some(asked) = q.girth(Girth::Hips) {
+            // Nothing below the hips is larger round than they are at their level.
+            let most = taken.girth(Girth::Hips);
+            let share = match taken.at_level(Girth::Hips) {
+                Some(there) if taken.hips_lie_below() => (there / most + AS_LARGE).min(1.0),
+                _ => 1.0,
+            };
+            let by = scales.seat * (share.powf(SEAT_GAIN) - 1.0);
+            step(&mut scales.seat, by, SEAT, asked);
+        }
         let higher = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
         step(
             &mut scales.armpit,
@@ -347,14 +372,14 @@ impl SolveInput<'_> {
 }
 
 /// Extrapolates unknowns whose steps shrink evenly to their limit: each by its own ratio of steps (Aitken
-/// 1926), by at most four more steps.
+/// 1926), by at most eight more steps.
 fn extrapolate(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
     let history = older.coupled().zip(old.coupled());
     for (now, (older, old)) in scales.coupled().zip(history) {
         let [first, second] = [*old - *older, *now - *old];
         let ratio = second / first;
-        if (0.3..0.95).contains(&ratio) {
-            *now += second * (ratio / (1.0 - ratio)).min(4.0);
+        if (0.3..0.98).contains(&ratio) {
+            *now += second * (ratio / (1.0 - ratio)).min(8.0);
         }
     }
 }
@@ -373,10 +398,22 @@ const ASPECT: [f64; 2] = [0.7, 1.3];
 const CORNERS: [f64; 2] = [-0.3, 0.3];
 
 /// How much fuller a chest's front corners may be than the mean of front and back.
-const FOLDS: [f64; 2] = [-0.2, 0.2];
+const FOLDS: [f64; 2] = [-0.25, 0.25];
 
 /// How far a neck may stand from the template's place, over stature.
 const LEAN: f64 = 0.05;
+
+/// What a girth of the trunk may be where its scale is set, over itself where its tape lies.
+const BESIDE: [f64; 2] = [0.7, 1.5];
+
+/// How much narrower the trunk may be at the crotch than at the hips.
+const SEAT: [f64; 2] = [0.85, 1.0];
+
+/// What share of the hips' girth their level may lack.
+const AS_LARGE: f64 = 0.002;
+
+/// How much more than in proportion it is made narrower there: it is the section above that is meant.
+const SEAT_GAIN: f64 = 1.7;
 
 /// How far an armpit may lie from the template's place, over stature.
 const ARMPIT: f64 = 0.035;

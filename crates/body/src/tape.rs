@@ -107,6 +107,8 @@ impl<'a> Skinned<'a> {
         // The trunk ends in the legs' first rings.
         let parts: &[Part] = match part {
             Part::Trunk => &[Part::Trunk, Part::LeftLeg],
+            // The neck's root is the trunk's.
+            Part::Head => &[Part::Head, Part::Trunk],
             _ => &[part],
         };
         let both = matches!(part, Part::Trunk | Part::Head);

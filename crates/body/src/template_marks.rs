@@ -32,6 +32,11 @@ pub(crate) struct TemplateMarks {
     pub(crate) tip: Vec3,
     /// The same on the skin.
     pub(crate) tip_on: OnEdge,
+    /// Middles of the left arm at even distances from the shoulder joint, from
+    /// [`ARM_BEGINS`] of the wrist's on [m].
+    pub(crate) arm_middle: [Vec3; ARM_MIDDLES],
+    /// Vertex of the skin at the tip of the left hand.
+    pub(crate) finger_tip: u32,
     /// Vertex of the skin at the front fold of the left armpit.
     pub(crate) fold: u32,
     /// Depth of the middle of the trunk [m].
@@ -39,10 +44,8 @@ pub(crate) struct TemplateMarks {
     /// Sections of the trunk from crotch to bust: height, half the breadth, depth before and behind
     /// the middle [m].
     pub(crate) sections: [[f64; 4]; SECTIONS],
-    /// Plane of the neck's girth, square to its axis.
-    pub(crate) neck: Plane,
-    /// Plane of the head's girth.
-    pub(crate) head: Plane,
+    /// Middle of the neck.
+    pub(crate) neck: Vec3,
     /// Plane of the heel's girth, over heel and instep.
     pub(crate) heel: Plane,
     pub(crate) lower_thigh: f64,
@@ -54,6 +57,12 @@ pub(crate) struct TemplateMarks {
     pub(crate) forearm: f64,
     pub(crate) wrist: f64,
 }
+
+/// Middles of the arm that are kept: the first, and how far they are apart, over the wrist's distance
+/// from the shoulder joint.
+pub(crate) const ARM_MIDDLES: usize = 24;
+pub(crate) const ARM_BEGINS: f64 = 0.2;
+pub(crate) const ARM_STEP: f64 = 0.05;
 
 /// Places of the crotch's line that are kept.
 pub(crate) const FORK: usize = 21;
@@ -70,6 +79,9 @@ const TIP: f64 = 0.003;
 
 /// Share of the way from the neck's base to the skull's that lies below any chin.
 const BELOW_CHIN: f64 = 0.4;
+
+/// Share of that way at which the middle of the neck lies.
+const NECK: f64 = 0.42;
 
 /// Distance of the underbust below the bust, over stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
@@ -104,14 +116,14 @@ impl TemplateMarks {
         let arm = |d: f64| girth(&skinned, Part::LeftArm, [shoulder + along * d, along], None);
         let (knee, leg) = (j.knee[1], |y: f64| level(Part::LeftLeg, y));
         let calf = extreme(CALF.map(|share| share * knee), leg);
-        let neck = neck_plane(template);
-        let brow = extreme([h - 0.075 * h, h - 0.03 * h], |y| level(Part::Head, y));
+        let [neck, head] = [j.neck, j.head].map(Vec3::from);
+        let neck = neck + (head - neck) * NECK;
         let depth = depth(skin, [crotch + 0.05 * h, bust]);
         let (fork_at, fork) = fork(skin, crotch, h);
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         Ok(Self {
             crown,
-            armpit: skin.mesh.positions[skin.armpit as usize].y,
+            armpit: lowest(&skin.mesh, &skin.armpit),
             crotch,
             bust,
             bust_point: bust_point(skin, bust, tip.x),
@@ -121,15 +133,12 @@ impl TemplateMarks {
             neck_side_on,
             tip,
             tip_on,
+            arm_middle: arm_middle(&skinned, [shoulder, along], wrist),
+            finger_tip: finger_tip(skin, [shoulder, along]),
             fold: skin.fold,
             depth,
             sections: sections(skin, [crotch + 0.03 * h, bust], depth),
             neck,
-            head: [
-                Vec3::y() * brow,
-                Vec3::y() * brow + Vec3::z(),
-                Vec3::y() * brow + Vec3::x(),
-            ],
             heel: heel_plane(template, &skinned),
             lower_thigh: knee + 0.15 * (crotch - knee),
             knee,
@@ -213,19 +222,6 @@ fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]
     })
 }
 
-/// The plane through the middle of the neck, half as steep as its axis is square.
-fn neck_plane(template: &Template) -> Plane {
-    let (neck, head) = (
-        Vec3::from(template.joints.neck),
-        Vec3::from(template.joints.head),
-    );
-    let middle = neck + (head - neck) * 0.42;
-    // The neck's rings turn from the shoulders' slope to level ones: half the tilt stays in it.
-    let axis = (head - neck).normalize() + Vec3::y();
-    let across = Vec3::x().cross(&axis).normalize();
-    [middle, middle - across, middle + Vec3::x()]
-}
-
 /// The plane through the lower end of the heel and over the instep.
 fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
     let ankle = Vec3::from(template.joints.ankle);
@@ -237,6 +233,38 @@ fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
     let heel = Vec3::new(ankle.x, low.y, back + 0.06 * length);
     let instep = Vec3::new(ankle.x, ankle.y + 0.01, ankle.z + 0.30 * length);
     [heel, instep, heel + Vec3::x()]
+}
+
+/// Middles of the left arm along its axis from the shoulder; on the axis where it has no section.
+fn arm_middle(skinned: &Skinned, [shoulder, along]: [Vec3; 2], wrist: f64) -> [Vec3; ARM_MIDDLES] {
+    std::array::from_fn(|k| {
+        let on_axis = shoulder + along * ((ARM_BEGINS + ARM_STEP * k as f64) * wrist);
+        let points = skinned.section(&[Part::LeftArm], [on_axis, along], None);
+        let first = Vec3::z().cross(&along).normalize();
+        let middle = |axis: Vec3| {
+            let ends = points.iter().flatten().map(|p| (p - on_axis).dot(&axis));
+            let [low, high] = [f64::min, f64::max].map(|pick| ends.clone().reduce(pick));
+            0.5 * (low.unwrap_or_default() + high.unwrap_or_default())
+        };
+        let second = along.cross(&first);
+        on_axis + first * middle(first) + second * middle(second)
+    })
+}
+
+/// The vertex of the left arm that lies farthest along it from the shoulder.
+fn finger_tip(skin: &TemplateSkin, [shoulder, along]: [Vec3; 2]) -> u32 {
+    let far = |v: u32| (skin.mesh.positions[v as usize] - shoulder).dot(&along);
+    let of_arm = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::LeftArm);
+    of_arm
+        .flat_map(|t| skin.mesh.triangles[t])
+        .max_by(|&a, &b| far(a).total_cmp(&far(b)))
+        .unwrap_or_default()
+}
+
+/// Height of the lowest of some vertices [m].
+fn lowest(mesh: &TriangleMesh, vertices: &[u32]) -> f64 {
+    let heights = vertices.iter().map(|&v| mesh.positions[v as usize].y);
+    heights.fold(f64::INFINITY, f64::min)
 }
 
 /// Height of the lowest point in the middle [m].

@@ -379,11 +379,6 @@ impl Warp {
         ]
     }
 
-    /// The body's height of a height of the template [m].
-    pub(crate) fn level_of(&self, y: f64) -> f64 {
-        self.level.at(y)
-    }
-
     /// The template's height of a height of the body [m].
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.level.inverse(height)
@@ -422,6 +417,23 @@ impl Warp {
         }
         let along = self.arm_to[0] * self.arm_length.at(distance);
         [self.trunk(self.shoulder) + along, self.arm_to[0]]
+    }
+
+    /// The template distance of a distance along the body's arm from the shoulder joint [m].
+    pub(crate) fn arm_distance(&self, along: f64) -> f64 {
+        match self.is_still() {
+            true => along,
+            false => self.arm_length.inverse(along),
+        }
+    }
+
+    /// The distance along the body's arm from the shoulder joint at which a point lies [m].
+    pub(crate) fn along_arm(&self, p: Vec3) -> f64 {
+        let [shoulder, along] = match self.still {
+            Some([shoulder, _, wrist]) => [shoulder, (wrist - shoulder).normalize()],
+            None => self.arm_plane(0.0),
+        };
+        (p - shoulder).dot(&along)
     }
 
     /// What the map makes of three axes laid through a place: half the way between the images of

@@ -103,9 +103,6 @@ fn our_own_body_measured_as_a_mesh_has_its_measurements() {
         let body = Mannequin::new(&figure.average(), figure).unwrap();
         let levels = body.levels();
         let marks = ScanLandmarks {
-            waist: Some(levels.waist),
-            hips: Some(levels.hip),
-            bust: Some(levels.chest),
             crotch: Some(levels.crotch),
             nape: Some(body.landmarks().nape.into()),
             shoulder_tip: Some(body.landmarks().shoulder_tips[0].into()),
@@ -115,7 +112,7 @@ fn our_own_body_measured_as_a_mesh_has_its_measurements() {
         let table = scan.measurements();
         for name in ["height", "bust", "waist", "hips", "shoulder_w", "leg_circ"] {
             let gap = table.get(name).unwrap() - body.taken(name).unwrap();
-            assert!(gap.abs() < 1e-3, "{figure:?} {name}: {gap}");
+            assert!(gap.abs() < 5e-3, "{figure:?} {name}: {gap}");
         }
         // Levels that are found lie near those that are known.
         let found = Scan::new(body.skin().clone(), ScanLandmarks::default()).unwrap();

@@ -35,6 +35,12 @@ fn contradictions(table: &Measurements) -> Vec<Contradiction> {
     found
 }
 
+/// Whether a measurement is the height of the hips and is said to be missed: where the largest girth
+/// lies elsewhere than asked, the girth is met.
+fn gives_way_to_hips(name: &str, conflicts: &[Conflict]) -> bool {
+    ["hips_line", "hip_height"].contains(&name) && conflicts.iter().any(|c| c.names.contains(&name))
+}
+
 /// Girth of the trunk by a level tape, by nothing of the library's own tape: the hull of the whole
 /// section of the mesh between the arms.
 fn girth(body: &Mannequin, height: f64) -> f64 {
@@ -42,6 +48,16 @@ fn girth(body: &Mannequin, height: f64) -> f64 {
     let own = |part: Part| matches!(part, Part::Trunk | Part::LeftLeg | Part::RightLeg);
     let triangles = (0..mesh.triangles.len()).filter(|&t| own(parts[t]));
     closed_length(&convex_hull(&horizontal_section(mesh, triangles, height)))
+}
+
+/// Largest (1) or smallest (-1) such girth between two shares of the way from crotch to crown.
+fn extreme(body: &Mannequin, [low, high]: [f64; 2], sign: f64) -> f64 {
+    let levels = body.levels();
+    let girths = (0..=100).map(|k| {
+        let share = low + (high - low) * f64::from(k) / 100.0;
+        sign * girth(body, levels.crotch + share * (levels.crown - levels.crotch))
+    });
+    sign * girths.fold(f64::NEG_INFINITY, f64::max)
 }
 
 #[test]
@@ -73,7 +89,7 @@ fn every_freesewing_set_has_its_girths_and_names_what_contradicts() {
             // Only what contradicts itself is missed, and no farther than it must.
             let own = contradictions.iter().filter(|c| c.0.contains(&row.name));
             let limit = own.map(|c| c.1).fold(limit, f64::max);
-            if row.deviation().abs() > limit {
+            if row.deviation().abs() > limit && !gives_way_to_hips(row.name, &conflicts) {
                 missed.push(format!(
                     "{name}: {} {:.1} mm",
                     row.name,
@@ -96,13 +112,12 @@ fn every_freesewing_set_has_its_girths_and_names_what_contradicts() {
             figure == Figure::Man,
             "{name}: {conflicts:?}"
         );
-        let levels = body.levels();
-        for (measure, height) in [
-            ("bust", levels.chest),
-            ("waist", levels.waist),
-            ("hips", levels.hip),
+        for (measure, places, sign) in [
+            ("bust", [0.44, 0.5], 1.0),
+            ("waist", [0.28, 0.35], -1.0),
+            ("hips", [0.035, 0.11], 1.0),
         ] {
-            let gap = girth(&body, height) - table.get(measure).unwrap();
+            let gap = extreme(&body, places, sign) - table.get(measure).unwrap();
             assert!(gap.abs() <= 5e-4, "{name} {measure}: {gap}");
         }
         let high = conflicts.iter().any(|c| c.names == ["bust", "high_bust"]);
@@ -169,8 +184,10 @@ fn people_of_the_survey_have_what_was_measured() {
             .measure()
             .into_iter()
             .filter(|row| row.origin == Origin::Asked);
+        let conflicts = body.conflicts();
         let missed: Vec<String> = asked
             .filter(|row| row.deviation().abs() > 1e-3)
+            .filter(|row| !gives_way_to_hips(row.name, &conflicts))
             .map(|row| format!("{} {:.1} mm", row.name, row.deviation() * 1e3))
             .collect();
         if !missed.is_empty() {

@@ -4,6 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod girths;
 mod knife;
 mod letters;
 mod meshes;

@@ -1,0 +1,120 @@
+//! The planes in which a tape goes round our own bodies.
+
+use crate::Part;
+use crate::bands::Near;
+use crate::definitions::{Cut, NECK_TILT};
+use crate::girths::Girth;
+use crate::levels::{Level, Levels};
+use crate::template_marks::{ARM_BEGINS, ARM_MIDDLES, ARM_STEP, TemplateMarks};
+use crate::warp::{Follow, Warp};
+use toile_geometry::Vec3;
+
+/// A part of a body, the plane across it as a point and a unit normal, and where on the template the
+/// triangles that cross it are to be looked for.
+pub(crate) struct CutPlane {
+    pub(crate) part: Part,
+    pub(crate) plane: [Vec3; 2],
+    pub(crate) near: Near,
+}
+
+/// How far from a plane's height triangles that cross it may begin [m]; by the thighs and shoulders,
+/// where heights are moved besides, farther.
+const REACH: f64 = 0.04;
+const FAR: f64 = 0.08;
+
+/// How far from its middle the skin of a neck may lie [m].
+const NECK: f64 = 0.13;
+
+/// How far to both sides the way of an arm is taken from its middles [m].
+const ARM_WAY: f64 = 0.065;
+
+/// The middle of the template's arm at a distance from the shoulder joint [m].
+fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
+    let place = (distance / marks.wrist - ARM_BEGINS) / ARM_STEP;
+    let before = (place.floor().max(0.0) as usize).min(ARM_MIDDLES - 2);
+    let [a, b] = [before, before + 1].map(|k| marks.arm_middle[k]);
+    a + (b - a) * (place - before as f64).clamp(0.0, 1.0)
+}
+
+impl CutPlane {
+    /// A cut at a place [m].
+    pub(crate) fn of(cut: Cut, place: f64, marks: &TemplateMarks, warp: &Warp) -> Self {
+        match cut {
+            Cut::Trunk => Self::level(Part::Trunk, place, warp.near(place, REACH)),
+            Cut::Head => Self::level(Part::Head, place, warp.near(place, REACH)),
+            Cut::Leg => {
+                let reach = match warp.template_level(place) < marks.lower_thigh {
+                    true => REACH,
+                    false => FAR,
+                };
+                Self::level(Part::LeftLeg, place, warp.near(place, reach))
+            }
+            Cut::Neck => {
+                let middle = warp.apply(marks.neck, Follow::default()) + Vec3::y() * place;
+                let (sin, cos) = NECK_TILT.sin_cos();
+                Self {
+                    part: Part::Head,
+                    plane: [middle, Vec3::new(0.0, cos, sin)],
+                    near: warp.near(middle.y, REACH + NECK * sin / cos),
+                }
+            }
+            Cut::Arm => {
+                let distance = warp.arm_distance(place);
+                let [from, to] = [-ARM_WAY, ARM_WAY].map(|way| arm_middle(marks, distance + way));
+                let on_arm = |p: Vec3| warp.apply(p, Follow { arm: 1.0, leg: 0.0 });
+                let middle = on_arm(arm_middle(marks, distance));
+                Self {
+                    plane: [middle, (on_arm(to) - on_arm(from)).normalize()],
+                    ..Self::across_arm(distance, warp)
+                }
+            }
+        }
+    }
+
+    /// A girth whose place lengths alone say.
+    pub(crate) fn placed(
+        girth: Girth,
+        marks: &TemplateMarks,
+        levels: &Levels,
+        warp: &Warp,
+    ) -> Self {
+        let trunk = |level: Level| {
+            let y = levels.at(level);
+            Self::level(Part::Trunk, y, warp.near(y, FAR))
+        };
+        match girth {
+            Girth::Elbow => Self::across_arm(marks.elbow, warp),
+            Girth::Heel => {
+                let on_leg = |p: Vec3| warp.apply(p, Follow { arm: 0.0, leg: 1.0 });
+                let [a, b, c] = marks.heel.map(on_leg);
+                let normal = (b - a).cross(&(c - a)).normalize();
+                let heights = marks.heel.map(|p| p.y);
+                let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
+                let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                Self {
+                    part: Part::LeftLeg,
+                    plane: [a, if normal.y < 0.0 { -normal } else { normal }],
+                    near: Near::Level([low - 0.12, high + 0.12]),
+                }
+            }
+            _ => trunk(girth.level().unwrap_or(Level::HighBust)),
+        }
+    }
+
+    fn level(part: Part, y: f64, near: Near) -> Self {
+        Self {
+            part,
+            plane: [Vec3::y() * y, Vec3::y()],
+            near,
+        }
+    }
+
+    /// Across the arm at a template distance from the shoulder joint.
+    fn across_arm(distance: f64, warp: &Warp) -> Self {
+        Self {
+            part: Part::LeftArm,
+            plane: warp.arm_plane(distance),
+            near: Near::Arm([distance - 0.05, distance + 0.05]),
+        }
+    }
+}
