@@ -321,6 +321,7 @@ impl GarmentRun {
     /// Takes a step of pseudo-transient continuation, then goes on to another swing, to the next finer level or to
     /// the end where its time has come.
     fn step_to_rest(&mut self) -> Result<(), DrapeError> {
+        let is_finest = self.is_finest();
         let StageState::Settling(settling) = &mut self.stage else {
             return Ok(());
         };
@@ -330,6 +331,9 @@ impl GarmentRun {
         continuation.advance(system, state, &mut self.workspace)?;
         let (residual, steps) = (continuation.residual(), continuation.steps());
         settling.fall.note(residual, steps);
+        if is_finest && continuation.is_used_up() {
+            settling.fall.end(residual);
+        }
         let failed = continuation.is_used_up() || settling.fall.is_stuck;
         let finished = continuation.finished() || settling.fall.is_stuck;
         if failed && settling.attempts.is_sunk {
@@ -344,10 +348,10 @@ impl GarmentRun {
         }
         let decades = (1.0 / residual.max(1e-9)).log10() / 3.0;
         self.set_progress((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
-        if finished && !self.is_finest() {
+        if finished && !is_finest {
             return self.refine();
         }
-        if self.is_finest() {
+        if is_finest {
             self.finish();
         }
         match self.stage {

@@ -35,6 +35,11 @@ impl Fall {
             _ => self.mark = Some((residual, step)),
         }
     }
+
+    /// Notes that the steps are used up: what is far from rest is stuck.
+    pub fn end(&mut self, residual: f64) {
+        self.is_stuck |= residual > STUCK_ABOVE;
+    }
 }
 
 impl GarmentRun {
@@ -146,6 +151,16 @@ mod tests {
         for step in 0..2000 {
             fall.note(1e5 * 0.5f64.powf(step as f64 / 140.0), step);
             assert!(!fall.is_stuck, "{step}");
+        }
+    }
+
+    #[test]
+    fn what_is_far_from_rest_when_its_steps_are_used_up_is_stuck() {
+        for (residual, is_stuck) in [(4000.0, true), (3.0, false)] {
+            let mut fall = Fall::default();
+            fall.note(residual, 399);
+            fall.end(residual);
+            assert_eq!(fall.is_stuck, is_stuck, "{residual}");
         }
     }
 
