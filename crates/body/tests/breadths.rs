@@ -67,37 +67,3 @@ fn an_asked_chest_is_as_broad_between_the_folds_and_as_deep() {
         }
     }
 }
-#[test]
-fn dbg() {
-    let path = shared("body/measurements/ansur2_subjects_garment.csv").unwrap();
-    let everyone = people(&std::fs::read_to_string(path).unwrap());
-    for p in everyone
-        .iter()
-        .filter(|p| p.figure == Figure::Woman)
-        .step_by(200)
-    {
-        let body = Mannequin::new(&p.asked_with_navel(), p.figure).unwrap();
-        let l = body.levels();
-        print!(
-            "{:?} bust share {:.3} ",
-            p.figure,
-            (l.chest - l.crotch) / (l.crown - l.crotch)
-        );
-        for row in body.measure() {
-            if [
-                "bust",
-                "chest_depth",
-                "waist",
-                "hips",
-                "waist_depth",
-                "armpit_height",
-                "bust_height",
-            ]
-            .contains(&row.name)
-            {
-                print!("{} {:.1} {:.1}, ", row.name, 1e3 * row.asked, 1e3 * row.got);
-            }
-        }
-        println!();
-    }
-}

@@ -112,7 +112,8 @@ fn our_own_body_measured_as_a_mesh_has_its_measurements() {
         let table = scan.measurements();
         for name in ["height", "bust", "waist", "hips", "shoulder_w", "leg_circ"] {
             let gap = table.get(name).unwrap() - body.taken(name).unwrap();
-            assert!(gap.abs() < 5e-3, "{figure:?} {name}: {gap}");
+            // Places are found anew, not told.
+            assert!(gap.abs() < 2e-3, "{figure:?} {name}: {gap}");
         }
         // Levels that are found lie near those that are known.
         let found = Scan::new(body.skin().clone(), ScanLandmarks::default()).unwrap();
