@@ -86,7 +86,7 @@ mod tests {
                 let value = table.get(known.name).unwrap();
                 match known.kind {
                     UnitKind::Length => assert!((0.07..2.0).contains(&value)),
-                    UnitKind::Angle => assert!((0.1..0.8).contains(&value)),
+                    UnitKind::Angle => assert!((0.07..0.8).contains(&value)),
                 }
             }
             let get = |name| table.get(name).unwrap();
