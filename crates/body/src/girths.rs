@@ -1,6 +1,6 @@
 //! Every girth a body is solved for.
 
-use crate::levels::Level;
+use crate::landmark_level::Level;
 
 /// A girth, from the head down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

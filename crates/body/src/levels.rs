@@ -3,28 +3,11 @@
 use crate::conflict::gives_way;
 use crate::definitions::trunk_range;
 use crate::girths::Girth;
+pub(crate) use crate::landmark_level::Level;
 use crate::request::Request;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 use nalgebra::{SMatrix, SVector};
 use toile_measure::{Measurements, Origin};
-
-/// Landmarks a height is solved for, from the top down.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Level {
-    Crown,
-    Nape,
-    NeckSide,
-    Tip,
-    Armpit,
-    HighBust,
-    Bust,
-    Underbust,
-    Waist,
-    HighHips,
-    Hips,
-    Crotch,
-    Knee,
-}
 
 use Level::{
     Armpit, Bust, Crotch, Crown, HighBust, HighHips, Hips, Knee, Nape, NeckSide, Tip, Underbust,

@@ -27,6 +27,7 @@ mod fit_start;
 mod girths;
 mod hang;
 mod joint;
+mod landmark_level;
 mod landmarks;
 mod levels;
 mod limbs;

@@ -11,8 +11,8 @@ pub const KNOWN: &[Known] = &[
         &[
             &[
                 "bones.rs",
+                "cuts.rs",
                 "describe.rs",
-                "girths.rs",
                 "landmarks.rs",
                 "levels.rs",
                 "mannequin.rs",
