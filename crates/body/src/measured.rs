@@ -178,8 +178,21 @@ impl<'a> TapedSkin<'a> {
 
     /// Girth of a taping at a place [m].
     pub(crate) fn taped(&self, taping: &Taping, place: f64) -> f64 {
+        closed_length(&self.taped_hull(taping, place))
+    }
+
+    /// The hull of the section of a taping at a place.
+    fn taped_hull(&self, taping: &Taping, place: f64) -> Vec<Vec2> {
         let cut = CutPlane::of(taping.cut, place, self.marks, self.warp);
-        closed_length(&self.skinned.hull(cut.part, cut.plane, Some(cut.near)))
+        self.skinned.hull(cut.part, cut.plane, Some(cut.near))
+    }
+
+    /// How far a girth round the trunk lies to the side, and its height, where it is taped [m].
+    fn side_of(&self, girth: Girth, level: Level) -> [f64; 2] {
+        match self.taping(girth).zip(self.place(girth)) {
+            Some((taping, place)) => [0.5 * extent(&self.taped_hull(&taping, place))[0], place],
+            None => [0.5 * extent(&self.hull(girth))[0], self.levels.at(level)],
+        }
     }
 
     /// Where a girth is looked for; none where lengths alone say its level, as they do round the trunk.
@@ -528,9 +541,9 @@ impl<'a> TapedSkin<'a> {
             "hps_to_waist_back" => self.to_waist(-Vec3::z())?,
             "outside_leg" => self.outside_leg()?,
             "hip_inclination" => {
-                let wider = 0.5 * (wide(Girth::Hips, 0) - wide(Girth::Waist, 0));
-                let fall = self.levels.at(Level::Waist) - self.levels.at(Level::Hips);
-                FRAC_PI_2 - fall.atan2(wider)
+                let [hips, low] = self.side_of(Girth::Hips, Level::Hips);
+                let [waist, high] = self.side_of(Girth::Waist, Level::Waist);
+                FRAC_PI_2 - (high - low).atan2(hips - waist)
             }
             "crotch_length" => self.crotch_lengths()?.length,
             "crotch_length_front" => self.crotch_lengths()?.before(self.warp.fork_depth()),

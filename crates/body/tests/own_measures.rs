@@ -128,25 +128,8 @@ fn size(figure: Figure, seed: u64) -> Measurements {
     let average = figure.average();
     let [tall, stout] = [0.06, 0.12].map(|reach| 1.0 + reach * from_seed(&mut state));
     let mut table = Measurements::new();
-    for name in [
-        "height",
-        "bust",
-        "underbust",
-        "waist",
-        "hips",
-        "leg_circ",
-        "knee",
-        "calf",
-        "ankle",
-        "head",
-        "neck",
-        "upper_arm",
-        "forearm",
-        "wrist",
-        "lower_thigh",
-        "waist_line",
-        "hips_line",
-    ] {
+    let lengths = ["height", "waist_line", "hips_line"];
+    for name in GIRTHS.into_iter().chain(lengths) {
         let usual = average.completed(figure.build()).get(name);
         let (Some(usual), own) = (usual, 1.0 + 0.02 * from_seed(&mut state)) else {
             continue;

