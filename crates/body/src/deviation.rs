@@ -3,7 +3,6 @@
 use crate::Mannequin;
 use crate::conflict::Conflict;
 use crate::girths::Girth;
-use crate::levels::OVER;
 use crate::measured::TapedSkin;
 use crate::tape::Skinned;
 use toile_measure::{Origin, UnitKind, definition};
@@ -40,12 +39,6 @@ impl Deviation {
 
 /// Largest deviation of a length [m] over stature before it is reported: a millimetre of an adult.
 const NAMED: f64 = 5.7e-4;
-/// The same of a way over the body: a millimetre and a half.
-const NAMED_OVER: f64 = 8.5e-4;
-/// The same of the seat's hindmost points, whose place nothing is solved for: where the seat lies flat
-/// no tape finds them surer.
-const NAMED_POINTS: f64 = 1.7e-3;
-
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.
     pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&TapedSkin) -> T) -> T {
@@ -109,10 +102,6 @@ impl Mannequin {
         for row in self.measure() {
             let beyond = match row.is_angle() {
                 true => row.deviation().abs() > 0.02,
-                false if row.name == "bum_points" => row.deviation().abs() > NAMED_POINTS * height,
-                false if OVER.iter().any(|way| way.0 == row.name) => {
-                    row.deviation().abs() > NAMED_OVER * height
-                }
                 false => row.deviation().abs() > NAMED * height,
             };
             let mut named = false;

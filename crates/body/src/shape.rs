@@ -49,6 +49,9 @@ pub(crate) struct Scales {
     pub(crate) fork: f64,
 }
 
+/// How far apart the legs stand at least, over the scale of the thighs: thicker ones would meet.
+const ASTRIDE: f64 = 0.75;
+
 impl Scales {
     /// All the template's own, at a ratio of statures.
     pub(crate) fn new(global: f64, marks: &TemplateMarks) -> Self {
@@ -166,7 +169,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         ],
         arm_angle: q.get("arm_pose_angle"),
         global,
-        stance: (s.of(Girth::Hips) * aspect).max(0.75 * s.of(Girth::Thigh)),
+        stance: (s.of(Girth::Hips) * aspect).max(ASTRIDE * s.of(Girth::Thigh)),
         // An asked crotch length says how deep the seat is.
         leg_form: if q.is_asked("crotch_length") {
             1.0

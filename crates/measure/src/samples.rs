@@ -29,7 +29,7 @@ const ROWS: &[(&str, [u32; 3])] = &[
     ("hips_line", [225, 245, 235]),
     ("hip_back_width", [555, 540, 550]),
     ("hip_inclination", [20, 12, 15]),
-    ("bum_points", [149, 118, 162]),
+    ("bum_points", [149, 117, 162]),
     ("crotch_hip_diff", [80, 100, 90]),
     ("leg_circ", [605, 600, 600]),
     ("arm_length", [515, 570, 540]),
