@@ -3,74 +3,14 @@
 
 #[path = "../../crates/session/tests/support/mod.rs"]
 mod garments;
+mod worn;
 
 use egui::{Key, Modifiers, Role, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
-use std::time::{Duration, Instant};
 use toile_session::{Command, Quality, Session, Silent};
-use toile_ui::{Beginning, Item, ToileApp};
-
-type Window = Harness<'static, ToileApp>;
-
-/// The band in a window, coarsely meshed, hanging at rest.
-fn hanging(file: &Path) -> Window {
-    let beginning = Beginning {
-        file: Some(file.to_owned()),
-        folder: None,
-    };
-    let mut window: Window = Harness::builder()
-        .with_size(vec2(1200.0, 800.0))
-        .with_theme(egui::Theme::Light)
-        .with_max_steps(20)
-        .with_step_dt(1.0 / 60.0)
-        .build_eframe(move |creation| ToileApp::new(&creation.egui_ctx, None, beginning));
-    window.run();
-    let quality = Quality::Preview;
-    window.state_mut().execute(Command::SetQuality { quality });
-    press(&mut window, "Drape");
-    let hangs = |window: &Window| is_at_rest(window) && window.state().session().draped().is_some();
-    assert!(wait(&mut window, hangs), "no garment came to rest");
-    window
-}
-
-fn press(window: &mut Window, name: &str) {
-    window.get_by_label(name).click();
-    window.run_ok();
-}
-
-fn chord(window: &mut Window, key: Key) {
-    window.key_press_modifiers(Modifiers::COMMAND, key);
-    window.run_ok();
-}
-
-/// Runs frames until something holds, two minutes at the most.
-fn wait(window: &mut Window, holds: impl Fn(&Window) -> bool) -> bool {
-    let start = Instant::now();
-    while start.elapsed() < Duration::from_secs(120) {
-        window.step();
-        if holds(window) {
-            return true;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    false
-}
-
-fn says(window: &Window, words: &str) -> bool {
-    window.query_by_label_contains(words).is_some()
-}
-
-fn is_at_rest(window: &Window) -> bool {
-    says(window, "At rest after") && !is_grey(window)
-}
-
-fn is_grey(window: &Window) -> bool {
-    let is_grey = window.state().stage().is_out_of_date();
-    assert_eq!(is_grey, says(window, "vertices, out of date"));
-    is_grey
-}
+use toile_ui::Item;
+use worn::{Window, chord, hanging, is_at_rest, is_grey, press, says, wait};
 
 /// Drags a point of the front by a way [mm].
 fn drag(window: &mut Window, point: &str, [x, y]: [f32; 2]) {
@@ -163,7 +103,7 @@ fn a_moved_point_moves_the_garment_that_hangs_and_what_is_exported_is_made_from_
             .is_some_and(|step| step != "Move point")
     );
     assert_eq!(window.state().session().draped(), None);
-    press(&mut window, "Hang again");
+    press(&mut window, "Drape");
     let made = |window: &Window| window.state().session().draped().is_some();
     assert!(wait(&mut window, made));
     assert_eq!(window.state().session().draped(), product);
@@ -189,7 +129,7 @@ fn a_removed_panel_leaves_the_garment_grey_and_offers_to_hang_it_again() {
     assert!(wait(&mut window, stands));
     let removed = &window.state().session().project().pattern;
     assert!(removed.panel(front).is_none());
-    let again = window.get_by_role_and_label(Role::Button, "Hang again");
+    let again = window.get_by_role_and_label(Role::Button, "Drape");
     assert!(!again.accesskit_node().is_disabled());
     // Nothing moves, and no frame is asked for.
     let pause = window.get_by_role_and_label(Role::Button, "Pause");
@@ -197,13 +137,11 @@ fn a_removed_panel_leaves_the_garment_grey_and_offers_to_hang_it_again() {
     chord(&mut window, Key::Z);
     assert!(wait(&mut window, is_at_rest));
 
-    // Another mesh of the cloth hangs anew when it is asked for.
+    // Another mesh of the cloth hangs anew by itself.
     let quality = Quality::Fit;
     window.state_mut().execute(Command::SetQuality { quality });
-    assert!(wait(&mut window, |window| {
-        is_grey(window) && says(window, "finer or coarser")
-    }));
-    press(&mut window, "Hang again");
+    let is_meshed = |window: &Window| is_grey(window) && says(window, "Cutting the cloth");
+    assert!(wait(&mut window, is_meshed));
     assert!(wait(&mut window, |window| {
         is_at_rest(window) && window.state().session().draped().is_some()
     }));

@@ -392,7 +392,7 @@ fn a_garment_at_rest_is_the_sessions_until_the_pattern_changes() {
         .unwrap();
     assert!(dir.join("garment.glb").exists());
     // A garment of an older pattern is not taken.
-    press(&mut window, "Hang again");
+    press(&mut window, "Drape");
     let start = place(&window, "Point a of front");
     drag(&mut window, start, vec2(-22.0, 0.0));
     assert!(window.state().is_unsaved());

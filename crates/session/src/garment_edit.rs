@@ -24,19 +24,19 @@ pub struct GarmentEdit {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CannotFollow {
     /// Panels were added, removed or put in another order.
-    #[error("the pattern has other panels now; hang it again")]
+    #[error("the pattern has other panels now; drape it again")]
     Panels,
     /// Another body.
-    #[error("the body is another now; hang it again")]
+    #[error("the body is another now; drape it again")]
     Body,
     /// Another quality.
-    #[error("the cloth is to be finer or coarser now; hang it again")]
+    #[error("the cloth is to be finer or coarser now; drape it again")]
     Quality,
     /// A panel is cut from cloth of another kind.
-    #[error("the fabric of \"{0}\" is another now; hang it again")]
+    #[error("the fabric of \"{0}\" is another now; drape it again")]
     Fabric(String),
     /// Other garments are worn, or in other layers.
-    #[error("other garments are worn together now, or in other layers; hang them again")]
+    #[error("other garments are worn together now, or in other layers; drape them again")]
     Garments,
     /// The pattern has faults.
     #[error("the pattern has faults; the garment goes on when they are mended")]
@@ -44,6 +44,17 @@ pub enum CannotFollow {
     /// The pattern cannot be meshed or sewn as it is, for another reason.
     #[error("it cannot be made as it is now: {0}")]
     NotMade(String),
+}
+
+impl CannotFollow {
+    /// Whether a new garment of the present project can hang at once in its place. Other panels are drafted
+    /// one after the other, and faults are to be mended first: there it is better to wait.
+    pub fn asks_for_another(&self) -> bool {
+        match self {
+            Self::Body | Self::Quality | Self::Fabric(_) | Self::Garments => true,
+            Self::Panels | Self::Faults | Self::NotMade(_) => false,
+        }
+    }
 }
 
 impl Session {

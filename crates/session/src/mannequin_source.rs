@@ -32,6 +32,13 @@ impl MannequinSource {
     }
 }
 
+impl Project {
+    /// Whether another project is worn by the very same body.
+    pub fn has_same_body(&self, other: &Self) -> bool {
+        MannequinSource::of(self) == MannequinSource::of(other)
+    }
+}
+
 /// The measurements of the mannequin of a project, with its arms held as the sleeves of its garments are placed
 /// where nobody says how they are held, and that angle.
 pub(crate) fn measurements_for_sleeves(project: &Project) -> (Measurements, Option<f64>) {

@@ -1,6 +1,7 @@
 //! Work on other threads: the mannequin and the meshed garment are made from a snapshot, then the drape runs
 //! live. A garment that hangs follows the edits of its pattern; how it follows is found on another thread
-//! too.
+//! too. Where it cannot follow, since its wearer, cloth or fellow garments are others now, it is hung anew by
+//! itself; of several changes that come meanwhile only the newest counts.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -13,7 +14,13 @@ use toile_session::{
 #[derive(Default)]
 pub struct BackgroundWork {
     body: Option<Receiver<Made<Result<(), SessionError>>>>,
+    /// The project whose mannequin is shown or being made.
+    body_of: Option<(Project, u64)>,
     garment: Option<Receiver<Made<Result<GarmentJob, SessionError>>>>,
+    /// Whether what is being meshed is too old: the garment of the newest project is meshed after it.
+    is_overtaken: bool,
+    /// Why the garment that is being meshed is hung.
+    reason: Reason,
     edit: Option<Receiver<Made<Result<GarmentEdit, CannotFollow>>>>,
     run: Option<LiveRun>,
     last: Option<Moment>,
@@ -25,6 +32,20 @@ pub struct BackgroundWork {
     standstill: Option<String>,
     /// Whether the report on the garment at rest was shown.
     told: bool,
+    /// Whether the cloth that is shown is to be taken off.
+    is_undressed: bool,
+}
+
+/// Why a garment is hung.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Reason {
+    /// It was asked for.
+    #[default]
+    Asked,
+    /// The one that hung could not follow a change, on the same body.
+    Change,
+    /// Its wearer is another.
+    Wearer,
 }
 
 /// The result of a thread.
@@ -50,6 +71,8 @@ pub enum GarmentStatus {
     AtRest,
     /// The garment of an earlier pattern, and why.
     OutOfDate(String),
+    /// No garment, for the one that hung cannot be made any more, and why.
+    NotMade(String),
 }
 
 /// The main numbers of a live drape.
@@ -89,7 +112,9 @@ impl From<&LiveFrame> for Moment {
 pub enum WorkEvent {
     /// The session knows its mannequin now.
     Body,
-    /// The garment is meshed and placed; the drape begins.
+    /// The cloth that is shown belongs on no body any more.
+    Undressed,
+    /// The garment is meshed and placed round its mannequin; the drape begins.
     Begun(Arc<GarmentJob>),
     /// The cloth has moved.
     Frame(LiveFrame),
@@ -102,35 +127,94 @@ pub enum WorkEvent {
 }
 
 impl BackgroundWork {
-    /// Begins to make the mannequin of a session's wearer.
-    pub fn start_body(&mut self, session: &Session) {
-        self.body = Some(on_thread(session, |session| {
-            session.mannequin().map(|_| ())
-        }));
+    /// Brings the work up to a session's present project: a garment whose wearer is another now is hung anew. A
+    /// gesture that is being shown is waited for.
+    pub fn follow(&mut self, session: &Session) {
+        if session.is_previewing() {
+            return;
+        }
+        let Some((project, revision)) = &self.compared else {
+            return;
+        };
+        let now = session.project();
+        let is_new = *revision != session.revision();
+        if is_new && !project.has_same_body(now) {
+            self.hang(session, Reason::Wearer);
+        } else if is_new && self.is_not_made() && project != now {
+            self.hang(session, Reason::Change);
+        }
+    }
+
+    /// Has the mannequin of a session's wearer made where it is another than the one shown, and no garment brings
+    /// it.
+    pub fn follow_body(&mut self, session: &Session) {
+        let is_known = |of: &(Project, u64)| of.1 == session.revision();
+        let waits = self.body.is_some() || self.garment.is_some() || session.is_previewing();
+        if waits || self.body_of.as_ref().is_some_and(is_known) {
+            return;
+        }
+        let now = session.project();
+        let known = self.body_of.as_ref();
+        let is_same = known.is_some_and(|(project, _)| project.has_same_body(now));
+        self.body_of = Some((now.clone(), session.revision()));
+        if !is_same {
+            self.body = Some(on_thread(session, |session| {
+                session.mannequin().map(|_| ())
+            }));
+        }
     }
 
     /// Begins to make and drape a session's garment. A drape that runs is ended.
     pub fn start_garment(&mut self, session: &Session) {
-        self.clear();
-        self.compared = Some((session.project().clone(), session.revision()));
-        self.garment = Some(on_thread(session, Session::garment_setup));
+        self.hang(session, Reason::Asked);
     }
 
-    /// Ends the drape. What it has reached stays.
+    /// Hangs a garment from the start. While another is meshed it waits, and only the newest that waits counts.
+    fn hang(&mut self, session: &Session, reason: Reason) {
+        // Cloth on the body of another wearer stays that until it is replaced.
+        let stays = self.garment.is_some() && self.reason == Reason::Wearer;
+        self.reason = if stays { Reason::Wearer } else { reason };
+        self.leave_run();
+        self.compared = Some((session.project().clone(), session.revision()));
+        self.is_overtaken = self.garment.is_some();
+        if !self.is_overtaken {
+            self.garment = Some(on_thread(session, Session::garment_setup));
+        }
+    }
+
+    /// Ends the drape. What it has reached stays; while a garment is meshed nothing is reached yet.
     pub fn stop(&mut self) {
-        self.garment = None;
-        self.run = None;
+        if self.garment.take().is_some() {
+            self.is_undressed = true;
+            self.compared = None;
+        }
+        self.is_overtaken = false;
+        self.end_run();
     }
 
     /// Forgets the garment.
     pub fn clear(&mut self) {
         self.stop();
+        self.leave_run();
+        self.compared = None;
+    }
+
+    /// Forgets the garment that hangs.
+    fn leave_run(&mut self) {
+        self.end_run();
         self.edit = None;
         self.last = None;
         self.given = None;
-        self.compared = None;
         self.standstill = None;
         self.told = false;
+    }
+
+    /// Ends the thread of the drape without waiting for its present step.
+    fn end_run(&mut self) {
+        if let Some(run) = self.run.take() {
+            run.stop();
+            std::thread::spawn(move || drop(run));
+        }
     }
 
     /// Holds the drape, or lets it go on.
@@ -157,9 +241,21 @@ impl BackgroundWork {
         self.body.is_some()
     }
 
-    /// Whether a garment is shown that can be hung again.
-    pub fn hangs(&self) -> bool {
-        self.given.is_some()
+    /// Whether the cloth that is shown is that of an earlier project.
+    pub fn is_out_of_date(&self) -> bool {
+        let is_replaced = self.garment.is_some() && self.reason != Reason::Asked;
+        is_replaced || matches!(self.status(), GarmentStatus::OutOfDate(_))
+    }
+
+    /// Whether the cloth that is shown hung on another body than the wearer's.
+    pub fn is_on_another_body(&self) -> bool {
+        self.garment.is_some() && self.reason == Reason::Wearer
+    }
+
+    /// Whether a garment that hung cannot be made any more.
+    fn is_not_made(&self) -> bool {
+        let works = self.garment.is_some() || self.given.is_some();
+        !works && self.standstill.is_some()
     }
 
     /// Whether anything may change without the person doing something.
@@ -191,7 +287,8 @@ impl BackgroundWork {
             return GarmentStatus::Preparing;
         }
         let (Some(given), Some(last)) = (&self.given, self.last) else {
-            return GarmentStatus::Nothing;
+            let why = self.standstill.clone();
+            return why.map_or(GarmentStatus::Nothing, GarmentStatus::NotMade);
         };
         if let Some(why) = &self.standstill {
             return GarmentStatus::OutOfDate(why.clone());
@@ -218,32 +315,68 @@ impl BackgroundWork {
     /// What came about since the last look. What threads derived goes to the session.
     pub fn news(&mut self, session: &mut Session) -> Vec<WorkEvent> {
         let mut news = Vec::new();
+        self.follow(session);
         match take(&mut self.body, session) {
-            Some(Ok(Ok(()))) => news.push(WorkEvent::Body),
-            Some(Ok(Err(error))) => news.push(WorkEvent::Failed(error.to_string())),
+            Some(Ok(made)) => match made {
+                // Another mannequin is wanted by now.
+                _ if !self.is_of_wearer(session) => {}
+                Ok(()) => news.push(WorkEvent::Body),
+                Err(error) => news.push(WorkEvent::Failed(error.to_string())),
+            },
             Some(Err(words)) => news.push(WorkEvent::Failed(words)),
             None => {}
         }
-        match take(&mut self.garment, session) {
-            Some(Ok(Ok(job))) => {
-                self.run = Some(LiveRun::start(job.clone()));
-                let job = Arc::new(job);
-                self.given = Some(job.clone());
-                news.extend([WorkEvent::Body, WorkEvent::Begun(job)]);
-            }
-            Some(Ok(Err(error))) => news.push(WorkEvent::Failed(error.to_string())),
-            Some(Err(words)) => news.push(WorkEvent::Failed(words)),
-            None => {}
+        self.follow_setup(session, &mut news);
+        if std::mem::take(&mut self.is_undressed) {
+            self.body_of = None;
+            news.push(WorkEvent::Undressed);
         }
         self.follow_edits(session);
         self.follow_run(session, &mut news);
         news
     }
 
+    /// Whether the mannequin that was made is that of the session's wearer.
+    fn is_of_wearer(&self, session: &Session) -> bool {
+        let known = self.body_of.as_ref();
+        known.is_some_and(|(project, _)| project.has_same_body(session.project()))
+    }
+
+    /// Begins to drape a garment that was meshed, or has a newer one meshed.
+    fn follow_setup(&mut self, session: &mut Session, news: &mut Vec<WorkEvent>) {
+        let Some(made) = take(&mut self.garment, session) else {
+            return;
+        };
+        if std::mem::take(&mut self.is_overtaken) {
+            self.compared = Some((session.project().clone(), session.revision()));
+            self.garment = Some(on_thread(session, Session::garment_setup));
+            return;
+        }
+        match made.and_then(|made| made.map_err(|error| error.to_string())) {
+            Ok(job) => {
+                self.run = Some(LiveRun::start(job.clone()));
+                let job = Arc::new(job);
+                self.given = Some(job.clone());
+                self.body_of.clone_from(&self.compared);
+                news.push(WorkEvent::Begun(job));
+            }
+            Err(words) => {
+                if self.reason == Reason::Asked {
+                    self.compared = None;
+                    news.push(WorkEvent::Failed(words));
+                } else {
+                    self.standstill = Some(words);
+                }
+                self.is_undressed = true;
+            }
+        }
+    }
+
     /// Has the garment that hangs follow the pattern, one edit after the other.
     fn follow_edits(&mut self, session: &mut Session) {
         match take(&mut self.edit, session) {
             Some(Ok(Ok(edit))) => self.give(edit),
+            Some(Ok(Err(why))) if why.asks_for_another() => self.hang(session, Reason::Change),
             Some(Ok(Err(why))) => self.stand_still(why.to_string()),
             Some(Err(words)) => self.stand_still(words),
             None => {}
@@ -321,7 +454,7 @@ impl BackgroundWork {
 }
 
 /// Why a garment that was stopped is out of date.
-const STOPPED: &str = "the drape was stopped; hang it again";
+const STOPPED: &str = "the drape was stopped; drape it again";
 
 fn on_thread<T: Send + 'static>(
     session: &Session,

@@ -13,7 +13,9 @@ const STRIP: f32 = 38.0;
 
 impl ToileApp {
     pub(crate) fn garment_side(&mut self, ui: &mut Ui) {
-        self.follow_body();
+        // What was changed in this frame is seen in it: no cloth stands on a body it was not made for.
+        self.background_work.follow(&self.session);
+        self.background_work.follow_body(&self.session);
         Panel::top("drape")
             .frame(theme::bar(ui.ctx()))
             .resizable(false)
@@ -24,36 +26,17 @@ impl ToileApp {
             true => "Making the mannequin\u{2026}",
             false => "No mannequin yet",
         };
-        let is_old = matches!(self.background_work.status(), GarmentStatus::OutOfDate(_));
-        self.stage.set_out_of_date(is_old);
+        self.stage
+            .set_out_of_date(self.background_work.is_out_of_date());
+        self.stage.hides_body = self.background_work.is_on_another_body();
         self.stage.show(ui, empty);
         self.drape_progress(ui, view);
-    }
-
-    /// Has another mannequin made when the wearer is another.
-    fn follow_body(&mut self) {
-        let compared = self.body_of.as_ref().map(|(_, revision)| *revision);
-        if compared == Some(self.revision) || self.session.is_previewing() {
-            return;
-        }
-        let project = self.session.project();
-        let same = self.body_of.as_ref().is_some_and(|(of, _)| {
-            of.figure() == project.figure() && of.body_measurements() == project.body_measurements()
-        });
-        self.body_of = Some((project.clone(), self.revision));
-        if !same {
-            self.background_work.start_body(&self.session);
-        }
     }
 
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
         ui.horizontal_centered(|ui| {
             let palette = Palette::of(ui.ctx());
-            let name = match self.background_work.hangs() {
-                true => "Hang again",
-                false => "Drape",
-            };
-            if let Some(command) = super::command_table::named(name) {
+            if let Some(command) = super::command_table::named("Drape") {
                 let words = RichText::new(command.name).color(palette.on_accent);
                 let button = Button::new(words).fill(palette.accent);
                 self.command_widget(ui, command, button, None);
@@ -109,7 +92,7 @@ impl ToileApp {
             pos2(view.right() - 12.0, view.bottom() - 12.0),
         );
         let (colour, is_old) = match self.background_work.status() {
-            GarmentStatus::OutOfDate(_) => (palette.warning, true),
+            GarmentStatus::OutOfDate(_) | GarmentStatus::NotMade(_) => (palette.warning, true),
             GarmentStatus::AtRest if !self.is_flawless() => (palette.warning, false),
             _ => (palette.ink_soft, false),
         };
@@ -148,6 +131,7 @@ impl ToileApp {
                 None => state,
             },
             GarmentStatus::OutOfDate(why) => format!("Out of date: {why}"),
+            GarmentStatus::NotMade(why) => format!("It does not hang: {why}"),
         }
     }
 }

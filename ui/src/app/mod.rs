@@ -48,7 +48,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use toile_pattern::plan::Fragment;
 use toile_pattern::{Code, Diagnostic, Evaluation, Pattern};
-use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
+use toile_session::{Abandoned, Command, Event, Recovery, Session, Silent, abandoned};
 
 /// Time between frames while something runs by itself.
 const FRAME: Duration = Duration::from_millis(33);
@@ -93,8 +93,6 @@ pub struct ToileApp {
     pub(crate) revision: Option<u64>,
     octave: i32,
     checked: Option<u64>,
-    /// Whose mannequin is shown or being made, and the revision it was last compared at.
-    pub(crate) body_of: Option<(Project, Option<u64>)>,
     title: String,
 }
 
@@ -144,7 +142,6 @@ impl ToileApp {
             revision: None,
             octave: 0,
             checked: None,
-            body_of: None,
             title: String::new(),
         };
         if let Some(folder) = &beginning.folder {
@@ -357,7 +354,13 @@ impl ToileApp {
                         self.stage.set_body(mannequin.skin());
                     }
                 }
-                WorkEvent::Begun(job) => self.stage.set_frame(first_frame(&job)),
+                WorkEvent::Undressed => self.stage.clear_garment(),
+                WorkEvent::Begun(job) => {
+                    if let Some(skin) = job.setup.colliders.first() {
+                        self.stage.set_body(skin.mesh());
+                    }
+                    self.stage.set_frame(first_frame(&job));
+                }
                 WorkEvent::Frame(frame) => self.stage.set_frame(frame),
                 WorkEvent::Finished(events) => {
                     let warned = events.into_iter().filter_map(|event| match event {

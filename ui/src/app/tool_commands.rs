@@ -413,16 +413,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         Menu::Garment,
         "Drape",
         key(PLAIN, Key::F5),
-        "Sew the garment round the mannequin and let it hang",
+        "Sew the garment round the mannequin and let it hang, anew where it hangs already",
         ToileApp::has_panels,
-        ToileApp::drape,
-    ),
-    command(
-        Menu::Garment,
-        "Hang again",
-        None,
-        "Sew the garment anew and let it hang from the start, as it is exported",
-        |app| app.has_panels() && app.background_work.hangs(),
         ToileApp::drape,
     ),
     command(

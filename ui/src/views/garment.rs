@@ -23,6 +23,8 @@ pub struct GarmentView {
     look: Option<(Arc<GarmentJob>, ClothLook)>,
     frame: Option<LiveFrame>,
     is_old: bool,
+    /// Whether the mannequin is left out.
+    pub hides_body: bool,
     cloth: ClothSolid,
     cloth_buffer: CornerBuffer,
     line_buffer: CornerBuffer,
@@ -47,6 +49,7 @@ struct Drawn {
     orbit: Orbit,
     size: [u32; 2],
     theme: egui::Theme,
+    hides_body: bool,
     id: egui::TextureId,
 }
 
@@ -118,6 +121,16 @@ impl GarmentView {
     /// Whether there is a mannequin to show.
     pub fn has_body(&self) -> bool {
         !self.body.is_empty()
+    }
+
+    /// The garment whose cloth is shown.
+    pub fn garment(&self) -> Option<&Arc<GarmentJob>> {
+        self.frame.as_ref().map(|frame| &frame.job)
+    }
+
+    /// The least and the largest coordinates of the mannequin that is seen [m].
+    pub fn seen_body(&self) -> Option<[Vec3; 2]> {
+        self.body_bounds.filter(|_| !self.hides_body)
     }
 
     /// Looks from a side, level: 0 in front, positive toward the wearer's left [rad].
@@ -211,9 +224,11 @@ impl GarmentView {
         let palette = Palette::of(ui.ctx());
         let is_same_theme = self.drawn.is_some_and(|drawn| drawn.theme == theme);
         let fresh = !self.stale.body && !self.stale.cloth && is_same_theme;
-        let kept = self
-            .drawn
-            .filter(|drawn| fresh && drawn.orbit == self.orbit && drawn.size == size);
+        let (orbit, hides_body) = (self.orbit, self.hides_body);
+        let is_same = |drawn: &Drawn| {
+            (drawn.orbit, drawn.size, drawn.hides_body) == (orbit, size, hides_body)
+        };
+        let kept = self.drawn.filter(|drawn| fresh && is_same(drawn));
         let id = match kept {
             Some(drawn) => drawn.id,
             None => {
@@ -230,7 +245,8 @@ impl GarmentView {
                 self.stale = Stale::default();
                 // Nobody stands on the floor before there is a mannequin.
                 let floor = (!self.body.is_empty()).then_some(&self.floor_buffer);
-                let solids = [&self.body_buffer, &self.cloth_buffer].into_iter();
+                let body = (!self.hides_body).then_some(&self.body_buffer);
+                let solids = body.into_iter().chain([&self.cloth_buffer]);
                 let solids: Vec<_> = solids.chain(floor).collect();
                 let image = (size, palette.stage);
                 renderer.draw(&self.orbit, image, &solids, &self.line_buffer)
@@ -240,6 +256,7 @@ impl GarmentView {
             orbit: self.orbit,
             size,
             theme,
+            hides_body,
             id,
         });
         let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
