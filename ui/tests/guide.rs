@@ -346,6 +346,9 @@ fn print(reader: &mut Reader, folder: &std::path::Path) {
         }
     }
     reader.drafter.wait(|_| paper.exists());
+    reader.drafter.chord(Modifiers::COMMAND, Key::E);
+    reader.look();
+    reader.drafter.key(Key::Escape);
 }
 
 fn wear(reader: &mut Reader) {

@@ -34,7 +34,7 @@ fn drag(window: &mut Window, point: &str, [x, y]: [f32; 2]) {
 fn exported(session: &mut Session, dir: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
     let dir = dir.to_owned();
     let mut commands = vec![Command::Check, Command::Nest, Command::Assemble];
-    commands.extend([Command::drape(), Command::Export { dir: dir.clone() }]);
+    commands.extend([Command::drape(), Command::export(&dir)]);
     session.execute_all(&commands, &mut Silent).unwrap();
     let mut files = garments::lasting(&dir);
     assert!(files.remove("journal.jsonl").is_some());

@@ -388,7 +388,7 @@ fn a_garment_at_rest_is_the_sessions_until_the_pattern_changes() {
     let (mut exported, journal) = (session.snapshot(), session.journal().len());
     let dir = folder.path().join("out");
     exported
-        .execute(Command::Export { dir: dir.clone() }, &mut Silent)
+        .execute(Command::export(&dir), &mut Silent)
         .unwrap();
     assert!(dir.join("garment.glb").exists());
     // A garment of an older pattern is not taken.

@@ -3,11 +3,13 @@
 use crate::body_options::{BodyOptions, StanceOptions};
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
-use crate::values::{blend, one_size, panel_origin, sizes};
+use crate::values::{blend, export_format, one_size, panel_origin, sizes};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
-use toile_session::{Command, OtherGarment, PanelOrigin, PatternFormat, Quality, SizeSelection};
+use toile_session::{
+    Command, Export, ExportFormat, OtherGarment, PanelOrigin, PatternFormat, Quality, SizeSelection,
+};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
@@ -237,6 +239,15 @@ pub struct Make {
     /// pelvis, or its height above the floor, as in 90cm.
     #[arg(long, value_name = "POINT", default_value = "auto", value_parser = panel_origin)]
     pub origin: PanelOrigin,
+    /// What to write, and only that; what it takes is made first: glb, obj, drape, fit (pictures), marker-svg,
+    /// marker-json, marker-dxf, marker-pdf, marker-report, marker-plt, marker-instance, pieces-pdf (A4), pieces-svg
+    /// (one page), report, journal. Default: of what the command makes glb, obj, drape, fit, marker-svg, marker-json, report
+    /// and journal.
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = export_format)]
+    pub formats: Vec<ExportFormat>,
+    /// Write this marker of the pattern as it is stored, instead of laying the pieces.
+    #[arg(long, value_name = "NAME", requires = "formats")]
+    pub marker: Option<String>,
 }
 
 impl Make {
@@ -252,7 +263,18 @@ impl Make {
             width: None,
             quality: QualityName::Fit,
             origin: PanelOrigin::Automatic,
+            formats: Vec::new(),
+            marker: None,
         }
+    }
+
+    /// What is written where.
+    pub fn export(&self) -> Command {
+        Command::Export(Export {
+            dir: self.out.clone(),
+            formats: self.formats.clone(),
+            marker: self.marker.clone(),
+        })
     }
 
     /// The commands that open the pattern and make every choice.

@@ -278,6 +278,8 @@ fn meaning(path: &Path) -> &'static str {
         name if name.starts_with("layer-") => "a garment of several by itself",
         "drape.png" => "the garment worn",
         "fit.png" => "how much the cloth is stretched",
+        "pieces.pdf" => "the pieces on sheets of A4, at true size",
+        "pieces.svg" => "the pieces on one page, at true size",
         "report.json" => "what was made, in numbers",
         "timing.json" => "how long it took",
         "journal.jsonl" => "the commands, for `toile replay`",

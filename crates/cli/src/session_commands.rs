@@ -28,10 +28,12 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Made, Failure> 
     refuse_layers(make)?;
     let mut commands = make.choices();
     refuse_nobody(&commands)?;
-    commands.extend_from_slice(work);
-    commands.push(Command::Export {
-        dir: make.out.clone(),
-    });
+    match make.formats.is_empty() {
+        true => commands.extend_from_slice(work),
+        // What is asked for says what is made.
+        false => commands.push(Command::Check),
+    }
+    commands.push(make.export());
     let mut session = Session::new();
     let events = session
         .execute_all(&commands, &mut Bar::new())
@@ -113,8 +115,10 @@ fn outcome(events: &[Event], folder: &Path) -> Made {
         })
         .flatten()
         .collect();
-    let report = std::fs::read_to_string(folder.join("report.json"))
-        .ok()
+    let written = folder.join("report.json");
+    let report = Some(&written)
+        .filter(|path| files.contains(path))
+        .and_then(|path| std::fs::read_to_string(path).ok())
         .and_then(|text| serde_json::from_str::<Value>(&text).ok());
     let verdict = events.iter().rev().find_map(|event| match event {
         Event::Draped(drape) => Some(&drape.verdict),

@@ -1,7 +1,7 @@
 //! Parsers for options with several values.
 
 use toile_geometry::Length;
-use toile_session::{GivenFlaw, PanelOrigin, Shrinkage, SizeSelection};
+use toile_session::{ExportFormat, GivenFlaw, PanelOrigin, Shrinkage, SizeSelection};
 
 /// Most garments of one size: far more than can be laid at once.
 const MOST_GARMENTS: u32 = 10_000;
@@ -25,6 +25,14 @@ pub fn sizes(text: &str) -> Result<SizeSelection, String> {
         }
     });
     each.collect::<Result<_, _>>().map(SizeSelection::Named)
+}
+
+/// What an export writes, as in marker-dxf.
+pub fn export_format(text: &str) -> Result<ExportFormat, String> {
+    ExportFormat::named(text).ok_or_else(|| {
+        let names = ExportFormat::ALL.map(ExportFormat::name);
+        format!("choose from {}", names.join(", "))
+    })
 }
 
 /// The name of one size, of which one garment is made.

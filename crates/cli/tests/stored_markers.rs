@@ -110,3 +110,58 @@ fn what_does_not_go_with_a_marker_is_refused() {
         assert!(said.contains(what), "{said}");
     }
 }
+
+#[test]
+fn an_export_of_some_formats_writes_those_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    shirt(folder.path());
+    let make = |more: &[&str]| {
+        let usual = ["make", "shirt.toile.json", "--formats"];
+        let all: Vec<&str> = usual.iter().chain(more).copied().collect();
+        toile(folder.path(), &all)
+    };
+    let marker = [
+        "marker-dxf,marker-plt",
+        "--marker",
+        "two M",
+        "--out",
+        "made",
+        "--json",
+    ];
+    let output = make(&marker);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        report["files"],
+        json!(["made/marker.dxf", "made/marker.plt"])
+    );
+    assert_eq!(report["report"], Value::Null);
+    let nest = ["nest", "shirt.toile.json", "--marker", "two M", "--stored"];
+    let nest: Vec<&str> = nest
+        .into_iter()
+        .chain(["--write", "dxf,plt", "--out", "nested"])
+        .collect();
+    assert_eq!(toile(folder.path(), &nest).status.code(), Some(0));
+    let written = |dir: &str| {
+        let found = std::fs::read_dir(folder.path().join(dir)).unwrap();
+        let mut files: Vec<_> = found
+            .map(|file| file.unwrap().path())
+            .map(|path| {
+                (
+                    path.file_name().unwrap().to_owned(),
+                    std::fs::read(path).unwrap(),
+                )
+            })
+            .collect();
+        files.sort();
+        files
+    };
+    assert!(written("made") == written("nested"));
+    let output = make(&["glb,stl"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = words(&output.stderr);
+    assert!(
+        told.contains("stl") && told.contains("marker-report"),
+        "{told}"
+    );
+}

@@ -19,6 +19,26 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Staged::new(path, bytes)?.commit()
 }
 
+/// Finds out whether files can be written into a folder, which need not be there yet. Nothing is left behind.
+///
+/// # Errors
+/// The folder cannot be made, or nothing can be written where it is or would be.
+pub fn check_folder(folder: &Path) -> Result<(), FileError> {
+    let there = folder.ancestors().find(|above| above.exists());
+    let there = there.unwrap_or(Path::new("."));
+    if !there.is_dir() {
+        return Err(FileError {
+            action: "create the folder",
+            path: folder.to_owned(),
+            cause: format!("{} is a file", there.display()),
+            hint: "name a folder",
+        });
+    }
+    let tried = temporary_in(there);
+    tried.map_err(|error| FileError::from_io("write into", there, &error))?;
+    Ok(())
+}
+
 /// Creates a folder if need be and writes several files into it. All of them are on the disk
 /// under temporary names before the first takes its own.
 ///

@@ -53,7 +53,7 @@ mod x3d_vrml;
 mod x3d_xml;
 mod xml;
 
-pub use atomic::{write_all_atomically, write_atomically};
+pub use atomic::{check_folder, write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
 pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};

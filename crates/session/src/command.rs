@@ -1,10 +1,15 @@
 //! Commands: everything that can be asked of a session, as data.
 
-use crate::{PanelOrigin, Quality, StampedInput};
+use crate::{Export, PanelOrigin, Quality, StampedInput};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toile_body::{Figure, PrimitiveEdit};
 use toile_pattern::Edit;
+
+/// Rough shares of the work of making a garment, for progress.
+const DRAPING: f64 = 80.0;
+const LAYING: f64 = 7.0;
+const WRITING: f64 = 7.0;
 
 /// One thing to do. The journal is a list of these.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -110,11 +115,8 @@ pub enum Command {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         inputs: Vec<StampedInput>,
     },
-    /// Writes what has been made of the present project: marker, garment, pictures, report.
-    Export {
-        /// The folder; it is made if need be.
-        dir: PathBuf,
-    },
+    /// Writes files of the present project: marker, garment, pictures, pieces, report.
+    Export(Export),
 }
 
 /// A garment to wear with the project's.
@@ -132,11 +134,16 @@ impl Command {
         Self::Drape { inputs: Vec::new() }
     }
 
+    /// Writes the usual files of what has been made into a folder.
+    pub fn export(dir: &Path) -> Self {
+        Self::Export(Export::made(dir))
+    }
+
     /// Where it writes a file or a folder, if it does.
     pub(crate) fn output_mut(&mut self) -> Option<&mut PathBuf> {
         match self {
             Self::SavePattern { path } | Self::SaveBody { path } => Some(path),
-            Self::Export { dir } => Some(dir),
+            Self::Export(export) => Some(&mut export.dir),
             Self::OpenPattern { .. }
             | Self::SetOrigin { .. }
             | Self::NewPattern { .. }
@@ -184,7 +191,7 @@ impl Command {
             Self::Nest => Some("nest"),
             Self::Assemble => Some("assemble"),
             Self::Drape { .. } => Some("drape"),
-            Self::Export { .. } => Some("export"),
+            Self::Export(_) => Some("export"),
             _ => None,
         }
     }
@@ -192,8 +199,13 @@ impl Command {
     /// Rough share of the work of making a garment, for progress.
     pub(crate) fn weight(&self) -> f64 {
         match self {
-            Self::Drape { .. } => 80.0,
-            Self::Nest | Self::Export { .. } => 7.0,
+            Self::Drape { .. } => DRAPING,
+            Self::Nest => LAYING,
+            Self::Export(export) => {
+                let hung = if export.takes_garment() { DRAPING } else { 0.0 };
+                let laid = if export.takes_marker() { LAYING } else { 0.0 };
+                WRITING + hung + laid
+            }
             Self::Assemble => 4.0,
             Self::Check | Self::OpenPattern { .. } => 1.0,
             _ => 0.1,

@@ -1,59 +1,280 @@
-//! Writes all files of a project.
+//! Writes what is made of a project: markers, garment, pictures, pieces on paper, a report.
 
-use crate::derived::Derived;
 use crate::drape::Drape;
+use crate::export_format::{Export, ExportFormat};
+use crate::journal::{Entry, MOST_COMMANDS};
+use crate::journal_files::journal_beside;
 use crate::outfit::DraftedPart;
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
-use crate::watcher::report_progress;
-use crate::{Command, Project, SessionError, Watcher, pictures};
+use crate::stored_marker::stored;
+use crate::watcher::{ProgressShare, report_progress};
+use crate::{
+    Command, Event, Paper, PrintOptions, Project, Session, SessionError, SizeSelection, Watcher,
+    pictures, print_job,
+};
 use std::path::Path;
-use toile_interchange::{FormatError, write_glb, write_obj};
-use toile_marker::{MarkerFormat, marker_files};
+use std::sync::Arc;
+use std::time::Instant;
+use toile_interchange::{FormatError, check_folder, write_all_atomically, write_glb, write_obj};
+use toile_marker::{FinishedMarker, MarkerFormat, marker_files};
 
 /// A file to write: its name and its content.
 pub(crate) type File = (String, Vec<u8>);
 
-/// Every file of what has been made: markers, garment, pictures, report.
-pub(crate) fn files(
-    project: &Project,
-    derived: &mut Derived,
-    watcher: &mut dyn Watcher,
-) -> Result<Vec<File>, SessionError> {
-    if derived.finished_markers.is_none() && derived.drape.is_none() {
-        return Err(SessionError::Nothing {
-            action: "export",
-            hint: "lay the pieces out or drape the garment first",
+/// Shares of an export that are done when the markers are laid, when the garment hangs, and when its pieces are
+/// printed.
+const DONE: [f64; 3] = [0.08, 0.9, 0.94];
+
+/// What an export writes of.
+struct Subject {
+    formats: Vec<ExportFormat>,
+    /// What the marker files are called, and the markers.
+    markers: Option<(String, Arc<Vec<FinishedMarker>>)>,
+    drape: Option<Arc<Drape>>,
+}
+
+impl Export {
+    /// Whether the garment is hung for it. A report tells of the garment and the marker that are exported with it; by
+    /// itself of both.
+    pub(crate) fn takes_garment(&self) -> bool {
+        self.takes(ExportFormat::is_of_garment)
+    }
+
+    /// Whether the pieces are laid for it.
+    pub(crate) fn takes_marker(&self) -> bool {
+        self.takes(ExportFormat::is_of_marker)
+    }
+
+    fn takes(&self, is_of: impl Fn(ExportFormat) -> bool) -> bool {
+        let formats = &self.formats;
+        let shows = |format: &ExportFormat| format.is_of_garment() || format.is_of_marker();
+        let is_report_alone = formats.contains(&ExportFormat::Report) && !formats.iter().any(shows);
+        is_report_alone || formats.iter().any(|&format| is_of(format))
+    }
+}
+
+impl Session {
+    /// Writes files into a folder, all or none. What they take and has not been made is made first.
+    pub(crate) fn export(
+        &mut self,
+        export: &Export,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Vec<Event>, SessionError> {
+        let start = Instant::now();
+        // Told before minutes are spent on it.
+        check_folder(&export.dir)?;
+        let mut events = Vec::new();
+        let subject = self.subject(export, (watcher, &mut events))?;
+        let mut files = Vec::new();
+        self.pieces(&subject, (watcher, &mut events), &mut files)?;
+        let mut part = ProgressShare::new(watcher, DONE[2], 1.0);
+        self.files(&subject, (&mut part, &mut events), &mut files)?;
+        if subject.formats.contains(&ExportFormat::Journal) {
+            self.record(export, start, &mut files)?;
+            if !self.journal.is_whole() {
+                events.push(Event::Warned {
+                    message: format!(
+                        "journal.jsonl was left out: it would need the first of more than \
+                         {MOST_COMMANDS} commands, which are no longer kept; save the pattern, open it \
+                         and export from there"
+                    ),
+                });
+            }
+        }
+        write_all_atomically(&export.dir, &files)?;
+        // The files are on the disk: the wish to stop comes too late.
+        let _ = report_progress(watcher, "writing", 1.0, "");
+        let paths = files.iter().map(|(name, _)| export.dir.join(name));
+        events.push(Event::FilesWritten {
+            paths: paths.collect(),
         });
+        Ok(events)
     }
-    let parts = derived.parts(project);
-    let mut report = Report::new(project, &parts);
-    let found = parts.iter().flat_map(|part| part.diagnostics.iter());
-    report.add_warnings(found.map(ToString::to_string));
-    let mut files = Vec::new();
-    if let Some(finished_markers) = &derived.finished_markers {
-        report_progress(watcher, "writing", 0.0, "marker")?;
-        let formats = [MarkerFormat::Svg, MarkerFormat::Json];
-        marker_files((&worn_name(&parts), &formats), finished_markers, &mut files)?;
-        report.add_markers(finished_markers);
+
+    /// Makes what is written of.
+    fn subject(
+        &mut self,
+        export: &Export,
+        (watcher, events): (&mut dyn Watcher, &mut Vec<Event>),
+    ) -> Result<Subject, SessionError> {
+        let derived = &self.derived;
+        if export.formats.is_empty() {
+            let (markers, drape) = (derived.finished_markers.clone(), derived.drape.clone());
+            if markers.is_none() && drape.is_none() {
+                return Err(SessionError::Nothing {
+                    action: "export",
+                    hint: "lay the pieces out or drape the garment first",
+                });
+            }
+            let name = self.garment_name();
+            let usual = ExportFormat::ALL.into_iter();
+            return Ok(Subject {
+                formats: usual.filter(|format| format.is_usual()).collect(),
+                markers: markers.map(|markers| (name, markers)),
+                drape,
+            });
+        }
+        let mut subject = Subject {
+            formats: export.formats.clone(),
+            markers: None,
+            drape: None,
+        };
+        if export.takes_marker() {
+            let mut part = ProgressShare::new(watcher, 0.0, DONE[0]);
+            let markers = match &export.marker {
+                Some(name) => {
+                    let (name, finished) = stored(self, name)?;
+                    let faults = finished.faults();
+                    events.push(Event::Nested(finished.summary()));
+                    events.extend(Event::warnings(&faults));
+                    (name, Arc::new(vec![finished]))
+                }
+                None => {
+                    events.extend(self.nest(&mut part)?);
+                    let markers = self.derived.finished_markers(&self.project, &mut part)?;
+                    (self.garment_name(), markers)
+                }
+            };
+            subject.markers = Some(markers);
+        }
+        if export.takes_garment() {
+            let mut part = ProgressShare::new(watcher, DONE[0], DONE[1]);
+            // What hangs there is exported as it was pulled.
+            let inputs = self
+                .derived
+                .drape
+                .as_ref()
+                .map(|drape| drape.inputs.clone());
+            events.extend(self.drape(&inputs.unwrap_or_default(), &mut part)?);
+            subject.drape = self.derived.drape.clone();
+        }
+        Ok(subject)
     }
-    if let Some(drape) = derived.drape.clone() {
-        garment_files(&drape, &mut files)?;
-        report_progress(watcher, "writing", 0.2, "pictures")?;
-        let mannequin = derived.mannequin(project)?;
-        let title = picture_title(project, &worn_name(&parts));
-        let picture = pictures::drape_png(&drape, mannequin.skin(), &title)?;
-        files.push(("drape.png".into(), picture));
+
+    /// The names of all garments worn.
+    fn garment_name(&mut self) -> String {
+        worn_name(&self.derived.parts(&self.project))
+    }
+
+    /// The pieces on paper.
+    fn pieces(
+        &self,
+        subject: &Subject,
+        (watcher, events): (&mut dyn Watcher, &mut Vec<Event>),
+        files: &mut Vec<File>,
+    ) -> Result<(), SessionError> {
+        let written = [
+            (ExportFormat::PiecesPdf, Paper::A4),
+            (ExportFormat::PiecesSvg, Paper::Page),
+        ];
+        for (format, paper) in written {
+            if !subject.formats.contains(&format) {
+                continue;
+            }
+            let size = self.project.size.as_deref();
+            let options = PrintOptions {
+                sizes: size.map_or(SizeSelection::Base, SizeSelection::one),
+                paper,
+                ..PrintOptions::default()
+            };
+            let mut part = ProgressShare::new(watcher, DONE[1], DONE[2]);
+            let (job, printed) = print_job(&self.project, &options, &mut part)?;
+            let mut notes = printed.notes;
+            let bytes = match format {
+                ExportFormat::PiecesSvg => job.svg().map(String::into_bytes),
+                _ => {
+                    notes.extend(job.missing_note());
+                    job.pdf()
+                }
+            };
+            files.push((format.file().into(), bytes.map_err(cannot(format.file()))?));
+            events.extend(Event::warnings(&notes));
+        }
+        Ok(())
+    }
+
+    /// The files of markers and garment, and the report on them.
+    fn files(
+        &mut self,
+        subject: &Subject,
+        (watcher, events): (&mut dyn Watcher, &mut Vec<Event>),
+        files: &mut Vec<File>,
+    ) -> Result<(), SessionError> {
+        let derived = &mut self.derived;
+        let parts = derived.parts(&self.project);
+        let mut report = Report::new(&self.project, &parts);
+        let found = parts.iter().flat_map(|part| part.diagnostics.iter());
+        report.add_warnings(found.map(ToString::to_string));
+        if let Some((name, markers)) = &subject.markers {
+            report_progress(watcher, "writing", 0.0, "marker")?;
+            let formats = subject.formats.iter();
+            let formats: Vec<MarkerFormat> = formats.filter_map(|f| f.of_marker()).collect();
+            let lost = marker_files((name, &formats), markers, files)?;
+            events.extend(Event::warnings(&lost.concat()));
+            report.add_markers(markers);
+        }
+        if let Some(drape) = &subject.drape {
+            garment_files(drape, &subject.formats, files)?;
+            report_progress(watcher, "writing", 0.2, "pictures")?;
+            self.picture_files(drape, &subject.formats, (watcher, files))?;
+            report.add_drape(&self.project, drape);
+            report.add_warnings(self.derived.assembly_notes.iter().cloned());
+            report.add_warnings(drape.warnings.iter().cloned());
+        }
+        report_progress(watcher, "writing", 0.95, "report")?;
+        if subject.formats.contains(&ExportFormat::Report) {
+            files.push(("report.json".into(), report.to_json().into_bytes()));
+        }
+        Ok(())
+    }
+
+    fn picture_files(
+        &mut self,
+        drape: &Drape,
+        formats: &[ExportFormat],
+        (watcher, files): (&mut dyn Watcher, &mut Vec<File>),
+    ) -> Result<(), SessionError> {
+        let wanted = |format| formats.contains(&format);
+        if !wanted(ExportFormat::Drape) && !wanted(ExportFormat::Fit) {
+            return Ok(());
+        }
+        let mannequin = self.derived.mannequin(&self.project)?;
+        let name = self.garment_name();
+        let title = picture_title(&self.project, &name);
+        if wanted(ExportFormat::Drape) {
+            let picture = pictures::drape_png(drape, mannequin.skin(), &title)?;
+            files.push(("drape.png".into(), picture));
+        }
         report_progress(watcher, "writing", 0.6, "pictures")?;
-        let picture = pictures::fit_png(&drape, mannequin.skin(), &title)?;
-        files.push(("fit.png".into(), picture));
-        report.add_drape(project, &drape);
-        report.add_warnings(derived.assembly_notes.iter().cloned());
-        report.add_warnings(drape.warnings.iter().cloned());
+        if wanted(ExportFormat::Fit) {
+            let picture = pictures::fit_png(drape, mannequin.skin(), &title)?;
+            files.push(("fit.png".into(), picture));
+        }
+        Ok(())
     }
-    report_progress(watcher, "writing", 0.95, "report")?;
-    files.push(("report.json".into(), report.to_json().into_bytes()));
-    Ok(files)
+
+    /// The commands that led here, if all are kept, and how long they took.
+    fn record(
+        &self,
+        export: &Export,
+        start: Instant,
+        files: &mut Vec<File>,
+    ) -> Result<(), SessionError> {
+        if self.journal.is_whole() {
+            let entry = Entry {
+                command: Command::Export(export.clone()),
+                files: Vec::new(),
+            };
+            let entries = self.journal.entries().chain([&entry]);
+            let text = journal_beside(entries, &export.dir)?;
+            files.push(("journal.jsonl".into(), text.into_bytes()));
+        }
+        let mut timing = self.timing.clone();
+        timing.add("export", start);
+        files.push(("timing.json".into(), timing.to_json().into_bytes()));
+        Ok(())
+    }
 }
 
 fn picture_title(project: &Project, name: &str) -> String {
@@ -78,10 +299,19 @@ pub(crate) fn file_name(name: &str) -> String {
     name.chars().enumerate().map(plain).collect()
 }
 
-fn garment_files(drape: &Drape, files: &mut Vec<File>) -> Result<(), SessionError> {
-    let glb = write_glb(&garment_glb(drape)).map_err(cannot("garment.glb"))?;
+fn garment_files(
+    drape: &Drape,
+    formats: &[ExportFormat],
+    files: &mut Vec<File>,
+) -> Result<(), SessionError> {
+    if formats.contains(&ExportFormat::Glb) {
+        let glb = write_glb(&garment_glb(drape)).map_err(cannot("garment.glb"))?;
+        files.push(("garment.glb".into(), glb));
+    }
+    if !formats.contains(&ExportFormat::Obj) {
+        return Ok(());
+    }
     let obj = write_obj(&garment_obj(drape)).map_err(cannot("garment.obj"))?;
-    files.push(("garment.glb".into(), glb));
     files.push(("garment.obj".into(), obj.into_bytes()));
     for (name, obj) in drape.part_files() {
         let text = write_obj(&obj).map_err(cannot("a layer"))?;
@@ -97,7 +327,7 @@ pub(crate) fn cannot(file: &'static str) -> impl Fn(FormatError) -> SessionError
 /// A command as it is written beside what it made: a place to write to is named by the file name alone, so that the
 /// journal does not depend on where it lies.
 pub(crate) fn portable(mut command: Command) -> Command {
-    let is_folder = matches!(command, Command::Export { .. });
+    let is_folder = matches!(command, Command::Export(_));
     if let Some(output) = command.output_mut() {
         match output.file_name() {
             _ if is_folder => *output = ".".into(),
@@ -112,7 +342,7 @@ pub(crate) fn portable(mut command: Command) -> Command {
 pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
     let mut commands: Vec<Command> = commands.iter().cloned().map(portable).collect();
     for command in &mut commands {
-        let is_folder = matches!(command, Command::Export { .. });
+        let is_folder = matches!(command, Command::Export(_));
         if let Some(output) = command.output_mut() {
             *output = match is_folder {
                 true => folder.to_owned(),

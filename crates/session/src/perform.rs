@@ -1,11 +1,9 @@
 //! What each command does.
 
 use crate::bodies::{body_of, description_of, shaped};
-use crate::export::{cannot, files};
+use crate::export::cannot;
 use crate::fabrics::chosen;
 use crate::history::History;
-use crate::journal::{Entry, MOST_COMMANDS};
-use crate::journal_files::journal_beside;
 use crate::open::{open_pattern_from, read_pattern_text};
 use crate::outfit::DraftedPart;
 use crate::watcher::{ProgressShare, report_progress};
@@ -16,10 +14,9 @@ use crate::{
 use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 use toile_body::{Figure, PrimitiveEdit};
 use toile_drape::MOST_LAYER;
-use toile_interchange::{write_all_atomically, write_atomically, write_mannequin, write_pattern};
+use toile_interchange::{write_atomically, write_mannequin, write_pattern};
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
 /// Farthest from the floor that the origin of panels may lie [m].
@@ -63,7 +60,7 @@ impl Session {
             Command::Nest => self.nest(watcher),
             Command::Assemble => self.assemble(watcher),
             Command::Drape { inputs } => self.drape(inputs, watcher),
-            Command::Export { dir } => self.export(dir, watcher),
+            Command::Export(export) => self.export(export, watcher),
         }
     }
 
@@ -333,7 +330,7 @@ impl Session {
         Ok(events)
     }
 
-    fn nest(&mut self, watcher: &mut dyn Watcher) -> Outcome {
+    pub(crate) fn nest(&mut self, watcher: &mut dyn Watcher) -> Outcome {
         let finished_markers = self.derived.finished_markers(&self.project, watcher)?;
         let mut events = Vec::new();
         for finished in finished_markers.iter() {
@@ -370,7 +367,7 @@ impl Session {
         Ok(events)
     }
 
-    fn drape(&mut self, inputs: &[StampedInput], watcher: &mut dyn Watcher) -> Outcome {
+    pub(crate) fn drape(&mut self, inputs: &[StampedInput], watcher: &mut dyn Watcher) -> Outcome {
         let mut events = Vec::new();
         let mut from = 0.0;
         if !self.derived.has_outfit() {
@@ -380,41 +377,6 @@ impl Session {
         let mut part = ProgressShare::new(watcher, from, 1.0);
         let drape = self.derived.drape(&self.project, inputs, &mut part)?;
         events.extend(drape.events());
-        Ok(events)
-    }
-
-    fn export(&mut self, dir: &Path, watcher: &mut dyn Watcher) -> Outcome {
-        let start = Instant::now();
-        let mut files = files(&self.project, &mut self.derived, watcher)?;
-        if self.journal.is_whole() {
-            let export = Entry {
-                command: Command::Export {
-                    dir: dir.to_owned(),
-                },
-                files: Vec::new(),
-            };
-            let entries = self.journal.entries().chain([&export]);
-            let text = journal_beside(entries, dir)?;
-            files.push(("journal.jsonl".into(), text.into_bytes()));
-        }
-        let mut timing = self.timing.clone();
-        timing.add("export", start);
-        files.push(("timing.json".into(), timing.to_json().into_bytes()));
-        write_all_atomically(dir, &files)?;
-        // The files are on the disk: the wish to stop comes too late.
-        let _ = report_progress(watcher, "writing", 1.0, "");
-        let mut events = vec![Event::FilesWritten {
-            paths: files.iter().map(|(name, _)| dir.join(name)).collect(),
-        }];
-        if !self.journal.is_whole() {
-            events.push(Event::Warned {
-                message: format!(
-                    "journal.jsonl was left out: it would need the first of more than \
-                     {MOST_COMMANDS} commands, which are no longer kept; save the pattern, open it \
-                     and export from there"
-                ),
-            });
-        }
         Ok(events)
     }
 }

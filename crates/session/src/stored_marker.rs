@@ -10,9 +10,9 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 use toile_interchange::write_all_atomically;
-use toile_marker::{Start, marker_files};
+use toile_marker::{FinishedMarker, Start, marker_files};
 use toile_nesting::Search;
-use toile_pattern::MarkerId;
+use toile_pattern::{MarkerId, Pattern};
 
 /// What is done with a marker of a pattern file.
 #[derive(Clone, Debug)]
@@ -40,12 +40,7 @@ pub fn nest_marker(
 ) -> Result<(MarkerSummary, Vec<PathBuf>), SessionError> {
     let opened = open_pattern(path)?;
     let pattern = &opened.pattern;
-    let id = pattern.marker_named(&job.name).map(|marker| marker.id);
-    let id = id.ok_or_else(|| SessionError::Unknown {
-        kind: "marker",
-        name: job.name.clone(),
-        hint: there_are(pattern.markers.iter().map(|m| m.name.clone()).collect()),
-    })?;
+    let id = marker_named(pattern, &job.name)?;
     if job.search.is_some() && is_pipe(path) {
         return Err(SessionError::Conflict(
             "a pattern that came through a pipe has no file to store the marker in: save it first, or lay the marker \
@@ -73,7 +68,7 @@ pub fn nest_marker(
         session.execute(save, &mut Silent)?;
         paths.push(path);
     }
-    let (mut summary, files) = written(&mut session, id, &job.formats)?;
+    let (mut summary, files) = written(&mut session, &job.name, &job.formats)?;
     for note in notes {
         if !summary.notes.contains(&note) {
             summary.notes.push(note);
@@ -84,15 +79,33 @@ pub fn nest_marker(
     Ok((summary, paths))
 }
 
+/// A marker of a session's pattern as it lies, and what its files are called.
+pub(crate) fn stored(
+    session: &mut Session,
+    name: &str,
+) -> Result<(String, FinishedMarker), SessionError> {
+    let laid = session.marker(marker_named(&session.project().pattern, name)?)?;
+    let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
+    Ok((name, laid.finished()))
+}
+
+fn marker_named(pattern: &Pattern, name: &str) -> Result<MarkerId, SessionError> {
+    let found = pattern.marker_named(name).map(|marker| marker.id);
+    found.ok_or_else(|| SessionError::Unknown {
+        kind: "marker",
+        name: name.to_owned(),
+        hint: there_are(pattern.markers.iter().map(|m| m.name.clone()).collect()),
+    })
+}
+
 /// A marker as it lies, in a few numbers and as files.
 fn written(
     session: &mut Session,
-    id: MarkerId,
+    marker: &str,
     formats: &[MarkerFormat],
 ) -> Result<(MarkerSummary, Vec<File>), SessionError> {
-    let laid = session.marker(id)?;
-    let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
-    let finished_markers = [laid.finished()];
+    let (name, finished) = stored(session, marker)?;
+    let finished_markers = [finished];
     let mut files = Vec::new();
     let lost = marker_files((&name, formats), &finished_markers, &mut files)?;
     let mut summary = finished_markers[0].summary();

@@ -187,7 +187,7 @@ fn the_journal_is_bounded_and_a_broken_one_is_not_written() {
     assert_eq!(session.past().len(), 1000);
     run(&mut session, Command::Nest).unwrap();
     let dir = folder.path().join("out");
-    let events = run(&mut session, Command::Export { dir: dir.clone() }).unwrap();
+    let events = run(&mut session, Command::export(&dir)).unwrap();
     let told = |event: &Event| matches!(event, Event::Warned { message } if message.contains("journal.jsonl was left out"));
     assert!(events.iter().any(told), "{events:?}");
     assert!(dir.join("marker.svg").exists() && !dir.join("journal.jsonl").exists());
@@ -218,9 +218,7 @@ fn refused_commands_change_nothing() {
         Command::OpenPattern { path: missing },
         Command::Undo,
         Command::Redo,
-        Command::Export {
-            dir: folder.path().join("out"),
-        },
+        Command::export(&folder.path().join("out")),
     ];
     let (before, revision, journal) = (
         session.project().clone(),

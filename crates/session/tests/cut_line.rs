@@ -108,7 +108,7 @@ fn the_report_of_what_was_made_tells_of_them_once_each() {
     let folder = tempfile::tempdir().unwrap();
     let path = pennant(folder.path(), PENNANT);
     let dir = folder.path().join("out");
-    let export = Command::Export { dir: dir.clone() };
+    let export = Command::export(&dir);
     let (_, events) = done(&path, vec![Command::Check, Command::Nest, export]);
     assert_eq!(told(warned(&events)), [1, 1], "{events:?}");
     let text = std::fs::read_to_string(dir.join("report.json")).unwrap();

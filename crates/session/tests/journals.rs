@@ -21,7 +21,7 @@ fn exported(folder: &Path) -> PathBuf {
         Command::OpenPattern { path },
         Command::SetFabric { fabric },
         Command::Nest,
-        Command::Export { dir: dir.clone() },
+        Command::export(&dir),
     ] {
         session.execute(command, &mut Silent).unwrap();
     }

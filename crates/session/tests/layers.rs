@@ -40,9 +40,7 @@ fn wear(paths: &[std::path::PathBuf; 2], layers: [u16; 2], out: &Path) -> Vec<Co
         Command::Nest,
         Command::Assemble,
         Command::drape(),
-        Command::Export {
-            dir: out.to_owned(),
-        },
+        Command::export(out),
     ]
 }
 

@@ -333,7 +333,7 @@ fn a_result_is_exported_without_draping_again_and_replayed_to_the_same_bytes() {
         std::ops::ControlFlow::Continue(())
     };
     session
-        .execute(Command::Export { dir: dir.clone() }, &mut watcher)
+        .execute(Command::export(&dir), &mut watcher)
         .unwrap();
     assert!(stages.iter().all(|stage| stage == "writing"), "{stages:?}");
 

@@ -157,7 +157,7 @@ fn what_was_not_made_is_not_exported() {
     let dir = folder.path().join("out");
     let mut session = Session::new();
     let open = Command::OpenPattern { path: pattern };
-    let export = Command::Export { dir: dir.clone() };
+    let export = Command::export(&dir);
     session
         .execute_all(&[open, Command::Nest, export.clone()], &mut Silent)
         .unwrap();

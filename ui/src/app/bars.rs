@@ -225,6 +225,7 @@ impl ToileApp {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 self.findings_button(ui);
                 self.isolated_button(ui);
+                self.export_progress(ui);
                 if let Some((sheet, at)) = self.view.pointer {
                     let unit = self.base.pattern().unit;
                     let [x, y] = [at.x, at.y].map(|v| number::show(v, Want::Length, unit));

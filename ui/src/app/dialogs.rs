@@ -2,6 +2,7 @@
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};
+use super::export_choice::ExportChoice;
 use super::file_choice::FileChoice;
 use super::print_choice::PrintChoice;
 use crate::fields::text_field;
@@ -25,6 +26,8 @@ pub enum Dialog {
     SaveAs(FileChoice),
     /// What is printed, and how.
     Print(Box<PrintChoice>),
+    /// What is exported, and where.
+    Export(Box<ExportChoice>),
     /// The pattern whose panels are inserted.
     Insert(FileChoice),
     /// A file would be replaced.
@@ -52,6 +55,7 @@ impl ToileApp {
                 Dialog::Open(choice) => ask_file(ui, choice, "Open a pattern", "Open"),
                 Dialog::SaveAs(choice) => ask_file(ui, choice, "Save the pattern", "Save"),
                 Dialog::Print(choice) => self.ask_print_choice(ui, choice),
+                Dialog::Export(choice) => self.ask_export_choice(ui, choice),
                 Dialog::Insert(choice) => {
                     ask_file(ui, choice, "Insert the panels of a pattern", "Insert")
                 }

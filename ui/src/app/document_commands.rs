@@ -61,6 +61,22 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::ask_print,
     ),
     command(
+        Menu::File,
+        "Export",
+        key(COMMAND, Key::E),
+        "Write the garment, its marker, its pieces, pictures and numbers for other programs",
+        |app| app.has_panels() && !app.is_exporting(),
+        ToileApp::ask_export,
+    ),
+    command(
+        Menu::File,
+        "Stop export",
+        None,
+        "Stop the export that goes on; nothing of it is written",
+        ToileApp::is_exporting,
+        ToileApp::stop_export,
+    ),
+    command(
         Menu::Edit,
         "Undo",
         key(COMMAND, Key::Z),

@@ -145,7 +145,7 @@ fn quality_words(quality: Quality) -> &'static str {
 }
 
 /// How a garment ended: what it is that it ought not to be first, where it is not as asked for.
-fn ended_words(verdict: &Verdict, state: String) -> String {
+pub(super) fn ended_words(verdict: &Verdict, state: String) -> String {
     let headline = verdict.headline();
     match (headline.is_empty(), verdict.is_sound()) {
         (true, _) => state,

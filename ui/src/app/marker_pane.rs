@@ -72,7 +72,7 @@ impl ToileApp {
         self.marker_id().is_some()
     }
 
-    fn marker_id(&self) -> Option<MarkerId> {
+    pub(super) fn marker_id(&self) -> Option<MarkerId> {
         let markers = &self.session.project().pattern.markers;
         let chosen = self.marker_view.chosen;
         let found = markers.iter().find(|marker| Some(marker.id) == chosen);

@@ -8,6 +8,8 @@ pub mod command;
 pub mod command_table;
 mod dialogs;
 mod document_commands;
+mod export_choice;
+mod exporting;
 mod file_choice;
 mod files;
 mod findings;
@@ -38,6 +40,7 @@ use command_table::KeysTaken;
 use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::{Panel, Ui};
+use exporting::{ExportMemory, Exporting};
 use marker_pane::{SearchChoice, Searching};
 use notice::Notice;
 use panes::{Panes, Tables};
@@ -70,6 +73,8 @@ pub struct ToileApp {
     pub(crate) search_choice: SearchChoice,
     pub(crate) background_work: BackgroundWork,
     pub(crate) printing: Option<Printing>,
+    pub(crate) exporting: Option<Exporting>,
+    pub(crate) exports: ExportMemory,
     /// What was copied last, if the clipboard still holds it.
     pub(crate) copied: Option<Fragment>,
     pub(crate) wants_clipboard: bool,
@@ -124,6 +129,8 @@ impl ToileApp {
             search_choice: SearchChoice::default(),
             background_work: BackgroundWork::default(),
             printing: None,
+            exporting: None,
+            exports: ExportMemory::default(),
             copied: None,
             wants_clipboard: false,
             notice: Notice::default(),
@@ -418,6 +425,7 @@ impl ToileApp {
         self.take_clipboard(&context);
         self.take_news();
         self.follow_printing();
+        self.follow_export();
         self.follow_search();
         self.refresh();
         self.name_window(&context);
@@ -429,7 +437,8 @@ impl ToileApp {
         self.preferences.note_window(&context);
         self.show_dialog(&context);
         self.guard_closing(&context);
-        if self.background_work.is_busy() || self.printing.is_some() || self.searching.is_some() {
+        let works = self.printing.is_some() || self.is_exporting() || self.searching.is_some();
+        if self.background_work.is_busy() || works {
             context.request_repaint_after(FRAME);
         }
     }

@@ -379,6 +379,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Marker,
+        "Export marker DXF",
+        None,
+        "Write the marker for cutters and drafting programs: as it lies, or laid anew where there is none",
+        |app| app.has_panels() && !app.is_exporting(),
+        ToileApp::ask_export_dxf,
+    ),
+    command(
+        Menu::Marker,
         "Turn piece",
         None,
         "Turn the selected pieces by half a turn (R in the marker)",

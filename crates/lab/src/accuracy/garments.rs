@@ -36,8 +36,7 @@ impl Report {
         commands: &[Command],
         (folder, watcher): (&Path, &mut dyn Watcher),
     ) -> Result<Self, SessionError> {
-        let dir = folder.to_owned();
-        let export = [Command::Export { dir }];
+        let export = [Command::export(folder)];
         let commands: Vec<Command> = commands.iter().chain(&export).cloned().collect();
         Session::new().execute_all(&commands, watcher)?;
         Ok(Self {

@@ -51,9 +51,7 @@ pub fn make(pattern: &Path, dir: &Path) -> Vec<Command> {
         Command::Nest,
         Command::Assemble,
         Command::drape(),
-        Command::Export {
-            dir: dir.to_owned(),
-        },
+        Command::export(dir),
     ]
 }
 

@@ -1,0 +1,203 @@
+//! Exports: which files are written of a garment, its markers and its pieces, and where.
+
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use toile_marker::MarkerFormat;
+
+/// What is written where.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Export {
+    /// The folder; it is made if need be.
+    pub dir: PathBuf,
+    /// What is written; what it takes is made first. Without any, what has been made of the present project is
+    /// written in the usual formats ([`ExportFormat::is_usual`]).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub formats: Vec<ExportFormat>,
+    /// Name of the marker of the pattern that is written as it lies; without one the pieces are laid for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub marker: Option<String>,
+}
+
+impl Export {
+    /// The usual files of what has been made.
+    pub fn made(dir: &Path) -> Self {
+        Self {
+            dir: dir.to_owned(),
+            formats: Vec::new(),
+            marker: None,
+        }
+    }
+}
+
+/// Something that is exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ExportFormat {
+    /// `garment.glb`: the garment as binary glTF, UVs in metres.
+    Glb,
+    /// `garment.obj`, a group for each panel; of several garments `layer-1-NAME.obj`, ... too.
+    Obj,
+    /// `drape.png`: the garment worn.
+    Drape,
+    /// `fit.png`: how much the cloth is stretched.
+    Fit,
+    /// `marker.svg`: the pieces on the fabric at true size.
+    MarkerSvg,
+    /// `marker.json`: the marker as data.
+    MarkerJson,
+    /// `marker.dxf`: release 12, millimetres.
+    MarkerDxf,
+    /// `marker.pdf`: one page at true size.
+    MarkerPdf,
+    /// `marker-report.pdf`: A4, with a table of the pieces.
+    MarkerReport,
+    /// `marker.plt`: HPGL/2.
+    MarkerPlt,
+    /// `marker-instance.json`: the pieces alone, for other nesting programs.
+    MarkerInstance,
+    /// `pieces.pdf`: the pieces on sheets of A4 at true size.
+    PiecesPdf,
+    /// `pieces.svg`: the pieces on one page at true size.
+    PiecesSvg,
+    /// `report.json`: what is exported, in numbers.
+    Report,
+    /// `journal.jsonl` and `timing.json`: the commands, and how long they took.
+    Journal,
+}
+
+impl ExportFormat {
+    /// All of them, in the order in which they are told.
+    pub const ALL: [Self; 15] = [
+        Self::Glb,
+        Self::Obj,
+        Self::Drape,
+        Self::Fit,
+        Self::MarkerSvg,
+        Self::MarkerJson,
+        Self::MarkerDxf,
+        Self::MarkerPdf,
+        Self::MarkerReport,
+        Self::MarkerPlt,
+        Self::MarkerInstance,
+        Self::PiecesPdf,
+        Self::PiecesSvg,
+        Self::Report,
+        Self::Journal,
+    ];
+
+    /// Its name in journals and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Obj => "obj",
+            Self::Drape => "drape",
+            Self::Fit => "fit",
+            Self::MarkerSvg => "marker-svg",
+            Self::MarkerJson => "marker-json",
+            Self::MarkerDxf => "marker-dxf",
+            Self::MarkerPdf => "marker-pdf",
+            Self::MarkerReport => "marker-report",
+            Self::MarkerPlt => "marker-plt",
+            Self::MarkerInstance => "marker-instance",
+            Self::PiecesPdf => "pieces-pdf",
+            Self::PiecesSvg => "pieces-svg",
+            Self::Report => "report",
+            Self::Journal => "journal",
+        }
+    }
+
+    /// The format of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.name() == name)
+    }
+
+    /// The first file it is written to.
+    pub fn file(self) -> &'static str {
+        match self {
+            Self::Glb => "garment.glb",
+            Self::Obj => "garment.obj",
+            Self::Drape => "drape.png",
+            Self::Fit => "fit.png",
+            Self::MarkerSvg => "marker.svg",
+            Self::MarkerJson => "marker.json",
+            Self::MarkerDxf => "marker.dxf",
+            Self::MarkerPdf => "marker.pdf",
+            Self::MarkerReport => "marker-report.pdf",
+            Self::MarkerPlt => "marker.plt",
+            Self::MarkerInstance => "marker-instance.json",
+            Self::PiecesPdf => "pieces.pdf",
+            Self::PiecesSvg => "pieces.svg",
+            Self::Report => "report.json",
+            Self::Journal => "journal.jsonl",
+        }
+    }
+
+    /// Whether it is written where no format is asked for.
+    pub fn is_usual(self) -> bool {
+        match self {
+            Self::Glb
+            | Self::Obj
+            | Self::Drape
+            | Self::Fit
+            | Self::MarkerSvg
+            | Self::MarkerJson
+            | Self::Report
+            | Self::Journal => true,
+            Self::MarkerDxf
+            | Self::MarkerPdf
+            | Self::MarkerReport
+            | Self::MarkerPlt
+            | Self::MarkerInstance
+            | Self::PiecesPdf
+            | Self::PiecesSvg => false,
+        }
+    }
+
+    /// Whether it shows the garment worn, which has to be hung for it.
+    pub fn is_of_garment(self) -> bool {
+        matches!(self, Self::Glb | Self::Obj | Self::Drape | Self::Fit)
+    }
+
+    /// Whether it is the marker.
+    pub fn is_of_marker(self) -> bool {
+        self.of_marker().is_some()
+    }
+
+    /// The format of a marker that it is.
+    pub(crate) fn of_marker(self) -> Option<MarkerFormat> {
+        match self {
+            Self::MarkerSvg => Some(MarkerFormat::Svg),
+            Self::MarkerJson => Some(MarkerFormat::Json),
+            Self::MarkerDxf => Some(MarkerFormat::Dxf),
+            Self::MarkerPdf => Some(MarkerFormat::Pdf),
+            Self::MarkerReport => Some(MarkerFormat::Report),
+            Self::MarkerPlt => Some(MarkerFormat::Hpgl),
+            Self::MarkerInstance => Some(MarkerFormat::Instance),
+            Self::Glb
+            | Self::Obj
+            | Self::Drape
+            | Self::Fit
+            | Self::PiecesPdf
+            | Self::PiecesSvg
+            | Self::Report
+            | Self::Journal => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_is_found_by_the_name_it_has_in_journals() {
+        for format in ExportFormat::ALL {
+            let written = serde_json::to_string(&format).unwrap();
+            assert_eq!(written, format!("{:?}", format.name()));
+            assert_eq!(ExportFormat::named(format.name()), Some(format));
+            let same = ExportFormat::ALL.iter();
+            let same = same.filter(|other| other.file() == format.file());
+            assert_eq!(same.count(), 1, "{}", format.file());
+        }
+    }
+}

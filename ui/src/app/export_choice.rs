@@ -1,0 +1,209 @@
+//! What is exported and where, asked in one dialog.
+
+use super::ToileApp;
+use super::answer::{Answer, main_button};
+use crate::fields::text_field;
+use crate::theme::Palette;
+use egui::{ComboBox, Grid, Key, RichText, Ui};
+use std::path::{Path, PathBuf};
+use toile_session::{Export, ExportFormat};
+
+/// What is asked before an export.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExportChoice {
+    /// What is written.
+    pub formats: Vec<ExportFormat>,
+    /// The marker of the pattern that is written; nothing lays the pieces anew.
+    pub marker: Option<String>,
+    /// The folder it goes to, as it is typed.
+    pub folder: String,
+    /// The files that would be replaced, once that was told: asked for again it is done.
+    pub replaced: Vec<PathBuf>,
+    /// What is wrong with it.
+    pub fault: String,
+}
+
+/// The formats in groups, each with the words of its box.
+const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
+    (
+        "Garment",
+        &[
+            (ExportFormat::Glb, "GLB"),
+            (ExportFormat::Obj, "OBJ"),
+            (ExportFormat::Drape, "Picture of the garment"),
+            (ExportFormat::Fit, "Picture of the fit"),
+        ],
+    ),
+    (
+        "Marker",
+        &[
+            (ExportFormat::MarkerDxf, "Marker DXF"),
+            (ExportFormat::MarkerPlt, "Marker HPGL"),
+            (ExportFormat::MarkerPdf, "Marker PDF"),
+            (ExportFormat::MarkerSvg, "Marker SVG"),
+            (ExportFormat::MarkerReport, "Marker report"),
+            (ExportFormat::MarkerJson, "Marker as data"),
+            (ExportFormat::MarkerInstance, "Nesting instance"),
+        ],
+    ),
+    (
+        "Pieces",
+        &[
+            (ExportFormat::PiecesPdf, "Pieces PDF"),
+            (ExportFormat::PiecesSvg, "Pieces SVG"),
+        ],
+    ),
+    (
+        "Numbers",
+        &[
+            (ExportFormat::Report, "Report"),
+            (ExportFormat::Journal, "Journal and times"),
+        ],
+    ),
+];
+
+/// What a file is for.
+fn meaning(format: ExportFormat) -> &'static str {
+    match format {
+        ExportFormat::Glb => "the garment as it hangs, for 3D programs; UVs in metres",
+        ExportFormat::Obj => "the garment as it hangs, a group for each panel [m]",
+        ExportFormat::Drape => "the garment worn",
+        ExportFormat::Fit => "how much the cloth is stretched",
+        ExportFormat::MarkerSvg => "the pieces on the fabric at true size",
+        ExportFormat::MarkerJson => "the marker, to be checked or gone on from",
+        ExportFormat::MarkerDxf => {
+            "the pieces on the fabric for cutters and drafting programs [mm]"
+        }
+        ExportFormat::MarkerPdf => "the pieces on the fabric on one page at true size",
+        ExportFormat::MarkerReport => "A4: picture, table of the pieces, fabric needed",
+        ExportFormat::MarkerPlt => "the pieces on the fabric for plotters, HPGL/2",
+        ExportFormat::MarkerInstance => "the pieces alone, for other nesting programs",
+        ExportFormat::PiecesPdf => "the pieces on sheets of A4 at true size; Print has other paper",
+        ExportFormat::PiecesSvg => "the pieces on one page at true size",
+        ExportFormat::Report => "what is exported, in numbers; by itself garment and marker",
+        ExportFormat::Journal => "the commands that led here, and how long they took",
+    }
+}
+
+impl ExportChoice {
+    /// What is written where.
+    pub fn export(&self) -> Export {
+        Export {
+            dir: PathBuf::from(self.folder.trim()),
+            formats: self.formats.clone(),
+            marker: self.marker.clone(),
+        }
+    }
+
+    /// The files that are there already and would be replaced.
+    fn would_replace(&self) -> Vec<PathBuf> {
+        let folder = Path::new(self.folder.trim());
+        let files = self.formats.iter().map(|format| folder.join(format.file()));
+        files.filter(|file| file.exists()).collect()
+    }
+
+    fn set(&mut self, format: ExportFormat, is_on: bool) {
+        self.formats.retain(|other| *other != format);
+        if is_on {
+            self.formats.push(format);
+            self.formats.sort_unstable();
+        }
+    }
+}
+
+impl ToileApp {
+    /// The dialog of an export.
+    pub(super) fn ask_export_choice(&self, ui: &mut Ui, choice: &mut ExportChoice) -> Answer {
+        ui.heading("Export");
+        for (group, formats) in GROUPS {
+            ui.label(RichText::new(group).strong());
+            Grid::new(("export", group)).num_columns(2).show(ui, |ui| {
+                for (k, (format, words)) in formats.iter().enumerate() {
+                    let mut is_on = choice.formats.contains(format);
+                    let ticked = ui.checkbox(&mut is_on, *words);
+                    if ticked.changed() {
+                        choice.set(*format, is_on);
+                    }
+                    ticked.on_hover_text(format!("{}: {}", format.file(), meaning(*format)));
+                    if k % 2 == 1 {
+                        ui.end_row();
+                    }
+                }
+            });
+        }
+        Grid::new("export to").num_columns(2).show(ui, |ui| {
+            self.choose_marker(ui, choice);
+            let label = ui.label("Folder").id;
+            let field = egui::Id::unique("export folder");
+            let field = text_field(ui, field, &mut choice.folder).labelled_by(label);
+            if ui.memory(|memory| memory.focused().is_none()) {
+                field.request_focus();
+            }
+            ui.end_row();
+        });
+        self.answer_export(ui, choice)
+    }
+
+    /// Which marker is written, where the pattern has any.
+    fn choose_marker(&self, ui: &mut Ui, choice: &mut ExportChoice) {
+        let markers = &self.session.project().pattern.markers;
+        if markers.is_empty() {
+            return;
+        }
+        let anew = "laid anew";
+        let label = ui.label("Marker to write").id;
+        let shown = choice.marker.clone().unwrap_or_else(|| anew.to_owned());
+        ComboBox::from_id_salt("marker to write")
+            .selected_text(shown)
+            .width(240.0)
+            .show_ui(ui, |ui| {
+                for marker in markers {
+                    let name = Some(marker.name.clone());
+                    let words = format!("{}, as it lies", marker.name);
+                    ui.selectable_value(&mut choice.marker, name, words);
+                }
+                ui.selectable_value(&mut choice.marker, None, anew);
+            })
+            .response
+            .labelled_by(label);
+        ui.end_row();
+    }
+
+    fn answer_export(&self, ui: &mut Ui, choice: &mut ExportChoice) -> Answer {
+        let would_replace = choice.would_replace();
+        let asks = !choice.replaced.is_empty() && choice.replaced == would_replace;
+        let palette = Palette::of(ui.ctx());
+        if !choice.fault.is_empty() {
+            ui.label(RichText::new(&choice.fault).color(palette.fault));
+        } else if asks {
+            let names: Vec<_> = would_replace
+                .iter()
+                .filter_map(|file| file.file_name())
+                .collect();
+            let names: Vec<_> = names.iter().map(|name| name.to_string_lossy()).collect();
+            let words = format!("There already: {}", names.join(", "));
+            ui.label(RichText::new(words).color(palette.warning));
+        }
+        let entered = ui.input(|input| input.key_pressed(Key::Enter));
+        let mut answer = Answer::Stay;
+        ui.horizontal(|ui| {
+            let verb = if asks { "Replace" } else { "Export" };
+            if main_button(ui, verb) || entered {
+                choice.fault.clear();
+                if choice.formats.is_empty() {
+                    choice.fault = "tick what is to be written".into();
+                } else if choice.folder.trim().is_empty() {
+                    choice.fault = "name the folder it goes to".into();
+                } else if !asks && !self.has_exported(&would_replace) {
+                    choice.replaced = would_replace;
+                } else {
+                    let choice = choice.clone();
+                    answer = Answer::Do(Box::new(move |app| app.export(choice)));
+                }
+            } else if ui.button("Cancel").clicked() {
+                answer = Answer::Leave;
+            }
+        });
+        answer
+    }
+}
