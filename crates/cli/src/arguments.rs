@@ -202,7 +202,8 @@ impl From<QualityName> for Quality {
     }
 }
 
-/// `toile make` and `toile drape`.
+/// `toile make` and `toile drape`. What no option says is as the pattern's file keeps it: wearer, size,
+/// fabric, width, and the garments that are worn with it.
 #[derive(Debug, Args)]
 pub struct Make {
     /// The pattern: native (*.toile.json) or a GarmentCode specification, seen from its content.
@@ -217,7 +218,8 @@ pub struct Make {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Whose body: woman, man, mean, child-2, child-4, ... child-14 (by age), a mannequin file, a file of
-    /// measurements (native JSON or GarmentCode YAML), or FIGURE:FILE. Default: a woman of the pattern's size; mean for a pattern without sizes.
+    /// measurements (native JSON or GarmentCode YAML), or FIGURE:FILE; pattern for as the pattern says, whatever its
+    /// file keeps: a woman of the pattern's size, mean for a pattern without sizes. Default: as the file keeps it.
     #[arg(long, value_name = "BODY")]
     pub body: Option<String>,
     /// Named size of the pattern; the mannequin gets that size too. Default: the pattern's base
@@ -322,8 +324,14 @@ impl Make {
     }
 }
 
-/// Reads `woman`, `man`, `mean`, `FILE` or `FIGURE:FILE`.
+/// Reads `pattern`, `woman`, `man`, `mean`, `FILE` or `FIGURE:FILE`.
 pub fn body_command(text: &str) -> Command {
+    if text == "pattern" {
+        return Command::SetBody {
+            figure: None,
+            measurements: None,
+        };
+    }
     let figure = |name: &str| toile_session::figure_named(name);
     let (before, after) = text.split_once(':').unwrap_or((text, ""));
     match (figure(before), after) {
@@ -350,7 +358,7 @@ pub struct Check {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Named sizes to check, as in S,M; or all. The pieces of --json are those of the first. Default:
-    /// all, with the pieces of the base size.
+    /// all, with the pieces of the size that the file keeps, else of the base size.
     #[arg(long, value_name = "NAMES", value_parser = sizes)]
     pub size: Option<SizeSelection>,
     /// Folder for the drawing of a marker, where what is cut twice is red.

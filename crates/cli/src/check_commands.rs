@@ -81,8 +81,13 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     let mut events = session
         .execute_all(&commands, &mut Bar::new())
         .map_err(|error| Failure::from(error).about(path))?;
+    // The size that the file keeps is one of those that are looked at.
+    let usual = match session.project().pattern.sizes.is_empty() {
+        true => SizeSelection::Base,
+        false => SizeSelection::All,
+    };
     let found = session
-        .diagnostics_by_size(check.size.as_ref())
+        .diagnostics_by_size(Some(check.size.as_ref().unwrap_or(&usual)))
         .map_err(|error| Failure::from(error).about(path))?;
     let errors = count_of(&found, Severity::Error);
     events.push(Event::Checked {

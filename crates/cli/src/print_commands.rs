@@ -10,9 +10,11 @@ use toile_session::{CutList, Printed, Project, Shown, print_pattern};
 pub fn print(print: &Print, output: &Output) -> Result<Value, Failure> {
     let options = print.options();
     let printed = Project::open(&print.pattern)
-        .and_then(|project| {
+        .and_then(|(project, notes)| {
             let bar = &mut Bar::stopped_by_a_signal();
-            print_pattern((&project, &print.out), &options, bar)
+            let mut printed = print_pattern((&project, &print.out), &options, bar)?;
+            printed.notes.splice(0..0, notes);
+            Ok(printed)
         })
         .map_err(|error| Failure::from(error).about(&print.pattern))?;
     for note in &printed.notes {

@@ -5,7 +5,7 @@ use crate::bar::Bar;
 use crate::output::{Failure, Made, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use toile_session::{Command, Event, Session, is_input, open_journal};
+use toile_session::{Command, Event, Session, WornGarment, is_input, open_journal};
 
 /// The whole job.
 pub fn make(make: &Make, output: &Output) -> Result<Made, Failure> {
@@ -42,8 +42,9 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Made, Failure> 
             None => Failure::from(error),
         })?;
     let project = session.project();
-    let others = project.others.iter().map(|other| &*other.pattern.name);
-    let names: Vec<&str> = [&*project.pattern.name].into_iter().chain(others).collect();
+    let others = project.others.iter().filter(|worn| worn.pattern.is_some());
+    let own = [project.pattern.name.clone()].into_iter();
+    let names: Vec<String> = own.chain(others.map(WornGarment::name)).collect();
     output.say(format!(
         "{}, {}, {:.0} cm tall",
         names.join(" + "),
@@ -85,8 +86,8 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
             && !is_input(file)
         {
             return Err(Failure::bad_input(format!(
-                "--body: there is no file {}; give woman, man, mean, child-2 to child-14, a file of measurements, or \
-                 FIGURE:FILE",
+                "--body: there is no file {}; give woman, man, mean, child-2 to child-14, pattern, a file of measurements, \
+                 or FIGURE:FILE",
                 file.display()
             )));
         }

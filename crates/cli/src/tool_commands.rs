@@ -29,13 +29,16 @@ pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
 
 /// Triangulated panels.
 pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {
-    let quality = mesh_panels(
+    let (quality, notes) = mesh_panels(
         &mesh.pattern,
         mesh.size.as_deref(),
         mesh.edge.as_metres(),
         &mesh.out,
     )
     .map_err(|error| Failure::from(error).about(&mesh.pattern))?;
+    for note in &notes {
+        output.warn(format!("note: {note}"));
+    }
     output.say(format!(
         "{} triangles, edges {:.1} mm on average ({:.1} to {:.1} mm), smallest angle {:.1} degrees away from sharp corners",
         quality.triangles,
@@ -191,7 +194,7 @@ fn chosen_body(body: &Body, figure: Figure) -> Result<(BodyChoice, Vec<String>),
     let (table, notes) = open_measurements(path, size)?;
     let choice = BodyChoice::Measured {
         figure,
-        path: path.clone(),
+        path: Some(path.clone()),
         measurements: Arc::new(table),
     };
     Ok((choice, notes))

@@ -83,7 +83,10 @@ pub use measurements_garmentcode::read_body_yaml;
 pub use measurements_json::{read_measurements, read_sized_measurements, write_measurements};
 pub use measurements_seamly::{SizeChoice, read_seamly};
 pub use mesh_read::read_mesh;
-pub use native::{read_pattern, write_pattern};
+pub use native::{
+    FABRIC_WIDTHS, Fitting, FittingFabric, FittingLayer, FittingWearer, PatternFile, read_document,
+    read_pattern, write_document, write_pattern,
+};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
 pub use ply::read_ply;

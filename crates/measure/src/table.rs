@@ -1,6 +1,6 @@
 //! A table of measurements: names to values, each asked for or predicted.
 
-use crate::catalogue::definition;
+use crate::catalogue::{UnitKind, definition};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -124,6 +124,14 @@ impl Measurements {
             .map(|(name, &measured)| (name.as_str(), measured))
     }
 
+    /// The first entry that nobody measures: a length of zero or less [m].
+    pub fn impossible(&self) -> Option<(&str, f64)> {
+        let is_length = |name: &str| definition(name).is_none_or(|d| d.kind == UnitKind::Length);
+        let mut all = self.iter();
+        all.find(|(name, measured)| is_length(name) && measured.value <= 0.0)
+            .map(|(name, measured)| (name, measured.value))
+    }
+
     /// Number of entries.
     pub fn len(&self) -> usize {
         self.entries.len()
@@ -169,6 +177,17 @@ mod tests {
         assert!(table.is_empty());
         table.set("waist", 0.8, Origin::Asked).unwrap();
         assert_eq!(table.get("waist"), Some(0.8));
+    }
+
+    #[test]
+    fn a_length_is_above_zero_and_an_angle_may_be_anything() {
+        let mut table = Measurements::adult();
+        table.set("shoulder_incl", -0.1, Origin::Asked).unwrap();
+        assert_eq!(table.impossible(), None);
+        table.set("waist", -0.7, Origin::Asked).unwrap();
+        assert_eq!(table.impossible(), Some(("waist", -0.7)));
+        table.set("collar", 0.0, Origin::Asked).unwrap();
+        assert_eq!(table.impossible(), Some(("collar", 0.0)));
     }
 
     #[test]

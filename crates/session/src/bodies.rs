@@ -1,8 +1,7 @@
 //! Bodies of the user's own: mannequin files, edits of their primitives, and figures brought to proportions.
 
 use crate::input::read_file;
-use crate::open::{open_measurements, read_input};
-use crate::tools::open_mannequin;
+use crate::open::{open_mannequin, open_measurements, read_input};
 use crate::{BodyChoice, Project, SessionError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,6 +30,14 @@ pub(crate) fn shaped(
     })
 }
 
+/// The body of a mannequin file.
+///
+/// # Errors
+/// The file cannot be read, is no mannequin's, or no body is made of it.
+pub(crate) fn mannequin_of(path: &Path) -> Result<BodyChoice, SessionError> {
+    Ok(shaped(open_mannequin(path)?, Some(path.to_owned()))?)
+}
+
 /// The description in a file that is a mannequin's; none where it is something else.
 fn described(path: &Path) -> Result<Option<Description>, SessionError> {
     let bytes = read_file(path)?;
@@ -55,7 +62,7 @@ pub(crate) fn body_of(
     let (table, found) = open_measurements(path, SizeChoice::default())?;
     let body = BodyChoice::Measured {
         figure: figure.unwrap_or(Figure::Mean),
-        path: path.to_owned(),
+        path: Some(path.to_owned()),
         measurements: Arc::new(table),
     };
     let note = |note: &String| format!("{}: {note}", path.display());

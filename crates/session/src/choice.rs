@@ -19,8 +19,8 @@ pub enum BodyChoice {
     Measured {
         /// The figure it is grown from.
         figure: Figure,
-        /// The file they come from.
-        path: PathBuf,
+        /// The file they come from; none where they were typed.
+        path: Option<PathBuf>,
         /// The measurements [m], [rad].
         measurements: Arc<Measurements>,
     },
@@ -33,6 +33,12 @@ pub enum BodyChoice {
         /// What a tape finds on it [m], [rad].
         measurements: Arc<Measurements>,
     },
+    /// A mannequin file that could not be read when the pattern that names it was opened: as the
+    /// pattern says until it can.
+    Missing {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 impl BodyChoice {
@@ -41,14 +47,24 @@ impl BodyChoice {
         match self {
             Self::OfPattern => "as the pattern says".into(),
             Self::Sample(figure) => figure_name(*figure).into(),
-            Self::Measured { figure, path, .. } => {
-                format!("{} of {}", figure_name(*figure), path.display())
-            }
+            Self::Measured { figure, path, .. } => match path {
+                Some(path) => format!("{} of {}", figure_name(*figure), path.display()),
+                None => format!("{} of typed measurements", figure_name(*figure)),
+            },
             Self::Shaped { path, .. } => match path {
                 Some(path) => format!("the mannequin of {}", path.display()),
                 None => "an edited mannequin".into(),
             },
+            Self::Missing { path } => format!(
+                "as the pattern says, for want of the mannequin {}",
+                path.display()
+            ),
         }
+    }
+
+    /// Whether the body is as the pattern says.
+    pub fn is_of_pattern(&self) -> bool {
+        matches!(self, Self::OfPattern | Self::Missing { .. })
     }
 }
 

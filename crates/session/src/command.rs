@@ -4,6 +4,7 @@ use crate::{Export, PanelOrigin, Quality, StampedInput};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_body::{Figure, PrimitiveEdit};
+use toile_measure::Measurements;
 use toile_pattern::Edit;
 
 /// Rough shares of the work of making a garment, for progress.
@@ -61,6 +62,14 @@ pub enum Command {
         figure: Option<Figure>,
         /// A file of measurements, or a mannequin file, which says its figure itself.
         measurements: Option<PathBuf>,
+    },
+    /// Chooses a body of measurements that are given as they are.
+    SetMeasurements {
+        /// The figure it is grown from; nothing means that of the present body.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        figure: Option<Figure>,
+        /// The measurements [m], [rad]; what they leave out is predicted from them.
+        measurements: Measurements,
     },
     /// Edits the primitives of the body, which from then on stands by itself. All edits are made
     /// or none.
@@ -152,6 +161,7 @@ impl Command {
             | Self::Undo
             | Self::Redo
             | Self::SetBody { .. }
+            | Self::SetMeasurements { .. }
             | Self::EditBody { .. }
             | Self::SetSize { .. }
             | Self::SetFabric { .. }

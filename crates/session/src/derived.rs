@@ -201,8 +201,8 @@ impl Derived {
         let draft = self.draft(project);
         let diagnostics = self.diagnostics(project);
         let mut parts = vec![DraftedPart::own(project, draft, diagnostics)];
-        let others = project.others.iter();
-        parts.extend(others.map(|worn| DraftedPart::other(project, worn)));
+        let others = project.other_patterns();
+        parts.extend(others.map(|(worn, pattern)| DraftedPart::other(project, worn, pattern)));
         tell_apart(&mut parts);
         self.parts.insert(Arc::new(parts)).clone()
     }
@@ -437,7 +437,9 @@ fn assembled(
 /// A body's error, with the file its measurements came from.
 fn body_error(project: &Project, error: BodyError) -> SessionError {
     match &project.body {
-        BodyChoice::Measured { path, .. } => SessionError::Format {
+        BodyChoice::Measured {
+            path: Some(path), ..
+        } => SessionError::Format {
             path: path.clone(),
             error: FormatError::new("measurements", error.to_string(), "correct the file"),
         },

@@ -59,6 +59,14 @@ pub enum SessionError {
         /// What would be right.
         hint: &'static str,
     },
+    /// A measurement that nobody has.
+    #[error("the measurement {name} is {value} m; give a length above 0")]
+    Measurement {
+        /// Its name.
+        name: String,
+        /// The value given [m].
+        value: f64,
+    },
     /// No mannequin can be made.
     #[error("mannequin: {0}")]
     Body(#[from] toile_body::BodyError),

@@ -21,25 +21,31 @@ pub enum FabricChoice {
     File {
         /// The file.
         path: PathBuf,
-        /// What it says.
-        fabric: Arc<Fabric>,
+        /// What it says; nothing where it could not be read when the pattern that names it was
+        /// opened.
+        fabric: Option<Arc<Fabric>>,
     },
 }
 
 impl FabricChoice {
-    /// Its name.
+    /// Its name; that of its file where that could not be read.
     pub fn name(&self) -> &str {
         match self {
             Self::Named(name) => name,
-            Self::File { fabric, .. } => &fabric.name,
+            Self::File {
+                fabric: Some(fabric),
+                ..
+            } => &fabric.name,
+            Self::File { path, .. } => path.to_str().unwrap_or_default(),
         }
     }
 
-    /// The fabric, for a pattern; nothing where neither it nor the library has one of that name.
+    /// The fabric, for a pattern; nothing where neither it nor the library has one of that name, or
+    /// its file could not be read.
     pub(crate) fn fabric(&self, pattern: &Pattern) -> Option<Fabric> {
         match self {
             Self::Named(name) => fabric_of(pattern, name),
-            Self::File { fabric, .. } => Some((**fabric).clone()),
+            Self::File { fabric, .. } => fabric.as_deref().cloned(),
         }
     }
 
@@ -73,6 +79,19 @@ pub(crate) fn chosen(
             hint: format!("choose one of {}, or name a fabric file", names.join(", ")),
         });
     }
+    let (fabric, notes) = fabric_of_file(path)?;
+    let choice = FabricChoice::File {
+        path: path.to_owned(),
+        fabric: Some(fabric),
+    };
+    Ok((choice, notes))
+}
+
+/// The fabric of a garment in a file, with what is worth telling.
+///
+/// # Errors
+/// The file cannot be read, or says more than the fabric of a garment has.
+pub(crate) fn fabric_of_file(path: &Path) -> Result<(Arc<Fabric>, Vec<String>), SessionError> {
     let file = open_fabric(path)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
@@ -84,11 +103,12 @@ pub(crate) fn chosen(
             "leave it out, or use it in a scene (`toile run`)",
         ),
     })?;
-    let choice = FabricChoice::File {
-        path: path.to_owned(),
-        fabric: Arc::new(fabric),
-    };
-    Ok((choice, file.notes))
+    Ok((Arc::new(fabric), file.notes))
+}
+
+/// Whether a pattern or the library has a fabric of a name.
+pub(crate) fn is_known_fabric(pattern: &Pattern, name: &str) -> bool {
+    fabric_of(pattern, name).is_some()
 }
 
 /// The fabric in a file.

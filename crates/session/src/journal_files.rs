@@ -6,8 +6,9 @@ use crate::file_stamp::Stamp;
 use crate::input::is_pipe;
 use crate::journal::{Entry, entry_lines, read_entries};
 use crate::open::read_input;
+use crate::paths::{relative, resolved};
 use crate::{Command, SessionError};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use toile_interchange::ExpectedKind;
 
 /// The journal as text beside what it made, in a folder: files are named from there, and places to write to by their
@@ -37,41 +38,6 @@ pub(crate) fn journal_beside<'a>(
     entry_lines(&moved.collect::<Vec<_>>())
 }
 
-/// The whole path of a file or a folder, which need not be there yet.
-fn resolved(path: &Path) -> PathBuf {
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let there = whole
-        .ancestors()
-        .find_map(|a| Some((a, a.canonicalize().ok()?)));
-    match there {
-        Some((ancestor, real)) => match whole.strip_prefix(ancestor) {
-            Ok(rest) if rest.as_os_str().is_empty() => real,
-            Ok(rest) => real.join(rest),
-            Err(_) => whole,
-        },
-        None => whole,
-    }
-}
-
-/// The way from a folder to a file; none where they have no common root.
-fn relative(file: &Path, folder: &Path) -> Option<PathBuf> {
-    let parts = |path: &Path| {
-        path.components()
-            .map(|c| c.as_os_str().to_owned())
-            .collect()
-    };
-    let (to, from): (Vec<_>, Vec<_>) = (parts(file), parts(folder));
-    let common = to.iter().zip(&from).take_while(|(a, b)| a == b).count();
-    let up = from
-        .iter()
-        .skip(common)
-        .map(|_| Component::ParentDir.as_os_str());
-    let way: PathBuf = up
-        .chain(to.iter().skip(common).map(|part| &**part))
-        .collect();
-    (common > 0).then_some(way)
-}
-
 /// Reads a journal: its commands, with files found from its own folder, and what of them differs from when it was
 /// written. A path that is not there is taken from where the program is run.
 ///
@@ -99,22 +65,4 @@ pub fn open_journal(path: &Path) -> Result<(Vec<Command>, Vec<String>), SessionE
         commands.push(command);
     }
     Ok((commands, notes))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_way_from_a_folder_to_a_file() {
-        let way = |file: &str, folder: &str| {
-            relative(Path::new(file), Path::new(folder))
-                .unwrap()
-                .display()
-                .to_string()
-        };
-        assert_eq!(way("/a/b/p.json", "/a/out"), "../b/p.json");
-        assert_eq!(way("/a/p.json", "/a"), "p.json");
-        assert_eq!(way("/p.json", "/a/b"), "../../p.json");
-    }
 }

@@ -18,6 +18,7 @@ mod export;
 mod export_format;
 mod fabrics;
 mod file_stamp;
+mod fitting;
 mod garment_edit;
 mod gesture;
 mod history;
@@ -35,6 +36,7 @@ mod nest_patterns;
 mod open;
 mod outfit;
 mod pace;
+mod paths;
 mod perform;
 mod pictures;
 mod piece_facts;
@@ -80,8 +82,8 @@ pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use markers::{FoundMarker, MarkerSearch};
 pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
-    Opened, PatternFormat, SAMPLE, SAMPLES, open_marker, open_measurements, open_pattern,
-    read_input, read_pattern_text,
+    Opened, PatternFormat, SAMPLE, SAMPLES, open_mannequin, open_marker, open_measurements,
+    open_pattern, read_input, read_pattern_text,
 };
 pub use outfit::GarmentPart;
 pub use piece_facts::{
@@ -119,6 +121,6 @@ pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
 pub use toile_pattern::{Severity, SizeSelection, Spread};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, PersonFile, convert, fit_mesh,
-    make_body, measure_mesh, mesh_panels, open_mannequin, stretch_body,
+    make_body, measure_mesh, mesh_panels, stretch_body,
 };
 pub use watcher::{Silent, Watcher};

@@ -49,7 +49,7 @@ pub(crate) fn measurements_for_sleeves(project: &Project) -> (Measurements, Opti
     }
     let patterns = [&project.pattern]
         .into_iter()
-        .chain(project.others.iter().map(|worn| &worn.pattern));
+        .chain(project.other_patterns().map(|(_, pattern)| pattern));
     let angle = patterns
         .into_iter()
         .find_map(|pattern| sleeve_angle(pattern));

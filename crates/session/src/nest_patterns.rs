@@ -39,27 +39,43 @@ impl Drafted {
     }
 }
 
-/// The drafts of all patterns in all sizes, and what they are called.
+/// The drafts of all patterns in all sizes, what they are called, and what was left out or is
+/// missing.
+pub(crate) struct DraftedPatterns {
+    pub drafts: Vec<Drafted>,
+    pub names: Vec<String>,
+    pub notes: Vec<String>,
+}
+
+/// Drafts patterns in the sizes asked for, else in the one that each file keeps, from the fabric and
+/// the width that it keeps.
 pub(crate) fn drafts_of(
     patterns: &[PathBuf],
     options: &NestOptions,
-) -> Result<(Vec<Drafted>, Vec<String>), SessionError> {
+) -> Result<DraftedPatterns, SessionError> {
     let mut drafts = Vec::new();
     let mut names = Vec::new();
+    let mut notes = Vec::new();
     let mut known: Vec<String> = Vec::new();
     for path in patterns {
-        let (opened, _) = project_of(path, None)?;
+        let (opened, found) = project_of(path, None)?;
+        let note = |note| format!("{}: {note}", path.display());
+        notes.extend(found.into_iter().map(note));
         let sizes = selected(&options.sizes, &opened.pattern)?;
         let several = sizes.len() > 1;
         let mut own_name: Option<String> = None;
         for (size, count) in sizes {
+            let size = size.or_else(|| opened.size.clone());
             let project = Project {
                 size: size.clone(),
                 ..opened.clone()
             };
             project.check_size()?;
             let size = size.as_deref();
-            let draft = sound_draft(&project)?;
+            let mut draft = sound_draft(&project)?;
+            if let Some(width) = project.width {
+                draft.fabrics.iter_mut().for_each(|f| f.width = width);
+            }
             let name = own_name.get_or_insert_with(|| another(&project.pattern.name, &known));
             names.push(match (size, several || count > 1) {
                 (Some(size), true) => format!("{name} {count} x {size}"),
@@ -77,7 +93,11 @@ pub(crate) fn drafts_of(
             });
         }
     }
-    Ok((drafts, names))
+    Ok(DraftedPatterns {
+        drafts,
+        names,
+        notes,
+    })
 }
 
 /// A name that is not known yet: of several patterns of one name the second is number 2.
@@ -107,7 +127,11 @@ pub fn nest_patterns(
     options: &NestOptions,
     (folder, watcher): (&Path, &mut dyn Watcher),
 ) -> Result<(Vec<MarkerSummary>, Vec<PathBuf>), SessionError> {
-    let (drafts, names) = drafts_of(patterns, options)?;
+    let DraftedPatterns {
+        drafts,
+        names,
+        notes,
+    } = drafts_of(patterns, options)?;
     let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
     let finished_markers = lay_watched(&garments, options, watcher)?;
     let mut files = Vec::new();
@@ -121,6 +145,9 @@ pub fn nest_patterns(
     let mut summary: Vec<MarkerSummary> = finished_markers.iter().map(|l| l.summary()).collect();
     for (summary, lost) in summary.iter_mut().zip(lost) {
         summary.notes.extend(lost);
+    }
+    if let Some(first) = summary.first_mut() {
+        first.notes.splice(0..0, notes);
     }
     Ok((summary, paths))
 }

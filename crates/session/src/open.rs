@@ -4,9 +4,10 @@ use crate::SessionError;
 use crate::input::{is_pipe, read_file};
 use crate::placed_panels::PanelOrigin;
 use std::path::{Path, PathBuf};
+use toile_body::Description;
 use toile_interchange::{
-    ExpectedKind, FileError, FormatError, MarkerFile, SizeChoice, read_garmentcode,
-    read_marker_json, read_pattern, read_sized_measurements,
+    ExpectedKind, FileError, Fitting, FormatError, MarkerFile, SizeChoice, read_document,
+    read_garmentcode, read_mannequin, read_marker_json, read_sized_measurements,
 };
 use toile_measure::Measurements;
 use toile_pattern::Pattern;
@@ -32,6 +33,11 @@ const SAMPLE_TEXTS: &[&str] = &[
     include_str!("../../../patterns/dress.toile.json"),
 ];
 
+/// Whether a path stands for a pattern inside the program.
+pub(crate) fn is_sample(path: &Path) -> bool {
+    sample(path).is_some()
+}
+
 fn sample(path: &Path) -> Option<&'static str> {
     let at = SAMPLES
         .iter()
@@ -53,6 +59,8 @@ pub enum PatternFormat {
 pub struct Opened {
     /// The pattern.
     pub pattern: Pattern,
+    /// How its garment is tried on.
+    pub fitting: Fitting,
     /// What the file was.
     pub format: PatternFormat,
     /// What was left out or assumed, with its place.
@@ -94,6 +102,19 @@ pub(crate) fn open_pattern_from(path: &Path, origin: PanelOrigin) -> Result<Open
 /// The file cannot be read, or is no marker.
 pub fn open_marker(path: &Path) -> Result<MarkerFile, SessionError> {
     read_marker_json(&read_input(path, ExpectedKind::Marker)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
+    })
+}
+
+/// The description in a mannequin file.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
+    read_mannequin(&read_input(path, ExpectedKind::Mannequin)?).map_err(|error| {
         SessionError::Format {
             path: path.to_owned(),
             error,
@@ -157,15 +178,17 @@ pub fn read_pattern_text(text: &str) -> Result<Opened, FormatError> {
         let reading = read_garmentcode(text)?;
         return Ok(Opened {
             pattern: reading.pattern,
+            fitting: Fitting::default(),
             format: PatternFormat::GarmentCode,
             notes: reading.notes.iter().map(ToString::to_string).collect(),
         });
     }
-    let (pattern, notes) = read_pattern(text)?;
+    let file = read_document(text)?;
     Ok(Opened {
-        pattern,
+        pattern: file.pattern,
+        fitting: file.fitting,
         format: PatternFormat::Native,
-        notes: notes.iter().map(ToString::to_string).collect(),
+        notes: file.notes.iter().map(ToString::to_string).collect(),
     })
 }
 

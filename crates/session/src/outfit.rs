@@ -55,19 +55,19 @@ impl DraftedPart {
     }
 
     /// A garment worn with it, in the project's size and fabric.
-    pub fn other(project: &Project, worn: &WornGarment) -> Self {
-        let measurements = project.drafted_for(&worn.pattern);
-        let (mut draft, diagnostics) = checked(&Evaluation::new(&worn.pattern, &measurements));
+    pub fn other(project: &Project, worn: &WornGarment, pattern: &Arc<Pattern>) -> Self {
+        let measurements = project.drafted_for(pattern);
+        let (mut draft, diagnostics) = checked(&Evaluation::new(pattern, &measurements));
         let chosen = project.fabric.as_ref();
         let of = |pattern| chosen.and_then(|choice| choice.fabric(pattern));
-        if let Some(fabric) = of(&worn.pattern).or_else(|| of(&project.pattern)) {
+        if let Some(fabric) = of(pattern).or_else(|| of(&project.pattern)) {
             FabricChoice::cut(fabric, &mut draft);
         }
         Self {
-            name: worn.pattern.name.clone(),
+            name: pattern.name.clone(),
             source: Some(worn.source.clone()),
             layer: worn.layer,
-            pattern: worn.pattern.clone(),
+            pattern: pattern.clone(),
             size: project.size.clone(),
             draft: Arc::new(draft),
             diagnostics: Arc::new(diagnostics),

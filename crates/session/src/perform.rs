@@ -3,6 +3,7 @@
 use crate::bodies::{body_of, description_of, shaped};
 use crate::export::cannot;
 use crate::fabrics::chosen;
+use crate::fitting::{document_text, refuse_itself, try_on};
 use crate::history::History;
 use crate::open::{open_pattern_from, read_pattern_text};
 use crate::outfit::DraftedPart;
@@ -16,7 +17,8 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_body::{Figure, PrimitiveEdit};
 use toile_drape::MOST_LAYER;
-use toile_interchange::{write_atomically, write_mannequin, write_pattern};
+use toile_interchange::{FABRIC_WIDTHS, write_atomically, write_mannequin};
+use toile_measure::Measurements;
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
 /// Farthest from the floor that the origin of panels may lie [m].
@@ -43,6 +45,10 @@ impl Session {
                 figure,
                 measurements,
             } => self.set_body(*figure, measurements.as_deref()),
+            Command::SetMeasurements {
+                figure,
+                measurements,
+            } => self.set_measurements(*figure, measurements),
             Command::EditBody { edits, label } => self.edit_body(edits, label),
             Command::SaveBody { path } => self.save_body(path, watcher),
             Command::SetSize { size } => self.set_size(size.clone()),
@@ -104,10 +110,10 @@ impl Session {
 
     fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
         report_progress(watcher, "reading", 0.0, &path.display().to_string())?;
-        let opened = open_pattern_from(path, self.origin)?;
-        let mut events = self.begin(opened.pattern, Some(path));
-        self.saved = self.project.pattern.clone();
-        events.extend(opened.notes.iter().map(|note| Event::Warned {
+        let (next, notes) = Project::open_from(path, self.origin)?;
+        let mut events = self.begin(next);
+        self.saved = self.project.clone();
+        events.extend(notes.iter().map(|note| Event::Warned {
             message: format!("{}: {note}", path.display()),
         }));
         Ok(events)
@@ -118,8 +124,11 @@ impl Session {
         if !is_part_name(name) {
             return Err(EditError::Name(name.to_owned()).into());
         }
-        let events = self.begin(Pattern::blank(name), None);
-        self.saved = self.project.pattern.clone();
+        let events = self.begin(Project {
+            pattern: Arc::new(Pattern::blank(name)),
+            ..Project::default()
+        });
+        self.saved = self.project.clone();
         Ok(events)
     }
 
@@ -128,18 +137,23 @@ impl Session {
             path: source.unwrap_or(Path::new("recovered pattern")).to_owned(),
             error,
         })?;
-        let events = self.begin(opened.pattern, source);
-        self.saved = Arc::default();
+        let mut next = Project {
+            pattern: Arc::new(opened.pattern),
+            source: source.map(Path::to_owned),
+            ..Project::default()
+        };
+        let notes = try_on(&mut next, opened.fitting, self.origin);
+        let mut events = self.begin(next);
+        self.saved = Project::default();
+        events.extend(Event::warnings(&notes));
         Ok(events)
     }
 
-    /// Puts another pattern in place of the project, with a history of its own.
-    fn begin(&mut self, pattern: Pattern, source: Option<&Path>) -> Vec<Event> {
+    /// Puts another project in place of the present one, in its quality, with a history of its own.
+    fn begin(&mut self, next: Project) -> Vec<Event> {
         let next = Project {
-            pattern: Arc::new(pattern),
-            source: source.map(Path::to_owned),
             quality: self.project.quality,
-            ..Project::default()
+            ..next
         };
         self.history = History::default();
         let mut events = vec![Event::PatternOpened];
@@ -149,17 +163,23 @@ impl Session {
 
     fn save(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
         report_progress(watcher, "writing", 0.0, &path.display().to_string())?;
-        let text = write_pattern(&self.project.pattern).map_err(|error| SessionError::Write {
-            file: "the pattern",
-            error,
-        })?;
+        let text = document_text(&self.project, Some(path)).map_err(cannot("the pattern"))?;
         write_atomically(path, text.as_bytes())?;
         // Where a pattern is kept is not part of what it is: no step of the history.
         self.project.source = Some(path.to_owned());
-        self.saved = self.project.pattern.clone();
-        Ok(vec![Event::FilesWritten {
+        self.saved = self.project.clone();
+        let mut events = vec![Event::FilesWritten {
             paths: vec![path.to_owned()],
-        }])
+        }];
+        if matches!(self.project.body, BodyChoice::Shaped { path: None, .. }) {
+            events.push(Event::Warned {
+                message:
+                    "the edited mannequin is in no file, so that the pattern cannot name it: save \
+                          the body, then the pattern again"
+                        .to_owned(),
+            });
+        }
+        Ok(events)
     }
 
     fn edit(&mut self, edits: &[Edit], label: &str) -> Outcome {
@@ -187,6 +207,24 @@ impl Session {
         Ok(events)
     }
 
+    fn set_measurements(&mut self, figure: Option<Figure>, measurements: &Measurements) -> Outcome {
+        if let Some((name, value)) = measurements.impossible() {
+            return Err(SessionError::Measurement {
+                name: name.to_owned(),
+                value,
+            });
+        }
+        let next = Project {
+            body: BodyChoice::Measured {
+                figure: figure.unwrap_or_else(|| self.project.figure()),
+                path: None,
+                measurements: Arc::new(measurements.clone()),
+            },
+            ..self.project.clone()
+        };
+        Ok(self.change(next, "Set measurements"))
+    }
+
     fn edit_body(&mut self, edits: &[PrimitiveEdit], label: &str) -> Outcome {
         let edited = description_of(&self.project).edited(edits)?;
         let next = Project {
@@ -201,6 +239,13 @@ impl Session {
         let text =
             write_mannequin(&description_of(&self.project)).map_err(cannot("the mannequin"))?;
         write_atomically(path, text.as_bytes())?;
+        // Where an edited body is kept is no step of the history, as with a pattern.
+        if let BodyChoice::Shaped {
+            path: kept @ None, ..
+        } = &mut self.project.body
+        {
+            *kept = Some(path.to_owned());
+        }
         Ok(vec![Event::FilesWritten {
             paths: vec![path.to_owned()],
         }])
@@ -235,7 +280,7 @@ impl Session {
 
     fn set_width(&mut self, width: Option<f64>) -> Outcome {
         if let Some(value) = width
-            && !(0.05..=20.0).contains(&value)
+            && !FABRIC_WIDTHS.contains(&value)
         {
             return Err(SessionError::Number {
                 what: "the width of the fabric [m]",
@@ -254,11 +299,16 @@ impl Session {
         let mut worn = Vec::new();
         let mut notes = Vec::new();
         for other in others {
-            let opened = open_pattern_from(&other.path, self.origin)?;
-            let note = |note: &String| format!("{}: {note}", other.path.display());
-            notes.extend(opened.notes.iter().map(note));
+            let was_missing =
+                |worn: &&WornGarment| worn.source == other.path && worn.pattern.is_none();
+            let pattern = match self.opened_to_wear(&other.path, &mut notes) {
+                Ok(pattern) => Some(pattern),
+                // One that was missing when the pattern was opened stays named.
+                Err(_) if self.project.others.iter().any(|w| was_missing(&w)) => None,
+                Err(error) => return Err(error),
+            };
             worn.push(WornGarment {
-                pattern: Arc::new(opened.pattern),
+                pattern,
                 source: other.path.clone(),
                 layer: other.layer,
             });
@@ -280,6 +330,18 @@ impl Session {
         let mut events = self.change(next, "Choose layers");
         events.extend(Event::warnings(&notes));
         Ok(events)
+    }
+
+    fn opened_to_wear(
+        &self,
+        path: &Path,
+        notes: &mut Vec<String>,
+    ) -> Result<Arc<Pattern>, SessionError> {
+        refuse_itself(&self.project, path)?;
+        let opened = open_pattern_from(path, self.origin)?;
+        let note = |note: &String| format!("{}: {note}", path.display());
+        notes.extend(opened.notes.iter().map(note));
+        Ok(Arc::new(opened.pattern))
     }
 
     fn set_origin(&mut self, origin: PanelOrigin) -> Outcome {

@@ -224,7 +224,7 @@ fn drafted(project: &Project, sizes: &SizeSelection) -> Result<Vec<SizeDraft>, S
                 )));
             }
             let project = Project {
-                size,
+                size: size.or_else(|| project.size.clone()),
                 ..project.clone()
             };
             project.check_size()?;

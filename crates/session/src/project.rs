@@ -1,9 +1,8 @@
 //! The project: all that is edited, saved and undone; the rest is derived from it.
 
 use crate::choice::sample_of;
-use crate::open::open_pattern;
 use crate::{BodyChoice, FabricChoice, Quality, SessionError};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
 use toile_measure::Measurements;
@@ -35,25 +34,51 @@ pub struct Project {
 /// A garment worn with that of the project's pattern, made in the same size, fabric and quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WornGarment {
-    /// Its pattern.
-    pub pattern: Arc<Pattern>,
+    /// Its pattern; none where it could not be read when the pattern that names it was opened.
+    pub pattern: Option<Arc<Pattern>>,
     /// The file it was read from.
     pub source: PathBuf,
     /// Its layer.
     pub layer: u16,
 }
 
+impl WornGarment {
+    /// The name of its pattern, or of the file that could not be read.
+    pub fn name(&self) -> String {
+        match &self.pattern {
+            Some(pattern) => pattern.name.clone(),
+            None => self.source.display().to_string(),
+        }
+    }
+}
+
 impl Project {
-    /// A project of a pattern that is read from a file, as drafted.
-    ///
-    /// # Errors
-    /// The file is missing, may not be read, or holds no pattern.
-    pub fn open(path: &Path) -> Result<Self, SessionError> {
-        Ok(Self {
-            pattern: Arc::new(open_pattern(path)?.pattern),
-            source: Some(path.to_owned()),
+    /// Whether the file of another project would say the same.
+    pub fn says_the_same(&self, other: &Self) -> bool {
+        let same_pattern = Arc::ptr_eq(&self.pattern, &other.pattern)
+            || self.pattern.says_the_same(&other.pattern);
+        let worn = |project: &Self| {
+            let others = project.others.iter();
+            let each = others.map(|worn| (worn.source.clone(), worn.layer));
+            each.collect::<Vec<_>>()
+        };
+        same_pattern
+            && self.body == other.body
+            && self.size == other.size
+            && self.fabric == other.fabric
+            && self.width == other.width
+            && self.layer == other.layer
+            && worn(self) == worn(other)
+    }
+
+    /// Whether its file says nothing of how it is tried on, its size apart.
+    pub(crate) fn is_tried_on_as_drafted(&self) -> bool {
+        let plain = Self {
+            pattern: self.pattern.clone(),
+            size: self.size.clone(),
             ..Self::default()
-        })
+        };
+        plain.says_the_same(self)
     }
 
     /// The project with edits made in its pattern, all or none.
@@ -64,22 +89,42 @@ impl Project {
             pattern: Arc::new(pattern),
             ..self.clone()
         };
-        // A choice of something that is gone would mean nothing.
-        if next.check_size().is_err() {
-            next.size = None;
-        }
-        let chosen = next.fabric.as_ref();
-        if chosen.is_some_and(|choice| choice.fabric(&next.pattern).is_none()) {
-            next.fabric = None;
-        }
+        // What was chosen keeps its part, under whatever name; a choice of something that is gone
+        // would mean nothing.
+        let (before, after) = (&self.pattern, &next.pattern);
+        next.size = self.size.as_ref().and_then(|name| {
+            let id = before.size_named(name)?.id;
+            let size = after.sizes.iter().find(|size| size.id == id)?;
+            Some(size.name.clone())
+        });
+        next.fabric = match &self.fabric {
+            Some(FabricChoice::Named(name)) => {
+                let own = before.fabrics.iter().find(|fabric| fabric.name == *name);
+                let renamed = own.and_then(|fabric| after.fabric(fabric.id));
+                let name = renamed.map_or(name, |fabric| &fabric.name).clone();
+                let was_there = self
+                    .fabric
+                    .as_ref()
+                    .and_then(|f| f.fabric(before))
+                    .is_some();
+                let choice = FabricChoice::Named(name);
+                let is_gone = was_there && choice.fabric(after).is_none();
+                (!is_gone).then_some(choice)
+            }
+            other => other.clone(),
+        };
         Ok(next)
     }
 
     /// The figure the mannequin is grown from.
     pub fn figure(&self) -> Figure {
         match &self.body {
-            BodyChoice::OfPattern if self.pattern.sizes.is_empty() => Figure::Mean,
-            BodyChoice::OfPattern => Figure::Woman,
+            BodyChoice::OfPattern | BodyChoice::Missing { .. } => {
+                match self.pattern.sizes.is_empty() {
+                    true => Figure::Mean,
+                    false => Figure::Woman,
+                }
+            }
             BodyChoice::Sample(figure) | BodyChoice::Measured { figure, .. } => *figure,
             BodyChoice::Shaped { description, .. } => description.figure,
         }
@@ -89,7 +134,7 @@ impl Project {
     pub fn size_name(&self) -> Option<&str> {
         match (&self.size, &self.body) {
             (Some(size), _) => Some(size),
-            (None, BodyChoice::OfPattern) => self.pattern.base().map(|size| &*size.name),
+            (None, body) if body.is_of_pattern() => self.pattern.base().map(|size| &*size.name),
             (None, _) => None,
         }
     }
@@ -98,7 +143,7 @@ impl Project {
     pub fn drafted_to_words(&self) -> String {
         match self.size_name() {
             Some(size) => format!("size {size}"),
-            None if self.body == BodyChoice::OfPattern => "as drawn".into(),
+            None if self.body.is_of_pattern() => "as drawn".into(),
             None => "drafted to the body".into(),
         }
     }
@@ -122,16 +167,21 @@ impl Project {
         if self.pattern.size(name).is_none() {
             return refuse(&self.pattern, "");
         }
-        let lacks = |worn: &&WornGarment| {
-            !worn.pattern.sizes.is_empty() && worn.pattern.size(name).is_none()
-        };
-        match self.others.iter().find(lacks) {
-            Some(worn) => refuse(
-                &worn.pattern,
-                &format!(", those of {}", worn.source.display()),
-            ),
-            None => Ok(()),
+        for worn in &self.others {
+            let Some(pattern) = &worn.pattern else {
+                continue;
+            };
+            if !pattern.sizes.is_empty() && pattern.size(name).is_none() {
+                return refuse(pattern, &format!(", those of {}", worn.source.display()));
+            }
         }
+        Ok(())
+    }
+
+    /// The patterns of the garments that are worn with the project's and could be read.
+    pub(crate) fn other_patterns(&self) -> impl Iterator<Item = (&WornGarment, &Arc<Pattern>)> {
+        let others = self.others.iter();
+        others.filter_map(|worn| Some((worn, worn.pattern.as_ref()?)))
     }
 
     /// Refuses a pattern with faults that keep the garment from being made in the project's size.
@@ -180,7 +230,7 @@ impl Project {
                 Some(&**measurements)
             }
             BodyChoice::Sample(_) => self.named_size(),
-            BodyChoice::OfPattern => self
+            BodyChoice::OfPattern | BodyChoice::Missing { .. } => self
                 .named_size()
                 .or_else(|| self.pattern.base_measurements()),
         };
@@ -209,9 +259,9 @@ impl Project {
         named.map_or_else(
             || Wearer {
                 measurements: self.body_measurements(),
-                size: match self.body {
-                    BodyChoice::OfPattern => pattern.base().map(|size| size.id),
-                    _ => None,
+                size: match self.body.is_of_pattern() {
+                    true => pattern.base().map(|size| size.id),
+                    false => None,
                 },
             },
             Wearer::from,

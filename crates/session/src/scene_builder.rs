@@ -347,9 +347,16 @@ impl<'a> Builder<'a> {
                 measurements,
             });
         }
-        commands.push(Command::SetQuality {
-            quality: Quality::Preview,
-        });
+        commands.extend([
+            // The scene names the one garment that it wants.
+            Command::SetLayers {
+                layer: 0,
+                others: Vec::new(),
+            },
+            Command::SetQuality {
+                quality: Quality::Preview,
+            },
+        ]);
         for command in commands {
             session.execute(command, watcher)?;
         }

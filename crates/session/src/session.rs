@@ -2,6 +2,7 @@
 
 use crate::derived::Derived;
 use crate::export::cannot;
+use crate::fitting::document_text;
 use crate::history::History;
 use crate::input::is_pipe;
 use crate::journal::Journal;
@@ -15,8 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
-use toile_interchange::write_pattern;
-use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, Pattern, SizeSelection};
+use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, SizeSelection};
 
 /// Edits that are shown and not taken over yet.
 #[derive(Clone)]
@@ -37,8 +37,8 @@ pub struct Session {
     pub(crate) journal: Journal,
     pub(crate) derived: Derived,
     pub(crate) gesture: Option<Gesture>,
-    /// The pattern as it is in its file.
-    pub(crate) saved: Arc<Pattern>,
+    /// The project as it is in its file.
+    pub(crate) saved: Project,
     pub(crate) timing: Timing,
     /// The point that files place their panels round.
     pub(crate) origin: PanelOrigin,
@@ -85,10 +85,9 @@ impl Session {
         self.journal.commands()
     }
 
-    /// Whether the pattern has changes that are in no file.
+    /// Whether the pattern, or how its garment is tried on, has changes that are in no file.
     pub fn is_unsaved(&self) -> bool {
-        let pattern = &self.project.pattern;
-        !Arc::ptr_eq(&self.saved, pattern) && !self.saved.says_the_same(pattern)
+        !self.saved.says_the_same(&self.project)
     }
 
     /// Every value of the pattern in the project's size.
@@ -187,7 +186,7 @@ impl Session {
     fn lasting(&self, command: Command) -> Result<Command, SessionError> {
         match &command {
             Command::OpenPattern { path } if is_pipe(path) => Ok(Command::RestorePattern {
-                text: write_pattern(&self.project.pattern).map_err(cannot("journal.jsonl"))?,
+                text: document_text(&self.project, None).map_err(cannot("journal.jsonl"))?,
                 source: None,
             }),
             _ => Ok(command),

@@ -1,6 +1,5 @@
 //! What is wrong with a pattern in each of its sizes.
 
-use crate::choice::BodyChoice;
 use crate::outfit::checked;
 use crate::{Project, SessionError};
 use std::fmt;
@@ -48,7 +47,9 @@ impl fmt::Display for SizedDiagnostic {
 pub(crate) fn sizes_to_check(project: &Project) -> SizeSelection {
     match (&project.size, &project.body) {
         (Some(size), _) => SizeSelection::one(size),
-        (None, BodyChoice::OfPattern) if !project.pattern.sizes.is_empty() => SizeSelection::All,
+        (None, body) if body.is_of_pattern() && !project.pattern.sizes.is_empty() => {
+            SizeSelection::All
+        }
         (None, _) => SizeSelection::Base,
     }
 }

@@ -134,7 +134,7 @@ pub fn study_rules(
     options: &NestOptions,
     (seeds, watcher): (u64, &mut dyn Watcher),
 ) -> Result<Vec<RuleCost>, SessionError> {
-    let (drafts, _) = drafts_of(patterns, options)?;
+    let drafts = drafts_of(patterns, options)?.drafts;
     let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
     let seeds = seeds.max(1);
     let try_rule = |change: &dyn Fn(&mut NestOptions), watcher: &mut dyn Watcher| {

@@ -1,12 +1,12 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
 
 use crate::export::cannot;
+use crate::fitting::document_text;
 use crate::mesh_file::{OpenedMesh, open_person};
-use crate::open::{open_pattern_from, read_input};
+use crate::open::read_input;
 use crate::product::body_obj;
-use crate::{PanelOrigin, PatternFormat, Project, SessionError};
+use crate::{FabricChoice, PanelOrigin, PatternFormat, Project, SessionError};
 use std::path::Path;
-use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
     AskedStance, BodyError, Conflict, Description, Deviation, Figure, Fit, Mannequin, Motion,
@@ -14,9 +14,8 @@ use toile_body::{
 };
 use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
-    ExpectedKind, FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_x3d,
-    write_atomically, write_body_glb, write_garmentcode, write_mannequin, write_measurements,
-    write_obj, write_pattern,
+    ExpectedKind, FormatError, ObjGroup, ObjMesh, read_bvh, read_x3d, write_atomically,
+    write_body_glb, write_garmentcode, write_mannequin, write_measurements, write_obj,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
@@ -58,22 +57,24 @@ fn project_from(
     size: Option<&str>,
     origin: PanelOrigin,
 ) -> Result<(Project, Vec<String>), SessionError> {
-    let opened = open_pattern_from(path, origin)?;
-    let project = Project {
-        pattern: Arc::new(opened.pattern),
-        source: Some(path.to_owned()),
-        size: size.map(str::to_owned),
-        ..Project::default()
-    };
-    project.check_size()?;
-    Ok((project, opened.notes))
+    let (mut project, notes) = Project::open_from(path, origin)?;
+    if let Some(size) = size {
+        project.size = Some(size.to_owned());
+        project.check_size()?;
+    }
+    Ok((project, notes))
 }
 
 /// The draft of a project, or every fault that keeps it from being made.
 pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
     let measurements = project.drafted_to();
     project.refuse_faults(&project.pattern.check(&measurements))?;
-    Ok(project.pattern.resolve(&measurements).0)
+    let (mut draft, _) = project.pattern.resolve(&measurements);
+    let chosen = project.fabric.as_ref();
+    if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
+        FabricChoice::cut(fabric, &mut draft);
+    }
+    Ok(draft)
 }
 
 /// Converts a pattern between formats: to the one asked for, else by the name of the output.
@@ -98,11 +99,17 @@ pub fn convert(
     });
     let (project, mut notes) = project_from(from, None, origin)?;
     let text = match format {
-        PatternFormat::Native => write_pattern(&project.pattern).map_err(cannot("the pattern"))?,
+        PatternFormat::Native => {
+            document_text(&project, Some(to)).map_err(cannot("the pattern"))?
+        }
         PatternFormat::GarmentCode => {
             let draft = sound_draft(&project)?;
             let writing = write_garmentcode(&draft);
             notes.extend(writing.lost.iter().map(ToString::to_string));
+            if !project.is_tried_on_as_drafted() {
+                let lost = "wearer, fabric and other garments it is tried on with: GarmentCode has no place for them";
+                notes.push(lost.to_owned());
+            }
             writing.text
         }
     };
@@ -111,7 +118,8 @@ pub fn convert(
 }
 
 /// The triangulated panels of a pattern in a row, as OBJ with a group a panel; texture coordinates
-/// are the panels' own planes [m]. Returns the quality of the triangles.
+/// are the panels' own planes [m]. Returns the quality of the triangles, and what
+/// was left out or is missing.
 ///
 /// # Errors
 /// The pattern cannot be read or meshed, or the file cannot be written.
@@ -120,11 +128,11 @@ pub fn mesh_panels(
     size: Option<&str>,
     edge_length: f64,
     to: &Path,
-) -> Result<MeshQuality, SessionError> {
+) -> Result<(MeshQuality, Vec<String>), SessionError> {
     /// Room between panels [m].
     const ROOM: f64 = 0.05;
     check_ending(to, &[".obj"], "panels are written as NAME.obj")?;
-    let (project, _) = project_of(pattern, size)?;
+    let (project, notes) = project_of(pattern, size)?;
     let draft = sound_draft(&project)?;
     let meshes = mesh_pieces(&draft, edge_length)?;
     let mut obj = ObjMesh::default();
@@ -151,7 +159,7 @@ pub fn mesh_panels(
     let text = write_obj(&obj).map_err(cannot("the mesh"))?;
     write_atomically(to, text.as_bytes())?;
     let parts: Vec<MeshQuality> = meshes.pieces.iter().map(|mesh| mesh.quality()).collect();
-    Ok(combine(&parts))
+    Ok((combine(&parts), notes))
 }
 
 /// A mannequin's measurements as asked and as got.
@@ -321,19 +329,6 @@ pub fn fit_mesh(person: &PersonFile, figure: Figure) -> Result<(Fit, Vec<String>
         .fit(figure)
         .map_err(|error| scan_error(person.mesh, &error))?;
     Ok((fit, notes))
-}
-
-/// The description in a mannequin file.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
-    read_mannequin(&read_input(path, ExpectedKind::Mannequin)?).map_err(|error| {
-        SessionError::Format {
-            path: path.to_owned(),
-            error,
-        }
-    })
 }
 
 /// Proportions and the five scaling parameters as they are asked for.

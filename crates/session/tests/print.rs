@@ -42,7 +42,7 @@ fn pattern(name: &str) -> PathBuf {
 }
 
 fn project(name: &str) -> Project {
-    Project::open(&pattern(name)).unwrap()
+    Project::open(&pattern(name)).unwrap().0
 }
 
 fn job(name: &str, options: &PrintOptions) -> PrintJob {
@@ -384,7 +384,7 @@ fn what_is_not_there_is_refused_by_its_name() {
     let folder = tempfile::tempdir().unwrap();
     let sail = folder.path().join("sail.toile.json");
     std::fs::write(&sail, SAIL).unwrap();
-    let Err(error) = print_job(&Project::open(&sail).unwrap(), &usual(), &mut Silent) else {
+    let Err(error) = print_job(&Project::open(&sail).unwrap().0, &usual(), &mut Silent) else {
         panic!("a sail is printed on sheets of A4");
     };
     assert!(error.to_string().contains("more than 500"), "{error}");

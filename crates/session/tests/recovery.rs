@@ -10,7 +10,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use support::{BAND, band};
 use toile_pattern::{Edit, Entity, Pattern, Variable};
-use toile_session::{Abandoned, Command, Recovery, Session, Silent, abandoned, read_pattern_text};
+use toile_session::{
+    Abandoned, Command, Project, Recovery, Session, Silent, abandoned, read_pattern_text,
+};
 
 /// Names the folder to the process that is killed.
 const FOLDER: &str = "TOILE_TEST_RECOVERY_FOLDER";
@@ -58,7 +60,7 @@ fn edit_until_killed(folder: &Path) {
     let start = Instant::now();
     for k in 1.. {
         count(&mut session, k);
-        recovery.keep(&session.project().pattern, None);
+        recovery.keep(session.project());
         let line = format!("{k} {}\n", start.elapsed().as_millis());
         std::io::Write::write_all(&mut notes, line.as_bytes()).unwrap();
         std::thread::sleep(Duration::from_millis(5));
@@ -143,7 +145,11 @@ fn a_damaged_state_is_never_taken_for_whole() {
     let recovery = Recovery::start(&states).unwrap();
     for k in 1..=2 {
         count(&mut session, k);
-        recovery.keep(&session.project().pattern, Some(Path::new("band.json")));
+        let kept = Project {
+            source: Some(PathBuf::from("band.json")),
+            ..session.project().clone()
+        };
+        recovery.keep(&kept);
         let newest = || file(&states, "newest").is_some_and(|path| holds(&path, k));
         let start = Instant::now();
         while !newest() {
@@ -206,7 +212,7 @@ fn what_was_saved_is_not_offered() {
     let mut session = opened(folder.path());
     let recovery = Recovery::start(&states).unwrap();
     count(&mut session, 7);
-    recovery.keep(&session.project().pattern, None);
+    recovery.keep(session.project());
     recovery.clear();
     drop(recovery);
     assert_eq!(fs::read_dir(&states).unwrap().count(), 0);

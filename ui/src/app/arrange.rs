@@ -303,7 +303,7 @@ impl ToileApp {
     /// Inserts the panels of another pattern beside what is there.
     pub(crate) fn insert_file(&mut self, path: &Path) {
         let other = match Project::open(path) {
-            Ok(other) => other,
+            Ok((other, _)) => other,
             Err(error) => {
                 self.notice = Notice::fault(error.to_string());
                 return;

@@ -50,8 +50,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use toile_pattern::plan::Fragment;
-use toile_pattern::{Code, Diagnostic, Evaluation, Pattern};
-use toile_session::{Abandoned, Command, Event, Recovery, Session, Silent, abandoned};
+use toile_pattern::{Code, Diagnostic, Evaluation};
+use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
 
 /// Time between frames while something runs by itself.
 const FRAME: Duration = Duration::from_millis(33);
@@ -93,8 +93,8 @@ pub struct ToileApp {
     recovery: Option<Recovery>,
     /// Documents a crash left, to be offered.
     pub(crate) abandoned: Vec<Abandoned>,
-    /// The pattern that was last given to be kept.
-    kept: Option<Arc<Pattern>>,
+    /// The project that was last given to be kept.
+    kept: Option<Project>,
     pub(crate) revision: Option<u64>,
     octave: i32,
     checked: Option<u64>,
@@ -266,7 +266,6 @@ impl ToileApp {
         }
         for event in events {
             match event {
-                Event::Warned { message } => self.notice = Notice::warning(message),
                 Event::FilesWritten { paths } => {
                     let names: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
                     self.notice = Notice::news(format!("Saved {}", names.join(", ")));
@@ -276,6 +275,14 @@ impl ToileApp {
                 }
                 _ => {}
             }
+        }
+        let warned = events.iter().filter_map(|event| match event {
+            Event::Warned { message } => Some(&**message),
+            _ => None,
+        });
+        let warned: Vec<&str> = warned.collect();
+        if !warned.is_empty() {
+            self.notice = Notice::warning(warned.join("; "));
         }
     }
 
@@ -318,11 +325,11 @@ impl ToileApp {
             return;
         };
         let project = self.session.project();
-        let is_kept = |kept: &Arc<Pattern>| Arc::ptr_eq(kept, &project.pattern);
+        let is_kept = |kept: &Project| kept.says_the_same(project);
         if self.session.is_unsaved() {
             if !self.kept.as_ref().is_some_and(is_kept) {
-                recovery.keep(&project.pattern, project.source.as_deref());
-                self.kept = Some(project.pattern.clone());
+                recovery.keep(project);
+                self.kept = Some(project.clone());
             }
         } else if self.kept.take().is_some() {
             recovery.clear();

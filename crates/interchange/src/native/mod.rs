@@ -3,10 +3,12 @@
 //! A pattern file (`*.toile.json`) names its unit once; bare numbers in it are lengths in that
 //! unit and angles in degrees, texts are formulas. Parts are referred to by id, in formulas by name.
 
+mod fitting;
 mod item;
 mod json;
 mod migrate;
 mod read;
+mod read_fitting;
 mod read_marker;
 mod read_operation;
 mod read_panel;
@@ -15,34 +17,64 @@ mod units;
 mod values;
 mod words;
 mod write;
+mod write_fitting;
 mod write_marker;
 mod write_operation;
 mod write_panel;
 mod write_seam;
 
-pub use write::write_pattern;
+pub use fitting::{FABRIC_WIDTHS, Fitting, FittingFabric, FittingLayer, FittingWearer};
+pub use write::{write_document, write_pattern};
 
 use crate::FormatError;
 use item::Item;
 use toile_pattern::{Diagnostic, Pattern};
 use words::VERSION;
 
-/// Reads a pattern in the native format (`*.toile.json`), of this version or an earlier one.
+/// A pattern's file: the pattern, and how its garment is tried on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PatternFile {
+    /// The pattern.
+    pub pattern: Pattern,
+    /// How its garment is tried on.
+    pub fitting: Fitting,
+    /// Fields that are not known here.
+    pub notes: Vec<Diagnostic>,
+}
+
+/// Reads the pattern of a file in the native format (`*.toile.json`), of this version or an earlier
+/// one.
+///
+/// # Errors
+/// Those of [`read_document`].
+pub fn read_pattern(text: &str) -> Result<(Pattern, Vec<Diagnostic>), FormatError> {
+    let file = read_document(text)?;
+    Ok((file.pattern, file.notes))
+}
+
+/// Reads a file in the native format (`*.toile.json`), of this version or an earlier one.
 ///
 /// Fields this version does not know are named in the diagnostics; everything else that is not
 /// understood is refused with its line, column, path and remedy.
 ///
 /// # Errors
 /// The text is not JSON, not a pattern of a known version, or refers to parts it does not have.
-pub fn read_pattern(text: &str) -> Result<(Pattern, Vec<Diagnostic>), FormatError> {
+pub fn read_document(text: &str) -> Result<PatternFile, FormatError> {
     let node = json::parse(text)?;
     let root = Item::root(&node);
     let mut notes = Vec::new();
-    let pattern = match version(&root)? {
-        1 => migrate::read_version_1(&root, &mut notes)?,
+    let (pattern, fitting) = match version(&root)? {
+        1 => (
+            migrate::read_version_1(&root, &mut notes)?,
+            Fitting::default(),
+        ),
         _ => read::read(&root, &mut notes)?,
     };
-    Ok((pattern, notes))
+    Ok(PatternFile {
+        pattern,
+        fitting,
+        notes,
+    })
 }
 
 /// The version of a file that holds a pattern.

@@ -1,7 +1,9 @@
 //! Reads a pattern file: head, sizes, variables, fabrics, sheets; ids and numbers.
 
+use super::fitting::Fitting;
 use super::item::{FieldsOfKind, Item, Written};
 use super::json::Value;
+use super::read_fitting::fitting;
 use super::read_marker::marker;
 use super::read_panel::panel;
 use super::read_seam::{mark, name, seam};
@@ -10,19 +12,23 @@ use super::values::{fabric, measurements};
 use crate::FormatError;
 use std::collections::HashMap;
 use std::sync::Arc;
+use toile_measure::Measurements;
 use toile_pattern::{
     Curve, CurveRule, Diagnostic, DisplayUnit, Formula, Guide, GuideRun, Knot, Names, Number,
     PartId, Pattern, Point, PointRule, Sheet, Size, SizeId, Variable,
 };
 
-/// Reads the pattern at the root of a file.
-pub fn read(root: &Item<'_>, notes: &mut Vec<Diagnostic>) -> Result<Pattern, FormatError> {
+/// Reads the pattern at the root of a file, and how it is tried on.
+pub fn read(
+    root: &Item<'_>,
+    notes: &mut Vec<Diagnostic>,
+) -> Result<(Pattern, Fitting), FormatError> {
     // Formulas name parts, so the parts come first: names are bound in a second round.
-    let unbound = Reader::new(Names::default()).pattern(root)?;
+    let (unbound, _) = Reader::new(Names::default()).document(root)?;
     let mut reader = Reader::new(Names::new(&unbound));
-    let pattern = reader.pattern(root)?;
+    let document = reader.document(root)?;
     notes.extend(reader.notes);
-    Ok(pattern)
+    Ok(document)
 }
 
 /// Kinds of points, by the fields that tell them.
@@ -95,6 +101,7 @@ const HEAD: &[&str] = &[
     "seams",
     "markers",
     "guides",
+    "fitting",
     "next_id",
 ];
 
@@ -109,7 +116,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn pattern(&mut self, root: &Item<'a>) -> Result<Pattern, FormatError> {
+    fn document(&mut self, root: &Item<'a>) -> Result<(Pattern, Fitting), FormatError> {
         let head = root.object(HEAD, &mut self.notes)?;
         if let Some(unit) = head.get("unit") {
             self.unit = unit.choice(UNITS)?;
@@ -122,7 +129,7 @@ impl<'a> Reader<'a> {
             pattern.sizes.push(Arc::new(Size {
                 id: self.own(&fields.need("id")?)?,
                 name: fields.need("name")?.name()?.to_owned(),
-                measurements: measurements(&table, self.unit, &mut self.notes)?,
+                measurements: self.measurements(&table)?,
             }));
         }
         if let Some(base) = head.get("base_size") {
@@ -163,9 +170,18 @@ impl<'a> Reader<'a> {
             let guide = self.guide(&item)?;
             pattern.guides.push(Arc::new(guide));
         }
+        let tried_on = match head.get("fitting") {
+            Some(item) => fitting(self, &item)?,
+            None => Fitting::default(),
+        };
         pattern.ids.next = head.need("next_id")?.count()?;
         self.check_ids(&head.need("next_id")?, pattern.ids.next)?;
-        Ok(pattern)
+        Ok((pattern, tried_on))
+    }
+
+    /// A table of measurements.
+    pub fn measurements(&mut self, item: &Item<'a>) -> Result<Measurements, FormatError> {
+        measurements(item, self.unit, &mut self.notes)
     }
 
     /// The id of a part of the file.

@@ -1,8 +1,10 @@
 //! Writes a pattern file: head, sizes, variables, fabrics, sheets; numbers.
 
+use super::fitting::Fitting;
 use super::json::{self, Node, Value};
 use super::units::{UNITS, write_degrees, write_length, write_plain};
 use super::words::{VERSION, word};
+use super::write_fitting::fitting;
 use super::write_marker::marker;
 use super::write_panel::panel;
 use super::write_seam::{mark, name, seam};
@@ -19,12 +21,21 @@ use toile_pattern::{
 /// The pattern has a name that no part may have, or a number that is not finite. Documents that
 /// were only changed by edits have neither.
 pub fn write_pattern(pattern: &Pattern) -> Result<String, FormatError> {
+    write_document(pattern, &Fitting::default())
+}
+
+/// Writes a pattern in the native format with how its garment is tried on. Reading it back gives
+/// both.
+///
+/// # Errors
+/// Those of [`write_pattern`].
+pub fn write_document(pattern: &Pattern, tried_on: &Fitting) -> Result<String, FormatError> {
     let writer = Writer {
         pattern,
         unit: pattern.unit,
         names: Names::new(pattern),
     };
-    Ok(json::write(&writer.document()?))
+    Ok(json::write(&writer.document(tried_on)?))
 }
 
 /// Fields of an object in the making.
@@ -97,7 +108,7 @@ pub struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn document(&self) -> Result<Value, FormatError> {
+    fn document(&self, tried_on: &Fitting) -> Result<Value, FormatError> {
         let pattern = self.pattern;
         let mut head = Fields::default();
         head.put("toile", count(VERSION));
@@ -135,11 +146,13 @@ impl Writer<'_> {
         head.put_list("markers", markers?);
         let guides: Result<Vec<_>, _> = pattern.guides.iter().map(|g| self.guide(g)).collect();
         head.put_list("guides", guides?);
+        head.put_if("fitting", fitting(self, tried_on)?);
         head.put("next_id", count(pattern.ids.next));
         Ok(head.done())
     }
 
-    fn measurements(&self, table: &Measurements) -> Value {
+    /// A table of measurements.
+    pub fn measurements(&self, table: &Measurements) -> Value {
         let mut fields = Fields::default();
         for (name, measured) in table.iter() {
             let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);

@@ -51,7 +51,7 @@ pub(super) fn meshes(watcher: &mut dyn Watcher) -> Result<Content, LabError> {
         let clock = Clock::start();
         let file = folder.path().join("mesh.obj");
         rows.push(match mesh_panels(Path::new(path), None, EDGE, &file) {
-            Ok(quality) => vec![
+            Ok((quality, _)) => vec![
                 (*name).to_owned(),
                 quality.triangles.to_string(),
                 format!("{:.1}", quality.smallest_free_angle.to_degrees()),

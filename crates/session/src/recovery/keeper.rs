@@ -2,14 +2,14 @@
 
 use super::state_file::{DocumentState, Head};
 use super::{BEFORE, LOCK, NEWEST, file_of};
+use crate::Project;
+use crate::fitting::document_text;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
-use toile_interchange::write_pattern;
-use toile_pattern::Pattern;
 
 /// Least time from one write to the next. With the write itself it stays under a second.
 const PERIOD: Duration = Duration::from_millis(500);
@@ -37,7 +37,7 @@ struct State {
 }
 
 enum Wish {
-    Keep(Arc<Pattern>, Option<PathBuf>),
+    Keep(Box<Project>),
     Clear,
 }
 
@@ -77,8 +77,8 @@ impl Recovery {
 
     /// Keeps a state of the document, within a second. It takes the place of one that is not
     /// written yet.
-    pub fn keep(&self, pattern: &Arc<Pattern>, source: Option<&Path>) {
-        self.wish(Wish::Keep(pattern.clone(), source.map(Path::to_owned)));
+    pub fn keep(&self, project: &Project) {
+        self.wish(Wish::Keep(Box::new(project.clone())));
     }
 
     /// Forgets the states: the document is saved, or its changes are not wanted.
@@ -124,7 +124,7 @@ impl Shared {
         while let Some(wish) = self.next() {
             let begun = Instant::now();
             let done = match wish {
-                Wish::Keep(pattern, source) => files.keep(&pattern, source),
+                Wish::Keep(project) => files.keep(&project),
                 Wish::Clear => files.clear().map_err(|error| error.to_string()),
             };
             self.lock().failure = done.err();
@@ -166,13 +166,15 @@ impl Files {
         file_of(&self.folder, &self.id, ending)
     }
 
-    fn keep(&self, pattern: &Pattern, source: Option<PathBuf>) -> Result<(), String> {
+    fn keep(&self, project: &Project) -> Result<(), String> {
+        let source = project.source.clone();
+        let text = document_text(project, source.as_deref());
         let state = DocumentState {
             head: Head {
-                name: pattern.name.clone(),
+                name: project.pattern.name.clone(),
                 source,
             },
-            text: write_pattern(pattern).map_err(|error| error.to_string())?,
+            text: text.map_err(|error| error.to_string())?,
         };
         let bytes = state.to_bytes().map_err(|error| error.to_string())?;
         self.put(&bytes).map_err(|error| error.to_string())
