@@ -13,7 +13,8 @@ use egui::{ComboBox, Grid, RichText, Ui};
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
-    Corner, CurveId, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
+    Corner, CurveId, Edit, EditError, Entity, MitreLimit, NotchKind, Number, Panel, PanelId,
+    PartId, Want,
 };
 
 impl ToileApp {
@@ -183,6 +184,13 @@ impl ToileApp {
                 let mut seams = self.view.scene.seams.iter();
                 let lengths = seams.find(|seam| seam.id == id)?.lengths;
                 Some(format!("{} to {}", length(lengths[0]), length(lengths[1])))
+            }
+            Item::Operation(panel, step) => {
+                let pattern = self.base.pattern();
+                let stage = self.base.last_stage(pattern.panel(panel)?)?;
+                let (edge, finished) = stage.edge_beside(step)?;
+                let name = pattern.edge_name(panel, edge)?;
+                Some(format!("{name} finished: {}", length(finished)))
             }
             _ => None,
         }
@@ -379,15 +387,19 @@ impl ToileApp {
             return;
         };
         let choices = [
-            (None, "as usual (mitre)"),
-            (Some(Corner::Mitre), "mitre"),
-            (Some(Corner::Bevel), "bevel"),
-            (Some(Corner::Square), "square"),
-            (Some(Corner::Extended), "seam lines extended"),
-            (Some(Corner::Mirrored), "mirrored, as a hem"),
+            (Corner::Mitre, "mitre"),
+            (Corner::Bevel, "bevel"),
+            (Corner::Square, "square"),
+            (Corner::Extended, "seam lines extended"),
+            (Corner::Mirrored, "mirrored, as a hem"),
         ];
         let mut corner = edge.corner;
-        choice(ui, "Corner of allowance", &choices, &mut corner);
+        choice(ui, "Corner of allowance", &choices, &mut corner.kind);
+        mitre_limit(ui, &mut corner.limit);
+        ui.checkbox(&mut corner.meant, "Kink is meant")
+            .on_hover_text(
+                "No finding tells that the line turns here where it goes on across a seam",
+            );
         if corner != edge.corner {
             let edits = self.changed_panel(panel, |panel| {
                 let edges = panel.lines.iter_mut().flat_map(|line| &mut line.edges);
@@ -458,4 +470,32 @@ fn name_of(pattern: &toile_pattern::Pattern, part: PartId) -> Option<String> {
         }
         _ => return None,
     })
+}
+
+/// How far the cut line may reach from a corner: a number of widths, or as far as it runs.
+fn mitre_limit(ui: &mut Ui, limit: &mut MitreLimit) {
+    let mut is_limited = *limit != MitreLimit::None;
+    let mut widths = match *limit {
+        MitreLimit::Widths(widths) => widths,
+        MitreLimit::None => MitreLimit::USUAL,
+    };
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut is_limited, "Cut off beyond")
+            .on_hover_text("Off: the cut lines run on until they meet, however sharp the corner");
+        let [least, most] = MitreLimit::RANGE;
+        let field = egui::DragValue::new(&mut widths)
+            .range(least..=most)
+            .speed(0.1)
+            .max_decimals(2)
+            .suffix(" widths")
+            .update_while_editing(false);
+        let field = ui.add_enabled(is_limited, field);
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::SpinButton, is_limited, "Limit of the corner")
+        });
+    });
+    *limit = match is_limited {
+        true => MitreLimit::Widths(widths),
+        false => MitreLimit::None,
+    };
 }

@@ -37,6 +37,38 @@ fn length(drafter: &Drafter, name: &str) -> f64 {
     own.map(|found| found.curve.length()).sum()
 }
 
+/// Length of the trued top with a dart of 2 by 15 cm in its middle [m]: closed, it is the chord
+/// between its corners.
+fn trued_top() -> f64 {
+    let half = (0.1_f64 / 0.15).atan() - (0.01_f64 / 0.15).atan();
+    2.0 * 0.1_f64.hypot(0.15) * half.sin()
+}
+
+#[test]
+fn a_dart_is_trued_by_a_tick_that_is_on() {
+    let mut drafter = panel();
+    drafter.key(Key::D);
+    drafter.click(drafter.part("Edge top of draft"));
+    drafter.typed("2");
+    drafter.typed("15");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Dart of draft"));
+    assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
+    let told = |drafter: &Drafter, words: &str| drafter.window.query_by_label(words).is_some();
+    assert!(told(&drafter, "top finished: 17.96 cm"), "{}", trued_top());
+    assert!(told(&drafter, "No faults"));
+    drafter.tick("True the edge");
+    assert!((length(&drafter, "top") - 0.18).abs() < 1e-9);
+    assert!(told(&drafter, "No faults, 1 note"));
+    let kink = &drafter.window.state().findings()[0];
+    assert!(kink.message.contains("top turns by 7.6 degrees"), "{kink}");
+    drafter.tick("Kink is meant");
+    assert!(told(&drafter, "No faults"));
+    drafter.tick("True the edge");
+    assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
+}
+
 #[test]
 fn a_dart_is_pivoted_by_four_actions() {
     let mut drafter = panel();
@@ -46,7 +78,7 @@ fn a_dart_is_pivoted_by_four_actions() {
     drafter.typed("15");
     drafter.key(Key::Escape);
     drafter.key(Key::Escape);
-    assert!((length(&drafter, "top") - 0.18).abs() < 1e-9);
+    assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
     drafter.actions = 0;
     drafter.chord(Modifiers::SHIFT, Key::E);
     drafter.click(drafter.part("Dart of draft"));
@@ -65,9 +97,9 @@ fn a_dart_is_pivoted_by_four_actions() {
         "{}",
         stage.darts.len()
     );
-    // The old mouth is closed: the top is as long as it is drawn less the intake, in one piece.
+    // The old mouth is closed: the top is as long as it was finished, in one straight line.
     assert!(
-        (length(&drafter, "top") - 0.18).abs() < 1e-9,
+        (length(&drafter, "top") - trued_top()).abs() < 1e-9,
         "{}",
         length(&drafter, "top")
     );

@@ -217,6 +217,8 @@ fn the_distance_from_the_nearer_end_is_told_where_a_notch_would_lie() {
     drafter.typed("8");
     drafter.typed("2");
     drafter.typed("10");
+    drafter.key(Key::Escape);
+    drafter.tick("True the edge");
     drafter.key(Key::N);
     // On whole millimetres, along the edge without the mouth of its dart, from 7 to 9 cm.
     for (x, wanted) in [

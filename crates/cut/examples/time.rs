@@ -43,6 +43,7 @@ fn bodice() -> SeamLine {
         Corner::Bevel,
     ];
     let edge = |(curve, corner): (Curve, Corner)| SeamEdge {
+        limit: toile_cut::MITRE_LIMIT,
         curve,
         width: 0.01,
         corner,

@@ -9,7 +9,7 @@ use crate::chain::{Chain, Tag, corner_edge, corner_tag};
 use crate::corner::{CornerCloth, HalfPlane, Outcome, STRAIGHT, corner_cloth};
 use crate::dart::Cap;
 use crate::ring::{Chord, FLATNESS, Ring};
-use crate::{Finding, MITRE_LIMIT, SegmentKind};
+use crate::{Finding, SegmentKind};
 use toile_geometry::Vec2;
 
 /// The cloth of one ring: its chain with the loops of its corners, and findings.
@@ -61,7 +61,7 @@ impl Corners {
                     return None;
                 }
                 corner_cloth(
-                    ring.edges[edge].corner,
+                    (ring.edges[edge].corner, ring.edges[edge].limit),
                     [ring.edges[before].ends[1], ring.edges[edge].ends[0]],
                     [ring.edges[before].width, ring.edges[edge].width],
                 )
@@ -75,7 +75,9 @@ impl Corners {
         let chord = &ring.chords[k];
         let edge = &ring.edges[chord.edge];
         let after = ring.after(chord.edge);
-        let reach = |other: usize| MITRE_LIMIT * edge.width.max(ring.edges[other].width);
+        let reach = |other: usize, corner: usize| {
+            ring.edges[corner].limit * edge.width.max(ring.edges[other].width)
+        };
         let mut trims = Vec::new();
         let trim = |corner: usize, side: usize| {
             let plane = self.cloth[corner].as_ref()?.trims[side]?;
@@ -84,10 +86,10 @@ impl Corners {
                 corner,
             })
         };
-        if chord.at < reach(ring.before(chord.edge)) {
+        if chord.at < reach(ring.before(chord.edge), chord.edge) {
             trims.extend(trim(chord.edge, 1));
         }
-        if edge.length - chord.at - chord.length < reach(after) {
+        if edge.length - chord.at - chord.length < reach(after, after) {
             trims.extend(trim(after, 0));
         }
         // A curved edge may bend back over the line: its seam line is not cut.
@@ -221,7 +223,7 @@ fn corner_finding(ring: &Ring, edge: usize, outcome: Outcome) -> Option<Finding>
         Outcome::CutOff(asked) => Some(Finding::CutOff {
             corner,
             asked,
-            kept: MITRE_LIMIT * widths[0].max(widths[1]),
+            kept: ring.edges[edge].limit * widths[0].max(widths[1]),
         }),
         Outcome::Mitred(asked) => Some(Finding::Mitred { corner, asked }),
     }

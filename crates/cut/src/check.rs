@@ -3,6 +3,7 @@
 use crate::ring::Ring;
 use crate::{CutError, EdgeIndex, SeamEdge, SeamLine};
 use toile_geometry::{Polygon, PolygonDefect};
+use toile_pattern::MitreLimit;
 
 /// Ends of edges may lie this far apart \[m\]: rounding of formulas and files, and far below what
 /// can be cut.
@@ -47,6 +48,9 @@ fn check_edges(edges: &[SeamEdge], ring: usize) -> Result<(), CutError> {
         }
         if !(edge.width >= 0.0 && edge.width.is_finite()) {
             return Err(CutError::Width(index));
+        }
+        if !(MitreLimit::RANGE[0]..=MitreLimit::RANGE[1]).contains(&edge.limit) {
+            return Err(CutError::Limit(index));
         }
         let gap = (edge.curve.end() - edges[(k + 1) % edges.len()].curve.start()).norm();
         if gap > CLOSED {

@@ -5,13 +5,14 @@
 //! `n x m = sin φ`, `n . m = cos φ`. Everything below is relative to `p`.
 
 use toile_geometry::{Vec2, ring_area};
+use toile_pattern::MitreLimit;
 
 /// How the cut line turns at a corner where the piece is convex. At an inner corner the two cut
 /// lines meet on their own, whatever is asked: no cloth is added there and none taken away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Corner {
     /// Both cut lines run on until they meet, in `p + r` with `n.r = a`, `m.r = b`; a tip
-    /// farther than [`MITRE_LIMIT`] times the wider allowance is cut off there, square to `r`.
+    /// farther than the corner's limit is cut off there, square to `r`.
     #[default]
     Mitre,
     /// Straight across from the end of one allowance to that of the other.
@@ -31,9 +32,9 @@ pub enum Corner {
     MirroredInNext,
 }
 
-/// No corner reaches farther than this times the wider of its allowances: beyond, a point of
-/// cloth is in the way of the sewing. 2.5 keeps mitres down to 47 degrees whole.
-pub const MITRE_LIMIT: f64 = 2.5;
+/// No corner reaches farther than this times the wider of its allowances unless it is asked to:
+/// beyond, a point of cloth is in the way of the sewing. 2.5 keeps mitres down to 47 degrees whole.
+pub const MITRE_LIMIT: f64 = MitreLimit::USUAL;
 
 /// Corners that turn by less are none (sine of the angle): the ends of two allowances of 40 mm
 /// are then 0.4 um apart, and wedges between them would be lost on the union's grid.
@@ -127,10 +128,11 @@ struct Turn {
     limit: f64,
 }
 
-/// The cloth at a corner between outward normals `n` and `m` with widths `a` and `b`; nothing
-/// where the seam line turns inwards, not at all, or has no allowance.
+/// The cloth at a corner between outward normals `n` and `m` with widths `a` and `b`, which reaches
+/// up to the limit times the wider; nothing where the seam line turns inwards, not at all, or has no
+/// allowance.
 pub(crate) fn corner_cloth(
-    kind: Corner,
+    (kind, limit): (Corner, f64),
     normals: [Vec2; 2],
     widths: [f64; 2],
 ) -> Option<CornerCloth> {
@@ -152,7 +154,7 @@ pub(crate) fn corner_cloth(
         },
         sin: sin.max(0.0),
         cos,
-        limit: MITRE_LIMIT * a.max(b),
+        limit: limit * a.max(b),
     };
     let mut cloth = match kind {
         Corner::Mitre => turn.mitre(),

@@ -465,6 +465,10 @@ fn error_words((pattern, piece): (&Pattern, &Piece), seam: &NamedSeam, error: &C
             "{} has an allowance that is negative or not a finite number",
             words(*edge)
         ),
+        CutError::Limit(edge) => format!(
+            "{} starts at a corner whose limit is not from 1 to 100",
+            words(*edge)
+        ),
         CutError::Open(edge, gap) => format!(
             "{} ends {:.3} mm from where the next edge starts",
             words(*edge),

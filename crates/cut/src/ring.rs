@@ -40,6 +40,8 @@ pub(crate) struct RingEdge {
     pub width: f64,
     /// The corner at its start, previous and next in the ring's direction.
     pub corner: Corner,
+    /// How many times the wider allowance the cut line may reach from there.
+    pub limit: f64,
     /// Its chords, as a range of [`Ring::chords`].
     pub chords: std::ops::Range<usize>,
     /// Length of its chords [m].
@@ -126,12 +128,13 @@ impl Ring {
         };
         for step in 0..count {
             let source = if reversed { count - 1 - step } else { step };
-            let corner = if reversed {
-                edges[(source + 1) % count].corner.reversed()
+            let (corner, limit) = if reversed {
+                let next = &edges[(source + 1) % count];
+                (next.corner.reversed(), next.limit)
             } else {
-                edges[source].corner
+                (edges[source].corner, edges[source].limit)
             };
-            ring.push(&flat[source], source, edges[source].width, corner);
+            ring.push(&flat[source], source, edges[source].width, (corner, limit));
             if let Some(edge) = ring.edges.last_mut().filter(|edge| edge.source == source) {
                 edge.set_ends(&ring.chords, &edges[source].curve, reversed);
             }
@@ -139,7 +142,7 @@ impl Ring {
         ring
     }
 
-    fn push(&mut self, points: &[Vec2], source: usize, width: f64, corner: Corner) {
+    fn push(&mut self, points: &[Vec2], source: usize, width: f64, (corner, limit): (Corner, f64)) {
         let start = self.chords.len();
         let mut at = 0.0;
         for pair in points.windows(2) {
@@ -163,6 +166,7 @@ impl Ring {
                 source,
                 width,
                 corner,
+                limit,
                 chords: start..self.chords.len(),
                 length: at,
                 ends: [self.chords[start], self.chords[self.chords.len() - 1]].map(|c| c.normal),

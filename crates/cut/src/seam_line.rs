@@ -12,6 +12,9 @@ pub struct SeamEdge {
     pub width: f64,
     /// How the cut line turns at the edge's start.
     pub corner: Corner,
+    /// How many times the wider allowance the cut line may reach from there: [`crate::MITRE_LIMIT`]
+    /// usually, 1 to 100.
+    pub limit: f64,
 }
 
 /// A dart that is sewn shut and pressed to one side, drawn as two edges of the outline that meet
@@ -53,6 +56,9 @@ pub enum CutError {
     /// A width is negative or not a finite number.
     #[error("{0:?} has an allowance that is negative or not a finite number")]
     Width(EdgeIndex),
+    /// A corner's limit is not from 1 to 100.
+    #[error("{0:?} starts at a corner whose limit is not from 1 to 100")]
+    Limit(EdgeIndex),
     /// An edge does not end where the next one starts.
     #[error("{0:?} ends {1} m from where the next edge starts")]
     Open(EdgeIndex, f64),

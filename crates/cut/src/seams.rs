@@ -1,9 +1,9 @@
 //! A drafted piece as a seam line: allowances, corners and darts as the cut line takes them.
 
-use crate::{Corner, CutOptions, Dart, SeamEdge, SeamLine};
+use crate::{Corner, CutOptions, Dart, MITRE_LIMIT, SeamEdge, SeamLine};
 use std::f64::consts::FRAC_PI_8;
 use toile_geometry::{Curve, Vec2, ring_area};
-use toile_pattern::{Corner as Asked, EdgeOrigin, Piece, PieceEdge};
+use toile_pattern::{Corner as Asked, EdgeOrigin, MitreLimit, Piece, PieceEdge};
 
 /// A seam line with the names of its edges, loop by loop: the outline, then each hole.
 #[derive(Clone, Debug, Default)]
@@ -190,19 +190,30 @@ fn edges_of(edges: &[PieceEdge], plane: &Plane, block: f64) -> (Vec<SeamEdge>, V
             false => edge.seam_allowance.max(0.0) + block,
         };
         for (part, curve) in plane.curves(edge.curve).into_iter().enumerate() {
-            let corner = match part {
-                0 => corner_of(before, edge),
-                _ => Corner::Mitre,
+            let (corner, limit) = match part {
+                0 => (corner_of(before, edge), limit_of(edge.corner.limit)),
+                _ => (Corner::Mitre, MITRE_LIMIT),
             };
             made.push(SeamEdge {
                 curve,
                 width,
                 corner,
+                limit,
             });
             names.push(edge.origin);
         }
     }
     (made, names)
+}
+
+/// How many times the wider allowance a corner reaches. None at all is the most that may be asked: a
+/// mitre of a little more than one degree.
+fn limit_of(limit: MitreLimit) -> f64 {
+    let [least, most] = MitreLimit::RANGE;
+    match limit {
+        MitreLimit::Widths(widths) => widths.clamp(least, most),
+        MitreLimit::None => most,
+    }
 }
 
 /// How the cut line turns at the start of an edge. Kinds that name one of its two edges name the
@@ -211,7 +222,7 @@ fn edges_of(edges: &[PieceEdge], plane: &Plane, block: f64) -> (Vec<SeamEdge>, V
 fn corner_of(before: &PieceEdge, edge: &PieceEdge) -> Corner {
     let own_image =
         before.origin.name == edge.origin.name && before.origin.half != edge.origin.half;
-    match (edge.corner, edge.reversed) {
+    match (edge.corner.kind, edge.reversed) {
         (Asked::Mitre, _) => Corner::Mitre,
         (Asked::Bevel, _) => Corner::Bevel,
         (Asked::Extended, _) => Corner::Extended,

@@ -129,6 +129,43 @@ fn a_sharp_mitre_is_cut_square_to_its_tip() {
 }
 
 #[test]
+fn a_corner_reaches_as_far_as_its_limit_asks() {
+    let widths = [0.01, 0.012];
+    let at = lines(150.0, widths);
+    let tip = meet(at.cut_before, at.cut_after);
+    let reach = tip.norm() / 0.012;
+    for (limit, is_whole) in [
+        (1.0, false),
+        (reach * 0.99, false),
+        (reach * 1.01, true),
+        (100.0, true),
+    ] {
+        let mut seam = cornered(150.0, Corner::Mitre, widths);
+        seam.outline[1].limit = limit;
+        let cut = cut_line(&seam).unwrap();
+        assert_eq!(
+            cut.findings.is_empty(),
+            is_whole,
+            "{limit}: {:?}",
+            cut.findings
+        );
+        let farthest = cut.outline.points.iter().map(|p| p.dot(&tip) / tip.norm());
+        let farthest = farthest.fold(f64::NEG_INFINITY, f64::max);
+        let asked = tip.norm().min(limit * 0.012);
+        assert!(
+            (farthest - asked).abs() < EXACT,
+            "{limit}: {farthest} for {asked}"
+        );
+    }
+    for limit in [0.5, 101.0, f64::NAN] {
+        let mut seam = cornered(150.0, Corner::Mitre, widths);
+        seam.outline[1].limit = limit;
+        let refused = matches!(cut_line(&seam), Err(CutError::Limit(at)) if at.edge == 1);
+        assert!(refused, "{limit}");
+    }
+}
+
+#[test]
 fn a_bevel_goes_straight_across() {
     for degrees in [20.0, 90.0, 150.0] {
         let at = lines(degrees, [0.01, 0.011]);

@@ -22,6 +22,7 @@ fn circle(radius: f64, width: f64, bulge: f64) -> Vec<SeamEdge> {
     let ends = [Vec2::new(radius, 0.0), Vec2::new(-radius, 0.0)];
     (0..2)
         .map(|k| SeamEdge {
+            limit: toile_cut::MITRE_LIMIT,
             curve: Curve::Arc {
                 start: ends[k],
                 end: ends[1 - k],
@@ -200,6 +201,7 @@ fn a_curve_tighter_than_its_allowance_is_swallowed() {
     // In the top edge, walked to the left: down, round and up.
     let p = |x: f64, y: f64| Vec2::new(x, y);
     let edge = |curve: Curve, width: f64| SeamEdge {
+        limit: toile_cut::MITRE_LIMIT,
         curve,
         width,
         corner: Corner::Mitre,

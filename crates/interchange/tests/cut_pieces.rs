@@ -279,7 +279,7 @@ fn halves_and_copies_are_mirror_images() {
         toile_pattern::Corner::Bevel,
     ] {
         for edge in draft.pieces.iter_mut().flat_map(|p| &mut p.outline) {
-            edge.corner = kind;
+            edge.corner.kind = kind;
         }
         let piece = cut(&pattern, &draft, &CutOptions::default());
         let fold = piece.fold.unwrap();

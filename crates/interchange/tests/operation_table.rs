@@ -206,6 +206,7 @@ impl Made {
             mouth: self.mark(row.words[0], row.number(1)),
             intake: row.metres(2).into(),
             apex: Apex::Depth(row.metres(3).into()),
+            trued: false,
             pressed: Pressed::default(),
         };
         self.plan(row, |e, p| plan::add_operation(e, p, kind))

@@ -62,7 +62,10 @@ fn files_of_earlier_versions_draft_as_recorded() {
     for recorded in table.split("file ").filter(|part| part.contains('\n')) {
         let (name, recorded) = recorded.split_once('\n').unwrap();
         let text = std::fs::read_to_string(folder.join(format!("{name}.json"))).unwrap();
+        // Kinks were not told when the drafts were recorded.
         let now = draft_table(&text);
+        let lines = now.lines().filter(|line| !line.starts_with("note Kink"));
+        let now: String = lines.map(|line| format!("{line}\n")).collect();
         files += 1;
         if name.starts_with("unsound") {
             let (now, recorded) = (findings(&now), findings(recorded));

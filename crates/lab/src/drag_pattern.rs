@@ -86,10 +86,16 @@ fn panel(pattern: &mut Pattern, number: usize) -> (PanelId, Vec<Edge>) {
                 mouth: Mark::between(edges[4 * k].ends, 0.5),
                 intake: INTAKE.into(),
                 apex: Apex::Point(beside[k]),
+                trued: false,
                 pressed: Pressed::default(),
             };
             let (id, name) = (drawing.id(), format!("dart {k}"));
-            Arc::new(Operation { id, name, kind })
+            Arc::new(Operation {
+                id,
+                name,
+                kind,
+                meant: false,
+            })
         })
         .into();
     let notches: Vec<Notch> = [1, 11, 21, 31]

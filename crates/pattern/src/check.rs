@@ -41,6 +41,7 @@ impl Evaluation {
             check_seam(&drafting.draft, seam, *ease, &mut diagnostics);
         }
         diagnostics.extend(turned_pieces(&drafting.draft));
+        diagnostics.extend(self.kinks(&drafting.draft));
         for panel in &self.pattern().panels {
             let stage = self.last_stage(panel);
             let idle = stage.map_or(&[][..], |stage| &stage.idle);

@@ -58,6 +58,10 @@ pub enum Code {
     DartTooWide,
     /// A dart's apex lies outside its panel.
     DartOutside,
+    /// A dart is not trued: no smooth line leads across its mouth.
+    NotTrued,
+    /// An edge that runs on across a dart, a pleat or a seam has a kink there.
+    Kink,
     /// A dart cannot be pivoted so.
     BadPivot,
     /// A panel cannot be cut so.

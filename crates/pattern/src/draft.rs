@@ -2,7 +2,7 @@
 
 use crate::stage::StageDart;
 use crate::{
-    Corner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId, Role,
+    EdgeCorner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId, Role,
     SeamId,
 };
 use serde::{Deserialize, Serialize};
@@ -104,7 +104,7 @@ pub struct PieceEdge {
     /// Width of cloth left outside it for the seam [m].
     pub seam_allowance: f64,
     /// How the cut line turns the corner at its start.
-    pub corner: Corner,
+    pub corner: EdgeCorner,
     /// Whether it runs against the edge as drawn, as on a mirror image: the corner at its start is
     /// then that at the end of the edge as drawn.
     pub reversed: bool,

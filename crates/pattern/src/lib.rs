@@ -12,6 +12,7 @@ mod evaluate;
 mod fabric;
 mod formula;
 mod ids;
+mod kinks;
 mod name;
 mod number;
 mod orientation;

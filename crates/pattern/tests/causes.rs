@@ -10,7 +10,7 @@ use toile_pattern::*;
 
 /// Checks that the pattern has exactly the faults named, and each a message and a remedy.
 fn check(pattern: &Pattern, expected: &[(Code, Place)]) {
-    let found = pattern.check(&Measurements::adult());
+    let found = faults(pattern);
     let places: Vec<_> = found.iter().map(|d| (d.code, d.place.clone())).collect();
     assert_eq!(places, expected, "{found:#?}");
     for diagnostic in &found {
@@ -131,6 +131,7 @@ fn marks_are_placed_by_corners_that_operations_make() {
         },
         intake: 0.02.into(),
         apex: Apex::Depth(0.1.into()),
+        trued: false,
         pressed: toile_pattern::Pressed::default(),
     };
     let second = put_operation(&mut pattern, 0, "second dart", kind);

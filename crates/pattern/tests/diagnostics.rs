@@ -10,7 +10,7 @@ use toile_pattern::*;
 
 /// Checks that the pattern has exactly the faults named, and each a message and a remedy.
 fn check(pattern: &Pattern, expected: &[(Code, Place)]) {
-    let found = pattern.check(&Measurements::adult());
+    let found = faults(pattern);
     let places: Vec<_> = found.iter().map(|d| (d.code, d.place.clone())).collect();
     assert_eq!(places, expected, "{found:#?}");
     for diagnostic in &found {
@@ -48,7 +48,7 @@ fn loose_edge(pattern: &mut Pattern, name: &str, ends: [PointId; 2]) -> Edge {
         curve,
         ends,
         allowance: None,
-        corner: None,
+        corner: EdgeCorner::default(),
     }
 }
 
@@ -304,7 +304,7 @@ fn darts_that_do_not_fit() {
         let mut pattern = sample();
         let kind = dart(&pattern, "top", at, width, Apex::Depth(depth.into()));
         let id = put_operation(&mut pattern, 0, "dart", kind);
-        let found = pattern.check(&Measurements::adult());
+        let found = faults(&pattern);
         assert_eq!(found.first().map(|d| d.code), code, "{found:?}");
         let place = Place::Operation(front(&pattern), id);
         let here = |d: &Diagnostic| d.place == place;

@@ -360,6 +360,7 @@ fn a_corner_that_something_is_placed_by_stays_a_point() {
                 },
                 intake: 0.01.into(),
                 apex: Apex::Depth(0.1.into()),
+                trued: false,
                 pressed: toile_pattern::Pressed::default(),
             };
             put_operation(pattern, 0, "beside it", kind);

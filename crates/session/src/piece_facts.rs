@@ -230,7 +230,7 @@ fn edge_facts(of: (&Pattern, PanelId), edge: &PieceEdge) -> EdgeFacts {
         half: edge.origin.half,
         length_mm: edge.curve.length() * 1e3,
         allowance_mm: edge.seam_allowance * 1e3,
-        corner: match edge.corner {
+        corner: match edge.corner.kind {
             Corner::Mitre => "mitre",
             Corner::Bevel => "bevel",
             Corner::Square => "square",

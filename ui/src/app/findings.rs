@@ -20,12 +20,17 @@ impl ToileApp {
                 .count()
         };
         let (faults, warnings) = (count(Severity::Error), count(Severity::Warning));
+        let notes = count(Severity::Note);
         let several = |count: usize, word: &str| match count {
             1 => format!("1 {word}"),
             _ => format!("{count} {word}s"),
         };
         let (words, colour) = match (faults, warnings) {
-            (0, 0) => ("No faults".to_owned(), palette.accent),
+            (0, 0) if notes == 0 => ("No faults".to_owned(), palette.accent),
+            (0, 0) => (
+                format!("No faults, {}", several(notes, "note")),
+                palette.accent,
+            ),
             (0, w) => (several(w, "warning"), palette.warning),
             (f, 0) => (several(f, "fault"), palette.fault),
             (f, w) => (

@@ -4,6 +4,7 @@ use crate::app::ToileApp;
 use crate::canvas::selection::{Item, Selection};
 use crate::fields::choice;
 use egui::{Button, RichText, Ui};
+use std::sync::Arc;
 use toile_pattern::plan;
 use toile_pattern::{
     Bridge, OperationId, OperationKind, PanelId, PleatKind, Pressed, Side, Turned,
@@ -68,7 +69,12 @@ impl ToileApp {
         };
         let mut kind = step.kind.clone();
         match &mut kind {
-            OperationKind::Dart { pressed, .. } => press_choice(ui, pressed),
+            OperationKind::Dart { pressed, trued, .. } => {
+                press_choice(ui, pressed);
+                ui.checkbox(trued, "True the edge").on_hover_text(
+                    "The edge is redrawn so that it runs on smoothly across the mouth once the dart is closed",
+                );
+            }
             OperationKind::Pivot {
                 turned, pressed, ..
             } => {
@@ -99,6 +105,22 @@ impl ToileApp {
             | OperationKind::Fold { .. }
             | OperationKind::Split { .. }
             | OperationKind::Insert { .. } => {}
+        }
+        let mut meant = step.meant;
+        if matches!(
+            kind,
+            OperationKind::Dart { trued: false, .. } | OperationKind::Pivot { .. }
+        ) {
+            ui.checkbox(&mut meant, "Kink is meant")
+                .on_hover_text("No finding tells that the edge turns across the closed mouth");
+        }
+        if meant != step.meant {
+            let edits = self.changed_panel(owner.id, |panel| {
+                for step in panel.operations.iter_mut().filter(|step| step.id == id) {
+                    Arc::make_mut(step).meant = meant;
+                }
+            });
+            self.edit(edits, "Change step");
         }
         if kind != step.kind {
             let owner = owner.id;

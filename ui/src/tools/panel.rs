@@ -57,6 +57,7 @@ pub static DART: SlotTool = SlotTool {
             intake: intake.clone(),
             apex: Apex::Depth(depth.clone()),
             pressed: Pressed::default(),
+            trued: true,
         };
         operation(reading, *panel, kind, "Add dart")
     },

@@ -91,6 +91,11 @@ impl Drafter {
         self.click(found.rect().center());
     }
 
+    /// Clicks a tick of the inspector.
+    pub fn tick(&mut self, name: &str) {
+        self.click_on(Role::CheckBox, name);
+    }
+
     pub fn key(&mut self, key: Key) {
         self.chord(Modifiers::NONE, key);
     }

@@ -31,6 +31,7 @@ pub fn seam_of(points: &[Vec2], widths: &[f64]) -> SeamLine {
 pub fn loop_of(points: &[Vec2], widths: &[f64]) -> Vec<SeamEdge> {
     (0..points.len())
         .map(|k| SeamEdge {
+            limit: toile_cut::MITRE_LIMIT,
             curve: line(points[k], points[(k + 1) % points.len()]),
             width: widths[k],
             corner: Corner::Mitre,
@@ -62,6 +63,7 @@ pub fn reversed_loop(edges: &[SeamEdge]) -> Vec<SeamEdge> {
     let n = edges.len();
     (0..n)
         .map(|k| SeamEdge {
+            limit: toile_cut::MITRE_LIMIT,
             curve: edges[n - 1 - k].curve.reversed(),
             width: edges[n - 1 - k].width,
             corner: other_way(edges[(n - k) % n].corner),

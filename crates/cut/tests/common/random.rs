@@ -40,6 +40,7 @@ impl<'a> Draw<'a> {
 
     fn edge(&mut self, curve: Curve) -> SeamEdge {
         SeamEdge {
+            limit: toile_cut::MITRE_LIMIT,
             curve,
             width: self.width(),
             corner: KINDS[((self.unit() * 7.0) as usize).min(6)],

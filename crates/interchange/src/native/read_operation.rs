@@ -25,7 +25,7 @@ const KINDS: [(&str, Read); 8] = [
 
 /// Reads an operation.
 pub fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, FormatError> {
-    let own = ["id", "name"];
+    let own = ["id", "name", "meant"];
     let known: Vec<&str> = own
         .into_iter()
         .chain(KINDS.iter().map(|kind| kind.0))
@@ -49,11 +49,14 @@ pub fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operati
         id: reader.own(&fields.need("id")?)?,
         name: fields.need("name")?.name()?.to_owned(),
         kind,
+        meant: fields.flag_or("meant", false)?,
     })
 }
 
 fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
-    let known = &["line", "mouth", "intake", "depth", "apex", "pressed"];
+    let known = &[
+        "line", "mouth", "intake", "depth", "apex", "pressed", "trued",
+    ];
     let fields = item.object(known, &mut reader.notes)?;
     fields.of_one_kind(&[], &[(1, &["apex"]), (1, &["depth"])])?;
     Ok(OperationKind::Dart {
@@ -65,6 +68,7 @@ fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, F
             None => Apex::Depth(reader.number(&fields.need("depth")?, Measure::Length)?),
         },
         pressed: pressed(fields.get("pressed"))?,
+        trued: fields.flag_or("trued", false)?,
     })
 }
 

@@ -8,7 +8,10 @@ use super::read_seam::mark;
 use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, SIDES, WORN};
 use crate::FormatError;
 use std::sync::Arc;
-use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, SheetId, Source, WornRule};
+use toile_pattern::{
+    Corner, Cut, Edge, EdgeCorner, Line, MitreLimit, Notch, NotchKind, Number, Panel, SheetId,
+    Source, WornRule,
+};
 
 /// The sheet a panel is traced from, or the panel it is a side of.
 fn source<'a>(reader: &mut Reader<'a>, fields: &Object<'a>) -> Result<Source, FormatError> {
@@ -160,7 +163,17 @@ fn line<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Line, FormatErro
         edges: Vec::new(),
     };
     for item in fields.items("edges")? {
-        let known = &["id", "name", "curve", "from", "to", "allowance", "corner"];
+        let known = &[
+            "id",
+            "name",
+            "curve",
+            "from",
+            "to",
+            "allowance",
+            "corner",
+            "limit",
+            "meant",
+        ];
         let fields = item.object(known, &mut reader.notes)?;
         line.edges.push(Edge {
             id: reader.own(&fields.need("id")?)?,
@@ -171,11 +184,31 @@ fn line<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Line, FormatErro
                 reader.reference(&fields.need("to")?)?,
             ],
             allowance: optional(reader, &fields, "allowance")?,
-            corner: match fields.get("corner") {
-                Some(corner) => Some(corner.choice(CORNERS)?),
-                None => None,
+            corner: EdgeCorner {
+                kind: match fields.get("corner") {
+                    Some(corner) => corner.choice(CORNERS)?,
+                    None => Corner::default(),
+                },
+                limit: match fields.get("limit") {
+                    Some(limit) => mitre_limit(&limit)?,
+                    None => MitreLimit::default(),
+                },
+                meant: fields.flag_or("meant", false)?,
             },
         });
     }
     Ok(line)
+}
+
+/// How far a cut line may reach from a corner: a number of widths, or `"none"`.
+fn mitre_limit(item: &Item<'_>) -> Result<MitreLimit, FormatError> {
+    let [least, most] = MitreLimit::RANGE;
+    if item.text().is_ok_and(|text| text == "none") {
+        return Ok(MitreLimit::None);
+    }
+    let hint = format!("give a number of widths from {least} to {most}, or \"none\"");
+    match item.plain_value() {
+        Ok(widths) if (least..=most).contains(&widths) => Ok(MitreLimit::Widths(widths)),
+        _ => Err(item.error("it is no limit of a corner", hint)),
+    }
 }

@@ -21,6 +21,7 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             intake,
             apex,
             pressed,
+            trued,
         } => {
             own.put("line", name(*line));
             own.put("mouth", mark(writer, mouth, &what)?);
@@ -32,6 +33,9 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
                 Apex::Point(point) => own.put("apex", count(point.0)),
             }
             put_pressed(&mut own, *pressed);
+            if *trued {
+                own.put("trued", Value::Flag(true));
+            }
             "dart"
         }
         OperationKind::Diamond {
@@ -124,6 +128,9 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
         }
     };
     fields.put(kind, own.done());
+    if operation.meant {
+        fields.put("meant", Value::Flag(true));
+    }
     Ok(fields.done())
 }
 

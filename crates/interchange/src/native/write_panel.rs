@@ -6,7 +6,10 @@ use super::write::{Fields, Measure, Writer, count, list, named, plain_value, tex
 use super::write_operation::operation;
 use super::write_seam::mark;
 use crate::FormatError;
-use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, Source, WornRule};
+use toile_pattern::{
+    Corner, Cut, Edge, EdgeCorner, Line, MitreLimit, Notch, NotchKind, Number, Panel, Source,
+    WornRule,
+};
 
 /// Writes a panel.
 pub fn panel(writer: &Writer<'_>, panel: &Panel) -> Result<Value, FormatError> {
@@ -125,10 +128,22 @@ fn edge(writer: &Writer<'_>, edge: &Edge) -> Result<Value, FormatError> {
             writer.number(allowance, Measure::Length, &what)?,
         );
     }
-    fields.put_if(
-        "corner",
-        edge.corner.map(|corner| text(word(CORNERS, &corner))),
-    );
+    let EdgeCorner { kind, limit, meant } = edge.corner;
+    if kind != Corner::default() {
+        fields.put("corner", text(word(CORNERS, &kind)));
+    }
+    match limit {
+        limit if limit == MitreLimit::default() => {}
+        MitreLimit::Widths(widths) => {
+            let what = format!("edge {:?}, limit of its corner", edge.name);
+            let widths = Number::Value(widths);
+            fields.put("limit", writer.number(&widths, Measure::Plain, &what)?);
+        }
+        MitreLimit::None => fields.put("limit", text("none")),
+    }
+    if meant {
+        fields.put("meant", Value::Flag(true));
+    }
     Ok(fields.done())
 }
 

@@ -87,7 +87,7 @@ pub fn with_allowances(pattern: &Pattern, width: Option<f64>, seed: u64) -> Patt
             let mixed = ALLOWANCES[dice.below(9)];
             edge.allowance = Some(Number::Value(width.unwrap_or(mixed)));
             if width.is_none() {
-                edge.corner = Some(CORNERS[dice.below(5)]);
+                edge.corner.kind = CORNERS[dice.below(5)];
             }
         }
     }
@@ -148,10 +148,12 @@ pub fn star_pattern(seed: u64) -> Pattern {
     let operation = |drawing: &mut PanelBuilder<'_>, name: &str, kind: OperationKind| {
         let id = drawing.id();
         let name = name.to_owned();
-        drawing
-            .panel
-            .operations
-            .push(Arc::new(Operation { id, name, kind }));
+        drawing.panel.operations.push(Arc::new(Operation {
+            id,
+            name,
+            kind,
+            meant: false,
+        }));
     };
     if seed % 4 == 1 {
         let dart = OperationKind::Dart {
@@ -159,6 +161,7 @@ pub fn star_pattern(seed: u64) -> Pattern {
             mouth: Mark::between(edges[1].ends, 0.5),
             intake: Number::Value(0.1 * size),
             apex: Apex::Depth(Number::Value(0.3 * size)),
+            trued: false,
             pressed: Pressed::After,
         };
         operation(&mut drawing, "dart", dart);

@@ -241,6 +241,7 @@ fn draw(
         }
         let id: OperationId = drawing.id();
         drawing.panel.operations.push(Arc::new(Operation {
+            meant: false,
             id,
             name: "fold".into(),
             kind: OperationKind::Fold {

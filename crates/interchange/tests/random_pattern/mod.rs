@@ -243,7 +243,13 @@ fn panel(dice: &mut Dice, ids: &mut Ids, k: usize, pattern: &Pattern) -> (Arc<Sh
             let rule = curve(dice, &points);
             let mut edge = drawing.edge(format!("{name}{j}"), at, rule);
             edge.allowance = dice.chance(20).then(|| dice.number());
-            edge.corner = dice.chance(20).then_some(Corner::Mirrored);
+            if dice.chance(20) {
+                edge.corner.kind = Corner::Mirrored;
+            }
+            edge.corner.meant = dice.chance(10);
+            if dice.chance(10) {
+                edge.corner.limit = MitreLimit::None;
+            }
             edges.push(edge);
         }
         edges
@@ -469,6 +475,7 @@ fn details(dice: &mut Dice, drawing: &mut PanelBuilder<'_>, points: &[PointId]) 
                     true => Apex::Depth(dice.share()),
                     false => Apex::Point(any(dice)),
                 },
+                trued: dice.chance(50),
                 pressed: match dice.chance(50) {
                     true => Pressed::Before,
                     false => Pressed::After,
@@ -476,6 +483,7 @@ fn details(dice: &mut Dice, drawing: &mut PanelBuilder<'_>, points: &[PointId]) 
             },
         };
         let operation = Operation {
+            meant: dice.chance(10),
             id: drawing.id(),
             name: format!("operation {k}"),
             kind,

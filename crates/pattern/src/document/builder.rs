@@ -1,7 +1,8 @@
 //! Builds a sheet and the panel traced from it together, for importers.
 
 use super::{
-    Curve, CurveRule, Edge, Line, LineKind, Panel, Pattern, Point, PointRule, Sheet, Span,
+    Curve, CurveRule, Edge, EdgeCorner, Line, LineKind, Panel, Pattern, Point, PointRule, Sheet,
+    Span,
 };
 use crate::{CurveId, EdgeId, FabricId, Ids, LineId, Mark, Name, PanelId, PointId, SheetId};
 use std::sync::Arc;
@@ -55,7 +56,7 @@ impl<'i> PanelBuilder<'i> {
             curve,
             ends,
             allowance: None,
-            corner: None,
+            corner: EdgeCorner::default(),
         }
     }
 

@@ -19,7 +19,10 @@ pub use marker::{
 pub use operation::{
     Apex, Bridge, Operation, OperationKind, PleatKind, PleatLine, Pressed, Side, SpreadCut, Turned,
 };
-pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
+pub use panel::{
+    Corner, Cut, Edge, EdgeCorner, Line, LineKind, MitreLimit, Notch, NotchKind, Panel, Source,
+    WornRule,
+};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};
 

@@ -12,6 +12,9 @@ pub struct Operation {
     pub name: String,
     /// Its kind.
     pub kind: OperationKind,
+    /// Whether a kink of the edge that runs on across what it makes is meant.
+    #[serde(default)]
+    pub meant: bool,
 }
 
 /// The kinds of operations.
@@ -29,6 +32,10 @@ pub enum OperationKind {
         apex: Apex,
         /// The leg it is pressed towards once it is sewn.
         pressed: Pressed,
+        /// Whether it is trued: the edge redrawn so that it runs on smoothly across the mouth once
+        /// the dart is closed, its legs equally long.
+        #[serde(default)]
+        trued: bool,
     },
     /// A dart inside the panel, pointed at both ends.
     Diamond {
@@ -336,6 +343,11 @@ impl OperationKind {
 }
 
 impl OperationKind {
+    /// Whether it redraws an edge across darts that are trued: a dart, or the pivot of one.
+    pub fn may_true(&self) -> bool {
+        matches!(self, Self::Dart { trued: true, .. } | Self::Pivot { .. })
+    }
+
     /// What it is called.
     pub fn word(&self) -> &'static str {
         match self {

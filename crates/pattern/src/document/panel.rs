@@ -93,15 +93,75 @@ pub struct Edge {
     pub ends: [PointId; 2],
     /// Width of cloth outside it [m]; nothing means the panel's.
     pub allowance: Option<Number>,
-    /// How the cut line turns the corner at its start; nothing means a mitre.
-    pub corner: Option<Corner>,
+    /// The corner at its start.
+    pub corner: EdgeCorner,
+}
+
+/// What is asked of a corner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "WrittenCorner")]
+pub struct EdgeCorner {
+    /// How the cut line turns it.
+    pub kind: Corner,
+    /// How far the cut line may reach there.
+    pub limit: MitreLimit,
+    /// Whether a kink of the line that goes on there across a seam is meant.
+    pub meant: bool,
+}
+
+/// A corner as a journal has it: of earlier versions its kind alone, or nothing.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum WrittenCorner {
+    Whole {
+        kind: Corner,
+        limit: MitreLimit,
+        meant: bool,
+    },
+    Kind(Option<Corner>),
+}
+
+impl From<WrittenCorner> for EdgeCorner {
+    fn from(written: WrittenCorner) -> Self {
+        match written {
+            WrittenCorner::Whole { kind, limit, meant } => Self { kind, limit, meant },
+            WrittenCorner::Kind(kind) => Self {
+                kind: kind.unwrap_or_default(),
+                ..Self::default()
+            },
+        }
+    }
+}
+
+/// How far from a corner its cut line may reach.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MitreLimit {
+    /// So many times the wider of both allowances; beyond, it is cut off.
+    Widths(f64),
+    /// As far as both lines run.
+    None,
+}
+
+impl MitreLimit {
+    /// What is asked where nothing is: mitres down to 47 degrees are whole.
+    pub const USUAL: f64 = 2.5;
+    /// The least and the most that may be asked.
+    pub const RANGE: [f64; 2] = [1.0, 100.0];
+}
+
+impl Default for MitreLimit {
+    fn default() -> Self {
+        Self::Widths(Self::USUAL)
+    }
 }
 
 /// How a cut line turns a corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Corner {
     /// Both lines run on until they meet.
+    #[default]
     Mitre,
     /// Cut off straight.
     Bevel,

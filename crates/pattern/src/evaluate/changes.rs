@@ -131,6 +131,13 @@ impl Evaluation {
                     &mut changed,
                 );
             }
+            // A trued edge keeps its direction where a seam ends.
+            let trued = pattern.panels.iter().flat_map(|panel| {
+                let own = panel.operations.iter();
+                let own = own.filter(|step| step.kind.may_true());
+                own.map(|step| Node::Stage(panel.id, Some(step.id)))
+            });
+            changed.extend(trued.filter_map(|node| self.index.get(&node)));
         }
         for sheet in laid {
             let marked = |point: &&Arc<Point>| matches!(point.rule, PointRule::Mark { .. });

@@ -4,10 +4,12 @@ use super::node::Node;
 use super::numbers::{Computation, Want};
 use super::panels::PanelEvaluation;
 use crate::stage::{
-    DartApex, DartError, DartMouth, FoldError, PlaceError, cut_dart, cut_diamond, unfold,
+    DartApex, DartError, DartMouth, FoldError, PlaceError, cut_dart, cut_diamond, true_darts,
+    unfold,
 };
 use crate::{
-    Apex, Code, Diagnostic, LineName, Mark, Operation, OperationKind, Panel, Place, Severity, Stage,
+    Apex, Code, CornerName, Diagnostic, LineName, Mark, Operation, OperationKind, Panel, PanelId,
+    Place, Severity, Stage,
 };
 use std::sync::Arc;
 
@@ -28,6 +30,9 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
         if !matches!(operation.kind, OperationKind::Split { .. }) {
             done.sides.clear();
         }
+        if !keeps_outline(&operation.kind) {
+            done.untrued.clear();
+        }
         done.done.push(operation.id);
         if done.idle.contains(&operation.id) {
             evaluated.note_idle(operation, place);
@@ -39,6 +44,20 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
         Arc::make_mut(&mut stage).notches.extend(notches);
     }
     Some(stage)
+}
+
+/// Whether an operation leaves the outline as it is, but for a dart that it takes out.
+fn keeps_outline(kind: &OperationKind) -> bool {
+    match kind {
+        OperationKind::Dart { .. }
+        | OperationKind::Diamond { .. }
+        | OperationKind::Insert { .. } => true,
+        OperationKind::Fold { .. }
+        | OperationKind::Pivot { .. }
+        | OperationKind::Spread { .. }
+        | OperationKind::Split { .. }
+        | OperationKind::Pleat { .. } => false,
+    }
 }
 
 impl PanelEvaluation<'_, '_, '_> {
@@ -116,6 +135,7 @@ impl PanelEvaluation<'_, '_, '_> {
             intake,
             apex,
             pressed,
+            trued,
         } = &operation.kind
         else {
             return None;
@@ -143,14 +163,16 @@ impl PanelEvaluation<'_, '_, '_> {
                     intake,
                     apex,
                     pressed: *pressed,
+                    trued: *trued,
                 };
-                cut_dart(stage, &mouth)
+                // Places on the edge are those of the edge as drawn, whatever was trued before.
+                cut_dart(&stage.as_untrued(), &mouth)
             }
             Err(PlaceError::Beyond) => Err(DartError::TooWide),
             Err(error) => Err(DartError::Place(error)),
         };
         match done {
-            Ok(stage) => return Some(stage),
+            Ok(stage) => return Some(self.trued(stage, (step, operation), place)),
             Err(DartError::Place(error)) => self.no_place(error, place, &what),
             Err(DartError::TooWide) => self.error(
                 Code::DartTooWide,
@@ -170,6 +192,55 @@ impl PanelEvaluation<'_, '_, '_> {
             ),
         }
         None
+    }
+
+    /// Corners where edges go on: into their mirror image at a fold that comes later, or across a
+    /// seam that ends there, of the panel or one that is split off it.
+    fn going_on(&self, step: usize) -> Vec<CornerName> {
+        let pattern = &self.c.evaluation.pattern;
+        let later = self.panel.operations.iter().skip(step);
+        let folds = later.filter_map(|later| match &later.kind {
+            OperationKind::Fold { ends, .. } => Some([&ends[0], &ends[1]]),
+            _ => None,
+        });
+        let is_of_it = |id: PanelId| {
+            let found = pattern.panel(id);
+            found.is_some_and(|own| pattern.lineage(own).iter().any(|p| p.id == self.panel.id))
+        };
+        let spans = pattern.seams.iter().flat_map(|seam| seam.spans());
+        let spans = spans.filter(|span| is_of_it(span.panel));
+        let ends = folds.chain(spans.map(|span| [&span.from, &span.to]));
+        ends.flatten()
+            .filter_map(|end| match end {
+                Mark::Corner(corner) => Some(*corner),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// A stage of whose darts those are trued that are to be; told where the step's own cannot be.
+    pub(super) fn trued(
+        &mut self,
+        stage: Stage,
+        (step, operation): (usize, &Operation),
+        place: &Place,
+    ) -> Stage {
+        let going_on = self.going_on(step);
+        let (stage, refused) = true_darts(stage, &going_on);
+        if refused.contains(&operation.id) {
+            let what = format!(
+                "{} {:?}: no smooth line leads across its mouth, so it is not trued",
+                operation.kind.word(),
+                operation.name
+            );
+            self.c.diagnostics.push(Diagnostic::warning(
+                Code::NotTrued,
+                place.clone(),
+                self.words(&what),
+                "move it along the edge, make it narrower, or do not true it",
+            ));
+        }
+        stage
     }
 
     fn fold(

@@ -4,7 +4,7 @@ use super::node::Node;
 use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
-    Code, Corner, Diagnostic, Edge, Line, LineKind, LineName, Mark, Name, Notch, OperationId,
+    Code, Diagnostic, Edge, EdgeCorner, Line, LineKind, LineName, Mark, Name, Notch, OperationId,
     Panel, PanelId, Pattern, Place, Role, Side, Source, Stage, StageLineage,
 };
 use std::sync::Arc;
@@ -224,8 +224,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
                 curve: *curve,
                 allowance: own.unwrap_or(general),
                 corner: match k {
-                    0 => edge.corner.unwrap_or(Corner::Mitre),
-                    _ => Corner::Mitre,
+                    0 => edge.corner,
+                    _ => EdgeCorner::default(),
                 },
             });
         Some(pieces.collect())

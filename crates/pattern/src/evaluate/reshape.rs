@@ -52,7 +52,7 @@ impl PanelEvaluation<'_, '_, '_> {
             pressed: *pressed,
         };
         let error = match pivot_dart(stage, &wish) {
-            Ok(stage) => return Some(stage),
+            Ok(stage) => return Some(self.trued(stage, (step, operation), place)),
             Err(error) => error,
         };
         let (message, hint) = match error {

@@ -3,8 +3,8 @@
 use super::impossible;
 use super::lookup::{self, place};
 use crate::{
-    Curve, CurveId, Edge, EditError, Evaluation, Ids, LineKind, Panel, Pattern, Point, PointId,
-    PointRule, Sheet, SheetId, Want,
+    Curve, CurveId, Edge, EdgeCorner, EditError, Evaluation, Ids, LineKind, Panel, Pattern, Point,
+    PointId, PointRule, Sheet, SheetId, Want,
 };
 use std::sync::Arc;
 use toile_geometry::Path;
@@ -309,7 +309,7 @@ pub(super) fn edges(
             curve: stretch.curve,
             ends: stretch.ends,
             allowance: None,
-            corner: None,
+            corner: EdgeCorner::default(),
         });
     }
     Ok(edges)

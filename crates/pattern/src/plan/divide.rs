@@ -5,8 +5,8 @@ use super::names::free_name;
 use super::on_stage::nearest_edge;
 use super::{impossible, lookup};
 use crate::{
-    Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, Name, Number,
-    Panel, PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
+    Curve, CurveId, CurveRule, Edge, EdgeCorner, EdgeId, Edit, EditError, Entity, Evaluation, Name,
+    Number, Panel, PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -71,7 +71,7 @@ pub fn divide_edge(
         id: ids.take(),
         name,
         ends: [corner, old.ends[1]],
-        corner: None,
+        corner: EdgeCorner::default(),
         ..old.clone()
     };
     for line in &mut changed.lines {

@@ -98,7 +98,12 @@ pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> Opera
     let name = free_name(kind.word(), named);
     let stage = sheet.on.and_then(|(_, after)| after);
     let at = stage.and_then(|by| panel.step_of(by)).unwrap_or(0);
-    let operation = Arc::new(Operation { id, name, kind });
+    let operation = Arc::new(Operation {
+        id,
+        name,
+        kind,
+        meant: false,
+    });
     panel.operations.insert(at, operation);
     id
 }

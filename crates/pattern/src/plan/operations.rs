@@ -31,7 +31,12 @@ pub fn add_operation(
         OperationKind::Fold { .. } => end,
         _ => changed.operations.iter().position(fold).unwrap_or(end),
     };
-    let operation = Arc::new(Operation { id, name, kind });
+    let operation = Arc::new(Operation {
+        id,
+        name,
+        kind,
+        meant: false,
+    });
     changed.operations.insert(at, operation);
     Ok((put(evaluation, changed, &[id])?, id))
 }

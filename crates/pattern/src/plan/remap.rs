@@ -240,6 +240,7 @@ impl Remap {
                 intake,
                 apex,
                 pressed: _,
+                trued: _,
             } => {
                 *line = self.name(*line);
                 self.mark(mouth);

@@ -145,6 +145,7 @@ fn with_folds(
         for ends in choices {
             let mut tried = side.clone();
             tried.operations.push(Arc::new(Operation {
+                meant: false,
                 id,
                 name: operation.name.clone(),
                 kind: OperationKind::Fold { line: *line, ends },

@@ -1,7 +1,7 @@
 //! Darts taken out of a line.
 
 use super::{NOTHING, PlaceError, Placed, Spot, Stage, StageDart, StageEdge, StageLine, with_ends};
-use crate::{Corner, LineKind, LineName, Name, OperationId, Pressed, Role};
+use crate::{EdgeCorner, LineKind, LineName, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
 /// A dart whose numbers are known.
@@ -15,6 +15,8 @@ pub(crate) struct DartMouth {
     pub intake: f64,
     pub apex: DartApex,
     pub pressed: Pressed,
+    /// Whether the edge runs on smoothly across its mouth.
+    pub trued: bool,
 }
 
 /// Where a dart ends.
@@ -57,12 +59,15 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         .filter(|&k| line.edges[k].name == dart.middle.edge)
         .collect();
     // The named edge's length, mouths of other darts included.
-    let measured = pieces.iter().find_map(|&k| {
-        let edge = &line.edges[k];
-        let covered = (edge.to - edge.from).abs();
-        (covered > 1e-12).then(|| edge.curve.length() / covered)
-    });
-    let length = measured.ok_or(DartError::Place(PlaceError::Beyond))?;
+    let covered = |k: &usize| (line.edges[*k].to - line.edges[*k].from).abs();
+    let has_middle = |k: &usize| {
+        let edge = &line.edges[*k];
+        (edge.from.min(edge.to)..=edge.from.max(edge.to)).contains(&dart.middle.share)
+    };
+    let mut long = pieces.iter().filter(|k| covered(k) > 1e-12);
+    let measured = long.clone().find(|k| has_middle(k)).or_else(|| long.next());
+    let measured = measured.ok_or(DartError::Place(PlaceError::Beyond))?;
+    let length = line.edges[*measured].curve.length() / covered(measured);
     let half = 0.5 * dart.intake / length.max(1e-12);
     let (from, to) = (dart.middle.share - half, dart.middle.share + half);
     if dart.intake < 0.0 || from < -1e-9 || to > 1.0 + 1e-9 {
@@ -119,7 +124,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
             let after = part(edge, to, edge.to, [close, edge.curve.end()]);
             edges.push(StageEdge {
                 start: Some(mouth(dart.by, 1)),
-                corner: Corner::Mitre,
+                corner: EdgeCorner::default(),
                 ..after
             });
         }
@@ -142,6 +147,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         apex,
         pivot: apex,
         pressed: dart.pressed,
+        trued: dart.trued,
     });
     Ok(result)
 }
@@ -184,7 +190,7 @@ pub(super) fn legs(by: OperationId, [open, close]: [Vec2; 2], apex: Vec2) -> [St
             to: 1.0,
             curve: Curve::Line { start, end },
             allowance: 0.0,
-            corner: Corner::Mitre,
+            corner: EdgeCorner::default(),
         }
     })
 }

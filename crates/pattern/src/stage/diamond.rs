@@ -1,7 +1,7 @@
 //! Darts inside a panel, pointed at both ends.
 
 use super::{NOTHING, Stage, StageDart, StageEdge, StageLine};
-use crate::{Corner, LineKind, Name, OperationId, Pressed, Role};
+use crate::{EdgeCorner, LineKind, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
 /// Takes a diamond out of a stage as a hole: legs 0 and 1 from the first end to the second on one
@@ -43,7 +43,7 @@ pub(crate) fn cut_diamond(
                 end: corners[usize::from(leg + 1) % 4],
             },
             allowance: 0.0,
-            corner: Corner::Mitre,
+            corner: EdgeCorner::default(),
         })
         .collect();
     let internal = result
@@ -71,6 +71,7 @@ pub(crate) fn cut_diamond(
         mouth: [middle + side, middle - side],
         apex: a,
         pivot: a,
+        trued: false,
         pressed: Pressed::default(),
     });
     Some(result)

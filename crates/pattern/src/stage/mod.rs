@@ -2,6 +2,7 @@
 
 mod dart;
 mod diamond;
+mod fair;
 mod fold;
 mod motion;
 mod partition;
@@ -10,6 +11,7 @@ mod place;
 mod pleat;
 mod split;
 mod spread;
+mod truing;
 
 pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
 pub(crate) use diamond::cut_diamond;
@@ -20,9 +22,10 @@ pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, is_sewn, re
 pub(crate) use pleat::{Pleating, pleat};
 pub(crate) use split::{SplitError, split};
 pub(crate) use spread::{MOST_CUTS, SpreadAlong, SpreadError, Spreading, spread};
+pub(crate) use truing::{CORNER, KINK, true_darts};
 
 use crate::{
-    Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,
+    CornerName, EdgeCorner, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,
 };
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2};
@@ -50,6 +53,9 @@ pub struct Stage {
     pub idle: Vec<OperationId>,
     /// Left and right side, if the last operation split it.
     pub sides: Vec<Arc<Stage>>,
+    /// The outline's edges as they were before its darts were trued, by which they are trued anew
+    /// with the next one; none where no dart is, or the outline was cut apart since.
+    pub untrued: Vec<StageEdge>,
 }
 
 /// A line of a stage.
@@ -87,7 +93,7 @@ pub struct StageEdge {
     /// Width of cloth outside it [m].
     pub allowance: f64,
     /// How the cut line turns the corner at its start.
-    pub corner: Corner,
+    pub corner: EdgeCorner,
 }
 
 /// A notch of a stage.
@@ -124,6 +130,8 @@ pub struct StageDart {
     pub pivot: Vec2,
     /// The leg it is pressed towards.
     pub pressed: Pressed,
+    /// Whether the edge runs on smoothly across its mouth once it is closed.
+    pub trued: bool,
 }
 
 impl Stage {
@@ -152,7 +160,8 @@ impl Stage {
     fn bits(&self) -> Vec<u64> {
         let mut numbers = vec![self.grain];
         let mut points: Vec<Vec2> = Vec::new();
-        for edge in self.lines.iter().flat_map(|line| &line.edges) {
+        let edges = self.lines.iter().flat_map(|line| &line.edges);
+        for edge in edges.chain(&self.untrued) {
             numbers.extend([edge.from, edge.to, edge.allowance]);
             if let Curve::Arc { bulge, .. } = edge.curve {
                 numbers.push(bulge);
@@ -216,6 +225,7 @@ impl Stage {
                 .iter()
                 .map(|side| Arc::new(side.mirror_image()))
                 .collect(),
+            untrued: Vec::new(),
         }
     }
 }
@@ -260,7 +270,7 @@ pub(crate) fn mirrored_edges(
             StageEdge {
                 half: edge.half | half,
                 start: next.and_then(|next| next.start),
-                corner: next.map_or(Corner::Mitre, |next| next.corner),
+                corner: next.map_or(EdgeCorner::default(), |next| next.corner),
                 from: edge.to,
                 to: edge.from,
                 curve: edge.curve.reflected(mirror.0, mirror.1).reversed(),

@@ -3,6 +3,12 @@
 use super::{StageDart, StageEdge, StageNotch};
 use toile_geometry::{Curve, Vec2};
 
+/// A vector turned counter-clockwise [rad].
+pub(super) fn turned(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
 /// A turn about the origin, then a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
@@ -48,11 +54,10 @@ impl Motion {
     }
 
     pub fn direction(self, v: Vec2) -> Vec2 {
-        if self.angle == 0.0 {
-            return v;
+        match self.angle == 0.0 {
+            true => v,
+            false => turned(v, self.angle),
         }
-        let (sin, cos) = self.angle.sin_cos();
-        Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
     }
 
     pub fn point(self, p: Vec2) -> Vec2 {

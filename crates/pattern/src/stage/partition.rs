@@ -3,7 +3,7 @@
 use super::dart::{parameter, part};
 use super::motion::Motion;
 use super::{PlaceError, Stage, StageDart, StageEdge, StageLine, StageNotch};
-use crate::{Corner, CornerName, LineKind, LineName, Name, Role};
+use crate::{CornerName, EdgeCorner, LineKind, LineName, Name, Role};
 use toile_geometry::{Path, Polygon, Vec2, closest_on_segment};
 
 /// Why a stage cannot be cut apart.
@@ -65,7 +65,7 @@ impl StageLine {
                 self.edges[k] = first;
                 let second = StageEdge {
                     start: None,
-                    corner: Corner::Mitre,
+                    corner: EdgeCorner::default(),
                     ..second
                 };
                 self.edges.insert(k + 1, second);

@@ -171,7 +171,7 @@ impl StageLine {
     }
 
     /// What the corner is called that lies where a corner does.
-    fn called(&self, corner: CornerName) -> CornerName {
+    pub(super) fn called(&self, corner: CornerName) -> CornerName {
         let mut called = corner;
         // No chain of twins is longer than their list.
         for _ in 0..self.twins.len() {

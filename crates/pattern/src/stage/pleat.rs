@@ -3,7 +3,9 @@
 use super::motion::Motion;
 use super::spread::{Chord, Crossed, CutOpen, Gap};
 use super::{NOTHING, SpreadError, Spreading, Stage, StageEdge, StageLine};
-use crate::{Corner, CornerName, LineKind, Name, OperationId, PleatKind, PleatLine, Role, Side};
+use crate::{
+    CornerName, EdgeCorner, LineKind, Name, OperationId, PleatKind, PleatLine, Role, Side,
+};
 use toile_geometry::{Curve, Vec2};
 
 /// Pleats whose numbers are known: the spread that makes room for them, and how they are folded.
@@ -170,7 +172,7 @@ fn underlay(
                 to: (along + own) / length,
                 curve: piece.curve,
                 allowance: piece.allowance,
-                corner: Corner::Mitre,
+                corner: EdgeCorner::default(),
             });
             along += own;
         }
@@ -308,7 +310,7 @@ fn creases(
                     to: 1.0,
                     curve: Curve::Line { start, end },
                     allowance: 0.0,
-                    corner: Corner::Mitre,
+                    corner: EdgeCorner::default(),
                 }],
                 end: None,
                 twins: Vec::new(),

@@ -3,7 +3,7 @@
 use super::motion::Motion;
 use super::partition::{CutError, SAME, check_cut, outline_of, partition, ring};
 use super::{Stage, StageDart, StageEdge, StageLine, StageNotch, with_ends};
-use crate::{Corner, LineKind, LineName, Name, OperationId, Role};
+use crate::{EdgeCorner, LineKind, LineName, Name, OperationId, Role};
 use std::sync::Arc;
 use toile_geometry::{Curve, Path};
 
@@ -90,7 +90,7 @@ fn cut_edges(by: OperationId, cut: &Path) -> Vec<StageEdge> {
             to: share(k + 1),
             curve: *curve,
             allowance: 0.0,
-            corner: Corner::Mitre,
+            corner: EdgeCorner::default(),
         })
         .collect()
 }

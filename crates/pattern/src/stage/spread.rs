@@ -3,7 +3,7 @@
 use super::motion::Motion;
 use super::partition::{CutError, SAME, check_cut, outline_of, partition, ring};
 use super::{PlaceError, Placed, Stage, StageEdge, StageLine, with_ends};
-use crate::{Bridge, Corner, CornerName, LineName, Name, OperationId, Role, SpreadCut};
+use crate::{Bridge, CornerName, EdgeCorner, LineName, Name, OperationId, Role, SpreadCut};
 use toile_geometry::{Curve, Path, Vec2};
 
 /// A spread whose numbers are known.
@@ -86,7 +86,7 @@ pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadErr
             to: 1.0,
             curve: bridge(wish.bridge, gap.before, gap.after),
             allowance: gap.before.allowance,
-            corner: Corner::Mitre,
+            corner: EdgeCorner::default(),
         };
         Ok(Crossed {
             corners: [name(0), name(1)],
@@ -227,7 +227,7 @@ impl CutOpen {
                     match open {
                         true => {
                             edges.extend(across);
-                            next.corner = Corner::Mitre;
+                            next.corner = EdgeCorner::default();
                         }
                         false => line.twins.push([first, next.start.unwrap_or(last)]),
                     }

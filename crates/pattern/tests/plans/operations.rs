@@ -30,6 +30,7 @@ fn darts_open_where_they_are_put_in_every_size() {
         mouth: Mark::between(ends(&pattern, "front", "top"), 0.25),
         intake: formula("bust / 50"),
         apex: Apex::Depth(0.1.into()),
+        trued: false,
         pressed: toile_pattern::Pressed::default(),
     };
     let shallow = add(&mut pattern, kind);

@@ -124,6 +124,7 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         mouth: share.clone(),
         intake: (z * 0.05).into(),
         apex,
+        trued: false,
         pressed: toile_pattern::Pressed::default(),
     };
     match which % 48 {

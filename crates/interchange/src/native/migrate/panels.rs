@@ -7,9 +7,9 @@ use super::document::{
 use super::{EdgePlace, Migration, Values};
 use std::sync::Arc;
 use toile_pattern::{
-    Apex, Curve, CurveId, CurveRule, Edge, EdgeId, FabricId, Line, LineId, LineKind, Mark, Name,
-    Notch, NotchId, NotchKind, Number, Operation, OperationId, OperationKind, Panel, PanelId,
-    Point, PointId, PointRule, Pressed, Sheet, SheetId, Want, WornRule,
+    Apex, Curve, CurveId, CurveRule, Edge, EdgeCorner, EdgeId, FabricId, Line, LineId, LineKind,
+    Mark, Name, Notch, NotchId, NotchKind, Number, Operation, OperationId, OperationKind, Panel,
+    PanelId, Point, PointId, PointRule, Pressed, Sheet, SheetId, Want, WornRule,
 };
 
 /// A sheet and panel in the making.
@@ -106,6 +106,7 @@ impl Migration<'_> {
         if let Some(fold) = old.fold.and_then(|edge| self.edges.get(&edge)).copied() {
             let id: OperationId = self.new.ids.take();
             making.panel.operations.push(Arc::new(Operation {
+                meant: false,
                 id,
                 name: "fold".into(),
                 kind: OperationKind::Fold {
@@ -162,7 +163,7 @@ impl Migration<'_> {
                 curve,
                 ends,
                 allowance: old.seam_allowance.as_ref().map(|a| self.number(a)),
-                corner: None,
+                corner: EdgeCorner::default(),
             });
         }
         let name = making.line_name(name);
@@ -305,7 +306,7 @@ impl Migration<'_> {
                     curve,
                     ends,
                     allowance: None,
-                    corner: None,
+                    corner: EdgeCorner::default(),
                 });
             }
             let name = making.line_name(inside.name.clone());
@@ -363,6 +364,7 @@ impl Migration<'_> {
                         DartTip::Depth(depth) => Apex::Depth(self.number(depth)),
                         DartTip::Apex(apex) => Apex::Point(self.point(*apex)),
                     },
+                    trued: false,
                     pressed: Pressed::default(),
                 }
             }
@@ -373,6 +375,7 @@ impl Migration<'_> {
             },
         };
         Some(Operation {
+            meant: false,
             id: self.new.ids.take(),
             name: old.name.clone(),
             kind,

@@ -1,0 +1,322 @@
+//! Darts trued: the edge beside their mouths redrawn so that it runs on across them once they are
+//! closed, their legs equally long.
+
+use super::dart::parameter;
+use super::fair::{Closing, Row, arriving, between, leaving};
+use super::{Stage, StageEdge, with_ends};
+use crate::{CornerName, EdgeCorner, LineKind, Name, OperationId, Role};
+use std::f64::consts::FRAC_PI_8;
+use toile_geometry::Curve;
+
+/// An edge that turns by more where it runs on has a kink there [rad]: a centimetre from it the line
+/// is half a millimetre beside where it led.
+pub(crate) const KINK: f64 = 3.0 * std::f64::consts::PI / 180.0;
+/// Edges of two names that turn by more make a corner: neither runs on [rad].
+pub(crate) const CORNER: f64 = std::f64::consts::PI / 6.0;
+/// Shares of an edge that differ by less are one.
+const SAME_SHARE: f64 = 1e-9;
+
+/// Darts in one edge that follow each other, by numbers of the outline's edges.
+struct DartRow {
+    /// Edges of each stretch, one more than darts.
+    stretches: Vec<Vec<usize>>,
+    /// The first leg of each dart.
+    legs: Vec<usize>,
+    /// The darts, by number in the stage.
+    darts: Vec<usize>,
+}
+
+/// The stage with the edges across its trued darts redrawn, and the darts across which no line leads.
+/// Edges keep their direction at the corners given, where they go on.
+pub(crate) fn true_darts(mut stage: Stage, going_on: &[CornerName]) -> (Stage, Vec<OperationId>) {
+    let is_outline = |line: &super::StageLine| line.kind == LineKind::Outline;
+    let mut refused = Vec::new();
+    if !stage.darts.iter().any(|dart| dart.trued && dart.half == 0) {
+        return (stage, refused);
+    }
+    let Some(outline) = stage.lines.iter().position(is_outline) else {
+        return (stage, refused);
+    };
+    stage.untrued = stage.lines[outline].edges.clone();
+    divide_arcs(&mut stage, outline);
+    let rows = rows(&stage, outline);
+    for row in &rows {
+        let plain = row.plain(&stage, outline, going_on);
+        match plain.is_smooth() {
+            true => {}
+            false => match plain.redrawn() {
+                Some(redrawn) => row.put(&mut stage, outline, redrawn),
+                None => refused.extend(row.darts.iter().map(|k| stage.darts[*k].by)),
+            },
+        }
+    }
+    follow(&mut stage, outline, &rows);
+    (stage, refused)
+}
+
+impl Stage {
+    /// The edge that a dart is taken out of, and its length without mouths [m]; nothing where the
+    /// dart lies between two edges.
+    pub fn edge_beside(&self, dart: OperationId) -> Option<(crate::EdgeName, f64)> {
+        let edges = self.outline();
+        let is_own = |edge: &&StageEdge| edge.half == 0;
+        let first = edges
+            .iter()
+            .position(|e| e.half == 0 && e.name == leg(dart, 0))?;
+        let before = &edges[(first + edges.len() - 1) % edges.len()];
+        let after = &edges[(first + 2) % edges.len()];
+        let own = edges
+            .iter()
+            .filter(is_own)
+            .filter(|e| e.name == before.name);
+        let length = own.map(|edge| edge.curve.length()).sum();
+        (before.name == after.name).then_some((before.name, length))
+    }
+
+    /// The stage before its darts were trued, as far as that is known.
+    pub(crate) fn as_untrued(&self) -> Self {
+        let mut stage = self.clone();
+        let outline = |line: &&mut super::StageLine| line.kind == LineKind::Outline;
+        let untrued = std::mem::take(&mut stage.untrued);
+        if let Some(line) = stage.lines.iter_mut().find(outline)
+            && !untrued.is_empty()
+        {
+            line.edges = untrued;
+        }
+        stage
+    }
+}
+
+/// Divides arcs of edges that have trued darts, so that a cubic follows each part closely.
+fn divide_arcs(stage: &mut Stage, outline: usize) {
+    let mut rows = rows(stage, outline);
+    rows.retain(|row| !row.plain(stage, outline, &[]).is_smooth());
+    let edges = &mut stage.lines[outline].edges;
+    let curved: Vec<usize> = rows.iter().flat_map(|row| row.stretches.concat()).collect();
+    let mut divided = Vec::with_capacity(edges.len());
+    for (k, edge) in edges.drain(..).enumerate() {
+        match edge.curve {
+            Curve::Arc { bulge, .. } if curved.contains(&k) => {
+                let count = (4.0 * bulge.atan().abs() / FRAC_PI_8).ceil().max(1.0);
+                let share = |j: f64| edge.from + (edge.to - edge.from) * j / count;
+                divided.extend((0..count as u32).map(f64::from).map(|j| StageEdge {
+                    from: share(j),
+                    to: share(j + 1.0),
+                    curve: edge.curve.between(j / count, (j + 1.0) / count),
+                    start: edge.start.filter(|_| j == 0.0),
+                    corner: if j == 0.0 {
+                        edge.corner
+                    } else {
+                        EdgeCorner::default()
+                    },
+                    ..edge.clone()
+                }));
+            }
+            _ => divided.push(edge),
+        }
+    }
+    *edges = divided;
+}
+
+fn leg(by: OperationId, index: u16) -> crate::EdgeName {
+    Name::Made {
+        by,
+        role: Role::Leg,
+        index,
+    }
+}
+
+/// The rows of trued darts of an outline.
+fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
+    let edges = &stage.lines[outline].edges;
+    let count = edges.len();
+    // The first leg of every dart across whose mouth an edge runs on.
+    let within = |number: usize| -> Option<usize> {
+        let dart = &stage.darts[number];
+        let is_first = |edge: &StageEdge| edge.name == leg(dart.by, 0) && edge.half == 0;
+        let first = edges.iter().position(is_first)?;
+        let [before, second, after] = [count - 1, 1, 2].map(|step| &edges[(first + step) % count]);
+        let is_pair = second.name == leg(dart.by, 1) && second.half == 0;
+        let is_whole = before.half == 0 && after.half == 0;
+        let closing = Closing {
+            apex: edges[first].curve.end(),
+            ends: [edges[first].curve.start(), second.curve.end()],
+        };
+        let runs_on = match before.name == after.name {
+            true => before.to <= after.from + SAME_SHARE && before.from < before.to,
+            false => {
+                let is_leg = |edge: &StageEdge| edge.name.role() == Some(Role::Leg);
+                let kink = closing.kink(&[before.curve], &[after.curve]);
+                !is_leg(before) && !is_leg(after) && kink.is_some_and(|kink| kink.abs() <= CORNER)
+            }
+        };
+        (dart.trued && dart.half == 0 && is_pair && is_whole && runs_on).then_some(first)
+    };
+    let mut darts: Vec<(usize, usize)> = (0..stage.darts.len())
+        .filter_map(|number| Some((within(number)?, number)))
+        .collect();
+    darts.sort_unstable();
+    let mut rows: Vec<DartRow> = Vec::new();
+    while let Some(&(mut first, mut number)) = darts.first() {
+        let mut walked = vec![number];
+        // Back to the first dart of the edge.
+        while let Some(&(leg, before)) = darts
+            .iter()
+            .find(|(leg, _)| (leg + 2) % count == stretch_before(edges, first)[0])
+            && !walked.contains(&before)
+        {
+            (first, number) = (leg, before);
+            walked.push(number);
+        }
+        let mut row = DartRow {
+            stretches: vec![stretch_before(edges, first)],
+            legs: Vec::new(),
+            darts: Vec::new(),
+        };
+        while let Some(k) = darts.iter().position(|(leg, _)| *leg == first) {
+            let (_, number) = darts.remove(k);
+            row.legs.push(first);
+            row.darts.push(number);
+            let stretch = stretch_after(edges, (first + 2) % count);
+            first = stretch.last().map_or(first, |last| (last + 1) % count);
+            row.stretches.push(stretch);
+        }
+        rows.push(row);
+    }
+    rows
+}
+
+/// Edges of one name, share after share, that end where an edge starts.
+fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
+    let count = edges.len();
+    let mut stretch = vec![(end + count - 1) % count];
+    while stretch.len() < count {
+        let first = stretch[0];
+        let before = (first + count - 1) % count;
+        if !follows(&edges[before], &edges[first]) {
+            break;
+        }
+        stretch.insert(0, before);
+    }
+    stretch
+}
+
+/// The same from the start of an edge on.
+fn stretch_after(edges: &[StageEdge], start: usize) -> Vec<usize> {
+    let count = edges.len();
+    let mut stretch = vec![start];
+    while stretch.len() < count {
+        let last = stretch[stretch.len() - 1];
+        let after = (last + 1) % count;
+        if !follows(&edges[last], &edges[after]) {
+            break;
+        }
+        stretch.push(after);
+    }
+    stretch
+}
+
+fn follows(before: &StageEdge, after: &StageEdge) -> bool {
+    before.name == after.name
+        && before.half == after.half
+        && (before.to - after.from).abs() < SAME_SHARE
+}
+
+impl DartRow {
+    fn is_curved(&self, edges: &[StageEdge]) -> bool {
+        let mut all = self.stretches.iter().flatten();
+        all.any(|k| !matches!(edges[*k].curve, Curve::Line { .. }))
+    }
+
+    /// The row in plain numbers.
+    fn plain(&self, stage: &Stage, outline: usize, going_on: &[CornerName]) -> Row {
+        let line = &stage.lines[outline];
+        let edges = &line.edges;
+        let count = edges.len();
+        let curves = |stretch: &Vec<usize>| stretch.iter().map(|k| edges[*k].curve).collect();
+        let closings = self.legs.iter().map(|&first| Closing {
+            apex: edges[first].curve.end(),
+            ends: [
+                edges[first].curve.start(),
+                edges[(first + 1) % count].curve.end(),
+            ],
+        });
+        let first = self.stretches[0][0];
+        let last = *self.stretches[self.legs.len()].last().unwrap_or(&first);
+        let keeps = [first, (last + 1) % count].map(|corner| {
+            let ways = [
+                arriving(&[edges[(corner + count - 1) % count].curve]),
+                leaving(&[edges[corner].curve]),
+            ];
+            let is_straight_on = match ways {
+                [Some(from), Some(to)] => between(from, to).abs() <= KINK,
+                _ => false,
+            };
+            let called = |name: &CornerName| {
+                let named = line.called(*name);
+                edges[corner].start == Some(named)
+            };
+            is_straight_on || going_on.iter().any(called) || self.is_curved(edges)
+        });
+        Row {
+            stretches: self.stretches.iter().map(curves).collect(),
+            closings: closings.collect(),
+            keeps,
+        }
+    }
+
+    /// Puts the redrawn edges and legs in their places.
+    fn put(&self, stage: &mut Stage, outline: usize, redrawn: super::fair::Redrawn) {
+        let edges = &mut stage.lines[outline].edges;
+        let count = edges.len();
+        let numbers = self.stretches.iter().flatten();
+        for (k, curve) in numbers.zip(redrawn.stretches.into_iter().flatten()) {
+            edges[*k].curve = curve;
+        }
+        for (&first, [open, close]) in self.legs.iter().zip(redrawn.ends) {
+            let apex = edges[first].curve.end();
+            edges[first].curve = with_ends(edges[first].curve, open, apex);
+            let second = &mut edges[(first + 1) % count];
+            second.curve = with_ends(second.curve, apex, close);
+        }
+    }
+}
+
+/// Lets the mouths of darts in rows, and notches beside them, follow the edges of the outline.
+fn follow(stage: &mut Stage, outline: usize, rows: &[DartRow]) {
+    let edges = &stage.lines[outline].edges;
+    let stretches = rows.iter().flat_map(|row| &row.stretches);
+    let redrawn: Vec<crate::EdgeName> = stretches.map(|s| edges[s[0]].name).collect();
+    let end = |by: OperationId, k: u16| {
+        let mut legs = edges.iter().filter(|edge| edge.half == 0);
+        let leg = legs.find(|edge| edge.name == leg(by, k))?;
+        Some(match k {
+            0 => leg.curve.start(),
+            _ => leg.curve.end(),
+        })
+    };
+    for dart in stage.darts.iter_mut().filter(|d| d.trued && d.half == 0) {
+        if let (Some(open), Some(close)) = (end(dart.by, 0), end(dart.by, 1)) {
+            dart.mouth = [open, close];
+        }
+    }
+    let turn = stage.turn();
+    let edges = &stage.lines[outline].edges;
+    let beside = |notch: &&mut super::StageNotch| notch.half == 0 && redrawn.contains(&notch.edge);
+    for notch in stage.notches.iter_mut().filter(beside) {
+        let own = |edge: &&StageEdge| {
+            edge.name == notch.edge
+                && edge.half == 0
+                && (edge.from.min(edge.to) - SAME_SHARE..=edge.from.max(edge.to) + SAME_SHARE)
+                    .contains(&notch.share)
+        };
+        let Some(edge) = edges.iter().find(own) else {
+            continue;
+        };
+        let t = parameter(edge, notch.share).clamp(0.0, 1.0);
+        if let Some(along) = edge.curve.derivative(t).try_normalize(1e-15) {
+            notch.point = edge.curve.point(t);
+            notch.inward = toile_geometry::Vec2::new(-along.y, along.x) * turn;
+        }
+    }
+}
