@@ -259,13 +259,15 @@ fn is_clean_in_every_size(reader: &mut Reader) {
             let walk = Walk::new(&draft, seam).unwrap();
             for joint in walk.joints(evaluation.ease(seam.id)).into_iter().flatten() {
                 let line = joint.line(&pattern, &draft);
-                let told = (joint.smoothness(), joint.step.abs() < 1e-6);
+                // A trued dart takes less than a tenth of a millimetre from the side.
+                let told = (joint.smoothness(), joint.step.abs() < 1e-4);
                 let kink = joint.kink.to_degrees();
                 assert_eq!(
                     told,
                     (Smoothness::Smooth, true),
-                    "{}: {line}, {kink}",
-                    size.name
+                    "{}: {line}, {kink}, {}",
+                    size.name,
+                    joint.step
                 );
                 crossing += 1;
             }
