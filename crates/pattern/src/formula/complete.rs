@@ -2,7 +2,7 @@
 
 use super::names::Names;
 use super::parse::FUNCTION_NAMES;
-use super::quoted;
+use super::{PI, quoted};
 use toile_measure::CATALOGUE;
 
 /// A formula with its last word completed.
@@ -90,6 +90,7 @@ impl Names {
             }
             measured => words.extend(measured.iter().map(|name| name.to_string())),
         }
+        words.push(PI.to_owned());
         words.extend(FUNCTION_NAMES.split(", ").map(|name| format!("{name}(")));
         words.extend(self.panels.names(()).map(|name| format!("{name}.")));
         words

@@ -25,6 +25,8 @@ use std::sync::Arc;
 
 /// Words that are operators, so that parts called so stand in quotes.
 const RESERVED: &[&str] = &["and", "or", "not"];
+/// The number of that name, unless a variable has it.
+pub(crate) const PI: &str = "pi";
 /// Longest formula that is read, each name counted as one [bytes].
 pub const FORMULA_LENGTH: usize = 2000;
 /// Deepest nesting of parentheses, signs and calls that is read.
@@ -148,8 +150,8 @@ pub(crate) enum Function {
 impl Formula {
     /// Reads a formula, its names looked up in a document.
     ///
-    /// Numbers may carry a unit (`mm cm m in deg rad`, and `1 5/8in`); names are variables or
-    /// measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
+    /// Numbers may carry a unit (`mm cm m in deg rad`, and `1 5/8in`); `pi` is 3.14159...; names are
+    /// variables or measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
     /// `x`, `y` speak of parts as they are drawn, `finished` of an edge after all operations;
     /// `length('side seam')` of a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
     /// that are not plain words stand in single quotes. `?47` is the part of that id, whatever it is

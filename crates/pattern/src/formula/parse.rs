@@ -5,9 +5,10 @@ use super::cursor::Cursor;
 use super::written::{Kind, Written, id};
 use super::{
     Comparison, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Function, Names, Operation,
-    Step, Token,
+    PI, Quantity, Step, Token,
 };
 use crate::PartReference;
+use std::f64::consts;
 
 const FUNCTIONS: &[(&str, Function, usize, usize)] = &[
     ("min", Function::Minimum, 1, 64),
@@ -292,6 +293,11 @@ impl Parser<'_> {
             self.cursor.at = end;
             let (token, operation) = match self.names.variable(&name) {
                 Some(id) => (Token::Variable(id), Operation::Variable(id)),
+                // Text like a number.
+                None if &*name == PI && !is_quoted => {
+                    self.push(column, Operation::Constant(Quantity::plain(consts::PI)));
+                    return Ok(());
+                }
                 None => (Token::Word(name.clone()), Operation::Word(name)),
             };
             self.name_token(start, token);

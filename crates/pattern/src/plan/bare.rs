@@ -1,9 +1,12 @@
 //! Bare numbers in formulas that are typed. Beside a length a number without a unit means the
-//! document's unit, beside an angle degrees: `waist / 4 + 2` is a quarter of the waist and 2 cm. The
-//! unit is written into the formula, so that a later change of the document's unit moves nothing.
+//! document's unit, beside an angle degrees: `waist / 4 + 2` is a quarter of the waist and 2 cm, and
+//! where a length is asked for `40 * cos(30deg)` is 40 cm times that. The unit is written into the
+//! formula, so that a later change of the document's unit moves nothing. What is made with `pi` is an
+//! angle in radians as it stands.
 
 use crate::formula::{Function, Operation, Quantity};
 use crate::{Evaluation, Formula, Want};
+use std::f64::consts::PI;
 use toile_measure::UnitKind;
 
 /// What a value is.
@@ -20,13 +23,31 @@ enum Kind {
 struct Value {
     kind: Kind,
     /// Columns of the bare numbers it is made of, if it is made of nothing else by adding and
-    /// choosing; a zero needs no unit and has no column.
+    /// choosing, or of the first factor that has them; a zero needs no unit and has no column.
     bare: Option<Vec<usize>>,
+    /// Whether `pi` is in it.
+    is_round: bool,
 }
 
 impl Value {
     fn of(kind: Kind) -> Self {
-        Self { kind, bare: None }
+        Self {
+            kind,
+            bare: None,
+            is_round: false,
+        }
+    }
+}
+
+impl Value {
+    /// A product or quotient: a plain one gets its unit at the first factor that can have one.
+    fn product(first: Self, second: Self, kind: impl Fn([Kind; 2]) -> Kind) -> Self {
+        let kind = kind([first.kind, second.kind]);
+        Self {
+            kind,
+            bare: first.bare.or(second.bare).filter(|_| kind == Kind::Plain),
+            is_round: first.is_round || second.is_round,
+        }
     }
 }
 
@@ -122,7 +143,7 @@ impl Units<'_> {
                 }
                 Operation::Multiply => {
                     let (second, first) = (pop(), pop());
-                    Value::of(match [first.kind, second.kind] {
+                    Value::product(first, second, |kinds| match kinds {
                         [Kind::Plain, kind] | [kind, Kind::Plain] => kind,
                         // An arc.
                         [Kind::Angle, Kind::Length] | [Kind::Length, Kind::Angle] => Kind::Length,
@@ -130,8 +151,10 @@ impl Units<'_> {
                     })
                 }
                 Operation::Divide => {
-                    let (second, first) = (pop(), pop());
-                    Value::of(match [first.kind, second.kind] {
+                    let (mut second, first) = (pop(), pop());
+                    // What is divided has the unit.
+                    second.bare = None;
+                    Value::product(first, second, |kinds| match kinds {
                         [kind, Kind::Plain] => kind,
                         [Kind::Length, Kind::Length] | [Kind::Angle, Kind::Angle] => Kind::Plain,
                         [Kind::Length, Kind::Angle] => Kind::Length,
@@ -184,7 +207,10 @@ impl Units<'_> {
                 .into_iter()
                 .next()
                 .unwrap_or_else(|| Value::of(Kind::Unknown)),
-            Function::SquareRoot => Value::of(Kind::Unknown),
+            Function::SquareRoot => Value::of(match values.first().map(|value| value.kind) {
+                Some(Kind::Plain) => Kind::Plain,
+                _ => Kind::Unknown,
+            }),
             Function::Sine | Function::Cosine | Function::Tangent => Value::of(Kind::Plain),
             Function::ArcTangent2 => {
                 let _ = values.into_iter().reduce(|a, b| self.join([a, b]));
@@ -196,23 +222,23 @@ impl Units<'_> {
     /// Values that must be of one kind: bare numbers among them take that of the other.
     fn join(&mut self, [first, second]: [Value; 2]) -> Value {
         let bare_of = |value: &Value| value.bare.clone().unwrap_or_default();
+        let mut give = |plain: &Value, kind: Kind| {
+            if kind == Kind::Length || !plain.is_round {
+                self.given
+                    .extend(bare_of(plain).iter().map(|&column| (column, kind)));
+            }
+            Value::of(kind)
+        };
         match [first.kind, second.kind] {
-            [kind @ (Kind::Length | Kind::Angle), Kind::Plain] => {
-                self.given
-                    .extend(bare_of(&second).iter().map(|&column| (column, kind)));
-                Value::of(kind)
-            }
-            [Kind::Plain, kind @ (Kind::Length | Kind::Angle)] => {
-                self.given
-                    .extend(bare_of(&first).iter().map(|&column| (column, kind)));
-                Value::of(kind)
-            }
+            [kind @ (Kind::Length | Kind::Angle), Kind::Plain] => give(&second, kind),
+            [Kind::Plain, kind @ (Kind::Length | Kind::Angle)] => give(&first, kind),
             [Kind::Plain, Kind::Plain] => Value {
                 kind: Kind::Plain,
                 bare: first.bare.zip(second.bare).map(|(mut all, more)| {
                     all.extend(more);
                     all
                 }),
+                is_round: first.is_round || second.is_round,
             },
             [kind, other] if kind == other => Value::of(kind),
             _ => Value::of(Kind::Unknown),
@@ -225,11 +251,13 @@ impl Units<'_> {
             Quantity { is_angle: true, .. } => Value::of(Kind::Angle),
             Quantity { value, .. } => Value {
                 kind: Kind::Plain,
-                bare: Some(if value == 0.0 {
-                    Vec::new()
-                } else {
-                    vec![column]
-                }),
+                // A name takes no unit.
+                bare: match value {
+                    PI => None,
+                    0.0 => Some(Vec::new()),
+                    _ => Some(vec![column]),
+                },
+                is_round: value == PI,
             },
         }
     }
@@ -294,6 +322,21 @@ mod tests {
             ("waist / 72cm + 1", "waist / 72cm + 1", Want::Plain),
             ("waist + 1 5/8in", "waist + 1 5/8in", Want::Length),
             ("waist + 3 mm", "waist + 3 mm", Want::Length),
+            // Of a product one factor is a length, and so is what is divided.
+            ("40*cos(30deg)", "40cm*cos(30deg)", Want::Length),
+            ("sin(30deg) * 40 / 3", "sin(30deg) * 40cm / 3", Want::Length),
+            ("waist + 2 * 3", "waist + 2cm * 3", Want::Length),
+            ("(1 + 2) * pi", "(1cm + 2cm) * pi", Want::Length),
+            ("sqrt(2) * 5 - waist", "sqrt(2) * 5cm - waist", Want::Length),
+            ("waist / (2*pi)", "waist / (2*pi)", Want::Length),
+            ("3 * shoulder_incl", "3 * shoulder_incl", Want::Angle),
+            // With `pi` an angle is in radians, as in the books.
+            ("pi / 6", "pi / 6", Want::Angle),
+            (
+                "2 * pi / 3 + shoulder_incl",
+                "2 * pi / 3 + shoulder_incl",
+                Want::Angle,
+            ),
         ] {
             let number = plan::read_number(&evaluation, typed, want).unwrap();
             let shown = plan::number_text(&evaluation, &number, want);
@@ -302,8 +345,8 @@ mod tests {
             // What is shown may be typed again.
             assert_eq!(plan::read_number(&evaluation, &shown, want), Ok(number));
         }
-        // A sum with a plain variable or product is no length, and is refused where it is used.
-        let number = plan::read_number(&evaluation, "waist + 2 * 3", Want::Length).unwrap();
+        // A sum with a plain function is no length, and is refused where it is used.
+        let number = plan::read_number(&evaluation, "waist + cos(2)", Want::Length).unwrap();
         assert!(matches!(number, Number::Formula(_)));
         assert!(evaluation.number(&number, Want::Length).is_none());
     }

@@ -35,6 +35,7 @@ mod seam;
 mod select;
 mod sizes;
 mod split;
+mod swept;
 mod trace;
 mod transform;
 mod typed;
@@ -78,6 +79,7 @@ pub use sizes::{
     add_size, add_variable, remove_size, rename_pattern, set_base_size, set_measurement, set_unit,
 };
 pub use split::{Joined, SplitPanel, SplitWish, split_panel};
+pub use swept::{angle_of, bulge_of};
 pub use trace::{Holes, NewPanel, add_line, remove_line, trace_face, trace_panel};
 pub use transform::{Affine, Moved, move_points, transform_points};
 pub use typed::{number_text, read_number};

@@ -4,6 +4,7 @@ use super::bind::bound;
 use super::lookup::after;
 use super::names::{curve_owner, panel_owner, point_owner, sheet_owner, wished};
 use super::{impossible, lookup};
+use crate::formula::PI;
 use crate::{
     Curve, Edit, EditError, Entity, Evaluation, Fabric, Marker, Panel, PartId, Pattern, Place,
     Point, Seam, SheetHead, Size, Variable,
@@ -141,6 +142,12 @@ pub(super) fn variable_name(
         .iter()
         .any(|size| size.measurements.contains(&name));
     let is_own = own.is_some_and(|own| own.name == name);
+    if !is_own && name == PI {
+        return Err(impossible(
+            "\"pi\" is the number 3.14159..., and formulas would not tell them apart",
+            "choose another name",
+        ));
+    }
     if !is_own && (is_measured || definition(&name).is_some()) {
         return Err(impossible(
             format!("{name:?} is a measurement, and formulas would not tell them apart"),
