@@ -1,5 +1,6 @@
 //! The inspector: what is selected, with its name and numbers, each a value or a formula.
 
+mod arcs;
 mod guide_place;
 mod several;
 mod steps;
@@ -126,7 +127,7 @@ impl ToileApp {
                 self.enter(planned, "Rename", (id, text));
             }
         }
-        let entries = plan::numbers_of(&self.base, item.part());
+        let entries = arcs::numbers_of(&self.base, item.part());
         for (k, entry) in entries.iter().enumerate() {
             // Of several of one name, as the cuts of pleats, each has its number.
             let is_same = |other: &&NumberEntry| other.label == entry.label;
@@ -152,7 +153,10 @@ impl ToileApp {
                 self.corner_choice(ui, panel, edge);
                 self.curve_numbers(ui, (panel, edge));
             }
-            Item::Curve(curve) => self.handle_numbers(ui, curve),
+            Item::Curve(curve) => {
+                self.radius_field(ui, curve);
+                self.handle_numbers(ui, curve);
+            }
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
             Item::Seam(seam) => self.seam_joints(ui, seam),
             Item::Guide(guide) => self.guide_place(ui, guide),
@@ -267,7 +271,8 @@ impl ToileApp {
             let planned = match text.is_empty() {
                 true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),
                 false => number::parse(&text, want, &self.base).and_then(|number: Number| {
-                    let edits = plan::set_number(&self.base, &entry.place, number);
+                    let kept = arcs::kept(&self.base, &entry.place, number);
+                    let edits = kept.and_then(|n| plan::set_number(&self.base, &entry.place, n));
                     edits.map_err(|error| error.to_string())
                 }),
             };

@@ -18,5 +18,8 @@ pub use app::command::{Menu, UiCommand};
 pub use app::command_table::{commands, named};
 pub use app::{Beginning, ToileApp};
 pub use canvas::selection::{Item, Selection};
-pub use tools::{Event as ToolEvent, LineStep, Overlay, Pointer, Tone, ToolModifiers};
+pub use tools::slots::{Answer, Slot, SlotKind, SlotTool};
+pub use tools::{
+    Event as ToolEvent, LineStep, Overlay, Pointer, State as ToolState, Tone, Tool, ToolModifiers,
+};
 pub use views::pattern::PatternView;

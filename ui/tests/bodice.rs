@@ -265,7 +265,7 @@ fn the_front_bodice_of_the_dress_is_drafted_by_tools() {
         drafter.typed_and(&format!("={y}"), Key::Tab);
         drafter.typed(name);
     }
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     drafter.draw_points_from(FROM_POINTS);
     drafter.name_variables(DART_VARIABLES);
     drafter.draw_points_from(OPENED_POINTS);

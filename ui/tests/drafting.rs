@@ -58,7 +58,7 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
     );
 
     // The dart in the middle of the waist edge.
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     drafter.key(Key::D);
     let top = drafter.part("Edge top of draft");
     drafter.click(top);
@@ -186,7 +186,7 @@ fn two_clicks_sew_both_sides_and_one_puts_notches_that_meet() {
         drafter.key(Key::Tab);
         drafter.typed("60");
     }
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     let names: Vec<String> = drafter
         .pattern()
         .panels
@@ -389,7 +389,7 @@ fn what_is_selected_is_moved_turned_mirrored_scaled_and_copied() {
     // Copied beside itself.
     drafter.key(Key::Escape);
     drafter.key(Key::Escape);
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     drafter.click(drafter.part("Panel draft"));
     drafter.chord(Modifiers::COMMAND, Key::D);
     assert_eq!(drafter.pattern().panels.len(), 2, "{}", drafter.status());
@@ -420,7 +420,7 @@ fn hems_meet_hems_when_both_panels_are_drawn_alike() {
     drafter.key(Key::Escape);
     drafter.click(drafter.part("Panel draft"));
     drafter.chord(Modifiers::COMMAND, Key::D);
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     let pattern = drafter.pattern();
     let [front, back] = &pattern.panels[..] else {
         panic!("{}", drafter.status());

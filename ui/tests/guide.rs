@@ -164,7 +164,7 @@ fn draft_front(reader: &mut Reader) {
         reader.drafter.status()
     );
     reader.put_down();
-    reader.drafter.key(Key::F);
+    reader.drafter.key(Key::Home);
     let middle = reader.drafter.part("Panel front");
     reader.drafter.click(middle);
     reader.look();
@@ -197,7 +197,7 @@ fn draft_back(reader: &mut Reader) {
     reader.drafter.hover(at);
     reader.drafter.typed(part.says("55"));
     reader.put_down();
-    reader.drafter.key(Key::F);
+    reader.drafter.key(Key::Home);
 }
 
 fn sew(reader: &mut Reader) {
@@ -232,7 +232,7 @@ fn sew(reader: &mut Reader) {
             reader.picture("walk", None);
         }
         reader.put_down();
-        reader.drafter.key(Key::F);
+        reader.drafter.key(Key::Home);
     }
 }
 
@@ -362,7 +362,7 @@ fn wear(reader: &mut Reader) {
     reader.drafter.wait(hangs);
     let draped = reader.drafter.window.state().session().draped().unwrap();
     assert_eq!((draped.body_intersections, draped.components), (0, 1));
-    reader.drafter.key(Key::F);
+    reader.drafter.key(Key::Home);
     reader.picture("window", None);
     let mut sides = Vec::new();
     for key in [Key::Num1, Key::Num3, Key::Num2] {
@@ -407,7 +407,7 @@ fn alter(reader: &mut Reader) {
     let before = reader.drafter.pattern();
     reader.put_down();
     reader.drafter.key(Key::F7);
-    reader.drafter.key(Key::F);
+    reader.drafter.key(Key::Home);
     reader.drafter.chord(Modifiers::SHIFT, Key::E);
     let dart = reader.drafter.part("Dart of front");
     reader.drafter.click(dart);
@@ -416,7 +416,7 @@ fn alter(reader: &mut Reader) {
     assert_eq!(reader.drafter.window.state().fault(), None);
     reader.look();
     reader.put_down();
-    reader.drafter.key(Key::F);
+    reader.drafter.key(Key::Home);
     let pattern = reader.drafter.pattern();
     let front = pattern.panel_named("front").unwrap();
     let stage = reader

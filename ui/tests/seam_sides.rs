@@ -30,7 +30,7 @@ fn skirt(cut: &str, folder: &Path) -> Drafter {
 
 /// Takes the seam tool and gives it the chain of hem and side of the front, and the hem of the back.
 fn begin_seam(drafter: &mut Drafter) {
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     drafter.key(Key::S);
     drafter.shift_click(drafter.part("Edge hem of front"));
     drafter.click(drafter.part("Edge side of front"));

@@ -110,7 +110,7 @@ fn a_sheet_of_a_shipped_pattern_is_added_where_it_is_seen_to_be_free() {
         assert!(!places[..k].contains(place), "{places:?}");
     }
     drafter.chord(Modifiers::COMMAND, Key::Z);
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     let after = drafter.part("Panel sleeve");
     assert!((after - before).length() < 1.0, "{before:?} {after:?}");
 }
@@ -323,7 +323,7 @@ fn a_part_is_found_by_its_name_and_shown() {
         .get_by_role_and_label(Role::TextInput, "Name");
     assert_eq!(label.value().unwrap(), "sleeve");
     // A seam is shown where it begins, though other panels are on show alone.
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     drafter.click(drafter.part("Panel front"));
     drafter.key(Key::Period);
     drafter.chord(Modifiers::COMMAND, Key::K);
@@ -368,7 +368,7 @@ fn sheets_of_which_one_was_moved_are_opened_again_as_they_were_seen() {
         assert!((moved[k] - before[k]).length() < 0.1, "{}", names[k]);
     }
     assert!((moved[2] - before[2]).y > 40.5, "{before:?} {moved:?}");
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     let seen = names.map(|name| drafter.part(name));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("moved.toile.json");
@@ -377,7 +377,7 @@ fn sheets_of_which_one_was_moved_are_opened_again_as_they_were_seen() {
         file: Some(file),
         folder: None,
     });
-    again.key(Key::F);
+    again.key(Key::Home);
     for (name, seen) in names.iter().zip(seen) {
         let found = again.part(name);
         assert!((found - seen).length() < 1.0, "{name}: {seen:?} {found:?}");
@@ -429,7 +429,7 @@ fn a_sheet_without_panels_is_pasted_as_a_sheet() {
     // Its points alone go to the sheet in hand.
     drafter.chord(Modifiers::COMMAND, Key::Z);
     assert_eq!(counts(&drafter), (2, 6));
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     drafter.click(drafter.part("Point A of sheet"));
     drafter.window.event(egui::Event::Copy);
     drafter.window.run();
@@ -527,7 +527,7 @@ fn panels_are_pasted_where_there_is_room_and_seen_there() {
     drafter.chord(Modifiers::COMMAND, Key::D);
     assert_apart(&drafter, 9);
     // As large as the view, it is shown smaller.
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     for _ in 0..7 {
         drafter.key(Key::Plus);
     }

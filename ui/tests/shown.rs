@@ -196,7 +196,7 @@ fn an_inner_line_of_a_folded_panel_is_seen_on_both_halves() {
     drafter.click(drafter.part("Edge left of draft"));
     drafter.key(Key::Escape);
     drafter.key(Key::Escape);
-    drafter.key(Key::F);
+    drafter.key(Key::Home);
     let drawn = |side: f64| {
         let ends = [0.05, 0.15].map(|x| drafter.place(x * side, 0.1));
         drawn_between(&drafter, ends) / ends[0].distance(ends[1])

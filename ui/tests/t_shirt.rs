@@ -243,7 +243,7 @@ impl Drafter {
     }
 
     fn draft(&mut self, piece: &Piece) {
-        self.key(Key::F);
+        self.key(Key::Home);
         self.key(Key::P);
         let middle = self.window.get_by_label("Pattern view").rect().center();
         self.hover(middle);
@@ -256,7 +256,7 @@ impl Drafter {
                 self.status()
             );
         }
-        self.key(Key::F);
+        self.key(Key::Home);
         for (k, (edge, handles)) in piece.edges.iter().enumerate() {
             let next = (k + 1) % piece.corners.len();
             let ends = [k, next].map(|k| format!("Point {} of draft", piece.corners[k].0));
@@ -291,7 +291,7 @@ impl Drafter {
         let middle = middle.sum::<Vec2>() / piece.corners.len() as f64;
         self.key(Key::Escape);
         self.key(Key::Escape);
-        self.key(Key::F);
+        self.key(Key::Home);
         self.key(Key::T);
         self.click(self.place(middle.x, middle.y));
         self.key(Key::Escape);

@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use crate::theme::Palette;
-use egui::{Button, RichText, Ui};
+use egui::{Button, Key, Popup, RichText, Ui};
 
 /// The outcome of a dialog.
 pub enum Answer {
@@ -14,9 +14,22 @@ pub enum Answer {
     Do(Box<dyn FnOnce(&mut ToileApp)>),
 }
 
-/// The button that Enter presses.
-pub fn main_button(ui: &mut Ui, words: &str) -> bool {
+/// The filled button of a page or a dialog.
+pub fn filled_button(ui: &mut Ui, words: &str) -> bool {
     let palette = Palette::of(ui.ctx());
     let words = RichText::new(words).color(palette.on_accent);
     ui.add(Button::new(words).fill(palette.accent)).clicked()
+}
+
+/// The filled button of a dialog, which Enter presses too: what nothing is lost by. A button that has the
+/// keys itself, and a list that is open, take Enter before it.
+pub fn main_button(ui: &mut Ui, words: &str) -> bool {
+    let pressed = filled_button(ui, words);
+    let focused = ui.memory(|memory| memory.focused());
+    let focused = focused.and_then(|id| ui.ctx().read_response(id));
+    let is_here = focused.is_some_and(|widget| widget.layer_id == ui.layer_id());
+    let is_free = !is_here || ui.ctx().text_edit_focused();
+    let is_free = is_free && !Popup::is_any_open(ui.ctx());
+    let entered = ui.input(|input| input.key_pressed(Key::Enter));
+    pressed || ui.is_enabled() && is_free && entered
 }

@@ -25,7 +25,17 @@ const TOOL_RULE: f32 = 5.0;
 /// Buttons of the tool bar, in groups.
 const TOOL_BUTTONS: &[&[&str]] = &[
     &["Select"],
-    &["Point", "Line", "Curve", "Arc", "Polygon", "Rectangle"],
+    &[
+        "Point",
+        "Line",
+        "Curve",
+        "Arc",
+        "Arc about centre",
+        "Tangent arc",
+        "Polygon",
+        "Rectangle",
+        "Circle",
+    ],
     &["Move", "Turn", "Mirror", "Scale", "Measure"],
     &["Point from", "Point along", "Perpendicular", "Mirror point"],
     &[

@@ -1,10 +1,10 @@
 //! Every command of the window. Menus, keys, buttons, the palette and tests all go by this table.
 
-use super::command::UiCommand;
+use super::command::{Menu, UiCommand};
 use super::document_commands::DOCUMENT_COMMANDS;
 use super::tool_commands::TOOL_COMMANDS;
 use crate::tools::number::begins_typing;
-use crate::tools::slots::NAME_SIGN;
+use crate::tools::typing::{NAME_SIGN, WAY_SIGNS};
 use egui::{Key, KeyboardShortcut};
 
 /// All commands, in the order of their menus.
@@ -24,8 +24,10 @@ pub struct KeysTaken {
     pub typing: bool,
     /// A field for text has the focus: those it edits with too.
     pub text: bool,
-    /// A tool takes numbers: those a number begins with.
-    pub numbers: bool,
+    /// A tool is in hand: those a number begins with, and letters and digits of views.
+    pub tool: bool,
+    /// A seam is walked, which Home and End lead along.
+    pub walks: bool,
     /// Escape goes a step back in a tool that is under way, or closes a menu.
     pub escape: bool,
     /// A dialog is open: all of them.
@@ -72,8 +74,25 @@ fn begins_number(key: Key) -> bool {
     )
 }
 
+/// The command that Home is a key of too.
+const HOME: &str = "Fit";
+
+/// Commands whose keys were pressed in a frame.
+#[derive(Default)]
+pub struct Pressed {
+    /// Those that are to be done.
+    pub commands: Vec<&'static UiCommand>,
+    /// One that is not while a tool is in hand.
+    pub held: Option<&'static UiCommand>,
+}
+
+/// Whether a command changes a view by a letter or a digit: while a tool is in hand those are typed.
+fn is_view_letter(command: &UiCommand, key: Key) -> bool {
+    matches!(command.menu, Menu::View | Menu::Garment) && !is_function(key) && key != Key::Home
+}
+
 /// Commands whose keys were pressed in this frame.
-pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiCommand> {
+pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Pressed {
     // Keys with more modifiers first: a key without them matches those with them too.
     let mut keyed: Vec<(&UiCommand, KeyboardShortcut)> = commands()
         .filter_map(|command| Some((command, command.key?)))
@@ -81,14 +100,16 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiComma
     let modifiers =
         |key: &KeyboardShortcut| u8::from(key.modifiers.shift) + u8::from(key.modifiers.command);
     keyed.sort_by_key(|(_, key)| std::cmp::Reverse(modifiers(key)));
-    let mut pressed = Vec::new();
+    let mut pressed = Pressed::default();
     context.input_mut(|input| {
         // Several letters may come in one frame: the first of a number, formula or name makes the
         // others part of it.
-        let begun = keys.numbers
+        let begun = keys.tool
             && input.events.iter().any(|event| match event {
                 egui::Event::Text(text) => {
-                    text.starts_with(begins_typing) || text.starts_with(NAME_SIGN)
+                    text.starts_with(begins_typing)
+                        || text.starts_with(NAME_SIGN)
+                        || text.starts_with(WAY_SIGNS)
                 }
                 _ => false,
             });
@@ -97,11 +118,19 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiComma
             let waits = keys.modal
                 || (keys.typing || begun) && plain
                 || keys.text && edits_text(key.logical_key)
-                || keys.numbers && plain && begins_number(key.logical_key)
+                || keys.tool && plain && begins_number(key.logical_key)
                 || keys.escape && key.logical_key == Key::Escape;
-            if !waits && input.consume_shortcut(&key) {
-                pressed.push(command);
+            if waits || !input.consume_shortcut(&key) {
+                continue;
             }
+            match keys.tool && plain && is_view_letter(command, key.logical_key) {
+                true => pressed.held = Some(command),
+                false => pressed.commands.push(command),
+            }
+        }
+        let is_home_free = !(keys.modal || keys.text || keys.walks);
+        if is_home_free && input.consume_key(egui::Modifiers::NONE, Key::Home) {
+            pressed.commands.extend(named(HOME));
         }
     });
     pressed

@@ -121,10 +121,9 @@ fn ask_name(ui: &mut Ui, name: &mut String) -> Answer {
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
     }
-    let entered = ui.input(|input| input.key_pressed(Key::Enter));
     let mut answer = Answer::Stay;
     ui.horizontal(|ui| {
-        if main_button(ui, "Create") || entered {
+        if main_button(ui, "Create") {
             let name = name.trim().to_owned();
             answer = Answer::Do(Box::new(move |app| {
                 if !app.execute(Command::NewPattern { name: name.clone() }) {
@@ -141,7 +140,7 @@ fn ask_name(ui: &mut Ui, name: &mut String) -> Answer {
 fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static str) -> Answer {
     ui.heading(title);
     ui.label(RichText::new(choice.folder.display().to_string()).small());
-    let mut entered = ui.input(|input| input.key_pressed(Key::Enter));
+    let mut taken = false;
     let mut folder = None;
     ScrollArea::vertical()
         .max_height(LIST)
@@ -161,7 +160,7 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
                 match entry.is_file {
                     true if response.double_clicked() => {
                         choice.path.clone_from(&entry.name);
-                        entered = true;
+                        taken = true;
                     }
                     true if response.clicked() => choice.path.clone_from(&entry.name),
                     false if response.clicked() => folder = Some(choice.folder.join(&entry.name)),
@@ -184,7 +183,7 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
     let mut answer = Answer::Stay;
     ui.horizontal(|ui| {
         let named = !choice.path.trim().is_empty();
-        if ui.add_enabled_ui(named, |ui| main_button(ui, verb)).inner || entered && named {
+        if ui.add_enabled_ui(named, |ui| main_button(ui, verb)).inner || taken && named {
             let path = choice.chosen();
             if path.is_dir() {
                 choice.path.clear();
@@ -208,11 +207,12 @@ fn ask_replace(ui: &mut Ui, path: &std::path::Path) -> Answer {
     ui.label(format!("{} is there already.", path.display()));
     let mut answer = Answer::Stay;
     ui.horizontal(|ui| {
-        if main_button(ui, "Replace") {
+        // The file that is there is not lost by Enter.
+        if main_button(ui, "Another file") {
+            answer = Answer::Do(Box::new(ToileApp::ask_save));
+        } else if ui.button("Replace").clicked() {
             let path = path.to_owned();
             answer = Answer::Do(Box::new(move |app| app.save_to(path, true)));
-        } else if ui.button("Another file").clicked() {
-            answer = Answer::Do(Box::new(ToileApp::ask_save));
         }
     });
     answer

@@ -235,7 +235,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         Menu::View,
         "Fit",
         key(PLAIN, Key::F),
-        "Show the whole pattern",
+        "Show the whole pattern: F while nothing is drawn, Home always",
         ToileApp::is_open,
         |app| app.view.fit(),
     ),

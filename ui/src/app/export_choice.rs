@@ -4,7 +4,7 @@ use super::ToileApp;
 use super::answer::{Answer, main_button};
 use crate::fields::text_field;
 use crate::theme::Palette;
-use egui::{ComboBox, Grid, Key, RichText, Ui};
+use egui::{ComboBox, Grid, RichText, Ui};
 use std::path::{Path, PathBuf};
 use toile_session::{Export, ExportFormat};
 
@@ -184,11 +184,16 @@ impl ToileApp {
             let words = format!("There already: {}", names.join(", "));
             ui.label(RichText::new(words).color(palette.warning));
         }
-        let entered = ui.input(|input| input.key_pressed(Key::Enter));
         let mut answer = Answer::Stay;
         ui.horizontal(|ui| {
-            let verb = if asks { "Replace" } else { "Export" };
-            if main_button(ui, verb) || entered {
+            // What is there already is not lost by Enter.
+            let (keeps, exports) = match asks {
+                true => (main_button(ui, "Keep them"), ui.button("Replace").clicked()),
+                false => (false, main_button(ui, "Export")),
+            };
+            if keeps {
+                choice.replaced.clear();
+            } else if exports {
                 choice.fault.clear();
                 if choice.formats.is_empty() {
                     choice.fault = "tick what is to be written".into();

@@ -31,7 +31,7 @@ mod welcome;
 use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
 use crate::theme;
-use crate::tools::Event as ToolEvent;
+use crate::tools::{Event as ToolEvent, Tool};
 use crate::views::garment::GarmentView;
 use crate::views::marker::MarkerView;
 use crate::views::pattern::PatternView;
@@ -419,14 +419,23 @@ impl ToileApp {
         let keys = KeysTaken {
             typing,
             text: self.types(&context),
-            numbers: self.view.tool.takes_keys(),
+            tool: self.view.tool.takes_keys(),
+            walks: matches!(self.view.tool, Tool::Walk),
             escape: self.menu_is_open || self.view.is_busy(),
             modal: self.dialog.is_some(),
         };
-        for command in command_table::pressed(&context, keys) {
+        let pressed = command_table::pressed(&context, keys);
+        for command in pressed.commands {
             if (command.when)(self) {
                 (command.does)(self);
             }
+        }
+        if let Some(command) = pressed.held {
+            self.notice = Notice::fault(format!(
+                "{}: its key is for the pattern alone while a tool is in hand. Home shows everything, \
+                 Esc puts the tool down",
+                command.name
+            ));
         }
         self.nudge(&context);
         self.take_clipboard(&context);

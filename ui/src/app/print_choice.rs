@@ -4,7 +4,7 @@ use super::ToileApp;
 use super::answer::{Answer, main_button};
 use crate::fields::text_field;
 use crate::theme::Palette;
-use egui::{ComboBox, Grid, Key, RichText, Ui};
+use egui::{ComboBox, Grid, RichText, Ui};
 use toile_session::{Lines, Paper, PrintOptions, SizeSelection};
 
 /// What is asked before printing.
@@ -80,10 +80,9 @@ impl ToileApp {
             let colour = Palette::of(ui.ctx()).fault;
             ui.label(RichText::new(&choice.fault).color(colour));
         }
-        let entered = ui.input(|input| input.key_pressed(Key::Enter));
         let mut answer = Answer::Stay;
         ui.horizontal(|ui| {
-            if main_button(ui, "Print") || entered {
+            if main_button(ui, "Print") {
                 match read_scale(&choice.scale) {
                     Some(scale) => {
                         choice.options.scale = scale;

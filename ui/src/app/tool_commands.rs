@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use super::command::{BOTH, Menu, PLAIN, SHIFT, UiCommand, always, command, key};
-use crate::tools::{Tool, alter, draw, panel, parts, seam};
+use crate::tools::{Tool, alter, arc, draw, panel, parts, ring, seam};
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
 
@@ -71,7 +71,31 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         key(PLAIN, Key::A),
         "Draw a circular arc through a place",
         ToileApp::is_open,
-        |app| app.take(Tool::Slots(&draw::ARC)),
+        |app| app.take(Tool::Slots(&arc::ARC)),
+    ),
+    command(
+        Menu::Draw,
+        "Arc about centre",
+        key(SHIFT, Key::O),
+        "Draw a circular arc by its centre, its radius and the angle it sweeps",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&arc::CENTRE_ARC)),
+    ),
+    command(
+        Menu::Draw,
+        "Tangent arc",
+        key(SHIFT, Key::T),
+        "Draw a circular arc that goes on smoothly from the end of a curve",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&arc::TANGENT_ARC)),
+    ),
+    command(
+        Menu::Draw,
+        "Circle",
+        key(SHIFT, Key::C),
+        "Draw a circle, a ring or a part of one as a panel: circular skirts, flounces, collars",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&ring::RING)),
     ),
     command(
         Menu::Draw,

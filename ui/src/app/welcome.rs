@@ -1,7 +1,7 @@
 //! The window without a pattern: how to begin.
 
 use super::ToileApp;
-use super::answer::{Answer, main_button};
+use super::answer::{Answer, filled_button, main_button};
 use crate::theme::Palette;
 use egui::{RichText, Ui, vec2};
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ impl ToileApp {
                     let width = known.unwrap_or(BUTTONS);
                     ui.add_space((ui.available_width() - width).max(0.0) * 0.5);
                     let left = ui.next_widget_position().x;
-                    if main_button(ui, "New pattern") {
+                    if filled_button(ui, "New pattern") {
                         self.ask_new();
                     }
                     if ui.button("Open a file\u{2026}").clicked() {
@@ -97,19 +97,18 @@ impl ToileApp {
                     };
                     ui.label(RichText::new(words).color(palette.ink_soft));
                 }
-                if main_button(ui, "Recover") {
+                // Enter takes the first.
+                let recovers = match k {
+                    0 => main_button(ui, "Recover"),
+                    _ => filled_button(ui, "Recover"),
+                };
+                if recovers {
                     taken = Some(k);
                 }
                 if ui.button("Discard").clicked() {
                     dropped = Some(k);
                 }
             });
-        }
-        // Enter takes the only one, unless another button has the keys.
-        let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
-        let is_free = ui.memory(|memory| memory.focused().is_none());
-        if entered && is_free && self.abandoned.len() == 1 {
-            taken = Some(0);
         }
         if let Some(k) = dropped {
             let document = self.abandoned.remove(k);

@@ -467,6 +467,11 @@ impl Picture<'_> {
                 let at = self.seen(self.table_layout.sheet(*sheet), *at);
                 self.tag(at + vec2(12.0, 20.0), words);
             }
+            Overlay::Fault(sheet, at, words) => {
+                let at = self.seen(self.table_layout.sheet(*sheet), *at);
+                let lines = words.lines().count().max(1) as f32;
+                self.label(at + vec2(12.0, -18.0 * lines), words, self.palette.fault);
+            }
             Overlay::Words(..) | Overlay::Label(..) => {}
             Overlay::Ghost(..) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
                 self.on_table(mark);

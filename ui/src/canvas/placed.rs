@@ -8,6 +8,9 @@ use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 /// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
 const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
 
+/// The most that a drag is rounded to [m].
+const MOST_ROUNDED: f64 = 0.001;
+
 /// The construction of a point at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spec {
@@ -70,6 +73,23 @@ pub fn grid_step(scale: f64) -> f64 {
     step.map_or(0.05, |(step, _)| *step)
 }
 
+/// What a drag rounds lengths to where a pixel is so wide [m]: the least 1, 2 or 5 times a power of ten of a
+/// unit [m] that is no finer, and no more than a millimetre.
+pub fn drag_step(pixel: f64, unit: f64) -> f64 {
+    let wanted = pixel.clamp(1e-9, MOST_ROUNDED);
+    let power = 10.0_f64.powf((wanted / unit).log10().floor());
+    let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|step| step * power * unit);
+    let is_fit =
+        |step: &f64| *step >= wanted * (1.0 - 1e-9) && *step <= MOST_ROUNDED * (1.0 + 1e-9);
+    let most = || {
+        steps
+            .into_iter()
+            .rfind(|step| *step <= MOST_ROUNDED * (1.0 + 1e-9))
+    };
+    let found = steps.into_iter().find(is_fit);
+    found.or_else(most).unwrap_or(MOST_ROUNDED)
+}
+
 /// The nearest multiple of a step, with few digits: 0.3, not 0.30000000000000004.
 pub fn rounded(value: f64, step: f64) -> f64 {
     ((value / step).round() * step * 1e6).round() / 1e6
@@ -123,5 +143,26 @@ pub fn on_edge(sheet: SheetId, part: &EdgePart, (share, at): (f64, Vec2), words:
         at,
         spec: Spec::New(PointRule::Mark { line, at: mark }),
         words: words.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drags_are_rounded_to_what_is_seen_and_no_more_than_a_millimetre() {
+        for (pixel, unit, step) in [
+            (0.0007, 0.01, 0.001),
+            (0.003, 0.01, 0.001),
+            (0.0003, 0.01, 0.0005),
+            (0.00015, 0.001, 0.0002),
+            (0.00001, 0.001, 0.00001),
+            (0.002, 0.0254, 0.02 * 0.0254),
+            (0.0001, 0.0254, 0.005 * 0.0254),
+        ] {
+            let found = drag_step(pixel, unit);
+            assert!((found - step).abs() < 1e-9, "{pixel} {unit}: {found}");
+        }
     }
 }

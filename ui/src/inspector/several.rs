@@ -1,5 +1,6 @@
 //! The inspector for several selected parts: numbers they have in common are set for all at once.
 
+use super::arcs::{kept, numbers_of};
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
 use crate::fields::Entered;
@@ -46,9 +47,7 @@ impl ToileApp {
 
     /// Numbers that all parts have, each with its entry in every part.
     fn common_numbers(&self, items: &[Item]) -> Vec<Vec<NumberEntry>> {
-        let mut of_parts = items
-            .iter()
-            .map(|item| plan::numbers_of(&self.base, item.part()));
+        let mut of_parts = items.iter().map(|item| numbers_of(&self.base, item.part()));
         let Some(first) = of_parts.next() else {
             return Vec::new();
         };
@@ -104,6 +103,7 @@ impl ToileApp {
                             hint: "type another".into(),
                         }
                     })?;
+                    let number = kept(evaluation, &entry.place, number)?;
                     Ok((plan::set_number(evaluation, &entry.place, number)?, ()))
                 });
                 edits.map_err(|error| error.to_string())
@@ -125,13 +125,14 @@ impl ToileApp {
         let Some(curve) = curve.map(|edge| edge.curve) else {
             return;
         };
-        let entries = plan::numbers_of(&self.base, curve.into());
+        let entries = numbers_of(&self.base, curve.into());
         if !entries.is_empty() {
             ui.label(RichText::new("Its curve").strong());
         }
         for entry in entries {
             self.number_field(ui, &entry);
         }
+        self.radius_field(ui, curve);
         self.handle_numbers(ui, curve);
     }
 }

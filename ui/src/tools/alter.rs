@@ -3,7 +3,7 @@
 use super::Reading;
 use super::planning::{Planning, panel_under};
 use super::refusal::refuse;
-use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
+use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};
 use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, PleatKind, Side, Want};
@@ -22,7 +22,7 @@ pub static PIVOT: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click the outline where it goes to",
-            kind: SlotKind::OnLine(Fields::Distance),
+            kind: SlotKind::OnLine,
         },
         Slot {
             hint: "Type the share of it that is moved",
@@ -127,8 +127,9 @@ pub static SPREAD: SlotTool = SlotTool {
             ));
         }
         let count = reading.evaluation.number(count, Want::Plain);
-        let count = count.filter(|count| (1.0..=100.0).contains(count));
-        let count = count.ok_or_else(|| refuse("a panel is cut 1 to 100 times", "type a count"))?;
+        let count = count.filter(|count| (1.0..=100.0).contains(count) && count.fract() == 0.0);
+        let count =
+            count.ok_or_else(|| refuse("a panel has 1 to 100 cuts", "type a whole number"))?;
         let mut planning = Planning::new(reading);
         let id = planning.run(|evaluation| {
             let count = count.round() as u16;
@@ -213,8 +214,8 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
         ));
     }
     let count = reading.evaluation.number(count, Want::Plain);
-    let count = count.filter(|count| (1.0..=60.0).contains(count));
-    let count = count.ok_or_else(|| refuse("a panel has 1 to 60 pleats", "type a count"))?;
+    let count = count.filter(|count| (1.0..=60.0).contains(count) && count.fract() == 0.0);
+    let count = count.ok_or_else(|| refuse("a panel has 1 to 60 pleats", "type a whole number"))?;
     let mut planning = Planning::new(reading);
     let id = planning.run(|evaluation| {
         let count = count.round() as u16;
@@ -238,17 +239,17 @@ pub static SPLIT: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the outline where the cut starts",
-            kind: SlotKind::OnLine(Fields::None),
+            kind: SlotKind::OnLine,
         },
         Slot {
             hint: "Click the outline where it ends",
-            kind: SlotKind::OnLine(Fields::None),
+            kind: SlotKind::OnLine,
         },
     ],
     plan: |answers, reading| {
         let [
-            Answer::OnLine(panel, _, from, _),
-            Answer::OnLine(on, _, to, _),
+            Answer::OnLine(panel, _, from, first),
+            Answer::OnLine(on, _, to, second),
         ] = answers
         else {
             return Err(refuse("nothing was given", "click the outline"));
@@ -260,7 +261,8 @@ pub static SPLIT: SlotTool = SlotTool {
             ));
         }
         let mut planning = Planning::new(reading);
-        let [from, to] = [from, to].map(|at| super::panel::marked(reading, *panel, (*at, &None)));
+        let ends = [(*from, first), (*to, second)];
+        let [from, to] = ends.map(|end| super::panel::marked(reading, *panel, end));
         let places = [from?, to?];
         let curve = planning.run(|evaluation| plan::line_across(evaluation, *panel, places))?;
         split(planning, *panel, curve)

@@ -1,6 +1,7 @@
 //! Tools that draw points and curves on a sheet, and whole figures.
 
-use super::planning::{Planning, places};
+use super::composed::{formula, point, written};
+use super::planning::{Planning, places, put_rule, rule_at};
 use super::refusal::refuse;
 use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
 use super::{Reading, along};
@@ -8,7 +9,7 @@ use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::selection::Item;
 use toile_geometry::Vec2;
 use toile_pattern::{
-    CurveRule, EditError, Number, PointId, PointRule, Want,
+    CurveId, CurveRule, EditError, Number, PointId, PointRule, Want,
     plan::{self, Chain, CurveShape, Holes, NewPanel},
 };
 
@@ -17,7 +18,7 @@ pub static POINT: SlotTool = SlotTool {
     command: "Point",
     slots: &[Slot {
         hint: "Click where the point is to be",
-        kind: SlotKind::Named(Fields::Coordinates),
+        kind: SlotKind::Named(Fields::Usual),
     }],
     plan: |answers, reading| {
         let mut planning = Planning::new(reading);
@@ -32,11 +33,11 @@ pub static POINT_FROM: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the point to measure from",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click where the new point is to be",
-            kind: SlotKind::Named(Fields::FromLast),
+            kind: SlotKind::Named(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -75,7 +76,7 @@ fn drawn(
 }
 
 /// The name that was typed for what is drawn.
-fn name(answers: &[Answer]) -> Option<&str> {
+pub(super) fn name(answers: &[Answer]) -> Option<&str> {
     match answers.last()? {
         Answer::Named(_, name) | Answer::Places(_, _, name) | Answer::Inside(_, _, name) => {
             name.as_deref()
@@ -90,11 +91,11 @@ pub static LINE: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click where the line starts",
-            kind: SlotKind::Place(Fields::Coordinates),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click where it ends",
-            kind: SlotKind::Named(Fields::FromLast),
+            kind: SlotKind::Named(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -167,41 +168,6 @@ pub static POLYGON: SlotTool = SlotTool {
     },
 };
 
-/// An arc through a place.
-pub static ARC: SlotTool = SlotTool {
-    command: "Arc",
-    slots: &[
-        Slot {
-            hint: "Click where the arc starts",
-            kind: SlotKind::Place(Fields::Coordinates),
-        },
-        Slot {
-            hint: "Click where it ends",
-            kind: SlotKind::Place(Fields::FromLast),
-        },
-        Slot {
-            hint: "Click a place it goes through",
-            kind: SlotKind::Named(Fields::None),
-        },
-    ],
-    plan: |answers, reading| {
-        let mut planning = Planning::new(reading);
-        let given = places(answers);
-        let points = planning.points(&given[..2])?;
-        let (sheet, through) = (given[0].sheet, given[2].at);
-        let curve = planning.run(|evaluation| {
-            let shape = CurveShape::ArcThrough(through);
-            plan::add_curve(
-                evaluation,
-                (sheet, name(answers)),
-                [points[0], points[1]],
-                shape,
-            )
-        })?;
-        Ok(planning.done("Draw arc", [Item::Curve(curve)]))
-    },
-};
-
 /// A smooth curve through several places; its handles can be moved afterwards.
 pub static SPLINE: SlotTool = SlotTool {
     command: "Curve",
@@ -213,15 +179,46 @@ pub static SPLINE: SlotTool = SlotTool {
         let mut planning = Planning::new(reading);
         let given = places(answers);
         let (first, last) = (given[0], given[given.len() - 1]);
-        let ends = planning.points(&[first, last])?;
+        // The place before the last may be a point the curve goes through, which is not there yet.
+        let free = Placed::free(last.sheet, last.at);
+        let is_relative = matches!(last.spec, Spec::FromLast { .. } | Spec::BesideLast { .. });
+        let end = match is_relative {
+            true => &free,
+            false => last,
+        };
+        let ends = planning.points(&[first, end])?;
         let shape = smooth(&given.iter().map(|placed| placed.at).collect::<Vec<_>>());
         let curve = planning.run(|evaluation| {
             let named = (first.sheet, name(answers));
             plan::add_curve(evaluation, named, [ends[0], ends[1]], shape)
         })?;
+        let before = keep_places(&mut planning, curve, (ends[0], &given[1..given.len() - 1]))?;
+        if is_relative {
+            put_rule(&mut planning, ends[1], rule_at(last, Some(before)))?;
+        }
         Ok(planning.done("Draw curve", [Item::Curve(curve)]))
     },
 };
+
+/// Gives the points a spline goes through the constructions of their places, the first after another point;
+/// and the last of them, or that point.
+fn keep_places(
+    planning: &mut Planning,
+    curve: CurveId,
+    (first, given): (PointId, &[&Placed]),
+) -> Result<PointId, EditError> {
+    let found = planning.evaluation().pattern().curve(curve);
+    let knots = match found.map(|(_, curve)| &curve.rule) {
+        Some(CurveRule::Spline { knots, .. }) => knots.clone(),
+        _ => Vec::new(),
+    };
+    let mut before = first;
+    for (knot, placed) in knots.iter().zip(given) {
+        put_rule(planning, knot.point, rule_at(placed, Some(before)))?;
+        before = knot.point;
+    }
+    Ok(before)
+}
 
 /// A spline through places: each handle lies along the chord of the places beside its own, a third
 /// of the way to its neighbour (Catmull and Rom 1974); at both ends toward the neighbour's handle.
@@ -257,7 +254,7 @@ pub static RECTANGLE: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click a corner of the rectangle",
-            kind: SlotKind::Place(Fields::Coordinates),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click the opposite corner",
@@ -268,11 +265,20 @@ pub static RECTANGLE: SlotTool = SlotTool {
         let mut planning = Planning::new(reading);
         let given = places(answers);
         let (from, to) = (given[0], given[1]);
+        let corner = planning.point(from, None)?;
         let size = match &to.spec {
             Spec::BesideLast { x, y } => [x.clone(), y.clone()],
+            Spec::New(PointRule::At { x, y }) if x.as_formula().or(y.as_formula()).is_some() => {
+                let evaluation = planning.evaluation();
+                let name = point(evaluation, corner);
+                let side = |axis: &str, to: &Number| {
+                    let to = written(evaluation, to, Want::Length);
+                    formula(evaluation, &format!("{to} - {axis}({name})"))
+                };
+                [side("x", x)?, side("y", y)?]
+            }
             _ => [to.at.x - from.at.x, to.at.y - from.at.y].map(Number::Value),
         };
-        let corner = planning.point(from, None)?;
         let figure = planning.run(|evaluation| {
             let corner = (plan::FirstCorner::Point(corner), size);
             let panel = NewPanel {
@@ -357,15 +363,15 @@ pub static FOOT: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the point to drop a perpendicular from",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click a point of the line",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click another point of the line",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -383,15 +389,15 @@ pub static MIRROR: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the point to mirror",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click a point of the mirror line",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click another point of the mirror line",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {

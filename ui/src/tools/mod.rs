@@ -3,17 +3,26 @@
 
 mod along;
 pub mod alter;
+mod answering;
+pub mod arc;
+mod composed;
 pub mod draw;
+mod newest;
 pub mod number;
 pub mod panel;
 pub mod parts;
 mod planning;
 mod refusal;
+pub mod ring;
+mod rounding;
 pub mod seam;
 pub(crate) mod select;
 mod slot_overlay;
+mod slot_steps;
 pub mod slots;
+mod tangent;
 mod toward;
+pub mod typing;
 pub mod walk;
 
 pub use planning::Planning;
@@ -144,6 +153,8 @@ pub enum Overlay {
     Edge(PanelId, EdgeId),
     /// Words beside a place on a sheet.
     Words(SheetId, Vec2, String),
+    /// What is wrong with what is typed, over a place on a sheet.
+    Fault(SheetId, Vec2, String),
     /// A rectangle of the table.
     Box([Vec2; 2]),
     /// A piece that is laid on the table while a tool is in hand: its rings [m], and what they enclose.
@@ -248,7 +259,7 @@ impl Tool {
                 (State::Select(state), outcome)
             }
             (Self::Slots(tool), State::Slots(state)) => {
-                let (state, outcome) = slots::step(tool, state, event, reading);
+                let (state, outcome) = slot_steps::step(tool, state, event, reading);
                 (State::Slots(Box::new(state)), outcome)
             }
             (Self::Walk, State::Walk(state)) => {
@@ -274,7 +285,7 @@ impl Tool {
     pub fn hint(self, state: &State, reading: &Reading<'_>) -> String {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::hint(state, reading),
-            (Self::Slots(tool), State::Slots(state)) => slot_overlay::hint(tool, state),
+            (Self::Slots(tool), State::Slots(state)) => slot_overlay::hint(tool, state, reading),
             (Self::Walk, State::Walk(state)) => walk::hint(state, reading),
             _ => String::new(),
         }

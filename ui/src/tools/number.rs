@@ -21,7 +21,7 @@ pub fn parse(text: &str, want: Want, evaluation: &Evaluation) -> Result<Number, 
 
 /// Whether a number or formula can begin with a character.
 pub fn begins_typing(c: char) -> bool {
-    c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '(')
+    c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '+' | '(')
 }
 
 /// A value in words.

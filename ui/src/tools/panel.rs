@@ -1,16 +1,17 @@
 //! Tools that work on panels: darts, folds, notches, points on edges, lines inside.
 
-use super::planning::{Planning, panel_under, places};
+use super::planning::{Planning, panel_under, places, put_rule};
 use super::refusal::refuse;
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
-use crate::canvas::placed::Placed;
+use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::selection::Item;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{
-    Apex, CurveRule, Edit, EditError, Entity, LineKind, Mark, Name, NotchKind, Number,
-    OperationKind, Panel, PanelId, PointId, Pressed, SheetId, Want,
+    Apex, CornerName, Curve, CurveId, CurveRule, EdgeId, Edit, EditError, Entity, LineKind, Mark,
+    Name, NotchKind, Number, OperationKind, Panel, PanelId, PointId, PointRule, Pressed, SheetId,
+    Want,
     plan::{self, Chain, CurveShape},
 };
 
@@ -20,7 +21,7 @@ pub static DART: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the edge where the middle of the dart's mouth is",
-            kind: SlotKind::OnLine(Fields::Distance),
+            kind: SlotKind::OnLine,
         },
         Slot {
             hint: "Type the width of the mouth",
@@ -69,11 +70,11 @@ pub static FISHEYE: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click inside a panel where the dart begins",
-            kind: SlotKind::Place(Fields::Coordinates),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click where it ends",
-            kind: SlotKind::Place(Fields::FromLast),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Type its width in the middle",
@@ -138,7 +139,7 @@ pub static NOTCH: SlotTool = SlotTool {
     command: "Notch",
     slots: &[Slot {
         hint: "Click the edge where the notch is",
-        kind: SlotKind::OnLine(Fields::Distance),
+        kind: SlotKind::OnLine,
     }],
     plan: |answers, reading| {
         let Some(Answer::OnLine(panel, _, at, mark)) = answers.first() else {
@@ -164,7 +165,7 @@ pub static BEND: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click a place it is to go through",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -180,28 +181,95 @@ pub static BEND: SlotTool = SlotTool {
             .ok_or_else(|| refuse("the edge is gone", "click another"))?
             .curve;
         let mut planning = Planning::new(reading);
-        planning.run(|evaluation| Ok((plan::bend_curve(evaluation, curve, through.at)?, ())))?;
+        bend(&mut planning, curve, through)?;
         Ok(planning.done("Bend edge", [Item::Edge(*panel, *edge)]))
     },
 };
+
+/// Bends a curve through a place.
+fn bend(planning: &mut Planning, id: CurveId, through: &Placed) -> Result<(), EditError> {
+    let found = planning.evaluation().pattern().curve(id);
+    if let Some((sheet, curve)) = found
+        && sheet.id == through.sheet
+    {
+        let (sheet, curve) = (sheet.id, (**curve).clone());
+        if let CurveShape::Rule(rule) = super::arc::through(planning, curve.ends, through)? {
+            let bent = Arc::new(Curve { rule, ..curve });
+            return planning.make(vec![Edit::Put(Entity::Curve(sheet, bent))]);
+        }
+    }
+    planning.run(|evaluation| Ok((plan::bend_curve(evaluation, id, through.at)?, ())))
+}
 
 /// A corner on an edge.
 pub static DIVIDE: SlotTool = SlotTool {
     command: "Divide edge",
     slots: &[Slot {
         hint: "Click the edge where a point is to divide it",
-        kind: SlotKind::Edge,
+        kind: SlotKind::OnLine,
     }],
     plan: |answers, reading| {
-        let Some(Answer::Edge(panel, edge, at)) = answers.first() else {
+        let Some(Answer::OnLine(panel, item, at, mark)) = answers.first() else {
             return Err(refuse("nothing was given", "click an edge"));
         };
+        let Item::Edge(_, edge) = item else {
+            return Err(refuse(
+                "a line inside a panel is not divided",
+                "click an edge",
+            ));
+        };
+        let place = (*panel, *edge, *at);
+        let tidy = || super::along::told(reading, place).map_or(*at, |(_, at)| at);
+        let at = mark.as_ref().map_or_else(tidy, |_| *at);
         let mut planning = Planning::new(reading);
         let corner =
-            planning.run(|evaluation| plan::divide_edge(evaluation, (*panel, *edge), Some(*at)))?;
+            planning.run(|evaluation| plan::divide_edge(evaluation, (*panel, *edge), Some(at)))?;
+        if let Some(Mark::Along { from, distance }) = mark {
+            let place = (*panel, *edge);
+            if let Some(rule) = along_curve(reading, place, (*from, distance))? {
+                put_rule(&mut planning, corner, rule)?;
+            }
+        }
         Ok(planning.done("Add point", [Item::Point(corner)]))
     },
 };
+
+/// A distance along an edge as one along its curve: where the edge is the whole of it and nothing is let
+/// into it, the distance stays what was typed.
+fn along_curve(
+    reading: &Reading<'_>,
+    (panel, edge): (PanelId, EdgeId),
+    (from, distance): (CornerName, &Number),
+) -> Result<Option<PointRule>, EditError> {
+    let pattern = reading.evaluation.pattern();
+    let owner = pattern.owner_of(panel, edge.into());
+    let Some(found) = owner.and_then(|owner| owner.edge(edge)) else {
+        return Ok(None);
+    };
+    let Some((_, curve)) = pattern.curve(found.curve) else {
+        return Ok(None);
+    };
+    let drawn = reading.evaluation.curve(curve.id);
+    let finished = plan::finished_edge(reading.evaluation, panel, edge)?;
+    let is_whole = drawn.is_some_and(|path| (path.length() - finished.length).abs() < 1e-9);
+    let is_end = curve.ends.map(Name::Drawn).contains(&from);
+    let backwards = match found.ends {
+        ends if ends == curve.ends => false,
+        [start, end] if [end, start] == curve.ends => true,
+        _ => return Ok(None),
+    };
+    if !is_whole || !is_end {
+        return Ok(None);
+    }
+    let distance = match backwards {
+        true => super::along::negated(distance, reading)?,
+        false => distance.clone(),
+    };
+    Ok(Some(PointRule::AlongCurve {
+        curve: curve.id,
+        distance,
+    }))
+}
 
 /// A line inside a panel.
 pub static INNER_LINE: SlotTool = SlotTool {
@@ -299,11 +367,11 @@ pub static GRAIN: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click where the grainline starts",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click where it points",
-            kind: SlotKind::Place(Fields::FromLast),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -319,8 +387,12 @@ pub static GRAIN: SlotTool = SlotTool {
             ));
         }
         let mut planning = Planning::new(reading);
+        let grain = match &given[1].spec {
+            Spec::FromLast { angle, .. } => angle.clone(),
+            _ => Number::Value(way.y.atan2(way.x)),
+        };
         let changed = Panel {
-            grain: Number::Value(way.y.atan2(way.x)),
+            grain,
             ..(**panel_of(reading, *panel)?).clone()
         };
         planning.make(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])?;
@@ -353,8 +425,9 @@ pub static NOTCH_ROW: SlotTool = SlotTool {
         let owner = panel_of(reading, *panel)?;
         let (line, ends) = plan::edge_ends(reading.evaluation, owner, *edge)?;
         let count = reading.evaluation.number(count, Want::Plain);
-        let count = count.filter(|count| (1.0..=100.0).contains(count));
-        let count = count.ok_or_else(|| refuse("a row has 1 to 100 notches", "type a count"))?;
+        let count = count.filter(|count| (1.0..=100.0).contains(count) && count.fract() == 0.0);
+        let count =
+            count.ok_or_else(|| refuse("a row has a count of 1 to 100", "type a whole number"))?;
         let row = plan::NotchRow {
             line,
             ends,

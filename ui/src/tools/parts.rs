@@ -14,11 +14,11 @@ pub static MOVE: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click where to take hold of what is selected",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click where that place goes",
-            kind: SlotKind::Place(Fields::FromLast),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -34,7 +34,7 @@ pub static TURN: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the place to turn about",
-            kind: SlotKind::Place(Fields::Coordinates),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Type by how much, counter-clockwise",
@@ -61,11 +61,11 @@ pub static MIRROR_PARTS: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click a place on the mirror line",
-            kind: SlotKind::Place(Fields::Coordinates),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click another place on it",
-            kind: SlotKind::Place(Fields::FromLast),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {
@@ -87,7 +87,7 @@ pub static SCALE: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the place that stays",
-            kind: SlotKind::Place(Fields::Coordinates),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Type how many times as large",
@@ -120,11 +120,11 @@ pub static MEASURE: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click where to measure from",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
         Slot {
             hint: "Click where to measure to",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Place(Fields::Usual),
         },
     ],
     plan: |answers, reading| {

@@ -6,8 +6,11 @@ use super::slots::{Answer, Plan};
 use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::{Item, Selection};
+use std::sync::Arc;
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, EditError, Evaluation, PanelId, PointId, PointRule, SheetId, plan};
+use toile_pattern::{
+    Edit, EditError, Entity, Evaluation, PanelId, Point, PointId, PointRule, SheetId, plan,
+};
 
 /// Edits in the making.
 #[derive(Clone)]
@@ -76,22 +79,10 @@ impl Planning {
         placed: &Placed,
         before: Option<PointId>,
     ) -> Result<PointId, EditError> {
-        let rule = match (&placed.spec, before) {
-            (Spec::Point(id), _) => return Ok(*id),
-            (Spec::New(rule), _) => rule.clone(),
-            (Spec::FromLast { distance, angle }, Some(base)) => PointRule::Polar {
-                base,
-                angle: angle.clone(),
-                distance: distance.clone(),
-            },
-            (Spec::BesideLast { x, y }, Some(base)) => PointRule::Offset {
-                base,
-                x: x.clone(),
-                y: y.clone(),
-            },
-            _ => PointRule::at(placed.at.x, placed.at.y),
-        };
-        let sheet = placed.sheet;
+        if let Spec::Point(id) = placed.spec {
+            return Ok(id);
+        }
+        let (sheet, rule) = (placed.sheet, rule_at(placed, before));
         self.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
     }
 
@@ -121,6 +112,49 @@ impl Planning {
     }
 }
 
+/// The rule of a point of its own at a place; at a point that is there it lies on that. `before` is the
+/// point at the place given before.
+pub(super) fn rule_at(placed: &Placed, before: Option<PointId>) -> PointRule {
+    match (&placed.spec, before) {
+        (Spec::Point(base), _) => PointRule::Offset {
+            base: *base,
+            x: 0.0.into(),
+            y: 0.0.into(),
+        },
+        (Spec::New(rule), _) => rule.clone(),
+        (Spec::FromLast { distance, angle }, Some(base)) => PointRule::Polar {
+            base,
+            angle: angle.clone(),
+            distance: distance.clone(),
+        },
+        (Spec::BesideLast { x, y }, Some(base)) => PointRule::Offset {
+            base,
+            x: x.clone(),
+            y: y.clone(),
+        },
+        _ => PointRule::at(placed.at.x, placed.at.y),
+    }
+}
+
+/// Gives a point another rule.
+///
+/// # Errors
+/// The point is not there, or cannot be placed so.
+pub(super) fn put_rule(
+    planning: &mut Planning,
+    id: PointId,
+    rule: PointRule,
+) -> Result<(), EditError> {
+    let found = planning.evaluation().pattern().point(id);
+    let (sheet, point) = found.ok_or_else(|| refuse("the point is gone", "begin again"))?;
+    let point = Point {
+        rule,
+        ..(**point).clone()
+    };
+    let edit = Edit::Put(Entity::Point(sheet.id, Arc::new(point)));
+    planning.make(vec![edit])
+}
+
 /// Refuses what is drawn across two sheets.
 fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
     if one == other {
@@ -137,7 +171,9 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     let mut found = Vec::new();
     for answer in answers {
         match answer {
-            Answer::Place(placed) | Answer::Named(placed, _) => found.push(placed),
+            Answer::Place(placed) | Answer::Named(placed, _) | Answer::End(placed, ..) => {
+                found.push(placed);
+            }
             Answer::Places(places, ..) => found.extend(places),
             _ => {}
         }

@@ -4,6 +4,24 @@ use super::{Pointer, Reading};
 use crate::canvas::selection::Item;
 use toile_pattern::EditError;
 
+/// Why a slot of a tool cannot be answered.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Unanswered {
+    /// The field at fault, if it is one that is typed.
+    pub field: Option<usize>,
+    /// What is wrong, and what to do.
+    pub words: String,
+}
+
+impl<W: Into<String>> From<W> for Unanswered {
+    fn from(words: W) -> Self {
+        Self {
+            field: None,
+            words: words.into(),
+        }
+    }
+}
+
 /// A refusal with what is wrong and what to do.
 pub(super) fn refuse(message: &str, hint: &str) -> EditError {
     EditError::Impossible {

@@ -3,7 +3,7 @@
 use super::Reading;
 use super::planning::Planning;
 use super::refusal::refuse;
-use super::slots::{Answer, ChainEdge, Fields, Plan, Slot, SlotKind, SlotTool};
+use super::slots::{Answer, ChainEdge, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, SewnEdge};
 use toile_pattern::{EditError, NotchKind, Pattern};
@@ -104,13 +104,17 @@ pub static MATCHED_NOTCH: SlotTool = SlotTool {
     command: "Matched notches",
     slots: &[Slot {
         hint: "Click a sewn edge where notches are to meet",
-        kind: SlotKind::OnLine(Fields::None),
+        kind: SlotKind::OnLine,
     }],
     plan: |answers, reading| {
-        let Some(Answer::OnLine(panel, _, at, _)) = answers.first() else {
+        let Some(Answer::OnLine(panel, _, at, typed)) = answers.first() else {
             return Err(refuse("nothing was given", "click a sewn edge"));
         };
-        let near = super::panel::marked(reading, *panel, (*at, &None))?;
+        // A typed distance leads to one place, of which every side has its share.
+        let near = match typed {
+            Some(_) => plan::nearest_mark(reading.evaluation, *panel, *at)?,
+            None => super::panel::marked(reading, *panel, (*at, &None))?,
+        };
         let mut planning = Planning::new(reading);
         let made = planning.run(|evaluation| {
             plan::add_matched_notches(evaluation, (*panel, near), NotchKind::Slit)

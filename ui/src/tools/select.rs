@@ -1,7 +1,9 @@
 //! Selects by click and by box; drags points and whole panels; divides an edge by a double click.
 
+use super::rounding::rounded_place;
 use super::{Event, Outcome, Overlay, Planning, Pointer, PreviewChange, Reading, chosen};
 use crate::canvas::hit::Hit;
+use crate::canvas::placed::drag_step;
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::table_layout::TableLayout;
 use std::sync::Arc;
@@ -208,6 +210,13 @@ fn moved(
     }
     match dragged {
         Dragged::Points(points, held) => {
+            if let Some(now) = reading.evaluation.point(*held) {
+                let goal = rounded_place(*held, now + way, to, reading);
+                way = match to.modifiers.shift {
+                    true => straight(goal - now),
+                    false => goal - now,
+                };
+            }
             // The others move all the same; the one in hand says why it does not.
             if let Some(now) = reading.evaluation.point(*held).filter(|_| points.len() > 1) {
                 plan::move_point(reading.evaluation, *held, now + way)?;
@@ -227,6 +236,7 @@ fn moved(
             Ok(plan::move_points(reading.evaluation, &goals)?.edits)
         }
         Dragged::Panels(panels) => {
+            let way = whole(way, to, reading);
             let pattern = reading.evaluation.pattern();
             let moved = panels.iter().filter_map(|id| {
                 let panel = pattern.panel(*id)?;
@@ -239,6 +249,7 @@ fn moved(
             Ok(moved.collect())
         }
         Dragged::Sheets(sheets) => {
+            let way = whole(way, to, reading);
             move_sheets(reading.evaluation, reading.table_layout, sheets, way)
         }
         Dragged::Fixed(words) => Err(EditError::Impossible {
@@ -359,6 +370,15 @@ fn dropped(state: &SelectState, reading: &Reading<'_>) -> (SelectState, Outcome)
     (SelectState::Idle, outcome)
 }
 
+/// A way on the table in round numbers, unless that is held off.
+fn whole(way: Vec2, pointer: &Pointer, reading: &Reading<'_>) -> Vec2 {
+    let step = drag_step(pointer.pixel, reading.evaluation.pattern().unit.metres());
+    match pointer.modifiers.command {
+        true => way,
+        false => way.map(|along| (along / step).round() * step),
+    }
+}
+
 /// The way across or up only, whichever is longer.
 fn straight(way: Vec2) -> Vec2 {
     match way.x.abs() >= way.y.abs() {
@@ -404,8 +424,8 @@ pub(super) fn hint(state: &SelectState, reading: &Reading<'_>) -> String {
                               double-click an edge to add a point"
             .into(),
         SelectState::Dragging(..) => {
-            "Shift keeps it level or upright; Ctrl moves a handle without the one opposite; Esc \
-             leaves it"
+            "Shift keeps it level or upright; Ctrl moves it freely, and a handle without the one \
+             opposite; Esc leaves it"
                 .into()
         }
         SelectState::Boxing(..) => "Everything inside is selected; Shift adds".into(),

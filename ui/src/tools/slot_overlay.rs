@@ -1,21 +1,48 @@
 //! The overlay and the hints of a tool of slots.
 
-use super::slots::{
-    Answer, ChainEdge, Fields, SlotKind, SlotState, SlotTool, answer, fields, slot,
-};
+use super::answering::answer;
+use super::slots::{Answer, ChainEdge, Fields, SlotKind, SlotState, SlotTool, slot};
+use super::typing::{Typable, Way};
 use super::{Overlay, Reading, along, number};
+use crate::canvas::placed::Placed;
 use crate::canvas::selection::Item;
-use toile_pattern::Want;
+use toile_pattern::{Number, Want};
 
 /// Bytes of a line at the pointer.
 const LINE: usize = 44;
 
 pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
-    let kind = slot(tool, state).kind;
+    let mut marks = given(state);
+    let typable = Typable::new(tool, state, reading);
+    let typed = typed_words(&typable, state);
+    if !typable.handles.is_empty() {
+        // What is typed is seen on the curve.
+        if let Some(pointer) = state.pointer.as_ref().filter(|_| !typed.is_empty()) {
+            marks.push(Overlay::Words(pointer.sheet, pointer.at, typed));
+        }
+        return marks;
+    }
+    match answer(tool, state, reading) {
+        Ok(found) => marks.extend(told(tool, state, reading, (found, typed))),
+        Err(unanswered) => {
+            if let Some(pointer) = state.pointer.as_ref().filter(|_| state.is_typing()) {
+                marks.push(Overlay::Words(pointer.sheet, pointer.at, typed));
+                let words = in_lines(&unanswered.words);
+                marks.push(Overlay::Fault(pointer.sheet, pointer.at, words));
+            }
+        }
+    }
+    marks
+}
+
+/// What was given so far.
+fn given(state: &SlotState) -> Vec<Overlay> {
     let mut marks = Vec::new();
     for answer in &state.answers {
         match answer {
-            Answer::Place(placed) => marks.push(Overlay::Dot(placed.sheet, placed.at)),
+            Answer::Place(placed) | Answer::End(placed, ..) => {
+                marks.push(Overlay::Dot(placed.sheet, placed.at));
+            }
             Answer::Places(places, ..) => {
                 marks.extend(places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
             }
@@ -29,82 +56,109 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
         marks.push(Overlay::Line(places[0].sheet, line));
     }
     marks.extend(state.places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
+    marks
+}
+
+/// What would be given now, and what is typed for it.
+fn told(
+    tool: &SlotTool,
+    state: &SlotState,
+    reading: &Reading<'_>,
+    (found, typed): (Answer, String),
+) -> Vec<Overlay> {
+    let kind = slot(tool, state).kind;
     let unit = reading.evaluation.pattern().unit;
-    let typed = typed_words(kind, state);
-    match answer(kind, state, reading) {
-        Ok(Answer::Place(placed) | Answer::Named(placed, _)) => {
-            let mut words = vec![placed.words.clone()];
-            if let Some(last) = state.last_place() {
-                let way = placed.at - last.at;
-                let length = |length: f64| number::show(length, Want::Length, unit);
-                match kind {
-                    SlotKind::Named(Fields::Size) => {
-                        words.push(format!("{} x {}", length(way.x.abs()), length(way.y.abs())));
-                    }
-                    _ => {
-                        marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
-                        words.push(length(way.norm()));
-                        words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
-                    }
-                }
-            }
-            words.push(state.named.clone());
-            words.retain(|word| !word.is_empty());
-            let lines = [words.join("  "), typed];
-            let lines = lines.into_iter().filter(|line| !line.is_empty());
-            let lines = lines.collect::<Vec<_>>().join("\n");
-            marks.push(Overlay::Dot(placed.sheet, placed.at));
-            marks.push(Overlay::Words(placed.sheet, placed.at, lines));
+    let pointer = state.pointer.as_ref();
+    let mut marks = Vec::new();
+    match found {
+        Answer::Place(placed) | Answer::Named(placed, _) => {
+            marks.extend(placed_words(kind, state, reading, (&placed, typed)));
         }
-        Ok(Answer::Number(given)) => {
-            if let (Some(pointer), SlotKind::Number { label, want, .. }) = (&state.pointer, kind) {
-                let value = reading.evaluation.number(&given, want);
-                let value = value.map_or_else(String::new, |v| number::show(v, want, unit));
-                let words = format!("{label} {value}  {typed}");
-                marks.push(Overlay::Words(
-                    pointer.sheet,
-                    pointer.at,
-                    words.trim().into(),
-                ));
+        Answer::Number(given) => {
+            if let (Some(pointer), SlotKind::Number { label, want, .. }) = (pointer, kind) {
+                let words = number_words(reading, (label, &given, want), &typed);
+                marks.push(Overlay::Words(pointer.sheet, pointer.at, words));
             }
         }
-        Ok(Answer::OnLine(panel, Item::Edge(_, edge), at, None))
-            if matches!(kind, SlotKind::OnLine(Fields::Distance)) =>
-        {
-            if let Some(pointer) = &state.pointer {
+        Answer::OnLine(panel, Item::Edge(_, edge), at, None) => {
+            if let Some(pointer) = pointer {
                 let told = along::told(reading, (panel, edge, at));
                 let at = told.map_or(at, |(_, at)| at);
                 marks.push(Overlay::Dot(pointer.sheet, at));
                 let distance = told.map(|(distance, _)| number::show(distance, Want::Length, unit));
-                marks.extend(distance.map(|words| Overlay::Words(pointer.sheet, at, words)));
+                let words = [distance.unwrap_or_default(), typed];
+                marks.push(Overlay::Words(pointer.sheet, at, joined(&words)));
             }
         }
-        Ok(Answer::OnLine(_, _, at, _) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
-            if let Some(pointer) = &state.pointer {
+        Answer::OnLine(_, _, at, _)
+        | Answer::Edge(_, _, at)
+        | Answer::Curve(_, _, at)
+        | Answer::End(Placed { at, .. }, ..) => {
+            if let Some(pointer) = pointer {
                 marks.push(Overlay::Dot(pointer.sheet, at));
-                if !typed.is_empty() {
-                    marks.push(Overlay::Words(pointer.sheet, at, typed));
-                }
+                marks.push(Overlay::Words(pointer.sheet, at, typed));
             }
         }
-        Ok(Answer::Inside(sheet, at, _)) if !typed.is_empty() => {
-            marks.push(Overlay::Words(sheet, at, typed));
-        }
-        Ok(Answer::Chain(chain)) => {
+        Answer::Inside(sheet, at, _) => marks.push(Overlay::Words(sheet, at, typed)),
+        Answer::Chain(chain) => {
             marks.extend(chain.last().map(edge));
-            if let (Some(pointer), Some(words)) = (&state.pointer, &state.told) {
+            if let (Some(pointer), Some(words)) = (pointer, &state.told) {
                 marks.push(Overlay::Words(pointer.sheet, pointer.at, in_lines(words)));
             }
         }
-        Ok(_) => {}
-        Err(words) => {
-            if let Some(pointer) = state.pointer.as_ref().filter(|_| state.is_typing()) {
-                let words = format!("{typed}  {words}");
-                marks.push(Overlay::Words(pointer.sheet, pointer.at, words));
+        _ => {}
+    }
+    marks
+}
+
+/// A number as it would be, and what is typed for it.
+fn number_words(
+    reading: &Reading<'_>,
+    (label, given, want): (&str, &Number, Want),
+    typed: &str,
+) -> String {
+    let unit = reading.evaluation.pattern().unit;
+    let value = reading.evaluation.number(given, want);
+    let value = value.map_or_else(String::new, |v| number::show(v, want, unit));
+    format!("{label} {value}  {typed}").trim().to_owned()
+}
+
+/// A place as it would be, and what is typed for it.
+fn placed_words(
+    kind: SlotKind,
+    state: &SlotState,
+    reading: &Reading<'_>,
+    (placed, typed): (&Placed, String),
+) -> Vec<Overlay> {
+    let unit = reading.evaluation.pattern().unit;
+    let length = |length: f64| number::show(length, Want::Length, unit);
+    let mut marks = Vec::new();
+    let mut words = vec![placed.words.clone()];
+    if let Some(last) = state.last_place() {
+        let way = placed.at - last.at;
+        match kind {
+            SlotKind::Named(Fields::Size) => {
+                words.push(format!("{} x {}", length(way.x.abs()), length(way.y.abs())));
+            }
+            _ => {
+                marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
+                words.push(length(way.norm()));
+                words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
             }
         }
     }
+    words.push(state.named.clone());
+    words.retain(|word| !word.is_empty());
+    marks.push(Overlay::Dot(placed.sheet, placed.at));
+    let lines = joined(&[words.join("  "), typed]);
+    marks.push(Overlay::Words(placed.sheet, placed.at, lines));
     marks
+}
+
+/// Texts that are not empty, in lines.
+fn joined(lines: &[String]) -> String {
+    let lines = lines.iter().filter(|line| !line.is_empty());
+    lines.cloned().collect::<Vec<_>>().join("\n")
 }
 
 fn edge((panel, edge): &ChainEdge) -> Overlay {
@@ -127,59 +181,110 @@ fn in_lines(words: &str) -> String {
     lines.join("\n")
 }
 
-/// What is typed, a line each, the one in hand with a bar.
-fn typed_words(kind: SlotKind, state: &SlotState) -> String {
+/// What is typed, a line each, the one in hand with a bar, one at fault with its sign; and the signs of what
+/// may be typed instead.
+fn typed_words(typable: &Typable, state: &SlotState) -> String {
     if !state.is_typing() {
         return String::new();
     }
-    let labels = fields(kind);
-    let is_told = |k: &usize| !state.naming || *k == state.field || !state.typed[*k].is_empty();
-    let told = labels.iter().enumerate().filter(|(k, _)| is_told(k));
-    let words = told.map(|(k, (label, _))| {
-        let bar = if k == state.field { "|" } else { "" };
-        format!("{label} {}{bar}", state.typed[k])
-    });
-    words.collect::<Vec<_>>().join("\n")
+    let typed = &state.typed;
+    let is_told = |k: &usize| {
+        let is_taken = match *k == typable.numbers() {
+            true => typable.takes_name,
+            false => typable.takes_numbers,
+        };
+        let is_filled = *k == typed.field || !typed.text(*k).is_empty();
+        is_filled || !typed.naming && is_taken
+    };
+    let told = typable
+        .fields
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| is_told(k));
+    let mut lines: Vec<String> = told
+        .map(|(k, field)| {
+            let bar = if k == typed.field { "|" } else { "" };
+            let sign = if typed.fault == Some(k) { "! " } else { "" };
+            format!("{sign}{} {}{bar}", field.label, typed.text(k))
+        })
+        .collect();
+    if typed.is_blank(typable.numbers()) && !typed.naming {
+        lines.extend(other_ways(typable, typed.way));
+    }
+    lines.join("\n")
 }
 
-pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
+/// The signs of the other ways to say a place, and what they ask for.
+fn other_ways(typable: &Typable, way: usize) -> Option<String> {
+    let others = typable.ways.iter().enumerate().filter(|(k, _)| *k != way);
+    let words = others.filter_map(|(_, way)| Some(format!("{} {}", way.sign()?, way.words())));
+    let words = words.collect::<Vec<_>>().join("; ");
+    (!words.is_empty()).then_some(words)
+}
+
+pub(super) fn hint(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
     if let Some(words) = state.refusal.as_ref().or(state.told.as_ref()) {
         return words.clone();
     }
+    let typable = Typable::new(tool, state, reading);
+    if state.is_typing() {
+        // The pointer may be elsewhere.
+        let typed = typed_words(&typable, state).replace('\n', ", ");
+        return format!("{typed}; Tab goes on, Enter takes it, Esc takes it back");
+    }
     let slot = slot(tool, state);
-    let labels: Vec<&str> = fields(slot.kind).iter().map(|(label, _)| *label).collect();
-    let keys = match slot.kind {
-        // Some numbers are shown at the pointer; the others are only typed.
-        SlotKind::Number { .. } if slot.hint.starts_with("Type") => {
-            "; Enter takes it; Esc goes a step back".to_owned()
-        }
-        SlotKind::Number { .. } => ", or type it; Enter takes it; Esc goes a step back".to_owned(),
-        SlotKind::Places => {
-            "; type length or =formula, Tab angle, or 'name; Enter ends; Esc goes a step back"
-                .to_owned()
-        }
-        SlotKind::Inside => "; 'name before it names it; Esc goes a step back".to_owned(),
-        SlotKind::Named(Fields::None) => "; 'name before it names it; Esc goes a step back".into(),
-        SlotKind::OnLine(Fields::Distance) => {
-            "; or type its distance from the nearer corner, Enter; Esc goes a step back".to_owned()
-        }
-        SlotKind::Chain => {
-            "; Shift-click to add the next edge of a chain; Esc goes a step back".into()
-        }
-        _ if labels.is_empty() => "; Esc goes a step back".to_owned(),
-        _ => format!(
-            "; or type {} (a formula begins with ={}), Enter; Tab next snap, Shift level, {} free",
+    if !typable.handles.is_empty() {
+        let labels: Vec<&str> = typable.handles.iter().map(|h| &*h.label).collect();
+        return format!(
+            "Type {} (a formula begins with =), Enter; or its 'name, Enter. {}",
             labels.join(", Tab, "),
-            match slot.kind {
-                SlotKind::Named(_) => ", a name with '",
-                _ => "",
-            },
-            if cfg!(target_os = "macos") {
+            slot.hint
+        );
+    }
+    let names = match (typable.takes_name, state.newest()) {
+        (true, Some(newest)) => {
+            let words = newest.words(reading.evaluation.pattern());
+            let words = words.unwrap_or_else(|| "the last".into());
+            format!("; 'name, Enter names {words}")
+        }
+        (true, None) => "; 'name before it names it".to_owned(),
+        (false, _) => String::new(),
+    };
+    let ends = match slot.kind {
+        SlotKind::Places => "; Enter ends",
+        SlotKind::Chain => "; Shift-click to add the next edge of a chain",
+        _ => "",
+    };
+    format!(
+        "{}{}{names}{ends}; Esc goes a step back",
+        slot.hint,
+        numbers_hint(slot.hint, &typable)
+    )
+}
+
+/// Which numbers may be typed, and what else says where a place is.
+fn numbers_hint(hint: &str, typable: &Typable) -> String {
+    let fields = typable.fields.iter().take(typable.numbers());
+    let labels: Vec<&str> = fields.map(|field| &*field.label).collect();
+    match typable.ways.first() {
+        None => String::new(),
+        // Some numbers are shown at the pointer; the others are only typed.
+        Some(Way::Number(..)) if hint.starts_with("Type") => "; Enter takes it".to_owned(),
+        Some(Way::Number(..)) => ", or type it; Enter takes it".to_owned(),
+        Some(Way::Distance) => "; or type its distance from the nearer corner, Enter".to_owned(),
+        Some(_) => {
+            let other = other_ways(typable, 0);
+            let other = other.map_or_else(String::new, |words| format!("; {words}"));
+            let free = if cfg!(target_os = "macos") {
                 "Cmd"
             } else {
                 "Ctrl"
-            }
-        ),
-    };
-    format!("{}{keys}", slot.hint)
+            };
+            format!(
+                "; or type {} (= begins a formula{other}), Enter; Tab next snap, Shift level, {free} \
+                 free",
+                labels.join(", Tab, "),
+            )
+        }
+    }
 }

@@ -213,10 +213,10 @@ pub(super) fn step(
                 let unit = seen.pattern.unit;
                 let whole = number::show(whole, Want::Length, unit);
                 outcome.refusal = Some(format!(
-                    "the seam is {whole} long: type a distance from 0 to that"
+                    "distance: the seam is {whole} long: type a distance from 0 to that"
                 ));
             }
-            Err(words) => outcome.refusal = Some(words),
+            Err(words) => outcome.refusal = Some(format!("distance: {words}")),
         },
         Event::Escape if state.is_typing() => next.typed.clear(),
         Event::Escape => outcome.done = true,

@@ -155,7 +155,7 @@ impl Reader {
             self.drafter.typed(name);
             self.has_point(name);
         }
-        self.drafter.key(Key::F);
+        self.drafter.key(Key::Home);
     }
 
     /// Points from others.
@@ -165,7 +165,7 @@ impl Reader {
             let [name, from, length, angle] = row[..] else {
                 panic!("{row:?}");
             };
-            self.drafter.key(Key::F);
+            self.drafter.key(Key::Home);
             self.point(sheet, from);
             self.drafter.typed_and(&begun(length), Key::Tab);
             self.drafter.typed_and(&begun(angle), Key::Tab);
@@ -216,10 +216,10 @@ impl Reader {
             self.point(sheet, to);
             self.drafter.key(Key::Enter);
             self.has_curve(name);
-            self.drafter.enter_on(&format!("x of handle at {from}"), x);
-            self.drafter.typed_and(y, Key::Tab);
-            self.drafter.typed_and(last_x, Key::Tab);
-            self.drafter.typed(last_y);
+            for number in [x, y, last_x] {
+                self.drafter.typed_and(&begun(number), Key::Tab);
+            }
+            self.drafter.typed(&begun(last_y));
             if (sheet, name) == ("draft", "armhole") {
                 self.picture("curve", None);
             }

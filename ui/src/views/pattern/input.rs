@@ -4,7 +4,7 @@ use super::PatternView;
 use crate::canvas::camera::ScreenPoint;
 use crate::canvas::selection::Item;
 use crate::tools::number::begins_typing;
-use crate::tools::slots::NAME_SIGN;
+use crate::tools::typing::{NAME_SIGN, WAY_SIGNS};
 use crate::tools::{Event, LineStep, Tool, ToolModifiers};
 use egui::{CursorIcon, EventFilter, Key, PointerButton, Response, Ui};
 
@@ -13,6 +13,7 @@ impl PatternView {
     pub(super) fn navigate(&mut self, ui: &Ui, response: &Response) -> bool {
         let with_space = response.contains_pointer()
             && !self.is_typed_into(ui)
+            && !self.is_typing()
             && ui.input(|input| input.key_down(Key::Space));
         for button in [PointerButton::Middle, PointerButton::Secondary] {
             if response.dragged_by(button) {
@@ -146,9 +147,9 @@ impl PatternView {
             input.events.retain(|event| {
                 let taken = match event {
                     egui::Event::Text(text) => {
-                        let names = matches!(self.tool, Tool::Slots(_));
-                        let begins =
-                            text.starts_with(begins_typing) || names && text.starts_with(NAME_SIGN);
+                        let has_slots = matches!(self.tool, Tool::Slots(_));
+                        let is_sign = text.starts_with(NAME_SIGN) || text.starts_with(WAY_SIGNS);
+                        let begins = text.starts_with(begins_typing) || has_slots && is_sign;
                         let is_choice = text == "=" && self.pressed.is_some();
                         let is_typed = self.tool.takes_keys() && (typing || begins);
                         let takes = is_typed || is_choice;

@@ -1,0 +1,141 @@
+//! Arcs in the inspector: shown and typed by the angle they sweep and by their radius. The document keeps the
+//! tangent of a quarter of the angle.
+
+use crate::app::ToileApp;
+use crate::fields::Entered;
+use crate::tools::number;
+use egui::Ui;
+use toile_pattern::plan::{self, NumberAddress, NumberEntry};
+use toile_pattern::{
+    CurveId, CurveRule, EditError, Evaluation, Formula, Number, PartId, PartReference, Want,
+};
+
+/// The numbers of a part as they are shown: of an arc the angle it sweeps.
+pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
+    let entries = plan::numbers_of(evaluation, part).into_iter();
+    let seen = entries.map(|entry| match entry.place {
+        NumberAddress::Bulge(_) => NumberEntry {
+            label: "angle",
+            want: Want::Angle,
+            number: entry.number.map(|n| plan::angle_of(evaluation, &n)),
+            ..entry
+        },
+        _ => entry,
+    });
+    seen.collect()
+}
+
+/// A number as the document keeps it at a place.
+///
+/// # Errors
+/// An arc cannot sweep such an angle.
+pub fn kept(
+    evaluation: &Evaluation,
+    place: &NumberAddress,
+    number: Number,
+) -> Result<Number, EditError> {
+    match place {
+        NumberAddress::Bulge(_) => plan::bulge_of(evaluation, &number),
+        _ => Ok(number),
+    }
+}
+
+impl ToileApp {
+    /// The field of an arc's radius; nothing of another curve.
+    pub(super) fn radius_field(&mut self, ui: &mut Ui, id: CurveId) {
+        let base = self.base.clone();
+        let Some(arc) = Arc::new(&base, id) else {
+            return;
+        };
+        let label = ui.label("radius").id;
+        let field = egui::Id::unique(("radius", id));
+        let shown = plan::number_text(&base, &Number::Value(arc.radius()), Want::Length);
+        let unit = base.pattern().unit;
+        let told = |text: &str| {
+            let found = number::parse(text, Want::Length, &base)?;
+            let value = base.number_or_fault(&found, Want::Length)?;
+            arc.angle(&found)?;
+            Ok(format!("= {}", number::show(value, Want::Length, unit)))
+        };
+        let entered = self
+            .typed
+            .number_field(ui, (field, label), &shown, &self.base, told);
+        let Entered::Text(text) = entered else {
+            return;
+        };
+        let planned = number::parse(&text, Want::Length, &base)
+            .and_then(|radius| arc.angle(&radius))
+            .and_then(|angle| {
+                let made = plan::bulge_of(&base, &angle)
+                    .and_then(|bulge| plan::set_number(&base, &NumberAddress::Bulge(id), bulge));
+                made.map_err(|error| error.to_string())
+            });
+        match planned {
+            Ok(edits) => {
+                self.edit(Ok(edits), "Set radius");
+            }
+            Err(fault) => self.typed.refuse(field, text, fault),
+        }
+    }
+}
+
+/// An arc between two points.
+struct Arc<'e> {
+    evaluation: &'e Evaluation,
+    /// The distance of its ends as a formula writes it, and [m].
+    chord: (String, f64),
+    /// The angle it sweeps [rad].
+    swept: f64,
+}
+
+impl<'e> Arc<'e> {
+    fn new(evaluation: &'e Evaluation, id: CurveId) -> Option<Self> {
+        let (_, curve) = evaluation.pattern().curve(id)?;
+        let CurveRule::Arc { bulge } = &curve.rule else {
+            return None;
+        };
+        let swept = 4.0 * evaluation.number(bulge, Want::Plain)?.atan();
+        let [start, end] = curve.ends;
+        let chord = (evaluation.point(end)? - evaluation.point(start)?).norm();
+        let name = |id| evaluation.names().print_part(&PartReference::Point(id));
+        let written = format!("distance({}, {})", name(start), name(end));
+        (swept != 0.0).then_some(Self {
+            evaluation,
+            chord: (written, chord),
+            swept,
+        })
+    }
+
+    fn radius(&self) -> f64 {
+        (0.5 * self.chord.1 / (0.5 * self.swept).sin()).abs()
+    }
+
+    /// The angle an arc of a radius sweeps between the same ends, turning the same way.
+    fn angle(&self, radius: &Number) -> Result<Number, String> {
+        let value = self.evaluation.number(radius, Want::Length);
+        let value = value.ok_or("the radius has no value")?;
+        if value < 0.5 * self.chord.1 {
+            let unit = self.evaluation.pattern().unit;
+            let least = number::show(0.5 * self.chord.1, Want::Length, unit);
+            return Err(format!(
+                "no arc so small joins the ends: type {least} or more, or another angle"
+            ));
+        }
+        let is_long = self.swept.abs() > std::f64::consts::PI;
+        let (sign, whole) = match (self.swept < 0.0, is_long) {
+            (false, false) => ("", ""),
+            (true, false) => ("-", ""),
+            (false, true) => ("-", "360deg "),
+            (true, true) => ("", "-360deg + "),
+        };
+        let sign = if is_long && sign == "-" { "- " } else { sign };
+        let radius = plan::number_text(self.evaluation, radius, Want::Length);
+        let chord = &self.chord.0;
+        // Half the chord over the radius is the sine of half the angle.
+        let text = format!(
+            "{whole}{sign}2 * atan2({chord}, sqrt(max(0, 4 * ({radius}) * ({radius}) - {chord} * {chord})))"
+        );
+        let read = Formula::parse(&text, self.evaluation.names());
+        read.map(Number::Formula).map_err(|error| error.to_string())
+    }
+}

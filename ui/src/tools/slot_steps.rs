@@ -1,0 +1,347 @@
+//! How a tool of slots goes on: hovering, typing, what is taken, steps back. Whatever is typed comes to the
+//! document, or stays where it is typed with what is wrong with it.
+
+use super::answering::answer;
+use super::newest;
+use super::refusal::Unanswered;
+use super::slots::{Answer, Plan, SlotKind, SlotState, SlotTool, slot};
+use super::typing::{Typable, is_named};
+use super::{Event, Outcome, PreviewChange, Reading};
+use crate::canvas::placed::Placed;
+
+/// How near the first of several places a click closes them [pixels].
+const CLOSES: f64 = 9.0;
+
+pub(super) fn step(
+    tool: &'static SlotTool,
+    state: &SlotState,
+    event: &Event,
+    reading: &Reading<'_>,
+) -> (SlotState, Outcome) {
+    let mut next = state.clone();
+    next.refusal = None;
+    let mut outcome = Outcome::default();
+    match event {
+        Event::Hover(pointer) | Event::Drag(_, pointer) => {
+            if next.pointer.as_ref().is_none_or(|old| old.at != pointer.at) {
+                next.snap = 0;
+            }
+            next.pointer = Some(pointer.clone());
+        }
+        Event::Leave => next.pointer = None,
+        Event::Click(pointer) | Event::DoubleClick(pointer) => {
+            next.pointer = Some(pointer.clone());
+            outcome = clicked(tool, &mut next, reading);
+        }
+        Event::Enter => outcome = entered(tool, &mut next, reading),
+        Event::Text(text) => {
+            if let Err(mut untaken) = Typable::new(tool, state, reading).take(&mut next, text) {
+                untaken.words = format!("{}. {}", untaken.words, slot(tool, state).hint);
+                outcome = refused(&mut next, untaken);
+            }
+        }
+        Event::Backspace => Typable::new(tool, state, reading).take_back(&mut next),
+        Event::Tab => match next.is_typing() {
+            true => Typable::new(tool, state, reading).next(&mut next),
+            false => next.snap += 1,
+        },
+        Event::Escape => outcome.done = !back(&mut next),
+        Event::Drop | Event::Go(_) => {}
+    }
+    next.told = None;
+    if outcome.commit.is_none() {
+        outcome.shown = PreviewChange::Nothing;
+        if let Some(plan) = shown(tool, &next, reading) {
+            outcome.shown = PreviewChange::Edits(plan.edits);
+            next.told = plan.told;
+        }
+    }
+    next.refusal = outcome.refusal.clone();
+    outcome.gets_on = outcome.refusal.is_none()
+        && matches!(
+            event,
+            Event::Click(_) | Event::DoubleClick(_) | Event::Enter | Event::Escape
+        );
+    (next, outcome)
+}
+
+/// A step back; says whether there was one.
+fn back(state: &mut SlotState) -> bool {
+    let goes = if state.is_typing() {
+        state.clear_typed();
+        true
+    } else {
+        state.places.pop().is_some() || state.chain.pop().is_some() || state.answers.pop().is_some()
+    };
+    if state.places.is_empty() {
+        state.named.clear();
+    }
+    goes
+}
+
+fn refused(state: &mut SlotState, unanswered: Unanswered) -> Outcome {
+    if let Some(field) = unanswered.field {
+        state.typed.fault = Some(field);
+        state.typed.field = field;
+    }
+    Outcome {
+        refusal: Some(unanswered.words),
+        ..Outcome::default()
+    }
+}
+
+/// A click: it begins another where what is typed is not meant for what was made last.
+fn clicked(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>) -> Outcome {
+    let typable = Typable::new(tool, state, reading);
+    let is_named = is_named(slot(tool, state).kind);
+    let sets_handles = !typable.handles.is_empty() && !state.typed.is_blank(typable.numbers());
+    let names = state.newest().is_some() && !is_named && !typable.typed_name(state).is_empty();
+    if sets_handles || names {
+        let field = state.typed.field;
+        let words = "Enter takes what is typed for what was made last; then click for the next";
+        return refused(
+            state,
+            Unanswered {
+                field: Some(field),
+                words: words.into(),
+            },
+        );
+    }
+    if !typable.handles.is_empty() {
+        // The name is that of the next.
+        state.named = typable.typed_name(state).to_owned();
+        state.made = None;
+        state.clear_typed();
+    }
+    accept(tool, state, reading, false)
+}
+
+/// Enter: what is typed is taken, by what was made last if it is meant for that.
+fn entered(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>) -> Outcome {
+    let typable = Typable::new(tool, state, reading);
+    let Some(newest) = state.newest() else {
+        return accept(tool, state, reading, true);
+    };
+    let name = typable.typed_name(state).to_owned();
+    let is_blank = state.typed.is_blank(typable.numbers());
+    if !typable.handles.is_empty() && !is_blank {
+        let text = |k: usize| state.typed.text(k).trim().to_owned();
+        let edits = newest::set_handles(&typable.handles, text, reading);
+        let mut edits = match edits {
+            Ok(edits) => edits,
+            Err((field, words)) => {
+                let field = Some(field);
+                return refused(state, Unanswered { field, words });
+            }
+        };
+        if !name.is_empty() {
+            match newest::rename(newest, &name, reading) {
+                Ok(more) => edits.extend(more),
+                Err(error) => return refused(state, misnamed(&typable, &error.to_string())),
+            }
+        }
+        state.clear_typed();
+        state.settled = true;
+        return committed(edits, "Set handles");
+    }
+    if !name.is_empty() && is_blank {
+        return match newest::rename(newest, &name, reading) {
+            Ok(edits) => {
+                state.clear_typed();
+                committed(edits, "Rename")
+            }
+            Err(error) => refused(state, misnamed(&typable, &error.to_string())),
+        };
+    }
+    if !name.is_empty() && !is_named(slot(tool, state).kind) {
+        let words = "Enter gives a name to what was made last: type numbers after it";
+        return refused(state, misnamed(&typable, words));
+    }
+    if !typable.handles.is_empty() {
+        state.settled = true;
+        return Outcome::default();
+    }
+    accept(tool, state, reading, true)
+}
+
+fn misnamed(typable: &Typable, words: &str) -> Unanswered {
+    Unanswered {
+        field: Some(typable.numbers()),
+        words: format!("name: {words}"),
+    }
+}
+
+fn committed(edits: Vec<toile_pattern::Edit>, label: &str) -> Outcome {
+    Outcome {
+        commit: (!edits.is_empty()).then(|| (edits, label.to_owned())),
+        ..Outcome::default()
+    }
+}
+
+/// Takes what is given now, and does the work when that was the last.
+fn accept(
+    tool: &'static SlotTool,
+    state: &mut SlotState,
+    reading: &Reading<'_>,
+    by_key: bool,
+) -> Outcome {
+    let before = state.clone();
+    let given = match slot(tool, state).kind {
+        SlotKind::Places => accept_place(tool, state, reading, by_key),
+        _ => accept_answer(tool, state, reading, by_key),
+    };
+    match given {
+        Ok(true) => {}
+        Ok(false) => return Outcome::default(),
+        Err(unanswered) => return refused(state, named(tool, state, reading, unanswered)),
+    }
+    state.clear_typed();
+    state.chain.clear();
+    if state.answers.len() < tool.slots.len() {
+        return Outcome::default();
+    }
+    match (tool.plan)(&state.answers, reading) {
+        Ok(plan) => {
+            let made = plan.select.single();
+            state.made = made.filter(|_| !plan.edits.is_empty());
+            state.settled = false;
+            state.answers = plan.again;
+            state.named.clear();
+            Outcome {
+                commit: Some((plan.edits, plan.label)),
+                select: Some(plan.select),
+                ..Outcome::default()
+            }
+        }
+        Err(error) => {
+            // What was given last is asked for again, and stands there as it was typed.
+            *state = before;
+            let unanswered = named(tool, state, reading, error.to_string().into());
+            refused(state, unanswered)
+        }
+    }
+}
+
+/// What is wrong, with the field that is typed named.
+fn named(
+    tool: &SlotTool,
+    state: &SlotState,
+    reading: &Reading<'_>,
+    unanswered: Unanswered,
+) -> Unanswered {
+    if !state.is_typing() {
+        return unanswered;
+    }
+    let typable = Typable::new(tool, state, reading);
+    let field = unanswered.field.unwrap_or(state.typed.field);
+    let label = typable.fields.get(field).map_or("", |field| &*field.label);
+    let words = match unanswered.words.starts_with(&format!("{label}:")) {
+        true => unanswered.words,
+        false => format!("{label}: {}", unanswered.words),
+    };
+    Unanswered {
+        field: Some(field),
+        words,
+    }
+}
+
+/// Takes the answer to a slot of one thing; says whether there is nothing to add to it.
+fn accept_answer(
+    tool: &SlotTool,
+    state: &mut SlotState,
+    reading: &Reading<'_>,
+    by_key: bool,
+) -> Result<bool, Unanswered> {
+    let adds = state.pointer.as_ref().is_some_and(|at| at.modifiers.shift);
+    let typable = Typable::new(tool, state, reading);
+    match answer(tool, state, reading)? {
+        Answer::Chain(chain) if adds && !by_key => {
+            state.chain = chain;
+            Ok(false)
+        }
+        answer => {
+            state.pointed = state.typed.is_blank(typable.numbers());
+            state.answers.push(answer);
+            Ok(true)
+        }
+    }
+}
+
+/// Takes one of several places, or ends them; says whether they are ended.
+fn accept_place(
+    tool: &SlotTool,
+    state: &mut SlotState,
+    reading: &Reading<'_>,
+    by_key: bool,
+) -> Result<bool, Unanswered> {
+    let typable = Typable::new(tool, state, reading);
+    // A name alone is no place: Enter after it ends them.
+    let ends = by_key && state.typed.is_blank(typable.numbers());
+    let named = match typable.typed_name(state) {
+        "" => state.named.clone(),
+        typed => typed.to_owned(),
+    };
+    let given = match ends {
+        true => None,
+        false => match answer(tool, state, reading)? {
+            Answer::Place(placed) => Some(placed),
+            _ => None,
+        },
+    };
+    let closes = given.as_ref().is_some_and(|given| closes(state, given));
+    if let Some(placed) = given.filter(|_| !closes) {
+        state.places.push(placed);
+        state.clear_typed();
+        state.named = named;
+        return Ok(false);
+    }
+    if state.places.len() < 2 {
+        // A name that was typed is kept for what comes of the places that are still to be given.
+        if state.is_typing() && !named.is_empty() {
+            state.clear_typed();
+            state.named = named;
+            return Ok(false);
+        }
+        return Err("click at least two places first, or type their numbers".into());
+    }
+    let places = std::mem::take(&mut state.places);
+    let name = (!named.is_empty()).then_some(named);
+    state.answers.push(Answer::Places(places, closes, name));
+    Ok(true)
+}
+
+/// Whether a place joins the first of several.
+fn closes(state: &SlotState, given: &Placed) -> bool {
+    let pointer = state.pointer.as_ref();
+    let near = pointer.map_or(0.0, |pointer| CLOSES * pointer.pixel);
+    // Numbers say exactly where.
+    let near = match state.is_typing() {
+        true => 1e-9,
+        false => near,
+    };
+    let first = state.places.first();
+    first.is_some_and(|first| state.places.len() > 2 && (given.at - first.at).norm() <= near)
+}
+
+/// What the tool would do if it were given this now.
+fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Plan> {
+    let typable = Typable::new(tool, state, reading);
+    if !typable.handles.is_empty() && !state.typed.is_blank(typable.numbers()) {
+        let text = |k: usize| state.typed.text(k).trim().to_owned();
+        return Some(Plan {
+            edits: newest::set_handles(&typable.handles, text, reading).ok()?,
+            label: String::new(),
+            select: reading.selection.clone(),
+            again: Vec::new(),
+            told: None,
+        });
+    }
+    let kind = slot(tool, state).kind;
+    let is_last = state.answers.len() + 1 == tool.slots.len();
+    if !is_last || matches!(kind, SlotKind::Places) {
+        return None;
+    }
+    let mut answers = state.answers.clone();
+    answers.push(answer(tool, state, reading).ok()?);
+    (tool.plan)(&answers, reading).ok()
+}

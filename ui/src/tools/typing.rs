@@ -1,0 +1,290 @@
+//! What may be typed while a tool of slots is in hand, and where it goes: numbers for the slot that is asked
+//! for, in one of several ways for a place, and a name; or numbers and a name of what was made last.
+
+use super::Reading;
+use super::newest::{self, Handle};
+use super::refusal::Unanswered;
+use super::slots::{Fields, SlotKind, SlotState, SlotTool, slot};
+use toile_pattern::Want;
+
+/// The field of a name.
+pub(super) const NAME: &str = "name";
+/// The field of what is typed where something is pointed at.
+const NUMBER: &str = "number";
+/// What begins a name where nothing else is typed: names stand in it in formulas too.
+pub const NAME_SIGN: char = '\'';
+/// Signs that choose another way to say a place, as in other programs that draw.
+pub const WAY_SIGNS: [char; 3] = [BESIDE_SIGN, COORDINATES_SIGN, ANGLE_SIGN];
+const BESIDE_SIGN: char = '@';
+const COORDINATES_SIGN: char = '#';
+const ANGLE_SIGN: char = '<';
+
+/// A way to say a slot's answer by numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// Coordinates on the sheet.
+    Coordinates,
+    /// Length and angle from the place before.
+    FromLast,
+    /// The same, the place before being a centre.
+    Radius,
+    /// To the right and upward from the place before.
+    Beside,
+    /// Width and height from the place before.
+    Size,
+    /// Radius and angle of an arc that goes on smoothly from the place before.
+    Turn,
+    /// Distance along an edge from its nearer corner.
+    Distance,
+    /// A number, called so, of that kind.
+    Number(&'static str, Want),
+}
+
+impl Way {
+    fn fields(self) -> Vec<(&'static str, Want)> {
+        let lengths = |first, second| vec![(first, Want::Length), (second, Want::Length)];
+        let turned = |first| vec![(first, Want::Length), ("angle", Want::Angle)];
+        match self {
+            Self::Coordinates => lengths("x", "y"),
+            Self::FromLast => turned("length"),
+            Self::Radius | Self::Turn => turned("radius"),
+            Self::Beside => lengths("dx", "dy"),
+            Self::Size => lengths("width", "height"),
+            Self::Distance => vec![("distance", Want::Length)],
+            Self::Number(label, want) => vec![(label, want)],
+        }
+    }
+
+    /// The sign that chooses it.
+    pub fn sign(self) -> Option<char> {
+        match self {
+            Self::Coordinates => Some(COORDINATES_SIGN),
+            Self::Beside => Some(BESIDE_SIGN),
+            Self::FromLast | Self::Radius => Some(ANGLE_SIGN),
+            Self::Size | Self::Turn | Self::Distance | Self::Number(..) => None,
+        }
+    }
+
+    /// Its fields in words.
+    pub fn words(self) -> String {
+        let labels: Vec<&str> = self.fields().into_iter().map(|(label, _)| label).collect();
+        labels.join(", ")
+    }
+}
+
+/// The ways to say what a slot is given, that which needs no sign first.
+pub(super) fn ways(kind: SlotKind, state: &SlotState) -> Vec<Way> {
+    let place = |fields: Fields| match (state.last_place(), fields) {
+        (None, _) => vec![Way::Coordinates],
+        (_, Fields::Usual) => vec![Way::FromLast, Way::Beside, Way::Coordinates],
+        (_, Fields::Radius) => vec![Way::Radius, Way::Beside, Way::Coordinates],
+        (_, Fields::Size) => vec![Way::Size, Way::Beside, Way::Coordinates],
+        (_, Fields::Turn) => vec![Way::Turn, Way::FromLast, Way::Beside, Way::Coordinates],
+    };
+    match kind {
+        SlotKind::Place(fields) | SlotKind::Named(fields) => place(fields),
+        SlotKind::Places => place(Fields::Usual),
+        SlotKind::Inside => vec![Way::Coordinates],
+        SlotKind::OnLine => vec![Way::Distance],
+        SlotKind::Number { label, want, .. } => vec![Way::Number(label, want)],
+        SlotKind::Edge
+        | SlotKind::Chain
+        | SlotKind::Operation
+        | SlotKind::Curve
+        | SlotKind::End
+        | SlotKind::Panel => Vec::new(),
+    }
+}
+
+/// The way that is typed.
+pub(super) fn way(kind: SlotKind, state: &SlotState) -> Option<Way> {
+    ways(kind, state).get(state.typed.way).copied()
+}
+
+/// Whether what is given in a slot may have a name.
+pub(super) fn is_named(kind: SlotKind) -> bool {
+    matches!(
+        kind,
+        SlotKind::Named(_) | SlotKind::Places | SlotKind::Inside
+    )
+}
+
+/// One field that may be typed into.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Field {
+    pub label: String,
+    pub want: Want,
+}
+
+/// What may be typed now.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Typable {
+    /// Its fields, that of the name last. What is typed where nothing is taken stands there all the same,
+    /// so that it goes nowhere else.
+    pub fields: Vec<Field>,
+    /// Whether numbers are taken.
+    pub takes_numbers: bool,
+    /// Whether a name is taken.
+    pub takes_name: bool,
+    /// The numbers of what was made last, where the first fields are theirs.
+    pub handles: Vec<Handle>,
+    /// Ways to say the place that is asked for.
+    pub ways: Vec<Way>,
+}
+
+impl Typable {
+    /// What may be typed now.
+    pub fn new(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Self {
+        let kind = slot(tool, state).kind;
+        let newest = state.newest();
+        let open = newest.filter(|_| !state.settled);
+        let handles = open.map_or_else(Vec::new, |item| newest::handles(item, reading));
+        let field = |label: &str, want| Field {
+            label: label.to_owned(),
+            want,
+        };
+        let (ways, mut fields) = match handles.is_empty() {
+            false => {
+                let own = handles.iter();
+                let own = own.map(|handle| field(&handle.label, handle.entry.want));
+                (Vec::new(), own.collect())
+            }
+            true => {
+                let own = way(kind, state).map_or_else(Vec::new, Way::fields);
+                let own = own.into_iter().map(|(label, want)| field(label, want));
+                (ways(kind, state), own.collect::<Vec<_>>())
+            }
+        };
+        let names_newest = newest.is_some_and(|item| newest::name(item, reading).is_some());
+        let takes_numbers = !fields.is_empty();
+        if !takes_numbers {
+            fields.push(field(NUMBER, Want::Any));
+        }
+        fields.push(field(NAME, Want::Any));
+        Self {
+            fields,
+            takes_numbers,
+            takes_name: is_named(kind) || names_newest,
+            handles,
+            ways,
+        }
+    }
+
+    /// How many of the fields are numbers; the field of the name is the next.
+    pub fn numbers(&self) -> usize {
+        self.fields.len() - 1
+    }
+
+    /// The name that is typed.
+    pub fn typed_name<'s>(&self, state: &'s SlotState) -> &'s str {
+        state.typed.text(self.numbers()).trim()
+    }
+
+    /// Refuses what is typed where it is not taken.
+    ///
+    /// # Errors
+    /// A number or a name stands where none is taken.
+    pub fn refuse_untaken(&self, state: &SlotState) -> Result<(), Unanswered> {
+        let name = self.numbers();
+        if !self.takes_numbers && !state.typed.is_blank(name) {
+            return Err(Unanswered {
+                field: Some(0),
+                words: format!("{NUMBER}: what is asked for here is pointed at, not typed"),
+            });
+        }
+        if !self.takes_name && (state.typed.naming || !state.typed.text(name).is_empty()) {
+            return Err(Unanswered {
+                field: Some(name),
+                words: format!("{NAME}: nothing is named here"),
+            });
+        }
+        Ok(())
+    }
+
+    /// Takes typed text into its field. The sign of names begins a name, other signs choose another way to
+    /// say a place; within a formula they are signs like others.
+    ///
+    /// # Errors
+    /// Nothing is taken here, or something else is typed already; what is typed stands there all the same.
+    pub fn take(&self, state: &mut SlotState, text: &str) -> Result<(), Unanswered> {
+        let name = self.numbers();
+        for c in text.chars() {
+            let typed = &mut state.typed;
+            typed.fault = None;
+            typed.field = typed.field.min(name);
+            let is_name = typed.field == name;
+            let now = typed.text(typed.field);
+            let is_open = now.matches('(').count() > now.matches(')').count();
+            match c {
+                NAME_SIGN if now.is_empty() && !typed.naming => {
+                    typed.naming = true;
+                    typed.field = name;
+                }
+                ANGLE_SIGN if !is_name && !is_open && self.goes_to_angle(typed.way) => {
+                    typed.field = 1;
+                }
+                BESIDE_SIGN | COORDINATES_SIGN | ANGLE_SIGN if !is_name && !is_open => {
+                    if let Err(words) = self.choose(state, c) {
+                        let field = state.typed.field;
+                        state.typed.text_mut(field).push(c);
+                        let field = Some(field);
+                        return Err(Unanswered { field, words });
+                    }
+                }
+                _ => typed.text_mut(typed.field).push(c),
+            }
+        }
+        self.refuse_untaken(state)
+    }
+
+    /// Whether the sign of angles goes on to the angle of the way that is typed.
+    fn goes_to_angle(&self, way: usize) -> bool {
+        let now = self.ways.get(way);
+        now.is_some_and(|way| matches!(way, Way::FromLast | Way::Radius | Way::Turn))
+    }
+
+    /// Chooses the way of a sign.
+    fn choose(&self, state: &mut SlotState, sign: char) -> Result<(), String> {
+        let found = self.ways.iter().position(|way| way.sign() == Some(sign));
+        let found = found.ok_or_else(|| match self.ways.is_empty() {
+            true => format!("{sign} chooses other numbers of a place, and none is asked for here"),
+            false => format!("{sign} counts from a place that was given before: there is none yet"),
+        })?;
+        let numbers = self.fields.iter().take(self.numbers()).enumerate();
+        let mut begun = numbers.filter(|(k, _)| !state.typed.text(*k).is_empty());
+        if let Some((k, field)) = begun.next() {
+            let text = state.typed.text(k);
+            return Err(format!(
+                "{} {text} is typed already: take it back before {sign} chooses {}",
+                field.label,
+                self.ways[found].words()
+            ));
+        }
+        state.typed.way = found;
+        state.typed.field = 0;
+        Ok(())
+    }
+
+    /// Takes the last typed character back.
+    pub fn take_back(&self, state: &mut SlotState) {
+        let typed = &mut state.typed;
+        typed.fault = None;
+        if typed.text_mut(typed.field).pop().is_some() {
+            return;
+        }
+        if typed.naming {
+            typed.naming = false;
+            typed.field = 0;
+        } else if typed.field > 0 {
+            typed.field -= 1;
+        } else {
+            typed.way = 0;
+        }
+    }
+
+    /// Goes on to the next field.
+    pub fn next(&self, state: &mut SlotState) {
+        let count = self.numbers() + usize::from(self.takes_name);
+        state.typed.field = (state.typed.field + 1) % count.max(1);
+    }
+}
