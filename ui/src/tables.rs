@@ -1,5 +1,10 @@
 //! Tables under the pattern: measurements by size, variables, the history.
 
+mod fabric;
+mod fabric_words;
+
+pub use fabric::FabricTable;
+
 use crate::app::ToileApp;
 use crate::app::panes::Tab;
 use crate::fields::Entered;
@@ -48,6 +53,7 @@ impl ToileApp {
             for (tab, name) in [
                 (Tab::Measurements, "Measurements"),
                 (Tab::Variables, "Variables"),
+                (Tab::Fabric, "Fabric"),
                 (Tab::History, "History"),
             ] {
                 ui.selectable_value(&mut self.tables.tab, tab, name);
@@ -57,6 +63,7 @@ impl ToileApp {
         match self.tables.tab {
             Tab::Measurements => self.measurement_table(ui),
             Tab::Variables => self.variable_table(ui),
+            Tab::Fabric => self.fabric_table(ui),
             Tab::History => self.history_table(ui),
         }
     }

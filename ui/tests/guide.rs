@@ -348,6 +348,9 @@ fn print(reader: &mut Reader, folder: &std::path::Path) {
         }
     }
     reader.drafter.wait(|_| paper.exists());
+    reader.drafter.key(Key::F4);
+    reader.look();
+    reader.drafter.key(Key::F4);
     reader.drafter.chord(Modifiers::COMMAND, Key::E);
     reader.look();
     reader.drafter.key(Key::Escape);

@@ -5,6 +5,7 @@ use crate::export_format::{Export, ExportFormat};
 use crate::journal::{Entry, MOST_COMMANDS};
 use crate::journal_files::journal_beside;
 use crate::outfit::DraftedPart;
+use crate::output::{File, cannot};
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
 use crate::stored_marker::stored;
@@ -13,14 +14,10 @@ use crate::{
     Command, Event, Paper, PrintOptions, Project, Session, SessionError, SizeSelection, Watcher,
     pictures, print_job,
 };
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
-use toile_interchange::{FormatError, check_folder, write_all_atomically, write_glb, write_obj};
+use toile_interchange::{check_folder, write_all_atomically, write_glb, write_obj};
 use toile_marker::{FinishedMarker, MarkerFormat, marker_files};
-
-/// A file to write: its name and its content.
-pub(crate) type File = (String, Vec<u8>);
 
 /// Shares of an export that are done when the markers are laid, when the garment hangs, and when its pieces are
 /// printed.
@@ -290,15 +287,6 @@ fn worn_name(parts: &[DraftedPart]) -> String {
     names.join(" + ")
 }
 
-/// A name as one of a file: letters and digits of any language, `-`, `_` and `.` but at its start.
-pub(crate) fn file_name(name: &str) -> String {
-    let plain = |(k, c): (usize, char)| {
-        let keeps = c.is_alphanumeric() || "-_".contains(c) || (c == '.' && k > 0);
-        if keeps { c } else { '_' }
-    };
-    name.chars().enumerate().map(plain).collect()
-}
-
 fn garment_files(
     drape: &Drape,
     formats: &[ExportFormat],
@@ -318,37 +306,4 @@ fn garment_files(
         files.push((name, text.into_bytes()));
     }
     Ok(())
-}
-
-pub(crate) fn cannot(file: &'static str) -> impl Fn(FormatError) -> SessionError {
-    move |error| SessionError::Write { file, error }
-}
-
-/// A command as it is written beside what it made: a place to write to is named by the file name alone, so that the
-/// journal does not depend on where it lies.
-pub(crate) fn portable(mut command: Command) -> Command {
-    let is_folder = matches!(command, Command::Export(_));
-    if let Some(output) = command.output_mut() {
-        match output.file_name() {
-            _ if is_folder => *output = ".".into(),
-            Some(name) => *output = name.into(),
-            None => {}
-        }
-    }
-    command
-}
-
-/// The commands with everything that is written going into one folder.
-pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
-    let mut commands: Vec<Command> = commands.iter().cloned().map(portable).collect();
-    for command in &mut commands {
-        let is_folder = matches!(command, Command::Export(_));
-        if let Some(output) = command.output_mut() {
-            *output = match is_folder {
-                true => folder.to_owned(),
-                false => folder.join(&*output),
-            };
-        }
-    }
-    commands
 }

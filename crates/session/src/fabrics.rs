@@ -40,6 +40,14 @@ impl FabricChoice {
         }
     }
 
+    /// The fabric, if it is of a file that could be read.
+    pub fn of_file(&self) -> Option<&Fabric> {
+        match self {
+            Self::Named(_) => None,
+            Self::File { fabric, .. } => fabric.as_deref(),
+        }
+    }
+
     /// The fabric, for a pattern; nothing where neither it nor the library has one of that name, or
     /// its file could not be read.
     pub(crate) fn fabric(&self, pattern: &Pattern) -> Option<Fabric> {
@@ -127,10 +135,48 @@ fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
     let own = pattern.fabrics.iter().find(|f| f.name == name);
     match own {
         Some(own) => Some((**own).clone()),
-        None => {
-            let library = LibraryFabric::named(name)?;
-            of_material(name, &library.material()).ok()
-        }
+        None => library_fabric(name),
+    }
+}
+
+/// A fabric of the library as one that a pattern can have; nothing where there is none of that name.
+pub fn library_fabric(name: &str) -> Option<Fabric> {
+    let library = LibraryFabric::named(name)?;
+    of_material(name, &library.material()).ok()
+}
+
+/// The fabric of the library that most figures of a fabric are those of, three at the least: it was copied from
+/// that one.
+pub fn library_origin(fabric: &Fabric) -> Option<&'static LibraryFabric> {
+    let own = figures(&cloth_material(fabric));
+    let shared = |library: &LibraryFabric| {
+        let known = figures(&library.material());
+        own.iter().zip(&known).filter(|(a, b)| a == b).count()
+    };
+    let nearest = LIBRARY.iter().max_by_key(|library| shared(library))?;
+    (shared(nearest) >= 3).then_some(nearest)
+}
+
+/// The figures of a material that a library tells the source of.
+fn figures(material: &Material) -> [Vec<f64>; 6] {
+    [
+        vec![material.density],
+        vec![material.thickness],
+        [material.stretch, material.hardening].concat(),
+        vec![material.shear],
+        material.bend.to_vec(),
+        vec![material.friction],
+    ]
+}
+
+/// A fabric with the hardening that its cloth has: one of a name of the library may say none of its own.
+pub fn with_hardening(fabric: &Fabric) -> Fabric {
+    Fabric {
+        rheology: Rheology {
+            hardening: cloth_material(fabric).hardening,
+            ..fabric.rheology
+        },
+        ..fabric.clone()
     }
 }
 

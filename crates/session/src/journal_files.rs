@@ -1,11 +1,11 @@
 //! The files that a journal's commands read: named from the journal's folder, so that it replays from anywhere, and
 //! compared with what they were.
 
-use crate::export::portable;
 use crate::file_stamp::Stamp;
 use crate::input::is_pipe;
 use crate::journal::{Entry, entry_lines, read_entries};
 use crate::open::read_input;
+use crate::output::portable;
 use crate::paths::{relative, resolved};
 use crate::{Command, SessionError};
 use std::path::{Path, PathBuf};

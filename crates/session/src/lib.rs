@@ -35,6 +35,7 @@ mod mesh_file;
 mod nest_patterns;
 mod open;
 mod outfit;
+mod output;
 mod pace;
 mod paths;
 mod perform;
@@ -71,7 +72,7 @@ pub use drape::DrapeResult;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event};
 pub use export_format::{Export, ExportFormat};
-pub use fabrics::FabricChoice;
+pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
 pub use garment_edit::{CannotFollow, GarmentEdit};
 pub use input::is_input;
 pub use interactive_run::{LiveInput, StampedInput};
@@ -108,7 +109,7 @@ pub use toile_body::{
     AskedStance, Axis, Description, Figure, Fit, MeshUnit, PrimitiveEdit, ProportionBox, Scaling,
 };
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
-pub use toile_drape::{Aspect, Finding, Stage, Verdict};
+pub use toile_drape::{Aspect, FabricSources, Finding, LIBRARY, LibraryFabric, Stage, Verdict};
 pub use toile_interchange::{
     ExpectedKind, Lines, MarkerSettings, Paper, Shown, SizeChoice, Tile, write_atomically,
 };

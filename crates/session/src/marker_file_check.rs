@@ -1,9 +1,9 @@
 //! Checks a `marker.json` as it stands, also after somebody edited it.
 
 use crate::SessionError;
-use crate::export::cannot;
 use crate::input::read_file;
 use crate::open::open_marker;
+use crate::output::cannot;
 use std::path::{Path, PathBuf};
 use toile_interchange::{write_all_atomically, write_marker_svg};
 use toile_marker::{MarkerSummary, judge_file};

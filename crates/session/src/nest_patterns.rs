@@ -1,8 +1,8 @@
 //! Markers of several patterns and sizes laid together, and solutions of published nesting instances.
 
-use crate::export::{cannot, file_name};
 use crate::input::read_file;
 use crate::open::read_input;
+use crate::output::{cannot, file_name};
 use crate::sizes::selected;
 use crate::tools::{project_of, sound_draft};
 use crate::watched_search::lay_watched;

@@ -1,12 +1,12 @@
 //! What each command does.
 
 use crate::bodies::{body_of, description_of, shaped};
-use crate::export::cannot;
 use crate::fabrics::chosen;
 use crate::fitting::{document_text, refuse_itself, try_on};
 use crate::history::History;
 use crate::open::{open_pattern_from, read_pattern_text};
 use crate::outfit::DraftedPart;
+use crate::output::cannot;
 use crate::watcher::{ProgressShare, report_progress};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, Project, Session,

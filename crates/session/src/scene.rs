@@ -1,8 +1,8 @@
 //! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
 
 use crate::crossings::{Crossings, Tangles};
-use crate::export::{cannot, file_name};
 use crate::open::read_input;
+use crate::output::{cannot, file_name};
 use crate::pace::Pace;
 use crate::scene_builder::Builder;
 use crate::scene_checkpoint::{CheckpointTimes, RunOptions, SavedRun};

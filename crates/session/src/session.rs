@@ -1,11 +1,11 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
 use crate::derived::Derived;
-use crate::export::cannot;
 use crate::fitting::document_text;
 use crate::history::History;
 use crate::input::is_pipe;
 use crate::journal::Journal;
+use crate::output::cannot;
 use crate::sizes::{SizedDiagnostic, sized_diagnostics, sizes_to_check};
 use crate::timing::Timing;
 use crate::watcher::ProgressShare;
@@ -225,7 +225,7 @@ impl Session {
         watcher: &mut dyn Watcher,
     ) -> Result<(Self, Vec<Event>), SessionError> {
         let mut session = Self::new();
-        let commands = crate::export::redirected(commands, folder);
+        let commands = crate::output::redirected(commands, folder);
         let events = session.execute_all(&commands, watcher)?;
         Ok((session, events))
     }

@@ -1,8 +1,8 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
-use crate::export::File;
 use crate::input::is_pipe;
 use crate::markers::there_are;
+use crate::output::File;
 use crate::watched_search::watched;
 use crate::{
     Command, MarkerFormat, MarkerSummary, PatternFormat, Session, SessionError, Silent, Watcher,

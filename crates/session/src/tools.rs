@@ -1,9 +1,9 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
 
-use crate::export::cannot;
 use crate::fitting::document_text;
 use crate::mesh_file::{OpenedMesh, open_person};
 use crate::open::read_input;
+use crate::output::cannot;
 use crate::product::body_obj;
 use crate::{FabricChoice, PanelOrigin, PatternFormat, Project, SessionError};
 use std::path::Path;

@@ -30,6 +30,8 @@ pub enum Dialog {
     Export(Box<ExportChoice>),
     /// The pattern whose panels are inserted.
     Insert(FileChoice),
+    /// The file of the fabric that the garment is cut from.
+    Fabric(FileChoice),
     /// A file would be replaced.
     Replace(PathBuf),
     /// Changes are in no file; what comes then.
@@ -59,6 +61,7 @@ impl ToileApp {
                 Dialog::Insert(choice) => {
                     ask_file(ui, choice, "Insert the panels of a pattern", "Insert")
                 }
+                Dialog::Fabric(choice) => ask_file(ui, choice, "Cut the garment from", "Choose"),
                 Dialog::Replace(path) => ask_replace(ui, path),
                 Dialog::Leave(_) | Dialog::Close => ask_save(ui),
                 Dialog::Recover => self.ask_recover(ui),
@@ -192,6 +195,7 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
             }
             answer = match verb {
                 "Open" => Answer::Do(Box::new(move |app| app.open(&path))),
+                "Choose" => Answer::Do(Box::new(move |app| app.cut_from_file(&path))),
                 "Insert" => Answer::Do(Box::new(move |app| app.insert_file(&path))),
                 _ => Answer::Do(Box::new(move |app| app.save_to(path, false))),
             };

@@ -313,6 +313,14 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::View,
+        "Fabrics",
+        key(PLAIN, Key::F4),
+        "Show or hide what the garment is cut from, and the fabrics of the pattern and of the library",
+        ToileApp::is_open,
+        ToileApp::toggle_fabrics,
+    ),
+    command(
+        Menu::View,
         "Findings",
         key(PLAIN, Key::F9),
         "List what is found wrong with the pattern",

@@ -4,7 +4,7 @@ use super::ToileApp;
 use super::dialogs::Dialog;
 use super::file_choice::FileChoice;
 use super::notice::Notice;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toile_session::Command;
 
 /// How the names of files in the native format end.
@@ -27,6 +27,19 @@ impl ToileApp {
         let mut choice = FileChoice::new(&path);
         choice.path.clear();
         self.dialog = Some(Dialog::Insert(choice));
+    }
+
+    pub(crate) fn ask_fabric_file(&mut self) {
+        let path = self.session.project().source.clone().unwrap_or_default();
+        let mut choice = FileChoice::new(&path);
+        choice.path.clear();
+        self.dialog = Some(Dialog::Fabric(choice));
+    }
+
+    /// Cuts the garment from the fabric of a file.
+    pub(super) fn cut_from_file(&mut self, path: &Path) {
+        let fabric = Some(path.display().to_string());
+        self.execute(Command::SetFabric { fabric });
     }
 
     pub(crate) fn ask_save(&mut self) {

@@ -488,6 +488,7 @@ impl ToileApp {
             Panel::bottom("tables")
                 .frame(frame)
                 .default_size(220.0)
+                .min_size(self.tables.least_height())
                 .resizable(true)
                 .show(ui, |ui| self.show_tables(ui));
         }

@@ -102,6 +102,14 @@ impl ToileApp {
         }
     }
 
+    /// Shows the table of fabrics, or hides it.
+    pub(crate) fn toggle_fabrics(&mut self) {
+        match self.panes.tables && self.tables.tab == Tab::Fabric {
+            true => self.panes.tables = false,
+            false => self.show_table(Tab::Fabric),
+        }
+    }
+
     fn show_table(&mut self, tab: Tab) {
         self.panes.tables = true;
         self.tables.tab = tab;

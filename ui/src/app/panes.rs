@@ -1,5 +1,6 @@
 //! Which panes of the window and which overlays of the pattern are visible.
 
+use crate::tables::FabricTable;
 use serde::{Deserialize, Serialize};
 use toile_pattern::VariableId;
 
@@ -47,11 +48,20 @@ pub struct Tables {
     pub added: bool,
     /// A measurement whose first value is to be typed next.
     pub entered_measurement: Option<String>,
+    pub fabric: FabricTable,
     /// A variable whose number is to be typed next.
     pub entered_variable: Option<VariableId>,
 }
 
 impl Tables {
+    /// The least height that a table is of use in [pixels].
+    pub fn least_height(&self) -> f32 {
+        match self.tab {
+            Tab::Fabric => 290.0,
+            Tab::Measurements | Tab::Variables | Tab::History => 80.0,
+        }
+    }
+
     /// Leaves what is typed: another document is opened.
     pub fn forget_typed(&mut self) {
         *self = Self {
@@ -66,5 +76,6 @@ pub enum Tab {
     #[default]
     Measurements,
     Variables,
+    Fabric,
     History,
 }

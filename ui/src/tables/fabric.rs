@@ -1,0 +1,566 @@
+//! The table of fabrics: what the garment is cut from, and the figures of each fabric of the pattern and of the
+//! library.
+
+use super::fabric_words::{
+    bytes, colour_text, library_source, meaning, own_source, read_colour, shares,
+};
+use crate::app::ToileApp;
+use crate::fields::Entered;
+use crate::theme::Palette;
+use crate::tools::number;
+use egui::{
+    Align, Color32, ComboBox, Grid, Id, Label, Layout, Popup, RichText, ScrollArea, Sense, Ui, vec2,
+};
+use toile_pattern::plan::{self, FabricFigure};
+use toile_pattern::{Edit, EditError, Entity, Fabric, FabricId, PanelId, Want};
+use toile_session::{
+    Command, FabricChoice, LIBRARY, LibraryFabric, library_fabric, with_hardening,
+};
+
+/// Width of the list, of a field, and the least of what is said of a figure [pixels].
+const LIST: f32 = 190.0;
+const FIELD: f32 = 84.0;
+const SOURCE: f32 = 150.0;
+/// Height of a line, and between two of them [pixels].
+const LINE: f32 = 22.0;
+const LINE_GAP: f32 = 3.0;
+/// Width of the part for the marker [pixels].
+const MARKER_PART: f32 = 300.0;
+/// Most figures in a column.
+const ROWS: usize = 6;
+/// Height of the list of what a garment can be cut from [pixels].
+const CHOICES: f32 = 480.0;
+/// Side of a swatch [pixels].
+const SWATCH: f32 = 12.0;
+/// Widths of the roll that can be chosen [m].
+const WIDTHS: [f64; 2] = [0.05, 20.0];
+
+/// Which fabric the table shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Viewed {
+    /// One of the pattern.
+    Own(FabricId),
+    /// One of the library.
+    Library(&'static str),
+    /// The one of a file that the garment is cut from.
+    File,
+}
+
+/// What is seen and typed in the table of fabrics.
+#[derive(Default)]
+pub struct FabricTable {
+    /// The fabric on show; nothing is the one that the garment, or its first panel, is cut from.
+    viewed: Option<Viewed>,
+    /// A colour that is being picked.
+    colour: Option<(FabricId, [u8; 3])>,
+}
+
+impl ToileApp {
+    pub(super) fn fabric_table(&mut self, ui: &mut Ui) {
+        self.take_picked_colour(ui);
+        let spacing = ui.spacing_mut();
+        spacing.item_spacing.y = LINE_GAP;
+        spacing.interact_size.y = LINE;
+        spacing.button_padding.y = 1.0;
+        ui.horizontal_wrapped(|ui| {
+            self.cut_choice(ui);
+            self.roll_width(ui);
+            if ui.button("New fabric").clicked() {
+                let mut fabric = Fabric::poplin(FabricId(0));
+                fabric.name = "fabric".into();
+                self.add_fabric(fabric, "Add fabric");
+            }
+        });
+        ui.separator();
+        let viewed = self.viewed_fabric();
+        let height = ui.available_height();
+        ui.horizontal_top(|ui| {
+            ui.allocate_ui_with_layout(vec2(LIST, height), Layout::top_down(Align::Min), |ui| {
+                ui.set_width(LIST);
+                self.fabric_list(ui, viewed);
+            });
+            ui.separator();
+            if let Some((viewed, fabric)) = viewed.and_then(|v| Some((v, self.fabric_on_show(v)?)))
+            {
+                ScrollArea::both()
+                    .id_salt("fabric figures")
+                    .auto_shrink([false, false])
+                    .show(ui, |ui| {
+                        ui.vertical(|ui| self.fabric_page(ui, viewed, &fabric))
+                    });
+            }
+        });
+    }
+
+    /// What the garment is cut from.
+    fn cut_choice(&mut self, ui: &mut Ui) {
+        let chosen = self.session.project().fabric.clone();
+        let each = "each panel's own fabric";
+        let shown = match &chosen {
+            None => each,
+            Some(choice) => choice.name(),
+        };
+        let is_named =
+            |name: &str| matches!(&chosen, Some(FabricChoice::Named(own)) if own == name);
+        let mut wished: Option<Option<String>> = None;
+        let mut asks_file = false;
+        let label = ui.label("Garment cut from").id;
+        let pattern = self.base.pattern();
+        let list = ComboBox::from_id_salt("garment cut from")
+            .selected_text(shown)
+            .width(LIST)
+            .height(CHOICES)
+            .show_ui(ui, |ui| {
+                if ui.selectable_label(chosen.is_none(), each).clicked() {
+                    wished = Some(None);
+                }
+                for fabric in &pattern.fabrics {
+                    let words = format!("{} of the pattern", fabric.name);
+                    if ui.selectable_label(is_named(&fabric.name), words).clicked() {
+                        wished = Some(Some(fabric.name.clone()));
+                    }
+                }
+                let is_file = matches!(chosen, Some(FabricChoice::File { .. }));
+                asks_file = ui
+                    .selectable_label(is_file, "a fabric file\u{2026}")
+                    .clicked();
+                let is_own = |name| pattern.fabrics.iter().any(|own| own.name == name);
+                for library in LIBRARY.iter().filter(|library| !is_own(library.name)) {
+                    let words = format!("{}: {}", library.name, library.about);
+                    if ui.selectable_label(is_named(library.name), words).clicked() {
+                        wished = Some(Some(library.name.to_owned()));
+                    }
+                }
+            });
+        list.response.labelled_by(label);
+        let is_chosen = |wished: &Option<String>| match wished {
+            Some(name) => is_named(name),
+            None => chosen.is_none(),
+        };
+        if let Some(fabric) = wished.filter(|wished| !is_chosen(wished)) {
+            self.execute(Command::SetFabric { fabric });
+            self.tables.fabric.viewed = None;
+        }
+        if asks_file {
+            self.ask_fabric_file();
+        }
+    }
+
+    /// The width of the roll, where it is another than the fabric's own.
+    fn roll_width(&mut self, ui: &mut Ui) {
+        let base = self.base.clone();
+        let unit = base.pattern().unit;
+        let width = self.session.project().width;
+        let shown = width.map_or_else(String::new, |w| number::show(w, Want::Length, unit));
+        let read = |text: &str| {
+            if text.trim().is_empty() {
+                return Ok(None);
+            }
+            let found = number::parse(text, Want::Length, &base)?;
+            let width = base.number_or_fault(&found, Want::Length)?;
+            let [least, most] = WIDTHS;
+            match (least..=most).contains(&width) {
+                true => Ok(Some(width)),
+                false => Err(format!("give {} cm to {most} m", least * 100.0)),
+            }
+        };
+        let label = ui
+            .label("Roll width")
+            .on_hover_text("Empty: the fabric's own")
+            .id;
+        let id = Id::unique("roll width");
+        let entered = field(ui, |ui| {
+            self.typed.field(ui, (id, label), &shown, |text| {
+                read(text).map(|_| String::new())
+            })
+        });
+        if let Entered::Text(text) = entered {
+            match read(&text) {
+                Ok(width) => {
+                    self.execute(Command::SetWidth { width });
+                }
+                Err(fault) => self.typed.refuse(id, text, fault),
+            }
+        }
+    }
+
+    /// The fabrics of the pattern, of a file that was chosen, and of the library.
+    fn fabric_list(&mut self, ui: &mut Ui, viewed: Option<Viewed>) {
+        let pattern = self.base.pattern().clone();
+        let mut clicked = None;
+        let mut row = |ui: &mut Ui, one: Viewed, (name, colour): (&str, [f64; 3])| {
+            ui.horizontal(|ui| {
+                swatch(ui, colour);
+                if ui.selectable_label(viewed == Some(one), name).clicked() {
+                    clicked = Some(one);
+                }
+            });
+        };
+        ScrollArea::vertical()
+            .id_salt("fabrics")
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                ui.label(RichText::new("Of the pattern").strong());
+                for fabric in &pattern.fabrics {
+                    row(ui, Viewed::Own(fabric.id), (&fabric.name, fabric.colour));
+                }
+                if let Some(fabric) = self.fabric_on_show(Viewed::File) {
+                    ui.label(RichText::new("Of a file").strong());
+                    row(ui, Viewed::File, (&fabric.name, fabric.colour));
+                }
+                ui.label(RichText::new("Of the library").strong());
+                for library in &LIBRARY {
+                    let name = format!("{} (library)", library.name);
+                    let colour = library_fabric(library.name).map_or([0.7; 3], |f| f.colour);
+                    row(ui, Viewed::Library(library.name), (&name, colour));
+                }
+            });
+        if clicked.is_some() {
+            self.tables.fabric.viewed = clicked;
+        }
+    }
+
+    /// The fabric on show, if it is still there.
+    fn viewed_fabric(&self) -> Option<Viewed> {
+        let pattern = self.base.pattern();
+        let own = |name: &str| pattern.fabrics.iter().find(|own| own.name == name);
+        let is_there = |viewed: &Viewed| self.fabric_on_show(*viewed).is_some();
+        let chosen = match &self.session.project().fabric {
+            Some(FabricChoice::File { .. }) => Some(Viewed::File),
+            Some(FabricChoice::Named(name)) => match own(name) {
+                Some(own) => Some(Viewed::Own(own.id)),
+                None => LibraryFabric::named(name).map(|library| Viewed::Library(library.name)),
+            },
+            None => pattern
+                .panels
+                .first()
+                .map(|panel| Viewed::Own(panel.fabric)),
+        };
+        let first = pattern.fabrics.first().map(|own| Viewed::Own(own.id));
+        let kept = self.tables.fabric.viewed.filter(is_there);
+        kept.or(chosen.filter(is_there)).or(first)
+    }
+
+    fn fabric_on_show(&self, viewed: Viewed) -> Option<Fabric> {
+        match viewed {
+            Viewed::Own(id) => Some((**self.base.pattern().fabric(id)?).clone()),
+            Viewed::Library(name) => library_fabric(name),
+            Viewed::File => self.session.project().fabric.as_ref()?.of_file().cloned(),
+        }
+    }
+
+    /// The name of a fabric, what can be done with it, and its figures.
+    fn fabric_page(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
+        ui.horizontal(|ui| match viewed {
+            Viewed::Own(_) => self.own_fabric_head(ui, fabric),
+            Viewed::Library(_) | Viewed::File => {
+                let about = match viewed {
+                    Viewed::Library(name) => LibraryFabric::named(name).map_or("", |l| l.about),
+                    _ => "of a file",
+                };
+                swatch(ui, fabric.colour);
+                ui.label(RichText::new(&fabric.name).strong());
+                ui.label(about);
+                if ui
+                    .button("Copy into the pattern")
+                    .on_hover_text(
+                        "To give it other figures or a colour, or to cut single panels from it",
+                    )
+                    .clicked()
+                {
+                    self.add_fabric(fabric.clone(), "Copy fabric");
+                }
+            }
+        });
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| {
+                ui.set_width(MARKER_PART);
+                ui.label(RichText::new("A marker takes").strong());
+                self.figure_rows(ui, (viewed, fabric), &[FabricFigure::Width]);
+                self.nap_choice(ui, viewed, fabric);
+                self.cut_panels(ui, viewed, fabric);
+            });
+            ui.vertical(|ui| {
+                ui.label(RichText::new("The drape takes").strong());
+                let of_drape = |figure: &FabricFigure| *figure != FabricFigure::Width;
+                let figures: Vec<_> = FabricFigure::ALL.into_iter().filter(of_drape).collect();
+                ui.horizontal_top(|ui| {
+                    for column in figures.chunks(ROWS) {
+                        self.figure_rows(ui, (viewed, fabric), column);
+                    }
+                });
+            });
+        });
+    }
+
+    /// Name, colour, copying and removing of one of the pattern's own.
+    fn own_fabric_head(&mut self, ui: &mut Ui, fabric: &Fabric) {
+        let label = ui.label("Fabric name").id;
+        let id = Id::unique(("fabric name", fabric.id));
+        let entered = field(ui, |ui| {
+            self.typed
+                .field(ui, (id, label), &fabric.name, |_| Ok(String::new()))
+        });
+        if let Entered::Text(text) = entered {
+            // The cloth stays what it is under another name.
+            let kept = with_hardening(fabric);
+            let planned = plan::rename(&self.base, fabric.id.into(), &text).map(|mut edits| {
+                for edit in &mut edits {
+                    if let Edit::Put(Entity::Fabric(renamed)) = edit {
+                        std::sync::Arc::make_mut(renamed).rheology = kept.rheology;
+                    }
+                }
+                edits
+            });
+            self.enter(planned, "Rename fabric", (id, text));
+        }
+        self.colour_choice(ui, fabric);
+        if ui.button("Copy fabric").clicked() {
+            self.add_fabric(with_hardening(fabric), "Copy fabric");
+        }
+        if ui.button("Remove fabric").clicked() {
+            let is_chosen = matches!(&self.session.project().fabric, Some(FabricChoice::Named(name)) if *name == fabric.name);
+            match is_chosen {
+                true => self.say_fault(format!(
+                    "the garment is cut from fabric {:?}: choose another first",
+                    fabric.name
+                )),
+                false => {
+                    self.edit(plan::remove_fabric(&self.base, fabric.id), "Remove fabric");
+                }
+            }
+        }
+    }
+
+    /// The colour, picked or typed.
+    fn colour_choice(&mut self, ui: &mut Ui, fabric: &Fabric) {
+        let picked = self.tables.fabric.colour.filter(|(id, _)| *id == fabric.id);
+        let before = picked.map_or(bytes(fabric.colour), |(_, colour)| colour);
+        let mut colour = before;
+        ui.color_edit_button_srgb(&mut colour);
+        if colour != before {
+            self.tables.fabric.colour = Some((fabric.id, colour));
+        }
+        let label = ui.label("Colour").id;
+        let id = Id::unique(("fabric colour", fabric.id));
+        let shown = colour_text(fabric.colour);
+        let entered = field(ui, |ui| {
+            self.typed.field(ui, (id, label), &shown, |text| {
+                read_colour(text).map(|_| String::new())
+            })
+        });
+        if let Entered::Text(text) = entered {
+            match read_colour(&text) {
+                Ok(colour) => self.colour_fabric(fabric.id, colour),
+                Err(fault) => self.typed.refuse(id, text, fault),
+            }
+        }
+    }
+
+    /// Takes over a colour once it is picked: one step of the history.
+    fn take_picked_colour(&mut self, ui: &Ui) {
+        let is_picking = Popup::is_any_open(ui.ctx()) || ui.input(|input| input.pointer.any_down());
+        if is_picking {
+            return;
+        }
+        if let Some((id, colour)) = self.tables.fabric.colour.take() {
+            self.colour_fabric(id, shares(colour));
+        }
+    }
+
+    fn colour_fabric(&mut self, id: FabricId, colour: [f64; 3]) {
+        let Some(fabric) = self.base.pattern().fabric(id) else {
+            return;
+        };
+        let changed = Fabric {
+            colour,
+            ..(**fabric).clone()
+        };
+        self.edit(plan::set_fabric(&self.base, changed), "Colour fabric");
+    }
+
+    /// Figures of a fabric, a row each: name, value, unit, source.
+    fn figure_rows(
+        &mut self,
+        ui: &mut Ui,
+        (viewed, fabric): (Viewed, &Fabric),
+        figures: &[FabricFigure],
+    ) {
+        let soft = Palette::of(ui.ctx()).ink_soft;
+        let whole = with_hardening(fabric);
+        let shown_in = self.base.pattern().unit;
+        Grid::new(("fabric figures", figures.first().map(|f| f.name())))
+            .num_columns(4)
+            .show(ui, |ui| {
+                for &figure in figures {
+                    let name = RichText::new(figure.name()).color(soft);
+                    let label = ui.label(name).on_hover_text(meaning(figure)).id;
+                    let value = figure.of(&whole);
+                    let (shown, sign) = match figure {
+                        FabricFigure::Width => (number::show(value, Want::Length, shown_in), ""),
+                        _ => (shown_figure(value / figure.unit().1), figure.unit().0),
+                    };
+                    match viewed {
+                        Viewed::Own(_) => self.figure_field(ui, (figure, label), (&whole, &shown)),
+                        Viewed::Library(_) | Viewed::File => {
+                            ui.label(shown);
+                        }
+                    }
+                    ui.label(RichText::new(sign).color(soft));
+                    let source = match viewed {
+                        Viewed::Own(_) => own_source(figure, fabric),
+                        Viewed::Library(name) => LibraryFabric::named(name)
+                            .map_or("", |library| library_source(figure, library))
+                            .to_owned(),
+                        Viewed::File => "given in its file".to_owned(),
+                    };
+                    ui.scope(|ui| {
+                        ui.set_max_width(SOURCE);
+                        let words = RichText::new(&source).small().color(soft);
+                        ui.add(Label::new(words).truncate()).on_hover_text(source);
+                    });
+                    ui.end_row();
+                }
+            });
+    }
+
+    /// The field of a figure of one of the pattern's own fabrics.
+    fn figure_field(
+        &mut self,
+        ui: &mut Ui,
+        (figure, label): (FabricFigure, Id),
+        (fabric, shown): (&Fabric, &str),
+    ) {
+        let base = self.base.clone();
+        let (sign, unit) = figure.unit();
+        let read = |text: &str| {
+            let (want, unit) = match figure {
+                FabricFigure::Width => (Want::Length, 1.0),
+                _ => (Want::Plain, unit),
+            };
+            let bare = match want {
+                Want::Plain => text.trim().trim_end_matches(sign),
+                _ => text,
+            };
+            let found = number::parse(bare, want, &base)?;
+            let value = unit * base.number_or_fault(&found, want)?;
+            figure.check(value).map(|()| value)
+        };
+        let id = Id::unique(("fabric figure", fabric.id, figure.name()));
+        let entered = field(ui, |ui| {
+            self.typed.field(ui, (id, label), shown, |text| {
+                read(text).map(|_| String::new())
+            })
+        });
+        if let Entered::Text(text) = entered {
+            match read(&text) {
+                Ok(value) => {
+                    let planned = plan::set_fabric_figure(&base, fabric.clone(), (figure, value));
+                    self.enter(planned, "Change fabric", (id, text));
+                }
+                Err(fault) => self.typed.refuse(id, text, fault),
+            }
+        }
+    }
+
+    /// Whether all pieces point one way.
+    fn nap_choice(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
+        let mut nap = fabric.nap;
+        let is_own = matches!(viewed, Viewed::Own(_));
+        let words = "Nap: all pieces point one way";
+        let ticked = ui.add_enabled(is_own, egui::Checkbox::new(&mut nap, words));
+        if ticked.changed() {
+            let changed = Fabric {
+                nap,
+                ..fabric.clone()
+            };
+            self.edit(plan::set_fabric(&self.base, changed), "Change nap");
+        }
+    }
+
+    /// The panels, ticked where they are cut from the fabric. A tick cuts a panel from it.
+    fn cut_panels(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
+        let pattern = self.base.pattern().clone();
+        if pattern.panels.is_empty() || viewed == Viewed::File {
+            return;
+        }
+        ui.label(RichText::new("Panels cut from it").strong());
+        if let Some(choice) = self.session.project().fabric.as_ref() {
+            let words = format!("The whole garment is cut from {} now", choice.name());
+            ui.label(RichText::new(words).color(Palette::of(ui.ctx()).ink_soft));
+        }
+        let mut wished = None;
+        ui.horizontal_wrapped(|ui| {
+            for panel in &pattern.panels {
+                let is_cut = viewed == Viewed::Own(panel.fabric);
+                let mut ticked = is_cut;
+                let tick = egui::Checkbox::new(&mut ticked, &panel.name);
+                ui.add_enabled(!is_cut, tick);
+                if ticked && !is_cut {
+                    wished = Some(panel.id);
+                }
+            }
+        });
+        if let Some(panel) = wished {
+            let planned = self.cut_from(panel, viewed, fabric);
+            self.edit(planned, "Cut panel from fabric");
+        }
+    }
+
+    /// The edits that cut a panel from a fabric; one of the library is copied into the pattern for it.
+    fn cut_from(
+        &self,
+        panel: PanelId,
+        viewed: Viewed,
+        fabric: &Fabric,
+    ) -> Result<Vec<Edit>, EditError> {
+        let pattern = self.base.pattern();
+        let copied = pattern.fabrics.iter().find(|own| own.name == fabric.name);
+        let (mut edits, id) = match (viewed, copied) {
+            (Viewed::Own(id), _) => (Vec::new(), id),
+            (_, Some(own)) if is_same_cloth(own, fabric) => (Vec::new(), own.id),
+            _ => plan::add_fabric(&self.base, fabric.clone())?,
+        };
+        edits.extend(self.changed_panel(panel, |panel| panel.fabric = id)?);
+        Ok(edits)
+    }
+
+    /// Adds a fabric to the pattern, and shows it.
+    fn add_fabric(&mut self, fabric: Fabric, label: &str) {
+        let planned = plan::add_fabric(&self.base, fabric);
+        let id = planned.as_ref().ok().map(|(_, id)| *id);
+        if self.edit(planned.map(|(edits, _)| edits), label) {
+            self.tables.fabric.viewed = id.map(Viewed::Own);
+        }
+    }
+}
+
+/// Whether all figures of two fabrics are the same.
+fn is_same_cloth(a: &Fabric, b: &Fabric) -> bool {
+    let [a, b] = [a, b].map(with_hardening);
+    let mut figures = FabricFigure::ALL.into_iter();
+    figures.all(|figure| figure.of(&a) == figure.of(&b))
+}
+
+/// A field of the usual width.
+fn field(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Entered) -> Entered {
+    let shown = ui.scope(|ui| {
+        ui.set_width(FIELD);
+        ui.vertical(show).inner
+    });
+    shown.inner
+}
+
+/// A small square of a colour.
+fn swatch(ui: &mut Ui, colour: [f64; 3]) {
+    let [red, green, blue] = bytes(colour);
+    let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
+    let fill = Color32::from_rgb(red, green, blue);
+    ui.painter().rect_filled(rect, 2.0, fill);
+}
+
+/// A figure in four digits, of which those that say nothing are left out.
+fn shown_figure(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    format!("{rounded}")
+}

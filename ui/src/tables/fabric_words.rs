@@ -1,0 +1,138 @@
+//! What is said of the figures of a fabric: what each means, where it comes from; colours as text.
+
+use toile_pattern::Fabric;
+use toile_pattern::plan::FabricFigure;
+use toile_session::{LibraryFabric, library_fabric, library_origin, with_hardening};
+
+/// What a figure means to whoever sews.
+pub fn meaning(figure: FabricFigure) -> &'static str {
+    match figure {
+        FabricFigure::Width => "The roll from selvedge to selvedge, selvedges included",
+        FabricFigure::Weight => "What a square metre weighs",
+        FabricFigure::Thickness => "Of one layer laid flat",
+        FabricFigure::StretchWarp => {
+            "Force on a metre of width that would stretch it to twice its length, along the grain"
+        }
+        FabricFigure::StretchWeft => {
+            "Force on a metre of width that would stretch it to twice its length, across the grain"
+        }
+        FabricFigure::HardeningWarp | FabricFigure::HardeningWeft => {
+            "How much stiffer it gets as it is stretched: at a strain E the force is E + k E\u{b3} times the stiffness"
+        }
+        FabricFigure::Shear => {
+            "How hard it is to skew, as on the bias: force on a metre of width for each radian"
+        }
+        FabricFigure::Narrowing => "How much it narrows where it is stretched (Poisson's ratio)",
+        FabricFigure::BendWarp => {
+            "How stiff a fold across the grain is: 5 drapes softly, 100 stands"
+        }
+        FabricFigure::BendWeft => {
+            "How stiff a fold along the grain is: 5 drapes softly, 100 stands"
+        }
+        FabricFigure::BendBias => "How stiff a fold on the bias is: 5 drapes softly, 100 stands",
+        FabricFigure::Friction => "Against skin: 0 slides, 0.5 clings",
+    }
+}
+
+/// Where a figure of a fabric of the library comes from.
+pub fn library_source(figure: FabricFigure, library: &LibraryFabric) -> &'static str {
+    let sources = &library.sources;
+    match figure {
+        FabricFigure::Weight => sources.density,
+        FabricFigure::Thickness => sources.thickness,
+        FabricFigure::StretchWarp
+        | FabricFigure::StretchWeft
+        | FabricFigure::HardeningWarp
+        | FabricFigure::HardeningWeft => sources.stretch,
+        FabricFigure::Shear => sources.shear,
+        FabricFigure::BendWarp | FabricFigure::BendWeft | FabricFigure::BendBias => sources.bend,
+        FabricFigure::Friction => sources.friction,
+        FabricFigure::Narrowing => "usual for its kind, without a source",
+        FabricFigure::Width => "a usual width, without a source",
+    }
+}
+
+/// Where a figure of a pattern's own fabric comes from: the library, while it is as there, else the pattern.
+pub fn own_source(figure: FabricFigure, fabric: &Fabric) -> String {
+    let given = "given in the pattern".to_owned();
+    let Some(library) = library_origin(fabric) else {
+        return given;
+    };
+    let Some(copied) = library_fabric(library.name) else {
+        return given;
+    };
+    match figure.of(&with_hardening(fabric)) == figure.of(&copied) {
+        true => format!(
+            "{} of the library: {}",
+            library.name,
+            library_source(figure, library)
+        ),
+        false => given,
+    }
+}
+
+/// A colour as it is typed, as `#8099cc`.
+pub fn colour_text(colour: [f64; 3]) -> String {
+    let [red, green, blue] = bytes(colour);
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// A colour in steps of 1/255.
+pub fn bytes(colour: [f64; 3]) -> [u8; 3] {
+    colour.map(|share| (share * 255.0).round() as u8)
+}
+
+/// The colour of steps of 1/255.
+pub fn shares(bytes: [u8; 3]) -> [f64; 3] {
+    bytes.map(|byte| f64::from(byte) / 255.0)
+}
+
+/// A colour from what was typed.
+///
+/// # Errors
+/// How it is written.
+pub fn read_colour(text: &str) -> Result<[f64; 3], String> {
+    let digits = text.trim().trim_start_matches('#');
+    let read = |k: usize| u8::from_str_radix(digits.get(2 * k..2 * k + 2)?, 16).ok();
+    let read = (digits.len() == 6 && !digits.starts_with('+'))
+        .then(|| Some([read(0)?, read(1)?, read(2)?]));
+    let read = read.flatten().map(shares);
+    read.ok_or_else(|| "write red, green and blue as in #8099cc".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_session::LIBRARY;
+
+    #[test]
+    fn a_copy_of_the_library_keeps_its_sources_until_a_figure_is_changed() {
+        for library in &LIBRARY {
+            let mut fabric = library_fabric(library.name).unwrap();
+            fabric.name = "mine".into();
+            for figure in FabricFigure::ALL {
+                let source = own_source(figure, &fabric);
+                assert!(source.contains(library_source(figure, library)), "{source}");
+            }
+            fabric.density += 0.001;
+            let source = own_source(FabricFigure::Weight, &fabric);
+            assert_eq!(source, "given in the pattern");
+            assert!(own_source(FabricFigure::Thickness, &fabric).contains(library.name));
+        }
+    }
+
+    #[test]
+    fn colours_are_read_as_they_are_written() {
+        assert_eq!(colour_text(read_colour("#8099Cc").unwrap()), "#8099cc");
+        for text in [
+            "",
+            "blue",
+            "#12345",
+            "#1234567",
+            "\u{e9}\u{e9}\u{e9}",
+            "+1+1+1",
+        ] {
+            assert!(read_colour(text).is_err(), "{text}");
+        }
+    }
+}
