@@ -1,9 +1,13 @@
-//! Tables under the pattern: measurements by size, variables, the history.
+//! Tables under the pattern: measurements by size, variables, wearer and layers, the history.
 
 mod fabric;
 mod fabric_words;
+mod wearer;
+mod worn_with;
 
 pub use fabric::FabricTable;
+pub use wearer::WearerTable;
+pub use worn_with::WornWhere;
 
 use crate::app::ToileApp;
 use crate::app::panes::Tab;
@@ -54,6 +58,8 @@ impl ToileApp {
                 (Tab::Measurements, "Measurements"),
                 (Tab::Variables, "Variables"),
                 (Tab::Fabric, "Fabric"),
+                (Tab::Wearer, "Wearer"),
+                (Tab::WornWith, "Worn with"),
                 (Tab::History, "History"),
             ] {
                 ui.selectable_value(&mut self.tables.tab, tab, name);
@@ -64,6 +70,8 @@ impl ToileApp {
             Tab::Measurements => self.measurement_table(ui),
             Tab::Variables => self.variable_table(ui),
             Tab::Fabric => self.fabric_table(ui),
+            Tab::Wearer => self.wearer_table(ui),
+            Tab::WornWith => self.worn_with_table(ui),
             Tab::History => self.history_table(ui),
         }
     }

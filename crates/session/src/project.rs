@@ -5,7 +5,7 @@ use crate::{BodyChoice, FabricChoice, Quality, SessionError};
 use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
-use toile_measure::Measurements;
+use toile_measure::{Measurements, Origin};
 use toile_pattern::{Diagnostic, Edit, EditError, Pattern, Severity, Wearer};
 
 /// Everything a person decides. Cloning is cheap.
@@ -221,11 +221,10 @@ impl Project {
         self.pattern.size(self.size.as_deref()?)
     }
 
-    /// The measurements of the mannequin [m], [rad]: those of the file; else those of the named
-    /// size, or of the pattern's base size where no body was chosen; else the figure's averages.
-    /// What they leave out is predicted from them.
-    pub fn body_measurements(&self) -> Measurements {
-        let size = match &self.body {
+    /// The measurements that the mannequin was given [m], [rad]: those of the file or the typed ones;
+    /// else those of the named size, or of the pattern's base size where no body was chosen.
+    fn given_measurements(&self) -> Option<&Measurements> {
+        match &self.body {
             BodyChoice::Measured { measurements, .. } | BodyChoice::Shaped { measurements, .. } => {
                 Some(&**measurements)
             }
@@ -233,9 +232,30 @@ impl Project {
             BodyChoice::OfPattern | BodyChoice::Missing { .. } => self
                 .named_size()
                 .or_else(|| self.pattern.base_measurements()),
-        };
+        }
+    }
+
+    /// What was asked of the mannequin [m], [rad]; all others of its measurements follow from it.
+    pub fn asked_measurements(&self) -> Measurements {
+        let mut asked = Measurements::new();
+        let given = self.given_measurements().into_iter();
+        for (name, measured) in given.flat_map(Measurements::iter) {
+            if measured.origin == Origin::Asked {
+                // A name and value of a table are always taken by another.
+                let _ = asked.set(name, measured.value, Origin::Asked);
+            }
+        }
+        asked
+    }
+
+    /// The measurements of the mannequin [m], [rad]: those that it was given, else the figure's
+    /// averages. What they leave out is predicted from them.
+    pub fn body_measurements(&self) -> Measurements {
         let figure = self.figure();
-        size.map_or_else(|| sample_of(figure), |size| size.completed(figure.build()))
+        self.given_measurements().map_or_else(
+            || sample_of(figure),
+            |given| given.completed(figure.build()),
+        )
     }
 
     /// Whom a pattern worn with the project's is drafted for: its own table's named size, else the
@@ -272,7 +292,6 @@ impl Project {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_measure::Origin;
     use toile_pattern::{Evaluation, Number, Size, Variable};
 
     /// Values that sizes have of their own are taken in the size that is drafted, and in the base

@@ -199,26 +199,21 @@ impl ToileApp {
         if project.pattern.sizes.is_empty() {
             return;
         }
-        let names: Vec<String> = project
-            .pattern
-            .sizes
-            .iter()
-            .map(|s| s.name.clone())
-            .collect();
-        let base = project.pattern.base().map(|size| size.name.clone());
-        let mut chosen = project
-            .size
-            .clone()
-            .or(base)
-            .unwrap_or_else(|| names[0].clone());
+        let sizes = project.pattern.sizes.iter();
+        let mut names: Vec<Option<String>> = sizes.map(|s| Some(s.name.clone())).collect();
+        if !project.body.is_of_pattern() {
+            names.insert(0, None);
+        }
+        let words = |name: &Option<String>| name.clone().unwrap_or_else(|| "the wearer's".into());
+        let mut chosen = project.size_name().map(str::to_owned);
         let before = chosen.clone();
         // Right to left: the label comes after its choice to stand before it.
         let choice = ComboBox::from_id_salt("size")
-            .selected_text(&chosen)
+            .selected_text(words(&chosen))
             .width(70.0)
             .show_ui(ui, |ui| {
                 for name in names {
-                    let words = name.clone();
+                    let words = words(&name);
                     ui.selectable_value(&mut chosen, name, words);
                 }
             })
@@ -226,7 +221,7 @@ impl ToileApp {
         let label = ui.label("Size").id;
         choice.labelled_by(label);
         if chosen != before {
-            self.execute(Command::SetSize { size: Some(chosen) });
+            self.execute(Command::SetSize { size: chosen });
         }
     }
 

@@ -6,6 +6,7 @@ use super::export_choice::ExportChoice;
 use super::file_choice::FileChoice;
 use super::print_choice::PrintChoice;
 use crate::fields::text_field;
+use crate::tables::WornWhere;
 use crate::theme::Palette;
 use egui::{Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
 use std::path::PathBuf;
@@ -32,6 +33,10 @@ pub enum Dialog {
     Insert(FileChoice),
     /// The file of the fabric that the garment is cut from.
     Fabric(FileChoice),
+    /// The measurements or the mannequin of the wearer.
+    Wearer(FileChoice),
+    /// The pattern of a garment that is worn over or under this one.
+    Wear(WornWhere, FileChoice),
     /// A file would be replaced.
     Replace(PathBuf),
     /// Changes are in no file; what comes then.
@@ -62,6 +67,24 @@ impl ToileApp {
                     ask_file(ui, choice, "Insert the panels of a pattern", "Insert")
                 }
                 Dialog::Fabric(choice) => ask_file(ui, choice, "Cut the garment from", "Choose"),
+                Dialog::Wearer(choice) => ask_file(
+                    ui,
+                    choice,
+                    "Measurements or a mannequin of the wearer",
+                    "Take",
+                ),
+                Dialog::Wear(WornWhere::Over, choice) => ask_file(
+                    ui,
+                    choice,
+                    "A garment to wear over this one",
+                    "Wear over it",
+                ),
+                Dialog::Wear(WornWhere::Under, choice) => ask_file(
+                    ui,
+                    choice,
+                    "A garment to wear under this one",
+                    "Wear under it",
+                ),
                 Dialog::Replace(path) => ask_replace(ui, path),
                 Dialog::Leave(_) | Dialog::Close => ask_save(ui),
                 Dialog::Recover => self.ask_recover(ui),
@@ -197,6 +220,11 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
                 "Open" => Answer::Do(Box::new(move |app| app.open(&path))),
                 "Choose" => Answer::Do(Box::new(move |app| app.cut_from_file(&path))),
                 "Insert" => Answer::Do(Box::new(move |app| app.insert_file(&path))),
+                "Take" => Answer::Do(Box::new(move |app| app.take_wearer(&path))),
+                "Wear over it" => Answer::Do(Box::new(move |app| app.wear(&path, WornWhere::Over))),
+                "Wear under it" => {
+                    Answer::Do(Box::new(move |app| app.wear(&path, WornWhere::Under)))
+                }
                 _ => Answer::Do(Box::new(move |app| app.save_to(path, false))),
             };
         } else if ui.button("Cancel").clicked() {

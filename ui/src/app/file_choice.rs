@@ -2,6 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+/// How the names of patterns end.
+pub const PATTERNS: &[&str] = &["json", "yaml", "yml"];
+/// How the names of tables of measurements and of mannequins end.
+pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
+
 /// A file that is being chosen.
 #[derive(Clone, Debug, Default)]
 pub struct FileChoice {
@@ -9,8 +14,10 @@ pub struct FileChoice {
     pub path: String,
     /// The folder that is listed.
     pub folder: PathBuf,
-    /// Folders and patterns in it.
+    /// Folders in it, and files of the endings that are shown.
     pub entries: Vec<Entry>,
+    /// How the names of the files end that are shown.
+    endings: &'static [&'static str],
     /// Why the folder cannot be listed.
     pub fault: String,
 }
@@ -25,14 +32,20 @@ pub struct Entry {
 }
 
 impl FileChoice {
-    /// A choice that begins with a path.
+    /// A choice of a pattern that begins with a path.
     pub fn new(path: &Path) -> Self {
+        Self::showing(path, PATTERNS)
+    }
+
+    /// A choice of a file of some endings that begins with a path.
+    pub fn showing(path: &Path, endings: &'static [&'static str]) -> Self {
         let folder = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
             _ => std::env::current_dir().unwrap_or_else(|_| PathBuf::from(".")),
         };
         let mut choice = Self {
             path: path.display().to_string(),
+            endings,
             ..Self::default()
         };
         choice.list(folder);
@@ -48,10 +61,9 @@ impl FileChoice {
                 for entry in entries.flatten() {
                     let name = entry.file_name().to_string_lossy().into_owned();
                     let is_file = entry.path().is_file();
-                    let is_pattern = ["json", "yaml", "yml"]
-                        .iter()
-                        .any(|ending| name.ends_with(&format!(".{ending}")));
-                    if !name.starts_with('.') && (!is_file || is_pattern) {
+                    let mut endings = self.endings.iter();
+                    let is_shown = endings.any(|ending| name.ends_with(&format!(".{ending}")));
+                    if !name.starts_with('.') && (!is_file || is_shown) {
                         self.entries.push(Entry { is_file, name });
                     }
                 }

@@ -2,8 +2,9 @@
 
 use super::ToileApp;
 use super::dialogs::Dialog;
-use super::file_choice::FileChoice;
+use super::file_choice::{FileChoice, MEASURED, PATTERNS};
 use super::notice::Notice;
+use crate::tables::WornWhere;
 use std::path::{Path, PathBuf};
 use toile_session::Command;
 
@@ -16,24 +17,31 @@ impl ToileApp {
     }
 
     pub(crate) fn ask_open(&mut self) {
-        let path = self.session.project().source.clone().unwrap_or_default();
-        let mut choice = FileChoice::new(&path);
-        choice.path.clear();
-        self.before_leaving(Dialog::Open(choice));
+        self.before_leaving(Dialog::Open(self.file_beside(PATTERNS)));
     }
 
     pub(crate) fn ask_insert(&mut self) {
+        self.dialog = Some(Dialog::Insert(self.file_beside(PATTERNS)));
+    }
+
+    pub(crate) fn ask_wearer(&mut self) {
+        self.dialog = Some(Dialog::Wearer(self.file_beside(MEASURED)));
+    }
+
+    pub(crate) fn ask_worn(&mut self, place: WornWhere) {
+        self.dialog = Some(Dialog::Wear(place, self.file_beside(PATTERNS)));
+    }
+
+    /// A file of some endings in the folder of the pattern.
+    fn file_beside(&self, endings: &'static [&'static str]) -> FileChoice {
         let path = self.session.project().source.clone().unwrap_or_default();
-        let mut choice = FileChoice::new(&path);
+        let mut choice = FileChoice::showing(&path, endings);
         choice.path.clear();
-        self.dialog = Some(Dialog::Insert(choice));
+        choice
     }
 
     pub(crate) fn ask_fabric_file(&mut self) {
-        let path = self.session.project().source.clone().unwrap_or_default();
-        let mut choice = FileChoice::new(&path);
-        choice.path.clear();
-        self.dialog = Some(Dialog::Fabric(choice));
+        self.dialog = Some(Dialog::Fabric(self.file_beside(PATTERNS)));
     }
 
     /// Cuts the garment from the fabric of a file.

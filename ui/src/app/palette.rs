@@ -110,7 +110,7 @@ impl ToileApp {
         }
     }
 
-    fn show_table(&mut self, tab: Tab) {
+    pub(super) fn show_table(&mut self, tab: Tab) {
         self.panes.tables = true;
         self.tables.tab = tab;
     }

@@ -1,6 +1,7 @@
 //! Which panes of the window and which overlays of the pattern are visible.
 
 use crate::tables::FabricTable;
+use crate::tables::WearerTable;
 use serde::{Deserialize, Serialize};
 use toile_pattern::VariableId;
 
@@ -49,6 +50,7 @@ pub struct Tables {
     /// A measurement whose first value is to be typed next.
     pub entered_measurement: Option<String>,
     pub fabric: FabricTable,
+    pub wearer: WearerTable,
     /// A variable whose number is to be typed next.
     pub entered_variable: Option<VariableId>,
 }
@@ -57,7 +59,8 @@ impl Tables {
     /// The least height that a table is of use in [pixels].
     pub fn least_height(&self) -> f32 {
         match self.tab {
-            Tab::Fabric => 290.0,
+            Tab::Fabric | Tab::Wearer => 290.0,
+            Tab::WornWith => 180.0,
             Tab::Measurements | Tab::Variables | Tab::History => 80.0,
         }
     }
@@ -77,5 +80,7 @@ pub enum Tab {
     Measurements,
     Variables,
     Fabric,
+    Wearer,
+    WornWith,
     History,
 }

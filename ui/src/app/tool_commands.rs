@@ -2,6 +2,8 @@
 
 use super::ToileApp;
 use super::command::{BOTH, Menu, PLAIN, SHIFT, UiCommand, always, command, key};
+use super::panes::Tab;
+use crate::tables::WornWhere;
 use crate::tools::{Tool, alter, arc, draw, panel, parts, ring, seam};
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
@@ -464,6 +466,46 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "End the drape and keep what there is",
         |app| app.background_work.is_draping(),
         |app| app.background_work.stop(),
+    ),
+    command(
+        Menu::Garment,
+        "Wearer",
+        key(PLAIN, Key::F3),
+        "Choose who wears the garment, and see all measurements of theirs",
+        ToileApp::is_open,
+        |app| app.show_table(Tab::Wearer),
+    ),
+    command(
+        Menu::Garment,
+        "Wearer from file",
+        None,
+        "Take the wearer from a table of measurements or a mannequin file",
+        ToileApp::is_open,
+        ToileApp::ask_wearer,
+    ),
+    command(
+        Menu::Garment,
+        "Worn with",
+        key(SHIFT, Key::F3),
+        "Show what is worn over and under the garment",
+        ToileApp::is_open,
+        |app| app.show_table(Tab::WornWith),
+    ),
+    command(
+        Menu::Garment,
+        "Wear over",
+        None,
+        "Wear the garment of another pattern over this one",
+        ToileApp::is_open,
+        |app| app.ask_worn(WornWhere::Over),
+    ),
+    command(
+        Menu::Garment,
+        "Wear under",
+        None,
+        "Wear the garment of another pattern under this one",
+        ToileApp::is_open,
+        |app| app.ask_worn(WornWhere::Under),
     ),
     command(
         Menu::Garment,

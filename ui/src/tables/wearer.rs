@@ -1,0 +1,375 @@
+//! The wearer: who tries the garment on, in which size, and all measurements of theirs.
+
+use super::named;
+use crate::app::ToileApp;
+use crate::fields::Entered;
+use crate::theme::Palette;
+use crate::tools::number;
+use egui::{Grid, Id, RichText, ScrollArea, TextEdit, Ui};
+use std::path::Path;
+use toile_measure::{CATALOGUE, FURTHER, Measurements, Origin, UnitKind, definition};
+use toile_pattern::{Number, Want, plan};
+use toile_session::{BodyChoice, Command, Figure};
+
+/// Width of the choice of a wearer [pixels].
+const CHOICE: f32 = 330.0;
+/// Width of a measurement's value [pixels].
+const VALUE: f32 = 96.0;
+
+/// What of the wearer is kept from frame to frame.
+#[derive(Default)]
+pub struct WearerTable {
+    /// What is searched for.
+    search: String,
+    /// Every figure with its height and its bust or chest girth [m].
+    figures: Vec<(Figure, [f64; 2])>,
+    known: Option<Known>,
+}
+
+/// The measurements of a wearer, which take longer to predict than a frame to show.
+#[derive(Clone)]
+struct Known {
+    /// Revision of the project.
+    revision: u64,
+    /// All of them.
+    all: Measurements,
+    /// Those that were asked for.
+    asked: Measurements,
+}
+
+/// A measurement of the wearer.
+struct Row {
+    name: String,
+    label: String,
+    want: Want,
+    value: f64,
+    is_asked: bool,
+}
+
+/// A figure in words.
+fn figure_words(figure: Figure) -> String {
+    match figure {
+        Figure::Woman => "Woman".to_owned(),
+        Figure::Man => "Man".to_owned(),
+        Figure::Mean => "Mean of woman and man".to_owned(),
+        child => {
+            let years = child.name().trim_start_matches("child-");
+            format!("Child of {years} years")
+        }
+    }
+}
+
+impl ToileApp {
+    /// Who wears it on the left, their measurements on the right.
+    pub(super) fn wearer_table(&mut self, ui: &mut Ui) {
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| {
+                ui.set_width(CHOICE);
+                let choice = ScrollArea::vertical()
+                    .id_salt("wearers")
+                    .auto_shrink([false, false]);
+                choice.show(ui, |ui| {
+                    self.figure_choice(ui);
+                    self.worn_size_choice(ui);
+                });
+            });
+            ui.separator();
+            ui.vertical(|ui| self.wearer_measurements(ui));
+        });
+    }
+
+    /// The figures that are shipped, and what a file or the pattern says.
+    fn figure_choice(&mut self, ui: &mut Ui) {
+        let body = self.session.project().body.clone();
+        let size = self.session.project().size.clone();
+        let mut chosen = None;
+        ui.horizontal(|ui| {
+            self.command_button(ui, "Wearer from file");
+            if ui
+                .selectable_label(body.is_of_pattern(), "As the pattern says")
+                .on_hover_text(
+                    "A woman of the pattern's size; the mean adult where it has no sizes",
+                )
+                .clicked()
+            {
+                chosen = Some(None);
+            }
+        });
+        let palette = Palette::of(ui.ctx());
+        match &body {
+            BodyChoice::Measured { .. } | BodyChoice::Shaped { .. } => {
+                let _ = ui.selectable_label(true, body.words());
+            }
+            BodyChoice::Missing { .. } => {
+                ui.label(RichText::new(body.words()).color(palette.fault));
+            }
+            _ => {}
+        }
+        if self.tables.wearer.figures.is_empty() {
+            let girths = |figure: Figure| {
+                let average = figure.average();
+                let of = |name| average.get(name).unwrap_or_default();
+                (figure, ["height", "bust"].map(of))
+            };
+            self.tables.wearer.figures = Figure::ALL.into_iter().map(girths).collect();
+        }
+        let unit = self.base.pattern().unit;
+        let rounded =
+            |value: f64| number::show((value * 100.0).round() / 100.0, Want::Length, unit);
+        Grid::new("figures").striped(true).show(ui, |ui| {
+            for head in ["Figure", "Height", "Bust or chest"] {
+                ui.label(RichText::new(head).strong());
+            }
+            ui.end_row();
+            for (figure, [height, bust]) in &self.tables.wearer.figures {
+                let is_worn = body == BodyChoice::Sample(*figure);
+                if ui
+                    .selectable_label(is_worn, figure_words(*figure))
+                    .clicked()
+                {
+                    chosen = Some(Some(*figure));
+                }
+                match &size {
+                    // A figure in a size has the measurements of the size.
+                    Some(size) => {
+                        let words = format!("in size {size}");
+                        ui.label(RichText::new(words).color(palette.ink_soft));
+                    }
+                    None => {
+                        for value in [height, bust] {
+                            ui.label(RichText::new(rounded(*value)).color(palette.ink_soft));
+                        }
+                    }
+                }
+                ui.end_row();
+            }
+        });
+        if let Some(figure) = chosen {
+            self.execute(Command::SetBody {
+                figure,
+                measurements: None,
+            });
+        }
+    }
+
+    /// The sizes of the pattern, and the wearer's own measurements.
+    fn worn_size_choice(&mut self, ui: &mut Ui) {
+        let project = self.session.project();
+        let names: Vec<String> = project
+            .pattern
+            .sizes
+            .iter()
+            .map(|s| s.name.clone())
+            .collect();
+        if names.is_empty() {
+            return;
+        }
+        let drafted = project.size_name().map(str::to_owned);
+        let is_own = project.size.is_none() && !project.body.is_of_pattern();
+        let shows_own = !project.body.is_of_pattern();
+        let mut chosen = None;
+        ui.add_space(6.0);
+        ui.label(RichText::new("Drafted to").strong());
+        ui.horizontal_wrapped(|ui| {
+            if shows_own && ui.selectable_label(is_own, "the wearer").clicked() {
+                chosen = Some(None);
+            }
+            for name in names {
+                let is_worn = drafted.as_ref() == Some(&name);
+                if ui
+                    .selectable_label(is_worn, format!("size {name}"))
+                    .clicked()
+                {
+                    chosen = Some(Some(name));
+                }
+            }
+        });
+        if let Some(size) = chosen {
+            self.execute(Command::SetSize { size });
+        }
+    }
+
+    fn wearer_measurements(&mut self, ui: &mut Ui) {
+        let known = self.known_wearer();
+        ui.horizontal(|ui| {
+            let label = ui.label("Find measurement").id;
+            let field = TextEdit::singleline(&mut self.tables.wearer.search)
+                .hint_text("waist, knee, back\u{2026}")
+                .desired_width(180.0);
+            ui.add(field).labelled_by(label);
+            let words = "Type a value to ask for it, empty a field to have it predicted";
+            ui.label(RichText::new(words).color(Palette::of(ui.ctx()).ink_soft));
+        });
+        let rows = found_rows(&known, &self.tables.wearer.search);
+        let area = ScrollArea::vertical()
+            .id_salt("wearer's measurements")
+            .auto_shrink([false, false]);
+        area.show(ui, |ui| {
+            if rows.is_empty() {
+                ui.label("No measurement has this in its name or meaning.");
+            }
+            Grid::new("wearer's measurements")
+                .striped(true)
+                .show(ui, |ui| {
+                    for row in &rows {
+                        self.wearer_row(ui, row, &known.asked);
+                        ui.end_row();
+                    }
+                });
+        });
+    }
+
+    fn wearer_row(&mut self, ui: &mut Ui, row: &Row, asked: &Measurements) {
+        let palette = Palette::of(ui.ctx());
+        let words = match row.is_asked {
+            true => RichText::new(&row.label),
+            false => RichText::new(&row.label).color(palette.ink_soft),
+        };
+        let mut label = named(ui, 0.0, words);
+        if let Some(known) = definition(&row.name) {
+            label = label.on_hover_text(format!("{}: {}", row.name, known.meaning));
+        }
+        let base = self.base.clone();
+        let shown = match row.is_asked {
+            true => plan::number_text(&base, &Number::Value(row.value), row.want),
+            false => number::show(row.value, row.want, base.pattern().unit),
+        };
+        let id = Id::unique(("wearer", &row.name));
+        let entered = ui.scope(|ui| {
+            ui.set_width(VALUE);
+            self.typed.field(ui, (id, label.id), &shown, |text| {
+                number::parse(text, row.want, &base).map(|_| String::new())
+            })
+        });
+        let origin = match row.is_asked {
+            true => RichText::new("asked"),
+            false => RichText::new("predicted").italics().color(palette.ink_soft),
+        };
+        ui.label(origin);
+        if let Entered::Text(text) = entered.inner {
+            let value = match text.is_empty() {
+                true => Ok(None),
+                false => number::parse(&text, row.want, &base)
+                    .and_then(|found| base.number_or_fault(&found, row.want).map(Some)),
+            };
+            let changed = value.and_then(|value| with_measurement(asked, &row.name, value));
+            let faults = changed.and_then(|measurements| {
+                let figure = None;
+                match self.execute(Command::SetMeasurements {
+                    figure,
+                    measurements,
+                }) {
+                    true => Ok(()),
+                    false => Err(self.fault().unwrap_or_default().to_owned()),
+                }
+            });
+            if let Err(fault) = faults {
+                self.typed.refuse(id, text, fault);
+            }
+        }
+    }
+
+    /// The measurements of the present wearer, found anew when the project has changed.
+    fn known_wearer(&mut self) -> Known {
+        let revision = self.session.revision();
+        let known = self.tables.wearer.known.take();
+        let holds = |known: &Known| known.revision == revision || self.session.is_previewing();
+        let known = known.filter(holds).unwrap_or_else(|| {
+            let project = self.session.project();
+            Known {
+                revision,
+                all: project.body_measurements(),
+                asked: project.asked_measurements(),
+            }
+        });
+        self.tables.wearer.known.insert(known).clone()
+    }
+
+    /// Takes the wearer of a file: a table of measurements, grown from the present figure, or a
+    /// mannequin.
+    pub(crate) fn take_wearer(&mut self, path: &Path) {
+        let figure = Some(self.session.project().figure());
+        self.execute(Command::SetBody {
+            figure,
+            measurements: Some(path.to_owned()),
+        });
+    }
+}
+
+/// A table with one measurement more, less, or of another value.
+fn with_measurement(
+    asked: &Measurements,
+    name: &str,
+    value: Option<f64>,
+) -> Result<Measurements, String> {
+    let mut table = asked.clone();
+    match value {
+        Some(value) => table
+            .set(name, value, Origin::Asked)
+            .map_err(|error| error.to_string())?,
+        None => {
+            table.remove(name);
+        }
+    }
+    Ok(table)
+}
+
+/// The measurements whose name or meaning has every word that is searched for, from the head down.
+fn found_rows(known: &Known, search: &str) -> Vec<Row> {
+    let catalogue = CATALOGUE.iter().chain(FURTHER).map(|known| known.name);
+    let mut names: Vec<&str> = catalogue.filter(|name| known.all.contains(name)).collect();
+    for (name, _) in known.all.iter() {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let search = search.to_lowercase();
+    let is_found = |name: &&str| {
+        let mut text = name.to_lowercase();
+        if let Some(known) = definition(name) {
+            let others = known.aliases.join(" ");
+            text = format!("{text} {} {} {others}", known.label, known.meaning).to_lowercase();
+        }
+        search.split_whitespace().all(|word| text.contains(word))
+    };
+    let rows = names.into_iter().filter(is_found).map(|name| {
+        let definition = definition(name);
+        Row {
+            name: name.to_owned(),
+            label: definition.map_or(name, |known| known.label).to_owned(),
+            want: match definition.map(|known| known.kind) {
+                Some(UnitKind::Angle) => Want::Angle,
+                _ => Want::Length,
+            },
+            value: known.all.get(name).unwrap_or_default(),
+            is_asked: known.asked.contains(name),
+        }
+    });
+    rows.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measurements_are_found_by_name_and_meaning() {
+        let all = Measurements::adult_woman();
+        let mut asked = Measurements::new();
+        asked.set("waist", 0.8, Origin::Asked).unwrap();
+        let known = Known {
+            revision: 0,
+            all,
+            asked,
+        };
+        let whole = found_rows(&known, "");
+        assert_eq!(whole.len(), known.all.len());
+        assert_eq!(whole[0].name, "height");
+        let waist = found_rows(&known, " Waist GIRTH ");
+        assert!(waist.iter().any(|row| row.name == "waist" && row.is_asked));
+        assert!(waist.len() < whole.len() / 4);
+        // The crown stands in the meaning of the height alone.
+        assert_eq!(found_rows(&known, "floor crown")[0].name, "height");
+        assert!(found_rows(&known, "elephant").is_empty());
+    }
+}
