@@ -19,7 +19,7 @@ use screens::{Colours, Part};
 use std::collections::BTreeSet;
 use toile_pattern::Evaluation;
 use toile_pattern::walk::{Smoothness, Walk};
-use toile_session::{Command, Project};
+use toile_session::{Command, Figure, Project};
 
 #[test]
 fn the_guide_leads_from_an_empty_window_to_a_draped_dress() {
@@ -34,6 +34,7 @@ fn the_guide_leads_from_an_empty_window_to_a_draped_dress() {
     lay(&mut reader);
     save(&mut reader, folder.path());
     print(&mut reader, folder.path());
+    try_on(&mut reader);
     wear(&mut reader);
     alter(&mut reader);
     says_what_is_there(&reader);
@@ -354,6 +355,21 @@ fn print(reader: &mut Reader, folder: &std::path::Path) {
     reader.drafter.chord(Modifiers::COMMAND, Key::E);
     reader.look();
     reader.drafter.key(Key::Escape);
+}
+
+/// Somebody else tries it on, and it is worn with nothing.
+fn try_on(reader: &mut Reader) {
+    reader.put_down();
+    reader.drafter.key(Key::F3);
+    reader.look();
+    reader.drafter.press("Man");
+    let figure = |reader: &Reader| reader.drafter.window.state().session().project().figure();
+    assert_eq!(figure(reader), Figure::Man);
+    reader.drafter.chord(Modifiers::COMMAND, Key::Z);
+    assert_eq!(figure(reader), Figure::Woman);
+    reader.drafter.chord(Modifiers::SHIFT, Key::F3);
+    reader.look();
+    reader.drafter.key(Key::F8);
 }
 
 fn wear(reader: &mut Reader) {

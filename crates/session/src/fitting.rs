@@ -124,6 +124,20 @@ fn file_name(path: &Path, folder: Option<&Path>) -> Result<String, FormatError> 
     })
 }
 
+/// The files that a project was given by how its garment is tried on.
+pub(crate) fn files_to_try_on(project: &Project) -> Vec<PathBuf> {
+    let body = match &project.body {
+        BodyChoice::Shaped { path, .. } => path.clone(),
+        _ => None,
+    };
+    let fabric = match &project.fabric {
+        Some(FabricChoice::File { path, .. }) => Some(path.clone()),
+        _ => None,
+    };
+    let others = project.others.iter().map(|worn| worn.source.clone());
+    body.into_iter().chain(fabric).chain(others).collect()
+}
+
 /// Takes up how the garment of a project that was just read is tried on. What it refers to is read;
 /// what cannot be is told and stays named, and everything else stands.
 pub(crate) fn try_on(project: &mut Project, fitting: Fitting, origin: PanelOrigin) -> Vec<String> {

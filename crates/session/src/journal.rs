@@ -4,6 +4,7 @@ use crate::file_stamp::Stamp;
 use crate::{Command, SessionError};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
+use std::path::PathBuf;
 
 /// Most commands that are kept.
 pub(crate) const MOST_COMMANDS: usize = 1000;
@@ -26,12 +27,18 @@ pub(crate) struct Journal {
 
 impl Journal {
     /// Notes a command that was done, with the files it read.
-    pub fn push(&mut self, mut command: Command) {
+    pub fn push(&mut self, command: Command) {
+        self.push_with(command, &[]);
+    }
+
+    /// The same of a command that read more files than it names.
+    pub fn push_with(&mut self, mut command: Command, more: &[PathBuf]) {
         if self.entries.len() == MOST_COMMANDS {
             self.entries.pop_front();
             self.dropped += 1;
         }
-        let files = Stamp::of_inputs(&mut command);
+        let mut files = Stamp::of_inputs(&mut command);
+        files.extend(more.iter().filter_map(|path| Stamp::of(path)));
         self.entries.push_back(Entry { command, files });
     }
 

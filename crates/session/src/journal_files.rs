@@ -52,16 +52,18 @@ pub fn open_journal(path: &Path) -> Result<(Vec<Command>, Vec<String>), SessionE
     let mut notes = Vec::new();
     let mut commands = Vec::new();
     for Entry { mut command, files } in read_entries(&text)? {
-        command.each_input(&mut |path| {
-            let stamp = files.iter().find(|stamp| stamp.path == *path);
-            let from_there = folder.join(&path);
-            if from_there.is_file() {
-                *path = from_there;
+        let found = |path: &Path| {
+            let from_there = folder.join(path);
+            match from_there.is_file() {
+                true => from_there,
+                false => path.to_owned(),
             }
-            if let (Some(was), Some(now)) = (stamp, Stamp::of(path)) {
-                notes.extend(was.difference(&now));
-            }
-        });
+        };
+        command.each_input(&mut |path| *path = found(path));
+        for was in &files {
+            let now = Stamp::of(&found(&was.path));
+            notes.extend(now.and_then(|now| was.difference(&now)));
+        }
         commands.push(command);
     }
     Ok((commands, notes))

@@ -1,7 +1,7 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
 use crate::derived::Derived;
-use crate::fitting::document_text;
+use crate::fitting::{document_text, files_to_try_on};
 use crate::history::History;
 use crate::input::is_pipe;
 use crate::journal::Journal;
@@ -178,7 +178,13 @@ impl Session {
         if let Some(stage) = command.stage() {
             self.timing.add(stage, start);
         }
-        self.journal.push(self.lasting(command)?);
+        let more = match &command {
+            Command::OpenPattern { .. } | Command::RestorePattern { .. } => {
+                files_to_try_on(&self.project)
+            }
+            _ => Vec::new(),
+        };
+        self.journal.push_with(self.lasting(command)?, &more);
         Ok(events)
     }
 

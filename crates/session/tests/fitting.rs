@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use support::{BAND, files, lasting, make};
 use toile_measure::{Measurements, Origin};
 use toile_session::{
-    BodyChoice, Command, Event, Figure, OtherGarment, Project, Recovery, Session, SessionError,
-    Silent, abandoned, journal_lines, read_journal,
+    BodyChoice, Budget, Command, Event, Figure, MarkerSummary, NestOptions, OtherGarment,
+    PanelOrigin, PrintOptions, Project, Recovery, Session, SessionError, Silent, abandoned,
+    convert, journal_lines, mesh_panels, nest_patterns, print_pattern, read_journal,
 };
 
 fn run(session: &mut Session, command: Command) -> Result<Vec<Event>, SessionError> {
@@ -376,4 +377,72 @@ fn typed_measurements_are_replayed_and_a_kept_fitting_is_made_to_the_same_bytes(
     assert_eq!(notes, [""; 0]);
     Session::replay(&commands, &out[1], &mut Silent).unwrap();
     assert_eq!(lasting(&out[0]), lasting(&out[1]));
+    // A layer that was changed since is said to be another.
+    let belt = folder.join("layers/belt.toile.json");
+    let text = std::fs::read_to_string(&belt).unwrap();
+    std::fs::write(&belt, text.replace("+ 2cm", "+ 3cm")).unwrap();
+    let (_, notes) = toile_session::open_journal(&out[0].join("journal.jsonl")).unwrap();
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].contains("belt.toile.json"), "{notes:?}");
+}
+
+#[test]
+fn jobs_without_a_session_take_what_the_file_keeps() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    let mut session = at_work(folder);
+    let choices = choices(folder);
+    for k in [2, 4, 5, 7, 8] {
+        run(&mut session, choices[k].0.clone()).unwrap();
+    }
+    let path = folder.join("band.toile.json");
+    run(&mut session, Command::SavePattern { path: path.clone() }).unwrap();
+    // Marker: fabric and width; the pieces are those of size L.
+    let options = NestOptions {
+        budget: Budget::Evaluations(1000),
+        ..NestOptions::default()
+    };
+    let nest = |path: &Path, options: &NestOptions| {
+        let patterns = [path.to_owned()];
+        let made = nest_patterns(&patterns, options, (&folder.join("marker"), &mut Silent));
+        made.unwrap().0.remove(0)
+    };
+    let kept = nest(&path, &options);
+    assert_eq!((&*kept.fabric, kept.width), ("denim", 1.42));
+    let plain = folder.join("plain.toile.json");
+    std::fs::write(&plain, BAND).unwrap();
+    let medium = nest(&plain, &options);
+    assert_eq!((&*medium.fabric, medium.width), ("poplin", 1.5));
+    let area = |made: &MarkerSummary| made.efficiency * made.length * made.width;
+    assert!(area(&kept) > area(&medium));
+    // An option says otherwise.
+    let asked = NestOptions {
+        width: Some(0.9),
+        ..options
+    };
+    assert_eq!(nest(&path, &asked).width, 0.9);
+    // Paper and mesh: the size.
+    let (project, notes) = Project::open(&path).unwrap();
+    assert_eq!(notes, [""; 0]);
+    let to = folder.join("band.svg");
+    let printed = print_pattern((&project, &to), &PrintOptions::default(), &mut Silent).unwrap();
+    assert_eq!(printed.sizes, ["L"]);
+    let mesh = |path: &Path, size: Option<&str>| {
+        let to = folder.join("mesh.obj");
+        let (_, notes) = mesh_panels(path, size, 0.02, &to).unwrap();
+        assert_eq!(notes, [""; 0]);
+        std::fs::read(to).unwrap()
+    };
+    assert_eq!(mesh(&path, None), mesh(&plain, Some("L")));
+    assert_eq!(mesh(&path, Some("M")), mesh(&plain, None));
+    // Converted to another folder it still names its files; GarmentCode has no place for them.
+    std::fs::create_dir(folder.join("far")).unwrap();
+    let far = folder.join("far/band.toile.json");
+    let origin = PanelOrigin::Automatic;
+    assert_eq!(convert(&path, &far, None, origin).unwrap(), [""; 0]);
+    let (again, events) = open(&far);
+    assert_eq!(warned(&events), [""; 0]);
+    assert_eq!(again.project().others[0].name(), "Belt");
+    let lost = convert(&path, &folder.join("band.json"), None, origin).unwrap();
+    assert!(lost.iter().any(|note| note.contains("wearer")), "{lost:?}");
 }

@@ -5,14 +5,14 @@ use crate::app::ToileApp;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Grid, Id, RichText, ScrollArea, TextEdit, Ui};
+use egui::{Grid, Id, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 use std::path::Path;
 use toile_measure::{CATALOGUE, FURTHER, Measurements, Origin, UnitKind, definition};
-use toile_pattern::{Number, Want, plan};
+use toile_pattern::{DisplayUnit, Number, Want, plan};
 use toile_session::{BodyChoice, Command, Figure};
 
 /// Width of the choice of a wearer [pixels].
-const CHOICE: f32 = 330.0;
+const CHOICE: f32 = 420.0;
 /// Width of a measurement's value [pixels].
 const VALUE: f32 = 96.0;
 
@@ -68,13 +68,13 @@ impl ToileApp {
                 let choice = ScrollArea::vertical()
                     .id_salt("wearers")
                     .auto_shrink([false, false]);
-                choice.show(ui, |ui| {
-                    self.figure_choice(ui);
-                    self.worn_size_choice(ui);
-                });
+                choice.show(ui, |ui| self.figure_choice(ui));
             });
             ui.separator();
-            ui.vertical(|ui| self.wearer_measurements(ui));
+            ui.vertical(|ui| {
+                self.worn_size_choice(ui);
+                self.wearer_measurements(ui);
+            });
         });
     }
 
@@ -113,35 +113,31 @@ impl ToileApp {
             };
             self.tables.wearer.figures = Figure::ALL.into_iter().map(girths).collect();
         }
-        let unit = self.base.pattern().unit;
-        let rounded =
-            |value: f64| number::show((value * 100.0).round() / 100.0, Want::Length, unit);
+        let (adults, children): (Vec<_>, Vec<_>) = (self.tables.wearer.figures.iter().copied())
+            .partition(|(figure, _)| !figure.name().starts_with("child"));
+        let words = |girths: [f64; 2]| self.figure_girths(size.as_deref(), girths);
         Grid::new("figures").striped(true).show(ui, |ui| {
-            for head in ["Figure", "Height", "Bust or chest"] {
-                ui.label(RichText::new(head).strong());
-            }
-            ui.end_row();
-            for (figure, [height, bust]) in &self.tables.wearer.figures {
-                let is_worn = body == BodyChoice::Sample(*figure);
-                if ui
-                    .selectable_label(is_worn, figure_words(*figure))
-                    .clicked()
-                {
-                    chosen = Some(Some(*figure));
+            for (figure, girths) in adults {
+                let is_worn = body == BodyChoice::Sample(figure);
+                if ui.selectable_label(is_worn, figure_words(figure)).clicked() {
+                    chosen = Some(Some(figure));
                 }
-                match &size {
-                    // A figure in a size has the measurements of the size.
-                    Some(size) => {
-                        let words = format!("in size {size}");
-                        ui.label(RichText::new(words).color(palette.ink_soft));
-                    }
-                    None => {
-                        for value in [height, bust] {
-                            ui.label(RichText::new(rounded(*value)).color(palette.ink_soft));
-                        }
-                    }
-                }
+                ui.label(RichText::new(words(girths)).color(palette.ink_soft));
                 ui.end_row();
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Child, years:");
+            for (figure, girths) in children {
+                let is_worn = body == BodyChoice::Sample(figure);
+                let age = figure.name().trim_start_matches("child-");
+                let name = figure_words(figure);
+                let choice = ui.selectable_label(is_worn, age);
+                choice.widget_info(|| WidgetInfo::selected(Role::Button, true, is_worn, &name));
+                let choice = choice.on_hover_text(format!("{name}: {}", words(girths)));
+                if choice.clicked() {
+                    chosen = Some(Some(figure));
+                }
             }
         });
         if let Some(figure) = chosen {
@@ -150,6 +146,23 @@ impl ToileApp {
                 measurements: None,
             });
         }
+    }
+
+    /// Height and bust or chest girth of a figure; one in a size has the measurements of the size.
+    fn figure_girths(&self, size: Option<&str>, girths: [f64; 2]) -> String {
+        if let Some(size) = size {
+            return format!("in size {size}");
+        }
+        let unit = self.base.pattern().unit;
+        let shown = |value: f64| {
+            let whole = match unit {
+                DisplayUnit::Inch => value,
+                _ => (value * 100.0).round() / 100.0,
+            };
+            number::show(whole, Want::Length, unit)
+        };
+        let [height, bust] = girths.map(shown);
+        format!("{height} tall, bust or chest {bust}")
     }
 
     /// The sizes of the pattern, and the wearer's own measurements.
@@ -168,9 +181,8 @@ impl ToileApp {
         let is_own = project.size.is_none() && !project.body.is_of_pattern();
         let shows_own = !project.body.is_of_pattern();
         let mut chosen = None;
-        ui.add_space(6.0);
-        ui.label(RichText::new("Drafted to").strong());
         ui.horizontal_wrapped(|ui| {
+            ui.label("Drafted to");
             if shows_own && ui.selectable_label(is_own, "the wearer").clicked() {
                 chosen = Some(None);
             }
@@ -230,9 +242,14 @@ impl ToileApp {
             label = label.on_hover_text(format!("{}: {}", row.name, known.meaning));
         }
         let base = self.base.clone();
-        let shown = match row.is_asked {
-            true => plan::number_text(&base, &Number::Value(row.value), row.want),
-            false => number::show(row.value, row.want, base.pattern().unit),
+        // What was predicted is told to a tenth of a millimetre.
+        let shown = match (row.is_asked, row.want) {
+            (true, _) => plan::number_text(&base, &Number::Value(row.value), row.want),
+            (false, Want::Length) => {
+                let value = (row.value * 1e4).round() / 1e4;
+                plan::number_text(&base, &Number::Value(value), row.want)
+            }
+            (false, want) => number::show(row.value, want, base.pattern().unit),
         };
         let id = Id::unique(("wearer", &row.name));
         let entered = ui.scope(|ui| {
