@@ -52,7 +52,7 @@ impl ToileApp {
             .auto_shrink([false, false]);
         area.show(ui, |ui| {
             Grid::new("worn with").striped(true).show(ui, |ui| {
-                for head in ["Layer", "Garment", "", "File"] {
+                for head in ["Layer", "What is worn", "", "From"] {
                     ui.label(RichText::new(head).strong());
                 }
                 ui.end_row();
