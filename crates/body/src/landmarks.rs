@@ -138,7 +138,7 @@ impl Landmarks {
 /// the neck's base and the mouth.
 fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
     /// Share of the way from the neck's base to the crown at which the mouth begins.
-    const MOUTH: f64 = 0.45;
+    const MOUTH: f64 = 0.3;
     outline.retain(|p| p.y < base + MOUTH * (crown - base));
     outline.sort_by(|a, b| a.y.total_cmp(&b.y));
     outline.dedup_by(|a, b| a.y - b.y < 1e-6);
