@@ -434,8 +434,9 @@ impl Half<'_> {
     /// Where a tilted ray of the neck went on into a large chin, a level one from the neck's axis
     /// takes its place, evenly between the rows below and the first level row.
     fn below_the_chin(&mut self, rows: &[Row], grid: &[Vec<u32>]) -> Result<(), BodyError> {
-        /// How far over the first level row a ray may end, over stature.
-        const OVER: f64 = 0.006;
+        /// How far over the first level row a ray may end, over stature: less than half the way to
+        /// the next one.
+        const OVER: [f64; 2] = [0.006, 0.0016];
         let is_head = |t: &usize| rows[*t].part == Part::Head;
         let Some(neck) = (1..rows.len()).find(is_head) else {
             return Ok(());
@@ -445,9 +446,10 @@ impl Half<'_> {
             return Ok(());
         };
         let top = rows[level].origin;
+        let over = OVER[usize::from(self.template.features.is_some())];
         for i in 0..=HALF {
             let height = |half: &Self, t: usize| half.positions[grid[t][i] as usize].y;
-            let most = top.y + OVER * self.template.height;
+            let most = top.y + over * self.template.height;
             let Some(first) = (neck..level).find(|&t| height(self, t) > most) else {
                 continue;
             };
