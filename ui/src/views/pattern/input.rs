@@ -144,14 +144,14 @@ impl PatternView {
         let mut events = Vec::new();
         let mut chosen = false;
         ui.input_mut(|input| {
+            // Keys that are no command: what they type is typed.
+            let free: Vec<Key> = input.events.iter().filter_map(pressed).collect();
             input.events.retain(|event| {
                 let taken = match event {
                     egui::Event::Text(text) => {
-                        let has_slots = matches!(self.tool, Tool::Slots(_));
-                        let is_sign = text.starts_with(NAME_SIGN) || text.starts_with(WAY_SIGNS);
-                        let begins = text.starts_with(begins_typing) || has_slots && is_sign;
                         let is_choice = text == "=" && self.pressed.is_some();
-                        let is_typed = self.tool.takes_keys() && (typing || begins);
+                        let is_typed =
+                            self.tool.takes_keys() && (typing || self.begins(text, &free));
                         let takes = is_typed || is_choice;
                         typing |= is_typed;
                         chosen |= is_choice;
@@ -182,6 +182,13 @@ impl PatternView {
         events
     }
 
+    /// Whether a text begins something that is typed while a tool is in hand.
+    fn begins(&self, text: &str, free: &[Key]) -> bool {
+        let has_slots = matches!(self.tool, Tool::Slots(_));
+        let is_sign = text.starts_with(NAME_SIGN) || text.starts_with(WAY_SIGNS);
+        text.starts_with(begins_typing) || has_slots && (is_sign || is_words(text, free))
+    }
+
     /// The pointer's shape, by what a press would do.
     pub(super) fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
         if !inside || self.guide.is_some() {
@@ -197,6 +204,23 @@ impl PatternView {
         };
         ui.ctx().set_cursor_icon(icon);
     }
+}
+
+/// The key that an event presses.
+fn pressed(event: &egui::Event) -> Option<Key> {
+    match event {
+        egui::Event::Key {
+            key, pressed: true, ..
+        } => Some(*key),
+        _ => None,
+    }
+}
+
+/// Whether a text is no key of a command: several characters at once, or the letter of a key that is none.
+fn is_words(text: &str, free: &[Key]) -> bool {
+    let is_free =
+        |text: &str| Key::from_name(&text.to_uppercase()).is_some_and(|key| free.contains(&key));
+    !text.trim().is_empty() && (text.chars().count() > 1 || is_free(text))
 }
 
 /// Where a key leads along a seam that is walked.
