@@ -7,7 +7,7 @@ use drafter::Drafter;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
-use toile_pattern::{LineKind, Name, Role, Stage, StageEdge};
+use toile_pattern::{LineKind, Mark, Name, OperationKind, Role, Stage, StageEdge};
 
 fn panel() -> Drafter {
     let mut drafter = Drafter::new();
@@ -338,6 +338,9 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
         drafter.click(drafter.part("Edge top of draft"));
         drafter.typed("2");
         drafter.typed("1.5");
+        // Evenly.
+        drafter.key(Key::Enter);
+        drafter.key(Key::Enter);
         drafter.key(Key::Escape);
         assert_eq!(
             drafter.pattern().panels[0].operations.len(),
@@ -357,6 +360,40 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
         drafter.enter("depth", "1");
         let wide = drafter.evaluation();
         assert!(wide.diagnostics().is_empty());
+    }
+}
+
+#[test]
+fn six_pleats_lie_where_their_first_and_their_spacing_say() {
+    let mut drafter = panel();
+    drafter.actions = 0;
+    drafter.key(Key::Y);
+    drafter.click(drafter.part("Edge bottom of draft"));
+    drafter.click(drafter.part("Edge top of draft"));
+    for number in ["6", "1", "2.5", "3"] {
+        drafter.typed(number);
+    }
+    assert!(drafter.actions <= 8, "{}", drafter.actions);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let operations = &pattern.panels[0].operations;
+    let [step] = &operations[..] else {
+        panic!("{}", drafter.status());
+    };
+    let OperationKind::Pleat { pleats, .. } = &step.kind else {
+        panic!("it is a pleat");
+    };
+    assert_eq!(pleats.len(), 6);
+    for (k, pleat) in pleats.iter().enumerate() {
+        let along = 0.025 + 0.03 * k as f64;
+        let [Mark::Along { distance, .. }, Mark::Between { share, .. }] = &pleat.ends else {
+            panic!("{:?}", pleat.ends);
+        };
+        assert!((distance.value().unwrap() - along).abs() < 1e-9, "{k}");
+        assert!(
+            (share.value().unwrap() - (1.0 - along / 0.2)).abs() < 1e-9,
+            "{k}"
+        );
     }
 }
 
@@ -464,6 +501,8 @@ fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
         drafter.click(drafter.part("Edge bottom of draft"));
         drafter.typed("2");
         drafter.typed("1.5");
+        drafter.key(Key::Enter);
+        drafter.key(Key::Enter);
     };
     for (what, alter) in [
         ("dart", dart),

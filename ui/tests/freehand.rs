@@ -413,6 +413,8 @@ fn each_cut_of_pleats_has_a_field_of_its_own() {
     drafter.click(drafter.place(0.15, 0.0));
     drafter.typed("2");
     drafter.typed("3");
+    drafter.key(Key::Enter);
+    drafter.key(Key::Enter);
     drafter.key(Key::Escape);
     drafter.enter("cut from 2", "0.7");
     drafter.enter("cut to 1", "0.6");

@@ -6,7 +6,10 @@ use super::refusal::refuse;
 use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};
-use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, PleatKind, Side, Want};
+use toile_pattern::{
+    Bridge, CurveId, EdgeId, EditError, Evaluation, Formula, Mark, Name, Number, PanelId,
+    PleatKind, Side, Want,
+};
 
 /// How far the points of both darts are set back where a share of a dart is moved [m]: about as far
 /// as a dart ends before the bust point.
@@ -195,6 +198,24 @@ const PLEAT_SLOTS: &[Slot] = &[
             live: None,
         },
     },
+    Slot {
+        hint: "Type where the first lies along the first edge as it is finished; Enter spreads them evenly",
+        kind: SlotKind::Number {
+            label: "first at",
+            want: Want::Length,
+            usual: 0.0,
+            live: None,
+        },
+    },
+    Slot {
+        hint: "Type how far it is from each to the next; Enter spreads them evenly from the first on",
+        kind: SlotKind::Number {
+            label: "spacing",
+            want: Want::Length,
+            usual: 0.0,
+            live: None,
+        },
+    },
 ];
 
 fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<Plan, EditError> {
@@ -203,6 +224,8 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
         Answer::Edge(on, to, _),
         Answer::Number(count),
         Answer::Number(depth),
+        Answer::Number(first),
+        Answer::Number(spacing),
     ] = answers
     else {
         return Err(refuse("nothing was given", "click an edge"));
@@ -219,7 +242,11 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     let mut planning = Planning::new(reading);
     let id = planning.run(|evaluation| {
         let count = count.round() as u16;
-        let (line, lines) = plan::even_cuts(evaluation, *panel, [*from, *to], count)?;
+        let (line, even) = plan::even_cuts(evaluation, *panel, [*from, *to], count)?;
+        let lines = match evaluation.number(first, Want::Length) {
+            Some(0.0) => even,
+            _ => placed_cuts(evaluation, (*panel, [*from, *to]), (count, first, spacing))?,
+        };
         let wish = PleatWish {
             line,
             lines,
@@ -231,6 +258,59 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
         plan::pleat_panel(evaluation, *panel, wish)
     })?;
     Ok(planning.done("Pleat panel", [Item::Operation(*panel, id)]))
+}
+
+/// Places from one edge of a panel to another: the first at a distance along the first edge as it is
+/// finished, the others so far from each other, or evenly up to its end; each at the same share of
+/// the other edge.
+fn placed_cuts(
+    evaluation: &Evaluation,
+    (panel, [from, to]): (PanelId, [EdgeId; 2]),
+    (count, first, spacing): (u16, &Number, &Number),
+) -> Result<Vec<[Mark; 2]>, EditError> {
+    let [near, far] = [from, to].map(|edge| plan::finished_edge(evaluation, panel, edge));
+    let (near, far) = (near?, far?);
+    let value = |number: &Number| {
+        let value = evaluation.number(number, Want::Length);
+        value.ok_or_else(|| refuse("the distance has no value", "type a length"))
+    };
+    let start = value(first)?;
+    let step = match value(spacing)? {
+        0.0 => (near.length - start) / f64::from(count),
+        step => step,
+    };
+    let mut cuts = Vec::with_capacity(usize::from(count));
+    for k in 0..count {
+        let by = f64::from(k) * step;
+        let along = match (first.as_formula(), spacing.as_formula()) {
+            _ if k == 0 => first.clone(),
+            (_, Some(_)) => {
+                let names = evaluation.names();
+                let text = |number: &Number, value: f64| match number.as_formula() {
+                    Some(formula) => formula.text(names),
+                    None => format!("{value}m"),
+                };
+                let sum = format!("({}) + {k} * ({})", text(first, start), text(spacing, step));
+                let read = Formula::parse(&sum, names);
+                Number::Formula(read.map_err(|error| refuse(&error.to_string(), "type a length"))?)
+            }
+            (Some(formula), None) => Number::Adjusted {
+                formula: formula.clone(),
+                by,
+            },
+            (None, None) => Number::Value(start + by),
+        };
+        // Across a closed line edges run against each other.
+        let share = 1.0 - (start + by) / near.length;
+        cuts.push([
+            plan::mark_along(evaluation, &near, (0, &along))?,
+            Mark::Between {
+                ends: far.ends,
+                share: share.into(),
+            },
+        ]);
+    }
+    Ok(cuts)
 }
 
 /// Cuts a panel in two along a straight line.
