@@ -81,18 +81,43 @@ fn note_focus(ui: &Ui, id: egui::Id) {
     ui.data_mut(|data| data.insert_temp(id.with("had focus"), frame));
 }
 
-/// A list to choose a value from, under a label; a value that is in no entry shows nothing.
+/// Width of labels left of their fields [pixels].
+const LABEL: f32 = 92.0;
+
+/// A field with its label left of it, grey; `add` is given the label's id. Fields under each other stand in one
+/// column.
+pub fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui, egui::Id) -> R) -> R {
+    let soft = Palette::of(ui.ctx()).ink_soft;
+    ui.horizontal_top(|ui| {
+        let height = ui.spacing().interact_size.y;
+        let place = ui.scope(|ui| {
+            ui.set_width(LABEL);
+            ui.set_min_height(height);
+            // On the line of what is written in the field.
+            ui.add_space(ui.spacing().button_padding.y);
+            let words = RichText::new(label).small().color(soft);
+            ui.add(egui::Label::new(words).wrap()).id
+        });
+        ui.vertical(|ui| add(ui, place.inner)).inner
+    })
+    .inner
+}
+
+/// A list to choose a value from, beside its label; a value that is in no entry shows nothing.
 pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, of: &[(T, &str)], value: &mut T) {
     let words = of.iter().find(|known| known.0 == *value);
-    let name = ui.label(label).id;
-    let list = egui::ComboBox::from_id_salt(label)
-        .selected_text(words.map_or("", |known| known.1))
-        .show_ui(ui, |ui| {
-            for (one, words) in of {
-                ui.selectable_value(value, *one, *words);
-            }
-        });
-    list.response.labelled_by(name);
+    labelled(ui, label, |ui, name| {
+        let list = egui::ComboBox::from_id_salt(label)
+            .selected_text(words.map_or("", |known| known.1))
+            .width(ui.available_width())
+            .truncate()
+            .show_ui(ui, |ui| {
+                for (one, words) in of {
+                    ui.selectable_value(value, *one, *words);
+                }
+            });
+        list.response.labelled_by(name);
+    });
 }
 
 /// Texts that are being typed into fields.
@@ -116,6 +141,8 @@ pub struct TypedTexts {
 struct Typed {
     text: String,
     fault: String,
+    /// Whether it is typed into now, and says something else than what stood there.
+    is_begun: bool,
 }
 
 /// What a text field came to.
@@ -176,13 +203,12 @@ impl TypedTexts {
     }
 
     /// The same for a number: a part that is clicked while it is typed into gives its length, and
-    /// names that go on with what is typed are proposed under it.
+    /// names that go on with what is typed can be taken: see [`Self::show_proposals`].
     pub fn number_field(
         &mut self,
         ui: &mut Ui,
         (id, label): (egui::Id, egui::Id),
         shown: &str,
-        base: &Evaluation,
         preview: impl FnOnce(&str) -> Result<String, String>,
     ) -> Entered {
         let before = self.typed.get(&id).map(|typed| typed.text.clone());
@@ -214,19 +240,20 @@ impl TypedTexts {
             false if self.number == Some(id) => self.number = None,
             false => {}
         }
-        if has_focus && self.typed.get(&id).is_some_and(|typed| typed.text != shown) {
-            self.propose(ui, id, base);
+        if let Some(typed) = self.typed.get_mut(&id) {
+            typed.is_begun = has_focus && typed.text != shown;
         }
         entered
     }
 
-    /// Names that go on with what is typed; the arrow downward takes the first, a click any.
-    fn propose(&mut self, ui: &mut Ui, id: egui::Id, base: &Evaluation) {
-        self.proposed = None;
-        self.first = None;
-        let Some(typed) = self.typed.get(&id) else {
+    /// Names that go on with what is typed into the field of a number, under it; the arrow downward takes the
+    /// first, a click any.
+    pub fn show_proposals(&mut self, ui: &mut Ui, id: egui::Id, base: &Evaluation) {
+        let Some(typed) = self.typed.get(&id).filter(|typed| typed.is_begun) else {
             return;
         };
+        self.proposed = None;
+        self.first = None;
         let found = base.names().completions(&typed.text);
         self.first = found.first().map(|first| first.text.clone());
         ui.horizontal_wrapped(|ui| {
@@ -283,6 +310,11 @@ impl TypedTexts {
 
     /// Keeps a text in its field with what is wrong with it.
     pub fn refuse(&mut self, id: egui::Id, text: String, fault: String) {
-        self.typed.insert(id, Typed { text, fault });
+        let typed = Typed {
+            text,
+            fault,
+            ..Typed::default()
+        };
+        self.typed.insert(id, typed);
     }
 }

@@ -7,10 +7,10 @@ mod steps;
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::{Entered, choice};
-use crate::theme::Palette;
-use crate::tools::number;
-use egui::{ComboBox, Grid, RichText, Ui};
+use crate::fields::{Entered, choice, labelled};
+use crate::theme::{self, Palette};
+use crate::tools::{Tool, number};
+use egui::{Rect, RichText, Ui, vec2};
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
@@ -18,56 +18,64 @@ use toile_pattern::{
     PartId, Want,
 };
 
+/// Width of the inspector, and the room left round it [pixels].
+const WIDTH: f32 = 268.0;
+const MARGIN: f32 = 10.0;
+/// Room that its frame takes on both sides together [pixels].
+const FRAME: f32 = 14.0;
+/// Width of the table below which there is no room for it [pixels].
+const LEAST_TABLE: f32 = WIDTH + 2.0 * MARGIN;
+
+/// The part of the table that the inspector may take, at its right or at its left.
+fn inspector_place(table: Rect, left: bool) -> Rect {
+    let size = vec2(WIDTH + FRAME, table.height() - 2.0 * MARGIN);
+    let at = match left {
+        // Beside the ruler.
+        true => table.left_top() + vec2(3.0 * MARGIN, 3.0 * MARGIN),
+        false => table.right_top() + vec2(-size.x - MARGIN, 3.0 * MARGIN),
+    };
+    Rect::from_min_size(at, size - vec2(0.0, 2.0 * MARGIN))
+}
+
 impl ToileApp {
-    pub(crate) fn show_inspector(&mut self, ui: &mut Ui) {
-        egui::ScrollArea::vertical()
-            .auto_shrink([false, false])
-            .show(ui, |ui| {
-                let items = self.view.selection.items().to_vec();
-                match items[..] {
-                    [] => self.inspect_pattern(ui),
+    /// What is selected, over an upper corner of the table; where nothing is selected nothing is there. It goes to
+    /// the other corner where it would lie on what is selected. While a drawing tool is under way it is out of the
+    /// way.
+    pub(crate) fn show_inspector(&mut self, ui: &mut Ui, table: Rect) {
+        let items = self.view.selection.items().to_vec();
+        let draws = matches!(self.view.tool, Tool::Slots(_));
+        let is_away = draws && self.view.is_busy();
+        if items.is_empty() || is_away || table.width() < LEAST_TABLE {
+            return;
+        }
+        let corners = [false, true].map(|left| inspector_place(table, left));
+        let covers = |place: &Rect| self.view.selection_is_in(table, *place);
+        let here = usize::from(self.inspector_is_left);
+        if covers(&corners[here]) && !covers(&corners[1 - here]) {
+            self.inspector_is_left = !self.inspector_is_left;
+        }
+        let place = corners[usize::from(self.inspector_is_left)];
+        let frame = egui::Frame::popup(ui.style());
+        let area = egui::Area::new(egui::Id::unique("inspector"))
+            .order(egui::Order::Middle)
+            .fixed_pos(place.min)
+            .default_size(place.size())
+            .fade_in(false)
+            .constrain_to(table);
+        area.show(ui.ctx(), |ui| {
+            frame.show(ui, |ui| {
+                ui.set_width(WIDTH);
+                // Its rows may become more than they were.
+                ui.set_max_height(place.height());
+                let rows = egui::ScrollArea::vertical()
+                    .auto_shrink([false, true])
+                    .max_height(place.height() - 2.0 * MARGIN);
+                rows.show(ui, |ui| match items[..] {
                     [item] => self.inspect(ui, item),
                     _ => self.inspect_several(ui, &items),
-                }
+                });
             });
-    }
-
-    /// Name and unit of the pattern, while nothing is selected.
-    fn inspect_pattern(&mut self, ui: &mut Ui) {
-        use toile_pattern::DisplayUnit::{Centimetre, Inch, Metre, Millimetre};
-        let pattern = self.base.pattern().clone();
-        ui.label(RichText::new("Pattern").strong());
-        let label = ui.label("Name").id;
-        let id = egui::Id::unique("pattern name");
-        let name = pattern.name.clone();
-        if let Entered::Text(text) = self
-            .typed
-            .field(ui, (id, label), &name, |_| Ok(String::new()))
-        {
-            let planned = plan::rename_pattern(&self.base, &text);
-            self.enter(planned, "Rename pattern", (id, text));
-        }
-        self.sheet_name(ui);
-        let mut unit = pattern.unit;
-        let units = [Millimetre, Centimetre, Metre, Inch].map(|unit| (unit, unit.sign()));
-        choice(ui, "Unit", &units, &mut unit);
-        if unit != pattern.unit {
-            let edits = plan::set_unit(&self.base, unit);
-            self.edit(Ok(edits), "Change unit");
-        }
-        ui.separator();
-        let soft = Palette::of(ui.ctx()).ink_soft;
-        let counted = |count: usize, word: &str| match count {
-            1 => format!("1 {word}"),
-            _ => format!("{count} {word}s"),
-        };
-        let words = [
-            counted(pattern.panels.len(), "panel"),
-            counted(pattern.seams.len(), "seam"),
-            counted(pattern.sizes.len(), "size"),
-        ];
-        let words = words.join(", ");
-        ui.label(RichText::new(words).color(soft));
+        });
     }
 
     /// Under a number of an edge that is left out: the panel's, which holds instead.
@@ -84,21 +92,17 @@ impl ToileApp {
         }
     }
 
-    /// The name of the sheet that is drawn on: formulas name its points by it.
-    fn sheet_name(&mut self, ui: &mut Ui) {
-        let pattern = self.base.pattern().clone();
-        let drawn_on = self.view.sheet.and_then(|id| pattern.sheet(id));
-        let Some(sheet) = drawn_on.or(pattern.sheets.first()) else {
-            return;
-        };
-        let label = ui.label("Sheet that is drawn on").id;
-        let id = egui::Id::unique(("sheet name", sheet.id));
-        let entered = self
-            .typed
-            .field(ui, (id, label), &sheet.name, |_| Ok(String::new()));
-        if let Entered::Text(text) = entered {
-            let planned = plan::rename(&self.base, sheet.id.into(), &text);
-            self.enter(planned, "Rename sheet", (id, text));
+    fn name_field(&mut self, ui: &mut Ui, item: Item) {
+        if let Some(name) = name_of(self.base.pattern(), item.part()) {
+            let id = egui::Id::unique(("name", item));
+            let entered = labelled(ui, "Name", |ui, label| {
+                let nothing = |_: &str| Ok(String::new());
+                self.typed.field(ui, (id, label), &name, nothing)
+            });
+            if let Entered::Text(text) = entered {
+                let planned = plan::rename(&self.base, item.part(), &text);
+                self.enter(planned, "Rename", (id, text));
+            }
         }
     }
 
@@ -107,7 +111,7 @@ impl ToileApp {
         let Some(words) = item.words(&pattern) else {
             return;
         };
-        ui.label(RichText::new(words).strong());
+        theme::title(ui, &words);
         let soft = Palette::of(ui.ctx()).ink_soft;
         if let Some(words) = self.measured(item) {
             ui.label(RichText::new(words).color(soft));
@@ -116,17 +120,7 @@ impl ToileApp {
         if !seams.is_empty() {
             ui.label(RichText::new(seams).color(soft));
         }
-        if let Some(name) = name_of(&pattern, item.part()) {
-            let label = ui.label("Name").id;
-            let id = egui::Id::unique(("name", item));
-            let entered = self
-                .typed
-                .field(ui, (id, label), &name, |_| Ok(String::new()));
-            if let Entered::Text(text) = entered {
-                let planned = plan::rename(&self.base, item.part(), &text);
-                self.enter(planned, "Rename", (id, text));
-            }
-        }
+        self.name_field(ui, item);
         let entries = arcs::numbers_of(&self.base, item.part());
         for (k, entry) in entries.iter().enumerate() {
             // Of several of one name, as the cuts of pleats, each has its number.
@@ -207,20 +201,23 @@ impl ToileApp {
 
     /// The same under a label of its own.
     fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: &str) {
-        let label = ui.label(label).id;
-        self.number_text_field(ui, entry, label);
-        let is_formula = entry
-            .number
-            .as_ref()
-            .is_some_and(|n| n.as_formula().is_some());
-        if let Some(number) = entry.number.as_ref().filter(|_| is_formula)
-            && let Some(value) = self.base.number(number, entry.want)
-        {
-            let palette = Palette::of(ui.ctx());
-            let unit = self.base.pattern().unit;
-            let words = format!("= {}", number::show(value, entry.want, unit));
-            ui.label(RichText::new(words).small().color(palette.ink_soft));
-        }
+        labelled(ui, label, |ui, label| {
+            self.number_text_field(ui, entry, label);
+            let is_formula = entry
+                .number
+                .as_ref()
+                .is_some_and(|n| n.as_formula().is_some());
+            if let Some(number) = entry.number.as_ref().filter(|_| is_formula)
+                && let Some(value) = self.base.number(number, entry.want)
+            {
+                let palette = Palette::of(ui.ctx());
+                let unit = self.base.pattern().unit;
+                let words = format!("= {}", number::show(value, entry.want, unit));
+                ui.label(RichText::new(words).small().color(palette.ink_soft));
+            }
+        });
+        self.typed
+            .show_proposals(ui, number_field_id(entry), &self.base);
     }
 
     /// The numbers of the handles of a curve, so that all of them are set without looking for each.
@@ -264,9 +261,7 @@ impl ToileApp {
             };
             Ok(format!("= {}", number::show(value, told, unit)))
         };
-        let entered = self
-            .typed
-            .number_field(ui, (id, label), &shown, &self.base, value);
+        let entered = self.typed.number_field(ui, (id, label), &shown, value);
         if let Entered::Text(text) = entered {
             let planned = match text.is_empty() {
                 true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),
@@ -306,29 +301,20 @@ impl ToileApp {
             return;
         };
         let mut changed: Panel = (**panel).clone();
-        Grid::new("panel choices").num_columns(2).show(ui, |ui| {
-            let label = ui.label("Cut").id;
+        labelled(ui, "Cut", |ui, label| {
             let field = egui::DragValue::new(&mut changed.cut.quantity).range(0..=99);
-            ui.add(field.update_while_editing(false)).labelled_by(label);
-            ui.end_row();
-            ui.label("");
-            let pairs = ui.checkbox(&mut changed.cut.mirrored, "in mirrored pairs");
+            let pairs = ui.horizontal(|ui| {
+                ui.add(field.update_while_editing(false)).labelled_by(label);
+                ui.checkbox(&mut changed.cut.mirrored, "in mirrored pairs")
+            });
+            let pairs = pairs.inner;
             if pairs.changed() && changed.cut.mirrored {
                 changed.cut.quantity = changed.cut.quantity.next_multiple_of(2).max(2);
             }
-            ui.end_row();
-            let label = ui.label("Fabric").id;
-            let fabric = pattern.fabric(changed.fabric);
-            let choice = ComboBox::from_id_salt("fabric")
-                .selected_text(fabric.map_or("", |fabric| &fabric.name))
-                .show_ui(ui, |ui| {
-                    for fabric in &pattern.fabrics {
-                        ui.selectable_value(&mut changed.fabric, fabric.id, &fabric.name);
-                    }
-                });
-            choice.response.labelled_by(label);
-            ui.end_row();
         });
+        let fabrics = pattern.fabrics.iter();
+        let fabrics: Vec<_> = fabrics.map(|fabric| (fabric.id, &*fabric.name)).collect();
+        choice(ui, "Fabric", &fabrics, &mut changed.fabric);
         self.worn_choice(ui, &mut changed);
         if changed != **panel {
             let label = match changed.cut == panel.cut {

@@ -2,6 +2,9 @@
 
 mod fabric;
 mod fabric_words;
+mod handle;
+mod history;
+mod properties;
 mod wearer;
 mod worn_with;
 
@@ -19,7 +22,6 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Color32, Grid, Id, PopupCloseBehavior, RichText, ScrollArea, TextStyle, Ui};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, Pattern, SizeId, VariableId, Want, plan};
-use toile_session::Command;
 
 /// Measurements that a size begins with.
 const FIRST: &[&str] = &[
@@ -61,9 +63,11 @@ impl ToileApp {
                 (Tab::Wearer, "Wearer"),
                 (Tab::WornWith, "Worn with"),
                 (Tab::History, "History"),
+                (Tab::Pattern, "Pattern"),
             ] {
                 ui.selectable_value(&mut self.tables.tab, tab, name);
             }
+            self.tables_handle(ui);
         });
         ui.separator();
         match self.tables.tab {
@@ -73,6 +77,7 @@ impl ToileApp {
             Tab::Wearer => self.wearer_table(ui),
             Tab::WornWith => self.worn_with_table(ui),
             Tab::History => self.history_table(ui),
+            Tab::Pattern => self.properties_table(ui),
         }
     }
 
@@ -423,6 +428,8 @@ impl ToileApp {
                                 self.tables.entered_variable = None;
                             }
                             self.number_text_field(ui, &entry, label);
+                            let field = number_field_id(&entry);
+                            self.typed.show_proposals(ui, field, &self.base);
                         }
                     });
                     let value = self.base.variable(variable.id);
@@ -490,47 +497,6 @@ impl ToileApp {
                 }
             }
             Err(words) => self.say_fault(words),
-        }
-    }
-
-    /// Steps of the history; a click goes there.
-    fn history_table(&mut self, ui: &mut Ui) {
-        let past: Vec<String> = self.session.past().into_iter().map(str::to_owned).collect();
-        let future: Vec<String> = self
-            .session
-            .future()
-            .into_iter()
-            .map(str::to_owned)
-            .collect();
-        let mut steps: Vec<Command> = Vec::new();
-        let rows = ScrollArea::both()
-            .id_salt("history")
-            .auto_shrink([false, false]);
-        rows.show(ui, |ui| {
-            if ui
-                .selectable_label(past.is_empty(), "as it was opened")
-                .clicked()
-            {
-                steps = vec![Command::Undo; past.len()];
-            }
-            for (k, label) in past.iter().enumerate() {
-                let is_now = k + 1 == past.len();
-                let words = format!("{}  {label}", k + 1);
-                if ui.selectable_label(is_now, words).clicked() {
-                    steps = vec![Command::Undo; past.len() - k - 1];
-                }
-            }
-            let soft = Palette::of(ui.ctx()).ink_soft;
-            for (k, label) in future.iter().enumerate() {
-                let words = format!("{}  {label}", past.len() + k + 1);
-                let words = RichText::new(words).color(soft);
-                if ui.selectable_label(false, words).clicked() {
-                    steps = vec![Command::Redo; k + 1];
-                }
-            }
-        });
-        for step in steps {
-            self.execute(step);
         }
     }
 }

@@ -148,6 +148,19 @@ pub fn font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
+/// A title over fields: larger, and drawn twice a little apart, for the type has one weight only.
+pub fn title(ui: &mut egui::Ui, words: &str) -> egui::Response {
+    let words = egui::RichText::new(words).font(font(16.0));
+    let ink = Palette::of(ui.ctx()).ink;
+    let (at, galley, response) = egui::Label::new(words).wrap().layout_in_ui(ui);
+    for across in [0.0, 0.45] {
+        let at = at + vec2(across, 0.0);
+        ui.painter().galley(at, galley.clone(), ink);
+    }
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, galley.text()));
+    response
+}
+
 /// Sets colours and type of the whole window, in both themes.
 pub fn apply(context: &egui::Context) {
     for theme in [Theme::Light, Theme::Dark] {

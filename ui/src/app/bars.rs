@@ -1,4 +1,4 @@
-//! Menu bar, tool bar, status line.
+//! Menu bar and status line.
 
 use super::ToileApp;
 use super::command::{Menu, UiCommand, shortcut_words};
@@ -7,60 +7,21 @@ use super::findings::finding_colour;
 use super::notice::Tone;
 use crate::canvas::selection::Item;
 use crate::theme::Palette;
-use crate::tools::{Tool, number};
+use crate::tools::number;
 use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Ui};
 use toile_pattern::{Severity, Want};
 use toile_session::Command;
-
-/// Width of the tool bar [pixels].
-pub const TOOLS: f32 = 186.0;
-
-/// Heights of its buttons, where there is little room and where there is enough [pixels].
-const TOOL_HEIGHTS: [f32; 2] = [18.0, 26.0];
-/// Between two of its buttons [pixels].
-const TOOL_GAP: f32 = 1.0;
-/// Height of the rule between two groups [pixels].
-const TOOL_RULE: f32 = 5.0;
-
-/// Buttons of the tool bar, in groups.
-const TOOL_BUTTONS: &[&[&str]] = &[
-    &["Select"],
-    &[
-        "Point",
-        "Line",
-        "Curve",
-        "Arc",
-        "Arc about centre",
-        "Tangent arc",
-        "Polygon",
-        "Rectangle",
-        "Circle",
-    ],
-    &["Move", "Turn", "Mirror", "Scale", "Measure"],
-    &["Point from", "Point along", "Perpendicular", "Mirror point"],
-    &[
-        "Trace",
-        "Divide edge",
-        "Bend edge",
-        "Dart",
-        "Fisheye dart",
-        "Pivot dart",
-        "Spread",
-        "Split",
-        "Fold",
-        "Notch",
-        "Inner line",
-        "Grain",
-    ],
-    &["Seam", "Matched notches", "Walk seam"],
-];
 
 impl ToileApp {
     pub(crate) fn menu_bar(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             for menu in Menu::ALL {
                 ui.menu_button(menu.name(), |ui| {
-                    for command in commands().filter(|command| command.menu == menu) {
+                    let entries = commands().filter(|command| command.menu == menu);
+                    for (k, command) in entries.enumerate() {
+                        if command.begins_group && k > 0 {
+                            ui.separator();
+                        }
                         self.menu_entry(ui, command);
                     }
                 });
@@ -130,6 +91,8 @@ impl ToileApp {
             "Isolate" => !self.view.isolated.is_empty(),
             "All sizes" => self.view.grading.is_some(),
             "Tables" => self.panes.tables,
+            "Tables beside" => self.panes.tables_beside,
+            "Tool names" => self.panes.tool_names,
             "Findings" => self.panes.findings,
             "Garment view" => self.panes.garment,
             "Allowance" => self.panes.allowances,
@@ -150,48 +113,6 @@ impl ToileApp {
         };
         let words = step.map(|step| format!("{}: {step}", command.words(ui.ctx())));
         self.command_widget(ui, command, Button::new(name), words);
-    }
-
-    pub(crate) fn tool_bar(&mut self, ui: &mut Ui) {
-        // The buttons are as high as there is room for all of them.
-        let rules = (TOOL_BUTTONS.len() - 1) as f32 * (TOOL_RULE + TOOL_GAP);
-        let count: usize = TOOL_BUTTONS.iter().map(|group| group.len()).sum();
-        let room = (ui.available_height() - rules) / count as f32 - TOOL_GAP;
-        let height = room.floor().clamp(TOOL_HEIGHTS[0], TOOL_HEIGHTS[1]);
-        egui::ScrollArea::vertical().show(ui, |ui| {
-            let spacing = ui.spacing_mut();
-            spacing.item_spacing.y = TOOL_GAP;
-            spacing.interact_size.y = height;
-            spacing.button_padding = egui::vec2(4.0, 0.0);
-            for (k, group) in TOOL_BUTTONS.iter().enumerate() {
-                if k > 0 {
-                    ui.add(egui::Separator::default().spacing(TOOL_RULE));
-                }
-                for name in *group {
-                    let Some(command) = named(name) else {
-                        continue;
-                    };
-                    let in_hand = self.tool_name() == *name;
-                    let key = command.key.map(|key| shortcut_words(ui.ctx(), &key));
-                    let button = Button::new(*name)
-                        .selected(in_hand)
-                        .frame_when_inactive(in_hand)
-                        .truncate()
-                        .min_size(egui::vec2(ui.available_width(), height))
-                        .shortcut_text(RichText::new(key.unwrap_or_default()).small());
-                    self.command_widget(ui, command, button, None);
-                }
-            }
-        });
-    }
-
-    /// The name of the command that takes the tool in hand.
-    fn tool_name(&self) -> &'static str {
-        match self.view.tool {
-            Tool::Select => "Select",
-            Tool::Slots(tool) => tool.command,
-            Tool::Walk => "Walk seam",
-        }
     }
 
     fn size_choice(&mut self, ui: &mut Ui) {

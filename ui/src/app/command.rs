@@ -13,6 +13,8 @@ pub struct UiCommand {
     pub key: Option<KeyboardShortcut>,
     /// The menu it is in.
     pub menu: Menu,
+    /// Whether a rule parts it from what is above it in the menu.
+    pub begins_group: bool,
     /// Whether it can be done now.
     pub when: fn(&ToileApp) -> bool,
     /// Does it.
@@ -85,12 +87,21 @@ pub(super) const fn command(
         tip,
         key,
         menu,
+        begins_group: false,
         when,
         does,
     }
 }
 
 impl UiCommand {
+    /// The same as the first of a group of its menu.
+    pub(super) const fn under_rule(self) -> Self {
+        Self {
+            begins_group: true,
+            ..self
+        }
+    }
+
     /// What is said of it where the pointer rests: what it does, and its key.
     pub fn words(&self, context: &egui::Context) -> String {
         match self.key {

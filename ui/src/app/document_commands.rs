@@ -10,6 +10,9 @@ use toile_pattern::plan::{Alignment, Axis};
 /// metre].
 const TRUE_SIZE: f64 = 96.0 / 0.0254;
 
+/// By how much the interface becomes larger or smaller at once, of its usual size.
+const SCALE_STEP: f32 = 0.1;
+
 /// Commands of files, changes and views, in the order of their menus.
 pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     command(
@@ -35,7 +38,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Write the pattern to its file",
         |app| app.is_open() && app.is_unsaved(),
         ToileApp::save,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::File,
         "Save as",
@@ -51,7 +55,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Put the panels of another pattern, as your own block, beside these",
         ToileApp::is_open,
         ToileApp::ask_insert,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::File,
         "Print",
@@ -59,7 +64,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Print the pieces on paper, as PDF or SVG",
         ToileApp::has_panels,
         ToileApp::ask_print,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::File,
         "Export",
@@ -99,7 +105,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Copy what is selected and remove it (the key is that of the system)",
         ToileApp::has_selection,
         ToileApp::cut,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Edit,
         "Copy",
@@ -139,7 +146,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Divide the selected edge in its middle; double-click an edge to divide it there",
         ToileApp::has_edge,
         ToileApp::divide_edge,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Edit,
         "Select all",
@@ -147,7 +155,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Select every panel, or every point where there is no panel",
         ToileApp::is_open,
         ToileApp::select_all,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Edit,
         "Deselect",
@@ -166,7 +175,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Bring left sides to the leftmost",
         ToileApp::has_several,
         |app| app.align(Alignment::Left),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Edit,
         "Align right",
@@ -214,7 +224,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Spread middles evenly from left to right",
         ToileApp::has_several,
         |app| app.distribute(Axis::X),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Edit,
         "Distribute up",
@@ -225,12 +236,22 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Edit,
+        "Pattern properties",
+        None,
+        "Name and unit of the pattern, and the sheet that is drawn on",
+        ToileApp::is_open,
+        ToileApp::show_properties,
+    )
+    .under_rule(),
+    command(
+        Menu::Edit,
         "Find",
         key(COMMAND, Key::K),
         "Find a command, a part of the pattern, a variable or a measurement by its name",
         always,
         ToileApp::ask_command,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::View,
         "Fit",
@@ -270,7 +291,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Show or hide the rulers",
         always,
         |app| app.panes.rulers = !app.panes.rulers,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::View,
         "Show guides",
@@ -294,7 +316,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Show the selected panels alone, or all again",
         ToileApp::can_isolate,
         ToileApp::isolate,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::View,
         "All sizes",
@@ -310,6 +333,23 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Show or hide measurements, variables, sizes and the history",
         always,
         |app| app.panes.tables = !app.panes.tables,
+    )
+    .under_rule(),
+    command(
+        Menu::View,
+        "Tables beside",
+        key(SHIFT, Key::F8),
+        "Stand the tables beside the pattern, or below it; their strip can be dragged there too",
+        always,
+        |app| app.panes.tables_beside = !app.panes.tables_beside,
+    ),
+    command(
+        Menu::View,
+        "Tool names",
+        key(PLAIN, Key::F4),
+        "Show or hide the names of the tools beside their signs",
+        always,
+        |app| app.panes.tool_names = !app.panes.tool_names,
     ),
     command(
         Menu::View,
@@ -342,7 +382,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Show or hide the lines to cut along",
         always,
         |app| app.panes.allowances = !app.panes.allowances,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::View,
         "Dark or light",
@@ -350,5 +391,30 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Change between dark and light colours",
         always,
         ToileApp::change_theme,
+    )
+    .under_rule(),
+    command(
+        Menu::View,
+        "Larger interface",
+        key(COMMAND, Key::Plus),
+        "Show text, signs and buttons larger",
+        always,
+        |app| app.change_scale(Some(SCALE_STEP)),
+    ),
+    command(
+        Menu::View,
+        "Smaller interface",
+        key(COMMAND, Key::Minus),
+        "Show text, signs and buttons smaller",
+        always,
+        |app| app.change_scale(Some(-SCALE_STEP)),
+    ),
+    command(
+        Menu::View,
+        "Usual interface",
+        key(COMMAND, Key::Num0),
+        "Show text, signs and buttons as large as at first",
+        always,
+        |app| app.change_scale(None),
     ),
 ];

@@ -25,7 +25,9 @@ mod preferences;
 mod print_choice;
 mod printing;
 mod sewing;
+mod tool_bar;
 mod tool_commands;
+mod tool_icons;
 mod welcome;
 
 use crate::fields::TypedTexts;
@@ -56,7 +58,10 @@ use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silen
 /// Time between frames while something runs by itself.
 const FRAME: Duration = Duration::from_millis(33);
 /// Share of the window's width the 3D view begins with.
-const GARMENT_SHARE: f32 = 0.34;
+const GARMENT_SHARE: f32 = 0.33;
+/// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
+const TABLES: f32 = 220.0;
+const TABLES_SHARE: f32 = 0.45;
 /// Most of the window's width that the 3D view may take.
 const GARMENT_MOST: f32 = 0.6;
 
@@ -85,10 +90,14 @@ pub struct ToileApp {
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
     pub(crate) panes: Panes,
+    /// Whether the inspector stands at the left of the table.
+    pub(crate) inspector_is_left: bool,
     /// Why the file that was asked for is not open.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
     pub(crate) wants_theme: bool,
+    /// A change of the size of the interface that is asked for.
+    pub(crate) wants_scale: Option<Option<f32>>,
     pub(crate) preferences: Preferences,
     recovery: Option<Recovery>,
     /// Documents a crash left, to be offered.
@@ -139,9 +148,11 @@ impl ToileApp {
             tables: Tables::default(),
             typed: TypedTexts::default(),
             panes: preferences.panes,
+            inspector_is_left: false,
             refusal: None,
             closes: false,
             wants_theme: false,
+            wants_scale: None,
             preferences,
             recovery: None,
             abandoned: Vec::new(),
@@ -448,6 +459,9 @@ impl ToileApp {
         if std::mem::take(&mut self.wants_theme) {
             self.preferences.change_theme(&context);
         }
+        if let Some(step) = self.wants_scale.take() {
+            self.preferences.change_scale(&context, step);
+        }
         self.parts(ui);
         self.preferences.set_shows(self.panes);
         self.preferences.note_window(&context);
@@ -484,14 +498,6 @@ impl ToileApp {
                 .show(ui, |ui| self.welcome(ui));
             return;
         }
-        if self.panes.tables {
-            Panel::bottom("tables")
-                .frame(frame)
-                .default_size(220.0)
-                .min_size(self.tables.least_height())
-                .resizable(true)
-                .show(ui, |ui| self.show_tables(ui));
-        }
         if self.panes.marker {
             let height = ui.available_height();
             Panel::bottom("marker")
@@ -504,26 +510,48 @@ impl ToileApp {
         Panel::left("tools")
             .frame(frame)
             .resizable(false)
-            .exact_size(bars::TOOLS)
+            .exact_size(self.tool_bar_width())
             .show(ui, |ui| self.tool_bar(ui));
-        if self.panes.garment {
+        let beside = self.panes.tables && self.panes.tables_beside;
+        if self.panes.tables && !beside {
+            Panel::bottom("tables")
+                .frame(frame)
+                .default_size(TABLES)
+                .min_size(self.tables.least_height())
+                .resizable(true)
+                .show(ui, |ui| self.show_tables(ui));
+        }
+        if self.panes.garment || beside {
             let width = ui.available_width();
-            Panel::right("garment")
+            Panel::right("side")
                 .frame(egui::Frame::new())
                 .resizable(true)
                 .default_size(width * GARMENT_SHARE)
                 .size_range(240.0..=(width * GARMENT_MOST).max(240.0))
-                .show(ui, |ui| self.garment_side(ui));
+                .show(ui, |ui| self.side(ui, beside));
         }
-        Panel::right("inspector")
-            .frame(frame)
-            .resizable(true)
-            .default_size(240.0)
-            .size_range(190.0..=420.0)
-            .show(ui, |ui| self.show_inspector(ui));
         egui::CentralPanel::default()
             .frame(egui::Frame::new())
             .show(ui, |ui| self.pattern_side(ui));
+    }
+
+    /// Beside the pattern: the garment, and under it the tables where they stand there.
+    fn side(&mut self, ui: &mut Ui, tables: bool) {
+        let frame = theme::bar(ui.ctx());
+        if !self.panes.garment {
+            frame.show(ui, |ui| self.show_tables(ui));
+            return;
+        }
+        if tables {
+            let height = ui.available_height();
+            Panel::bottom("tables beside")
+                .frame(frame)
+                .default_size(height * TABLES_SHARE)
+                .size_range(100.0..=(height * 0.8).max(100.0))
+                .resizable(true)
+                .show(ui, |ui| self.show_tables(ui));
+        }
+        self.garment_side(ui);
     }
 
     fn pattern_side(&mut self, ui: &mut Ui) {
@@ -537,6 +565,9 @@ impl ToileApp {
         self.view.rulers = self.panes.rulers;
         self.view.guides = self.panes.guides;
         self.view.is_covered = self.dialog.is_some() || self.menu_is_open;
+        let canvas = ui.available_rect_before_wrap();
+        // Before the table: a click may give a number that is typed there the length of what is clicked.
+        self.show_inspector(ui, canvas);
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);

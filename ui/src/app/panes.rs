@@ -15,6 +15,10 @@ pub struct Panes {
     pub marker: bool,
     /// Measurements, variables, sizes, history.
     pub tables: bool,
+    /// Whether these stand under the garment, beside the pattern; else they stand below it.
+    pub tables_beside: bool,
+    /// Names of the tools beside their signs.
+    pub tool_names: bool,
     /// The list of faults.
     pub findings: bool,
     /// Lines to cut along.
@@ -31,6 +35,8 @@ impl Default for Panes {
             garment: true,
             marker: false,
             tables: false,
+            tables_beside: true,
+            tool_names: false,
             findings: false,
             allowances: true,
             rulers: true,
@@ -83,4 +89,5 @@ pub enum Tab {
     Wearer,
     WornWith,
     History,
+    Pattern,
 }

@@ -286,6 +286,11 @@ impl ToileApp {
         self.wants_theme = true;
     }
 
+    /// Has the interface larger or smaller by a share of its usual size, or as large as usual.
+    pub(crate) fn change_scale(&mut self, step: Option<f32>) {
+        self.wants_scale = Some(step);
+    }
+
     /// Moves what is selected by the arrow keys.
     pub(crate) fn nudge(&mut self, context: &egui::Context) {
         // While a seam is walked they lead along it.

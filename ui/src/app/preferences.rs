@@ -13,6 +13,8 @@ const DOUBLE_CLICK: f64 = 0.5;
 /// Size of a window that was never opened before, and the least one has [logical pixels].
 const WINDOW: [f32; 2] = [1400.0, 860.0];
 const LEAST_WINDOW: [f32; 2] = [760.0, 480.0];
+/// Least and largest enlargement of text, signs and buttons.
+const SCALES: [f32; 2] = [0.7, 2.5];
 /// Most recent files kept.
 const MOST_RECENT: usize = 10;
 
@@ -33,6 +35,8 @@ pub struct Preferences {
     pub window: Option<[f32; 2]>,
     /// Whether it was as large as the screen.
     pub fills_screen: bool,
+    /// Enlargement of text, signs and buttons.
+    pub scale: Option<f32>,
     #[serde(skip)]
     file: Option<PathBuf>,
 }
@@ -57,7 +61,10 @@ impl Preferences {
         context.options_mut(|options| {
             options.fallback_theme = egui::Theme::Light;
             options.input_options.max_double_click_delay = DOUBLE_CLICK;
+            // The commands of the window change the enlargement, and note it.
+            options.zoom_with_keyboard = false;
         });
+        context.set_zoom_factor(self.scale());
         context.set_theme(match self.dark {
             None => egui::ThemePreference::System,
             Some(true) => egui::ThemePreference::Dark,
@@ -80,6 +87,20 @@ impl Preferences {
     /// Changes between dark and light.
     pub fn change_theme(&mut self, context: &egui::Context) {
         self.dark = Some(context.theme() == egui::Theme::Light);
+        self.apply(context);
+        self.write();
+    }
+
+    fn scale(&self) -> f32 {
+        let scale = self.scale.filter(|scale| scale.is_finite());
+        scale.unwrap_or(1.0).clamp(SCALES[0], SCALES[1])
+    }
+
+    /// Makes text, signs and buttons larger or smaller by a share of their usual size; nothing means as large as
+    /// usual.
+    pub fn change_scale(&mut self, context: &egui::Context, step: Option<f32>) {
+        let scale = step.map_or(1.0, |step| self.scale() + step);
+        self.scale = Some(((scale * 10.0).round() / 10.0).clamp(SCALES[0], SCALES[1]));
         self.apply(context);
         self.write();
     }

@@ -26,7 +26,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Add an empty sheet to draw the next piece on, with names of its own",
         ToileApp::is_open,
         ToileApp::new_sheet,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Draw,
         "Point",
@@ -34,7 +35,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Draw a point by coordinates, on a curve, at a crossing or beside another",
         ToileApp::is_open,
         |app| app.take(Tool::Slots(&draw::POINT)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Draw,
         "Point from",
@@ -114,7 +116,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Draw a point on a curve at a distance from its end",
         ToileApp::is_open,
         |app| app.take(Tool::Slots(&draw::ALONG)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Draw,
         "Perpendicular",
@@ -138,7 +141,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Move what is selected by a way or by numbers",
         ToileApp::has_selection,
         |app| app.take(Tool::Slots(&parts::MOVE)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Draw,
         "Turn",
@@ -202,7 +206,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Take a dart out of an edge",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&panel::DART)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Panel,
         "Fisheye dart",
@@ -234,7 +239,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Fold pleats pressed to the left, from edge to edge",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&alter::KNIFE_PLEAT)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Panel,
         "Box pleat",
@@ -258,7 +264,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Cut a panel in two along a straight line from edge to edge",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&alter::SPLIT)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Panel,
         "Split along",
@@ -282,7 +289,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Mark an edge with a notch",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&panel::NOTCH)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Panel,
         "Row of notches",
@@ -298,7 +306,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Draw a line inside a panel, or a hole by closing it",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&panel::INNER_LINE)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Panel,
         "Draw on panel",
@@ -322,7 +331,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Set the direction of the warp",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&panel::GRAIN)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Sew,
         "Seam",
@@ -346,7 +356,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Sew the other end of the edge: what the lines between its ends show",
         ToileApp::has_seam,
         ToileApp::flip_seam,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Sew,
         "Select seam",
@@ -362,7 +373,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Lay the two pieces of the selected seam on each other along it, and see what lines cross it",
         ToileApp::has_seams,
         ToileApp::walk_seam,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Marker,
         "Show marker",
@@ -378,7 +390,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Make a marker of a fabric",
         ToileApp::has_panels,
         ToileApp::new_marker,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Marker,
         "Remove marker",
@@ -394,7 +407,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Lay all pieces in as little fabric as can be found",
         |app| app.has_marker() && !app.is_searching(),
         ToileApp::search_marker,
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Marker,
         "Stop search",
@@ -418,7 +432,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Turn the selected pieces by half a turn (R in the marker)",
         ToileApp::has_pieces,
         |app| app.on_pieces(|view| view.turn(2.0)),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Marker,
         "Turn over",
@@ -514,7 +529,8 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Look at the front of the garment",
         always,
         |app| app.stage.look_from(0.0),
-    ),
+    )
+    .under_rule(),
     command(
         Menu::Garment,
         "Back view",

@@ -2,7 +2,7 @@
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::Entered;
+use crate::fields::{Entered, labelled};
 use crate::tools::number;
 use egui::{Id, Ui};
 use toile_geometry::Vec2;
@@ -35,12 +35,12 @@ impl ToileApp {
             let value = value(text)?;
             Ok(format!("= {}", number::show(value, Want::Length, unit)))
         };
-        let label = ui.label(label).id;
         let shown = plan::number_text(&base, &Number::Value(at), Want::Length);
         let field = place_field(id);
-        let entered = self
-            .typed
-            .number_field(ui, (field, label), &shown, &self.base, told);
+        let entered = labelled(ui, label, |ui, label| {
+            self.typed.number_field(ui, (field, label), &shown, told)
+        });
+        self.typed.show_proposals(ui, field, &self.base);
         if let Entered::Text(text) = entered {
             let planned = value(&text).and_then(|at| {
                 let edits = plan::move_guide(&base, id, origin + at);

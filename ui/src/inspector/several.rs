@@ -3,8 +3,8 @@
 use super::arcs::{kept, numbers_of};
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::Entered;
-use crate::theme::Palette;
+use crate::fields::{Entered, labelled};
+use crate::theme::{self, Palette};
 use crate::tools::{Planning, number};
 use egui::{RichText, Ui};
 use toile_pattern::plan::{self, NumberEntry};
@@ -12,7 +12,7 @@ use toile_pattern::{EdgeId, EditError, PanelId, Want};
 
 impl ToileApp {
     pub(crate) fn inspect_several(&mut self, ui: &mut Ui, items: &[Item]) {
-        ui.label(RichText::new(format!("{} parts selected", items.len())).strong());
+        theme::title(ui, &format!("{} parts selected", items.len()));
         let soft = Palette::of(ui.ctx()).ink_soft;
         for words in self.measured_together(items) {
             ui.label(RichText::new(words).color(soft));
@@ -71,7 +71,7 @@ impl ToileApp {
 
     fn common_field(&mut self, ui: &mut Ui, entries: &[NumberEntry]) {
         let first = &entries[0];
-        let label = ui.label(format!("{} of all", first.label)).id;
+        let label = format!("{} of all", first.label);
         let id = egui::Id::unique(("number of all", first.label));
         let base = self.base.clone();
         let want = first.want;
@@ -90,9 +90,10 @@ impl ToileApp {
             let value = base.number_or_fault(&found, want)?;
             Ok(format!("= {}", number::show(value, want, unit)))
         };
-        let entered = self
-            .typed
-            .number_field(ui, (id, label), &shown, &self.base, value);
+        let entered = labelled(ui, &label, |ui, label| {
+            self.typed.number_field(ui, (id, label), &shown, value)
+        });
+        self.typed.show_proposals(ui, id, &self.base);
         if let Entered::Text(text) = entered {
             let mut planning = Planning::of(&self.base);
             let planned = entries.iter().try_for_each(|entry| {
@@ -127,7 +128,7 @@ impl ToileApp {
         };
         let entries = numbers_of(&self.base, curve.into());
         if !entries.is_empty() {
-            ui.label(RichText::new("Its curve").strong());
+            theme::title(ui, "Its curve");
         }
         for entry in entries {
             self.number_field(ui, &entry);

@@ -3,7 +3,8 @@
 use crate::app::ToileApp;
 use crate::canvas::selection::{Item, Selection};
 use crate::fields::choice;
-use egui::{Button, RichText, Ui};
+use crate::theme;
+use egui::{Button, Ui};
 use std::sync::Arc;
 use toile_pattern::plan;
 use toile_pattern::{
@@ -19,7 +20,7 @@ impl ToileApp {
         if steps.is_empty() {
             return;
         }
-        ui.label(RichText::new("Steps, in order").strong());
+        theme::title(ui, "Steps, in order");
         let mut chosen = None;
         let mut moved = None;
         for (k, step) in steps.iter().enumerate() {

@@ -532,6 +532,15 @@ impl PatternView {
         parts
     }
 
+    /// Whether something that is selected is seen in a part of the screen, with the table seen in `view`.
+    pub fn selection_is_in(&self, view: Rect, place: Rect) -> bool {
+        let parts = self.parts();
+        let mut selected = parts
+            .iter()
+            .filter(|(_, item, _)| self.selection.contains(*item));
+        selected.any(|(.., at)| place.contains(self.screen(view, Vec2::zeros(), *at)))
+    }
+
     /// Names points, edges and panels for assistive technology, and tells which was chosen there.
     /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
     fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {

@@ -1,0 +1,165 @@
+//! Room for the drawing: its share of the window with garment and tables open, on screens of several sizes; and
+//! the parts round it, where a person puts them.
+#![allow(clippy::unwrap_used)]
+
+mod worn;
+
+use egui::{Key, Modifiers, Rect, Role, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::path::{Path, PathBuf};
+use toile_ui::{Beginning, ToileApp};
+use worn::Window;
+
+fn dress() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../patterns/dress.toile.json")
+}
+
+/// A window of so many logical pixels with a pattern, garment and tables in it.
+fn opened(size: [f32; 2], folder: Option<&Path>) -> Window {
+    let beginning = Beginning {
+        file: Some(dress()),
+        folder: folder.map(Path::to_owned),
+    };
+    let mut window: Window = Harness::builder()
+        .with_size(vec2(size[0], size[1]))
+        .with_theme(egui::Theme::Light)
+        .with_max_steps(20)
+        .with_step_dt(1.0 / 60.0)
+        .build_eframe(move |creation| ToileApp::new(&creation.egui_ctx, None, beginning));
+    window.run_ok();
+    window
+}
+
+fn key(window: &mut Window, modifiers: Modifiers, key: Key) {
+    window.key_press_modifiers(modifiers, key);
+    window.run_ok();
+}
+
+fn canvas(window: &Window) -> Rect {
+    window
+        .get_by_role_and_label(Role::Canvas, "Pattern view")
+        .rect()
+}
+
+fn share(window: &Window, size: [f32; 2]) -> f32 {
+    canvas(window).area() / (size[0] * size[1])
+}
+
+#[test]
+fn the_drawing_has_its_share_of_the_window_with_garment_and_tables_open() {
+    // A screen of 2560 x 1440 at a scale of 2 has 1280 x 720 logical pixels.
+    let screens = [
+        ([1280.0, 800.0], 0.45),
+        ([1920.0, 1080.0], 0.60),
+        ([2560.0, 1440.0], 0.60),
+        ([1280.0, 720.0], 0.42),
+    ];
+    for (size, least) in screens {
+        let mut window = opened(size, None);
+        key(&mut window, Modifiers::NONE, Key::F8);
+        assert!(window.query_by_label_contains("3D view").is_some());
+        assert!(window.query_by_label("Add size").is_some());
+        let share = share(&window, size);
+        assert!(share >= least, "{size:?}: {share:.3} of {least}");
+        // What is selected lies over the table, and takes nothing from it.
+        let before = canvas(&window);
+        window.get_by_label("Panel front skirt").click();
+        window.run_ok();
+        assert_eq!(canvas(&window), before);
+        let name = window.get_by_role_and_label(Role::TextInput, "Name").rect();
+        assert!(
+            before.contains_rect(name),
+            "{size:?}: {name:?} beside {before:?}"
+        );
+        key(&mut window, Modifiers::NONE, Key::Escape);
+        let name = window.query_by_role_and_label(Role::TextInput, "Name");
+        assert!(name.is_none(), "{size:?}: nothing is selected");
+    }
+}
+
+/// The inspector goes to the other corner where it would lie on what is selected.
+#[test]
+fn what_is_selected_is_not_covered_by_its_inspector() {
+    let size = [900.0, 700.0];
+    let mut window = opened(size, None);
+    for name in ["Panel front skirt", "Panel back skirt", "Panel front skirt"] {
+        let at = window.get_by_label(name).rect().center();
+        window.get_by_label(name).click();
+        window.run_ok();
+        let field = window.get_by_role_and_label(Role::TextInput, "Name").rect();
+        let beside = field.left() > at.x || field.right() < at.x;
+        assert!(beside, "{name} at {at:?} under {field:?}");
+        key(&mut window, Modifiers::NONE, Key::Escape);
+    }
+}
+
+#[test]
+fn tables_stand_where_they_were_dragged_and_are_there_the_next_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = [1280.0, 800.0];
+    let mut window = opened(size, Some(folder.path()));
+    key(&mut window, Modifiers::NONE, Key::F8);
+    let is_beside = |window: &Window| {
+        let table = window.get_by_label("Add size").rect();
+        table.left() >= canvas(window).right()
+    };
+    assert!(is_beside(&window));
+    let drag = |window: &mut Window, to: egui::Pos2| {
+        let handle = window.get_by_label("Move tables").rect().center();
+        window.hover_at(handle);
+        window.drag_at(handle);
+        window.run_ok();
+        window.hover_at(handle + (to - handle) * 0.5);
+        window.run_ok();
+        window.hover_at(to);
+        window.run_ok();
+        window.drop_at(to);
+        window.run_ok();
+    };
+    drag(&mut window, pos2(300.0, 760.0));
+    assert!(!is_beside(&window));
+    let below = window.get_by_label("Add size").rect();
+    assert!(below.top() >= canvas(&window).bottom());
+    let again = opened(size, Some(folder.path()));
+    assert!(!is_beside(&again), "where they were put is not remembered");
+    drag(&mut window, pos2(1200.0, 300.0));
+    assert!(is_beside(&window));
+    key(&mut window, Modifiers::SHIFT, Key::F8);
+    assert!(!is_beside(&window));
+}
+
+#[test]
+fn tools_are_signs_and_a_key_brings_their_names() {
+    let mut window = opened([1280.0, 800.0], None);
+    let width = |window: &Window| window.get_by_label("Fisheye dart").rect().width();
+    assert!(width(&window) <= 44.0);
+    let narrow = canvas(&window);
+    key(&mut window, Modifiers::NONE, Key::F4);
+    assert!(width(&window) > 120.0);
+    assert!(canvas(&window).width() < narrow.width());
+    // Every tool is seen without scrolling on the smallest of the screens.
+    for window in [window, opened([1280.0, 720.0], None)] {
+        for tool in ["Select", "Point", "Grain", "Walk seam"] {
+            let at = window.get_by_label(tool).rect();
+            assert!(
+                at.bottom() <= window.get_by_label("No faults").rect().top(),
+                "{tool} at {at:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_interface_is_scaled_and_the_scale_is_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = opened([1280.0, 800.0], Some(folder.path()));
+    for _ in 0..3 {
+        key(&mut window, Modifiers::COMMAND, Key::Plus);
+    }
+    assert!((window.ctx.zoom_factor() - 1.3).abs() < 1e-3);
+    let again = opened([1280.0, 800.0], Some(folder.path()));
+    assert!((again.ctx.zoom_factor() - 1.3).abs() < 1e-3);
+    key(&mut window, Modifiers::COMMAND, Key::Num0);
+    assert!((window.ctx.zoom_factor() - 1.0).abs() < 1e-3);
+}
