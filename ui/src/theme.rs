@@ -112,17 +112,18 @@ impl Palette {
     }
 }
 
-/// Colours of seams: both sides share one. Muted, of like lightness, told apart by hue.
+/// Colours of seams: both sides share one. Muted, of like lightness, told apart by hue; none is red, which is the
+/// colour of errors.
 const SEAMS: [Color32; 10] = [
-    Color32::from_rgb(0xC0, 0x5A, 0x4B),
     Color32::from_rgb(0x3B, 0x7E, 0xA8),
+    Color32::from_rgb(0xC0, 0x86, 0x2E),
     Color32::from_rgb(0x5E, 0x8F, 0x4A),
     Color32::from_rgb(0x8A, 0x63, 0xA8),
-    Color32::from_rgb(0xC0, 0x86, 0x2E),
     Color32::from_rgb(0x2F, 0x8F, 0x83),
-    Color32::from_rgb(0xB0, 0x56, 0x84),
-    Color32::from_rgb(0x6A, 0x72, 0xB8),
+    Color32::from_rgb(0xA8, 0x58, 0x9C),
     Color32::from_rgb(0x8C, 0x84, 0x3A),
+    Color32::from_rgb(0x6A, 0x72, 0xB8),
+    Color32::from_rgb(0x4F, 0x9F, 0xC4),
     Color32::from_rgb(0x7A, 0x6A, 0x5C),
 ];
 

@@ -2,23 +2,29 @@
 //! the parts round it, where a person puts them.
 #![allow(clippy::unwrap_used)]
 
-mod worn;
-
 use egui::{Key, Modifiers, Rect, Role, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
+use toile_pattern::plan;
+use toile_session::Command;
 use toile_ui::{Beginning, ToileApp};
-use worn::Window;
+
+type Window = Harness<'static, ToileApp>;
 
 fn dress() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../patterns/dress.toile.json")
 }
 
-/// A window of so many logical pixels with a pattern, garment and tables in it.
+/// A window of so many logical pixels with the dress in it.
 fn opened(size: [f32; 2], folder: Option<&Path>) -> Window {
+    opened_file(dress(), size, folder)
+}
+
+/// The same with another pattern.
+fn opened_file(file: PathBuf, size: [f32; 2], folder: Option<&Path>) -> Window {
     let beginning = Beginning {
-        file: Some(dress()),
+        file: Some(file),
         folder: folder.map(Path::to_owned),
     };
     let mut window: Window = Harness::builder()
@@ -162,4 +168,83 @@ fn the_interface_is_scaled_and_the_scale_is_remembered() {
     assert!((again.ctx.zoom_factor() - 1.3).abs() < 1e-3);
     key(&mut window, Modifiers::COMMAND, Key::Num0);
     assert!((window.ctx.zoom_factor() - 1.0).abs() < 1e-3);
+}
+
+/// Every label of every pattern that comes with the program, in every size: none over another, none cut off.
+#[test]
+fn no_label_lies_over_another_or_is_cut_off() {
+    let patterns = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../patterns");
+    let mut checked = 0;
+    for entry in std::fs::read_dir(patterns).unwrap() {
+        let file = entry.unwrap().path();
+        let mut window = opened_file(file.clone(), [1280.0, 800.0], None);
+        let pattern = window.state().session().project().pattern.clone();
+        for size in &pattern.sizes {
+            let size = Some(size.name.clone());
+            window.state_mut().execute(Command::SetSize { size });
+            window.run_ok();
+            key(&mut window, Modifiers::NONE, Key::F);
+            for select_all in [false, true] {
+                if select_all {
+                    key(&mut window, Modifiers::COMMAND, Key::A);
+                }
+                let labels = window.state().view().labels().to_vec();
+                let view = canvas(&window);
+                assert!(labels.len() >= pattern.panels.len(), "{}", file.display());
+                for (k, one) in labels.iter().enumerate() {
+                    let whole = view.expand(0.5).contains_rect(*one);
+                    assert!(
+                        whole || select_all,
+                        "{}: {one:?} of {view:?}",
+                        file.display()
+                    );
+                    let over = labels[k + 1..]
+                        .iter()
+                        .find(|other| other.shrink(0.5).intersects(*one));
+                    assert!(over.is_none(), "{}: {one:?} over {over:?}", file.display());
+                    checked += 1;
+                }
+            }
+            key(&mut window, Modifiers::NONE, Key::Escape);
+        }
+    }
+    assert!(checked > 200, "{checked}");
+}
+
+/// A longer hem pushes the pieces below it away, in the view alone, and they come back with it.
+#[test]
+fn pieces_that_grow_push_others_away_in_the_view_alone() {
+    let mut window = opened([1280.0, 800.0], None);
+    let before = window.state().session().project().clone();
+    let places = |window: &Window| {
+        let view = window.state().view();
+        let sheets = before.pattern.sheets.iter();
+        let places = sheets.map(|sheet| view.table_layout.sheet(sheet.id));
+        places.collect::<Vec<_>>()
+    };
+    let usual = places(&window);
+    let pattern = before.pattern.clone();
+    let bodice = pattern
+        .sheets
+        .iter()
+        .find(|sheet| sheet.name == "front bodice");
+    let points: Vec<_> = bodice
+        .unwrap()
+        .points
+        .iter()
+        .map(|point| point.id)
+        .collect();
+    let down = plan::Affine::translation(toile_geometry::Vec2::new(0.0, -0.3));
+    let moved = plan::transform_points(window.state().base(), &points, &down);
+    let edits = moved.unwrap().edits;
+    let label = "Move points".to_owned();
+    window.state_mut().execute(Command::Edit { edits, label });
+    window.run_ok();
+    assert_ne!(places(&window), usual, "nothing was pushed");
+    let now = window.state().session().project().pattern.clone();
+    for (sheet, was) in now.sheets.iter().zip(&pattern.sheets) {
+        assert_eq!(sheet.on_table, was.on_table, "the document was changed");
+    }
+    key(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(places(&window), usual);
 }

@@ -12,6 +12,9 @@ use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Ui};
 use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
+/// Share of the status line that a message may take while a hint stands beside it.
+const MESSAGE_SHARE: f32 = 0.62;
+
 impl ToileApp {
     pub(crate) fn menu_bar(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
@@ -163,10 +166,28 @@ impl ToileApp {
                     ui.label(RichText::new(format!("{name}x {x}   y {y}")).color(soft));
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let (words, colour) = self.status_words(Palette::of(ui.ctx()));
-                    let label = RichText::new(&words).color(colour);
-                    let label = ui.add(egui::Label::new(label).truncate());
-                    label.on_hover_text(words);
+                    let palette = Palette::of(ui.ctx());
+                    let (words, colour) = self.status_words(palette);
+                    let hint = match self.is_open() && self.dialog.is_none() {
+                        true => self.view.hint(&self.base),
+                        false => String::new(),
+                    };
+                    let hints = !hint.is_empty() && hint != words;
+                    if !words.is_empty() {
+                        let label = RichText::new(&words).color(colour);
+                        // Beside it there is room for what a click does.
+                        let most = ui.available_width() * if hints { MESSAGE_SHARE } else { 1.0 };
+                        let label = ui.scope(|ui| {
+                            ui.set_max_width(most);
+                            ui.add(egui::Label::new(label).truncate())
+                        });
+                        label.inner.on_hover_text(words);
+                    }
+                    if hints {
+                        let label = RichText::new(&hint).color(palette.ink_soft);
+                        let label = ui.add(egui::Label::new(label).truncate());
+                        label.on_hover_text(hint);
+                    }
                 });
             });
         });

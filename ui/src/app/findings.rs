@@ -2,6 +2,7 @@
 
 use super::ToileApp;
 use super::notice::Notice;
+use crate::canvas::finding_marks::FindingMark;
 use crate::canvas::selection::{Item, Selection};
 use crate::theme::Palette;
 use egui::{Button, Color32, RichText, Ui};
@@ -45,6 +46,28 @@ impl ToileApp {
         }
     }
 
+    /// Has the findings seen at their places.
+    pub(super) fn mark_findings(&mut self) {
+        let mut marks: Vec<FindingMark> = Vec::new();
+        for found in self.findings.iter() {
+            let Some(item) = item_at(&found.place) else {
+                continue;
+            };
+            match marks.iter_mut().find(|mark| mark.item == item) {
+                Some(mark) => {
+                    mark.severity = mark.severity.max(found.severity);
+                    mark.words = format!("{}\n{found}", mark.words);
+                }
+                None => marks.push(FindingMark {
+                    item,
+                    severity: found.severity,
+                    words: found.to_string(),
+                }),
+            }
+        }
+        self.view.finding_marks = marks;
+    }
+
     /// Says what went wrong by the step that was made, unless a refusal is told. It was made all the
     /// same: so it is a warning.
     pub(super) fn tell_new_fault(&mut self, before: &[Diagnostic]) {
@@ -76,6 +99,7 @@ impl ToileApp {
                 }
             });
         if let Some(item) = chosen.and_then(|place| item_at(&place)) {
+            self.view.reveal(item);
             self.view.select(Selection::one(item));
         }
     }

@@ -85,14 +85,14 @@ impl ToileApp {
             return;
         }
         let Some(id) = self.marker_id() else {
-            return self
-                .marker_view
-                .clear("There is no marker: make a new one".into());
+            return self.marker_view.clear(Ok(
+                "There is no marker yet: \u{201c}New marker\u{201d} lays the pieces on fabric",
+            ));
         };
         self.marker_view.chosen = Some(id);
         match self.session.marker(id) {
             Ok(laid) => self.marker_view.follow(&laid),
-            Err(error) => self.marker_view.clear(error.to_string()),
+            Err(error) => self.marker_view.clear(Err(error.to_string())),
         }
     }
 

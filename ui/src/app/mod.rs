@@ -325,6 +325,7 @@ impl ToileApp {
                 Arc::make_mut(&mut found).retain(|found| found.code != Code::NotSewn);
             }
             let before = std::mem::replace(&mut self.findings, found);
+            self.mark_findings();
             self.tell_new_fault(&before);
         }
         self.keep_unsaved();

@@ -1,5 +1,6 @@
 //! All sizes drawn over each other, as drafted.
 
+use crate::theme;
 use egui::Color32;
 use toile_geometry::Vec2;
 use toile_pattern::{Evaluation, PanelId, SizeId};
@@ -56,11 +57,8 @@ impl Grading {
         }
     }
 
-    /// The colour of a size: from blue for the first to red for the last.
-    pub fn colour(&self, number: usize) -> Color32 {
-        let last = self.sizes.len().saturating_sub(1).max(1);
-        let share = number as f32 / last as f32;
-        let hue = 0.62 * (1.0 - share);
-        egui::epaint::Hsva::new(hue, 0.75, 0.72, 1.0).into()
+    /// The colour of a size, by its place in the table: neighbours are unlike.
+    pub fn colour(number: usize) -> Color32 {
+        theme::seam(number + 1)
     }
 }

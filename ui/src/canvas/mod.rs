@@ -4,6 +4,7 @@ mod allowance;
 pub mod camera;
 pub mod drawn_guide;
 pub mod fill;
+pub mod finding_marks;
 pub mod grading;
 pub mod guides;
 pub mod hit;

@@ -4,7 +4,6 @@ use super::hit::ShownPoint;
 use super::paint::Picture;
 use super::scene::{PanelScene, PointRole, SheetScene};
 use super::selection::Item;
-use super::sheet_tag::{ground, tagged};
 use crate::theme;
 use egui::{Pos2, Rect, Vec2, vec2};
 
@@ -69,14 +68,17 @@ fn place(at: Pos2, size: Vec2, taken: &[Rect], lines: &[Vec<Pos2>]) -> Option<Re
 impl Picture<'_> {
     /// Paints the names of points: of what is selected or under the pointer always, of the others on
     /// open sheets as far as there is room.
-    pub(super) fn point_names(&self, points: &[ShownPoint<'_>]) {
+    pub(super) fn point_names(&self, points: &[ShownPoint<'_>], labels: &mut Vec<Rect>) {
         let view = self.view.expand(20.0);
         let seen = |shown: &ShownPoint<'_>| self.seen(shown.origin, shown.point.at);
         let points = points.iter().filter(|shown| view.contains(seen(shown)));
         let is_lit = |shown: &&&ShownPoint<'_>| self.is_lit(Item::Point(shown.point.id));
-        let mut taken: Vec<Rect> = Vec::new();
         for shown in points.clone().filter(|shown| is_lit(&shown)) {
-            taken.push(self.tag(seen(shown) + vec2(10.0, -14.0), &shown.point.name));
+            let tag = self.words_on(&shown.point.name, self.palette.accent, |size, _| {
+                let usual = beside(seen(shown), size, SIDES[0]);
+                place(seen(shown), size, labels, &[]).unwrap_or(usual)
+            });
+            labels.push(tag);
         }
         let is_named = |shown: &&&ShownPoint<'_>| {
             let is_open = self.open.contains(&shown.sheet) || self.scene.panels.is_empty();
@@ -89,14 +91,11 @@ impl Picture<'_> {
         if named.is_empty() {
             return;
         }
-        taken.extend(points.map(|shown| {
+        let marks = points.map(|shown| {
             let mark = Vec2::splat(2.0 * MARK);
             Rect::from_center_size(seen(shown), mark)
-        }));
-        taken.extend(tagged(self.scene, self.open).map(|sheet| {
-            let origin = self.seen(self.table_layout.sheet(sheet.id), Default::default());
-            ground(sheet).translate(origin.to_vec2())
-        }));
+        });
+        let mut taken: Vec<Rect> = labels.iter().copied().chain(marks).collect();
         for sheet in &self.scene.sheets {
             let mut named = named.iter().filter(|shown| shown.sheet == sheet.id);
             let Some(first) = named.next() else {
@@ -110,6 +109,7 @@ impl Picture<'_> {
                 if let Some(rect) = place(seen(shown), name.size(), &taken, &lines) {
                     self.painter.galley(rect.min, name, colour);
                     taken.push(rect);
+                    labels.push(rect);
                 }
             }
         }

@@ -8,7 +8,7 @@ use super::hit::{ShownPoint, shown_points};
 use super::rulers::{self, RULER};
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
 use super::selection::{Item, Selection};
-use super::sheet_tag::tagged;
+use super::sheet_tag::{ground, tagged};
 use super::table_layout::TableLayout;
 use crate::theme::{self, Palette};
 use crate::tools::Overlay;
@@ -28,6 +28,9 @@ const NOTCH: f32 = 9.0;
 
 /// How much is seen of what steps of a panel led away from.
 const FAINT: f32 = 0.55;
+
+/// How many places are tried for the name of a panel, half its height apart.
+const CAPTION_STEPS: usize = 12;
 
 /// Room beside the longest line of a label [pixels].
 const LABEL_MARGIN: f32 = 24.0;
@@ -70,8 +73,15 @@ pub struct Picture<'a> {
 const HOVERED: f32 = 0.4;
 
 impl Picture<'_> {
-    /// Paints the table, the pattern, and what a tool draws over it.
-    pub fn paint(&self, overlay: &[Overlay]) {
+    /// Paints the table, the pattern, and what a tool draws over it; says where names, numbers of seams and tags
+    /// stand: none stands over another.
+    pub fn paint(&self, overlay: &[Overlay]) -> Vec<Rect> {
+        let mut labels: Vec<Rect> = tagged(self.scene, self.open)
+            .map(|sheet| {
+                let origin = self.seen(self.table_layout.sheet(sheet.id), Vec2::zeros());
+                ground(sheet).translate(origin.to_vec2())
+            })
+            .collect();
         self.painter.rect_filled(self.view, 0.0, self.palette.table);
         self.grid();
         for panel in &self.scene.panels {
@@ -89,10 +99,12 @@ impl Picture<'_> {
                 self.graded(panel, grading);
             }
             self.outline(panel);
-            self.caption(panel);
+        }
+        for panel in &self.scene.panels {
+            self.caption(panel, &mut labels);
         }
         for seam in &self.scene.seams {
-            self.seam_numbers(seam);
+            self.seam_numbers(seam, &mut labels);
         }
         self.guides();
         self.handles();
@@ -112,7 +124,7 @@ impl Picture<'_> {
                 self.seam_links(seam);
             }
         }
-        self.point_names(&points);
+        self.point_names(&points, &mut labels);
         for mark in overlay {
             self.overlay(mark);
         }
@@ -124,6 +136,7 @@ impl Picture<'_> {
             self.legend(grading);
         }
         self.guide_label();
+        labels
     }
 
     pub(super) fn seen(&self, origin: Vec2, at: Vec2) -> Pos2 {
@@ -344,7 +357,7 @@ impl Picture<'_> {
 
     /// The panel's name, and under it how it is cut where there is room for both: inside, in a gap of the
     /// grainline; else the name alone, under the panel if it has no room inside.
-    fn caption(&self, panel: &PanelScene) {
+    fn caption(&self, panel: &PanelScene, labels: &mut Vec<Rect>) {
         let origin = self.table_layout.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
             self.painter
@@ -371,6 +384,18 @@ impl Picture<'_> {
             true => self.seen(origin, panel.shape.middle),
             false => Pos2::new((low.x + high.x) * 0.5, low.y + 8.0 + size.y * 0.5),
         };
+        // Where another label stands it goes up or down inside, or farther below.
+        let steps = (0..CAPTION_STEPS).flat_map(|k| match inside {
+            true => [k as f32, -(k as f32)],
+            false => [k as f32; 2],
+        });
+        let places = steps.map(|k| middle + vec2(0.0, 0.5 * k * size.y));
+        let is_free = |at: &Pos2| {
+            let ground = Rect::from_center_size(*at, size + vec2(4.0, 2.0));
+            !labels.iter().any(|other| other.intersects(ground))
+        };
+        let middle = places.clone().find(is_free).unwrap_or(middle);
+        labels.push(Rect::from_center_size(middle, size + vec2(4.0, 2.0)));
         if inside {
             let ground = Rect::from_center_size(middle, size + vec2(4.0, 2.0));
             self.painter

@@ -7,13 +7,17 @@ use super::scene::PanelScene;
 use super::seams::{SeamDrawing, SeamEnd};
 use super::selection::Item;
 use crate::theme;
-use egui::{Align2, Color32, Shape, Stroke, vec2};
+use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
 /// How far inside the outline a seam's line runs [pixels].
 const SEAM_INSET: f64 = 5.0;
 /// Stretches shorter than this carry no number [pixels].
 const NUMBER_LEAST: f64 = 34.0;
+/// Places along a stretch that are tried for its number, the most usual first [share of its length].
+const NUMBER_PLACES: [f64; 7] = [0.5, 0.4, 0.6, 0.28, 0.72, 0.15, 0.85];
+/// Radius of the ground of a number [pixels].
+const NUMBER_RADIUS: f32 = 8.5;
 /// Sides of a seam that differ by more are shown as a warning [m].
 const UNEVEN: f64 = 0.001;
 
@@ -45,7 +49,9 @@ impl Picture<'_> {
         }
     }
 
-    pub(super) fn seam_numbers(&self, seam: &SeamDrawing) {
+    /// The number of a seam on both its sides, each in the middle of a stretch or where there is room beside other
+    /// labels.
+    pub(super) fn seam_numbers(&self, seam: &SeamDrawing, labels: &mut Vec<Rect>) {
         for stretch in &seam.stretches {
             let Some(panel) = self.scene.panel_scene(stretch.panel) else {
                 continue;
@@ -55,14 +61,20 @@ impl Picture<'_> {
             if length * scale < NUMBER_LEAST {
                 continue;
             }
-            let Some((at, way)) = along(&stretch.line, 0.5) else {
+            let origin = self.table_layout.panel(panel.id);
+            let places = NUMBER_PLACES.iter().filter_map(|share| {
+                let (at, way) = along(&stretch.line, *share)?;
+                let inward = Vec2::new(-way.y, way.x) * panel.shape.cloth_side;
+                Some(self.seen(origin, at + inward * (NUMBER_INSET / scale)))
+            });
+            let room = |at: Pos2| Rect::from_center_size(at, vec2(2.0, 2.0) * NUMBER_RADIUS);
+            let is_free = |at: &Pos2| !labels.iter().any(|other| other.intersects(room(*at)));
+            let Some(middle) = places.into_iter().find(is_free) else {
                 continue;
             };
-            let inward = Vec2::new(-way.y, way.x) * panel.shape.cloth_side;
-            let origin = self.table_layout.panel(panel.id);
-            let middle = self.seen(origin, at + inward * (NUMBER_INSET / scale));
+            labels.push(room(middle));
             self.painter
-                .circle_filled(middle, 8.5, theme::seam(seam.number));
+                .circle_filled(middle, NUMBER_RADIUS, theme::seam(seam.number));
             self.painter.text(
                 middle,
                 Align2::CENTER_CENTER,
@@ -115,7 +127,7 @@ impl Picture<'_> {
     pub(super) fn graded(&self, panel: &PanelScene, grading: &Grading) {
         let origin = self.table_layout.panel(panel.id);
         for (k, size) in grading.sizes.iter().enumerate() {
-            let stroke = Stroke::new(1.1, grading.colour(k));
+            let stroke = Stroke::new(1.1, Grading::colour(k));
             let own = size.panels.iter().filter(|(id, _)| *id == panel.id);
             for ring in own.flat_map(|(_, rings)| rings) {
                 self.painter.line(self.line(origin, ring), stroke);
@@ -127,7 +139,7 @@ impl Picture<'_> {
     pub(super) fn legend(&self, grading: &Grading) {
         let mut at = self.view.min + vec2(30.0, 34.0);
         for (k, size) in grading.sizes.iter().enumerate() {
-            let colour = grading.colour(k);
+            let colour = Grading::colour(k);
             let line = [at, at + vec2(22.0, 0.0)];
             self.painter.line_segment(line, Stroke::new(2.0, colour));
             self.painter.text(

@@ -386,6 +386,15 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Least rectangle round a panel and the lines it is cut along [m].
+    pub fn room_of(&self, panel: &PanelScene) -> Bounds2 {
+        let rings = self.cut_lines.of(panel.id).iter();
+        let cut = rings.flatten().copied();
+        Bounds2::of(cut.chain([panel.bounds().min, panel.bounds().max]))
+    }
+}
+
 impl PanelScene {
     /// Least rectangle round it on its sheet [m].
     pub fn bounds(&self) -> &Bounds2 {

@@ -8,6 +8,8 @@ use toile_pattern::{PanelId, Pattern, SheetId};
 
 /// Room between sheets [m]: enough for seam numbers and names beside narrow panels.
 const GAP: f64 = 0.06;
+/// Room left between pieces that were pushed apart [m].
+const PUSHED: f64 = 0.03;
 /// Half the width of what is shown of an empty sheet [m].
 const ROOM: f64 = 0.3;
 /// Width of the whole over its height that rows are broken for: about that of the view.
@@ -20,6 +22,12 @@ pub struct TableLayout {
     /// from there [m]. It stays while a pattern is edited, so that nothing jumps, until the document
     /// gives another place.
     shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
+    /// Where the document had the sheets when it was opened; one it has elsewhere was placed by hand.
+    opened: BTreeMap<SheetId, [f64; 2]>,
+    /// Sheets whose pieces lay upon each other then: they are meant to.
+    together: Vec<[SheetId; 2]>,
+    /// How far sheets are pushed so that what became larger covers none of them [m].
+    pushed: BTreeMap<SheetId, Vec2>,
     sheets: BTreeMap<SheetId, Vec2>,
     panels: BTreeMap<PanelId, Vec2>,
 }
@@ -44,7 +52,74 @@ impl TableLayout {
             let moved = rows(&boxes).into_iter();
             self.shifted = moved.map(|(id, by)| (id, (place, by))).collect();
         }
+        let sheets = pattern.sheets.iter();
+        self.opened = sheets.map(|sheet| (sheet.id, sheet.on_table)).collect();
+        self.pushed.clear();
         self.follow(pattern);
+        let rooms = self.rooms(pattern, scene);
+        self.together.clear();
+        for (k, (one, room)) in rooms.iter().enumerate() {
+            let rest = rooms[k + 1..].iter();
+            let over = rest.filter(|(_, other)| overlap(room, other).is_some());
+            self.together.extend(over.map(|(other, _)| [*one, *other]));
+        }
+    }
+
+    /// Pushes sheets apart whose pieces came to lie upon each other, to the right or downward, the shorter way:
+    /// after another size or a longer hem. Seen only: the document has them where they were. What was placed by
+    /// hand stays, and what lay together from the start.
+    pub fn push_apart(&mut self, pattern: &Pattern, scene: &Scene) {
+        self.pushed.clear();
+        self.follow(pattern);
+        let by_hand = |id: SheetId| {
+            let place = pattern.sheet(id).map(|sheet| sheet.on_table);
+            self.opened.get(&id).copied() != place
+        };
+        let mut rooms = self.rooms(pattern, scene);
+        // From the upper left on, those placed by hand first: they stay.
+        rooms.sort_by(|(one, a), (other, b)| {
+            let rank = |id: SheetId, room: &Bounds2| (!by_hand(id), room.min.x - room.max.y);
+            let (one, other) = (rank(*one, a), rank(*other, b));
+            one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
+        });
+        let mut pushed = BTreeMap::new();
+        for k in 1..rooms.len() {
+            let (id, mut room) = rooms[k];
+            if by_hand(id) {
+                continue;
+            }
+            let mut by = Vec2::zeros();
+            // Each push clears one of those before at least.
+            for _ in 0..rooms.len() {
+                let covers = rooms[..k].iter().find_map(|(other, taken)| {
+                    let meant = self.together.contains(&[id, *other])
+                        || self.together.contains(&[*other, id]);
+                    overlap(taken, &room).filter(|_| !meant)
+                });
+                let Some(way) = covers else { break };
+                by += way;
+                room = moved(&room, way);
+            }
+            rooms[k].1 = room;
+            if by != Vec2::zeros() {
+                pushed.insert(id, by);
+            }
+        }
+        if !pushed.is_empty() {
+            self.pushed = pushed;
+            self.follow(pattern);
+        }
+    }
+
+    /// The rooms that the pieces of sheets take on the table, cut lines too [m].
+    fn rooms(&self, pattern: &Pattern, scene: &Scene) -> Vec<(SheetId, Bounds2)> {
+        let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
+        let rooms = free.filter_map(|sheet| {
+            let panels = scene.panels.iter().filter(|panel| panel.sheet == sheet.id);
+            let rooms = panels.map(|panel| moved(&scene.room_of(panel), self.panel(panel.id)));
+            Some((sheet.id, rooms.reduce(|a, b| a.union(&b))?))
+        });
+        rooms.collect()
     }
 
     /// Follows a change of the pattern.
@@ -55,7 +130,8 @@ impl TableLayout {
                 let moved = self.shifted.get(&sheet.id);
                 let moved = moved.filter(|(from, _)| *from == sheet.on_table);
                 let by = moved.map_or_else(Vec2::zeros, |(_, by)| *by);
-                (sheet.id, Vec2::from(sheet.on_table) + by)
+                let pushed = self.pushed.get(&sheet.id).copied().unwrap_or_default();
+                (sheet.id, Vec2::from(sheet.on_table) + by + pushed)
             })
             .collect();
         let panels = pattern.panels.iter();
@@ -100,10 +176,6 @@ impl TableLayout {
 
     /// Least rectangle round everything on the table [m].
     pub fn bounds(&self, scene: &Scene) -> Option<Bounds2> {
-        let moved = |bounds: &Bounds2, by: Vec2| Bounds2 {
-            min: bounds.min + by,
-            max: bounds.max + by,
-        };
         let sheets = scene
             .sheets
             .iter()
@@ -117,9 +189,31 @@ impl TableLayout {
             });
         let panels = scene.panels.iter();
         sheets
-            .chain(panels.map(|panel| moved(panel.bounds(), self.panel(panel.id))))
+            .chain(panels.map(|panel| moved(&scene.room_of(panel), self.panel(panel.id))))
             .reduce(|a, b| a.union(&b))
     }
+}
+
+fn moved(bounds: &Bounds2, by: Vec2) -> Bounds2 {
+    Bounds2 {
+        min: bounds.min + by,
+        max: bounds.max + by,
+    }
+}
+
+/// How far a room has to go to the right or downward, the shorter way, to lie clear of one that stays [m];
+/// nothing where it does.
+fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
+    let common = stays.max.inf(&goes.max) - stays.min.sup(&goes.min);
+    if common.x <= 1e-9 || common.y <= 1e-9 {
+        return None;
+    }
+    let right = stays.max.x - goes.min.x + PUSHED;
+    let down = goes.max.y - stays.min.y + PUSHED;
+    Some(match right <= down {
+        true => Vec2::new(right, 0.0),
+        false => Vec2::new(0.0, -down),
+    })
 }
 
 /// Least rectangle round a sheet and its panels [m].

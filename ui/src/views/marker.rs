@@ -54,8 +54,8 @@ pub struct MarkerView {
     pub selection: Vec<OrderedPiece>,
     /// What keeps it from being cut as it lies.
     pub state: MarkerState,
-    /// Why it cannot be shown.
-    pub fault: String,
+    /// Why there is nothing to see, and whether that is a fault.
+    pub nothing: Option<(String, bool)>,
     camera: TableCamera,
     pieces: Vec<PieceScene>,
     cloth: Bounds2,
@@ -71,7 +71,7 @@ impl Default for MarkerView {
             chosen: None,
             selection: Vec::new(),
             state: MarkerState::default(),
-            fault: String::new(),
+            nothing: None,
             camera: TableCamera::default(),
             pieces: Vec::new(),
             cloth: Bounds2::EMPTY,
@@ -94,16 +94,19 @@ impl MarkerView {
         self.wants_fit = true;
     }
 
-    /// Nothing is to be seen, for a reason.
-    pub fn clear(&mut self, fault: String) {
+    /// Nothing is to be seen: there is nothing yet, or it cannot be shown.
+    pub fn clear(&mut self, why: Result<&str, String>) {
         self.pieces.clear();
-        self.fault = fault;
+        self.nothing = Some(match why {
+            Ok(words) => (words.to_owned(), false),
+            Err(words) => (words, true),
+        });
         self.state = MarkerState::default();
     }
 
     /// Follows a marker as it lies now. Pieces that lie as before are not drawn anew.
     pub fn follow(&mut self, laid: &DocumentMarker) {
-        self.fault.clear();
+        self.nothing = None;
         self.state = laid.state();
         let mut old: HashMap<OrderedPiece, PieceScene> = std::mem::take(&mut self.pieces)
             .into_iter()
@@ -373,14 +376,13 @@ impl MarkerView {
         let painter = ui.painter_at(view);
         let palette = Palette::of(ui.ctx());
         painter.rect_filled(view, 0.0, palette.table);
-        if !self.fault.is_empty() {
-            painter.text(
-                view.center(),
-                Align2::CENTER_CENTER,
-                &self.fault,
-                theme::font(14.0),
-                palette.fault,
-            );
+        if let Some((words, is_fault)) = &self.nothing {
+            let colour = match is_fault {
+                true => palette.fault,
+                false => palette.ink_soft,
+            };
+            let font = theme::font(14.0);
+            painter.text(view.center(), Align2::CENTER_CENTER, words, font, colour);
             return;
         }
         let corner = |at: Vec2| self.screen(view, at);

@@ -3,9 +3,12 @@
 
 mod guides;
 mod input;
+mod marks;
 mod revealed;
+mod walked;
 
 use crate::canvas::camera::{ScreenPoint, TableCamera};
+use crate::canvas::finding_marks::FindingMark;
 use crate::canvas::grading::Grading;
 use crate::canvas::hit::{Hit, hits, inside_box, open_sheets, shown_points};
 use crate::canvas::paint::Picture;
@@ -15,7 +18,7 @@ use crate::canvas::sheet_tag::tagged;
 use crate::canvas::snap::snaps;
 use crate::canvas::table_layout::TableLayout;
 use crate::theme::{GRAB, Palette};
-use crate::tools::{Event, Outcome, Overlay, Pointer, Reading, State, Tool, ToolModifiers, walk};
+use crate::tools::{Event, Outcome, Overlay, Pointer, Reading, State, Tool, ToolModifiers};
 use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -42,6 +45,10 @@ pub struct PatternView {
     base: Scene,
     /// Where sheets and panels lay then.
     base_table_layout: TableLayout,
+    /// Where names, numbers of seams and tags were drawn.
+    labels: Vec<Rect>,
+    /// What is found wrong, at its parts.
+    pub finding_marks: Vec<FindingMark>,
     /// What is selected.
     pub selection: Selection,
     /// What is under the pointer.
@@ -88,6 +95,8 @@ pub struct PatternView {
     fitted: Option<egui::Vec2>,
     /// The seam that room was made for when its walk began.
     walked: Option<SeamId>,
+    /// How the table was seen before a walk moved it.
+    before_walk: Option<TableCamera>,
 }
 
 impl Default for PatternView {
@@ -98,6 +107,8 @@ impl Default for PatternView {
             scene: Scene::default(),
             base: Scene::default(),
             base_table_layout: TableLayout::default(),
+            labels: Vec::new(),
+            finding_marks: Vec::new(),
             selection: Selection::default(),
             hover: None,
             under: Vec::new(),
@@ -122,6 +133,7 @@ impl Default for PatternView {
             revealed: None,
             fitted: None,
             walked: None,
+            before_walk: None,
         }
     }
 }
@@ -190,6 +202,7 @@ impl PatternView {
         }
         self.table_layout.follow(pattern);
         if !previews {
+            self.table_layout.push_apart(pattern, &self.scene);
             self.base = self.scene.clone();
             self.base_table_layout = self.table_layout.clone();
         }
@@ -319,6 +332,12 @@ impl PatternView {
         }
         self.cursor(ui, panning, response.hovered());
         self.paint(ui, view, evaluation);
+        if let Some(item) = self.show_finding_marks(ui, view) {
+            outcomes.push(Outcome {
+                select: Some(Selection::one(item)),
+                ..Outcome::default()
+            });
+        }
         if let Some(item) = self.name_parts(ui, view, evaluation.pattern()) {
             outcomes.push(Outcome {
                 select: Some(Selection::one(item)),
@@ -326,50 +345,6 @@ impl PatternView {
             });
         }
         outcomes
-    }
-
-    /// When a walk begins, the table is moved away so far that both pieces are seen wherever it leads.
-    /// While it goes on the table stays.
-    fn make_room(&mut self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
-        let State::Walk(state) = &self.state else {
-            self.walked = None;
-            return;
-        };
-        let reading = self.reading(evaluation);
-        let seam = walk::selected(&reading);
-        if seam == self.walked || view.width() <= 50.0 {
-            return;
-        }
-        let room = walk::room(state, &reading);
-        self.walked = seam;
-        let Some(room) = room else {
-            return;
-        };
-        let mut corners = [room.min, room.max].into_iter();
-        if corners.all(|at| view.contains(self.screen(view, Vec2::zeros(), at))) {
-            return;
-        }
-        let scale = self.camera.scale;
-        self.camera.fit(view, &room);
-        // What is seen small enough is moved alone.
-        self.camera.scale = self.camera.scale.min(scale);
-        self.fitted = None;
-        ui.ctx().request_repaint();
-    }
-
-    /// Where the pieces of a seam touch comes into the middle of the view if a key led out of it.
-    fn follow_walk(&mut self, view: Rect, evaluation: &Evaluation) {
-        let marks = self.overlay(evaluation);
-        let touch = marks.iter().find_map(|mark| match mark {
-            Overlay::Touch(at) => Some(*at),
-            _ => None,
-        });
-        if let Some(at) = touch
-            && !view.contains(self.screen(view, Vec2::zeros(), at))
-        {
-            self.camera.centre = at;
-            self.fitted = None;
-        }
     }
 
     /// Whether a number of the tool in hand is being typed.
@@ -426,7 +401,7 @@ impl PatternView {
         }
     }
 
-    fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
+    fn paint(&mut self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
         let open = self.open();
         let overlay = self.overlay(evaluation);
         let hover = match self.tool {
@@ -463,13 +438,18 @@ impl PatternView {
             open: &open,
             palette: Palette::of(ui.ctx()),
         };
-        picture.paint(&overlay);
+        self.labels = picture.paint(&overlay);
     }
 
     /// The table place of the origin of the sheet that is drawn on [m].
     pub fn sheet_origin(&self) -> Vec2 {
         self.sheet
             .map_or_else(Vec2::zeros, |sheet| self.table_layout.sheet(sheet))
+    }
+
+    /// Where names of panels and points, numbers of seams, tags and signs of findings were drawn last.
+    pub fn labels(&self) -> &[Rect] {
+        &self.labels
     }
 
     /// Where a place of a sheet is seen.

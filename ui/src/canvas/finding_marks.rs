@@ -1,0 +1,70 @@
+//! Signs of findings at the parts they are about: a triangle for a fault or a warning, a ring for a note.
+
+use super::selection::Item;
+use crate::theme::{self, Palette};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use toile_pattern::Severity;
+
+/// What is found wrong with a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FindingMark {
+    /// The part.
+    pub item: Item,
+    /// How bad the worst of it is.
+    pub severity: Severity,
+    /// All that was found, a line each.
+    pub words: String,
+}
+
+/// From the part to its sign [pixels].
+const AWAY: Vec2 = vec2(13.0, -15.0);
+/// Half the side of a sign [pixels].
+const REACH: f32 = 8.0;
+
+impl FindingMark {
+    /// Where the sign of a part that is seen at a place stands.
+    pub fn place(at: Pos2) -> Rect {
+        Rect::from_center_size(at + AWAY, Vec2::splat(2.0 * REACH))
+    }
+
+    /// The colour it is drawn in.
+    pub fn colour(severity: Severity, palette: &Palette) -> Color32 {
+        match severity {
+            Severity::Note => palette.accent,
+            Severity::Warning => palette.warning,
+            Severity::Error => palette.fault,
+        }
+    }
+
+    /// Draws the sign.
+    pub fn paint(&self, painter: &Painter, place: Rect, palette: &Palette) {
+        let colour = Self::colour(self.severity, palette);
+        let (middle, letter) = match self.severity {
+            Severity::Note => {
+                painter.circle(
+                    place.center(),
+                    REACH - 1.0,
+                    palette.bar,
+                    Stroke::new(1.5, colour),
+                );
+                (place.center(), "i")
+            }
+            Severity::Warning | Severity::Error => {
+                let corners = vec![
+                    place.center_top(),
+                    place.right_bottom(),
+                    place.left_bottom(),
+                ];
+                let rim = Stroke::new(1.0, palette.bar);
+                painter.add(Shape::convex_polygon(corners, colour, rim));
+                (place.center() + vec2(0.0, 2.0), "!")
+            }
+        };
+        let ink = match self.severity {
+            Severity::Note => colour,
+            Severity::Warning | Severity::Error => palette.on_accent,
+        };
+        let font = theme::font(11.5);
+        painter.text(middle, Align2::CENTER_CENTER, letter, font, ink);
+    }
+}
