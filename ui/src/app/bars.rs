@@ -182,6 +182,9 @@ impl ToileApp {
                             ui.add(egui::Label::new(label).truncate())
                         });
                         label.inner.on_hover_text(words);
+                        if hints {
+                            ui.add_space(10.0);
+                        }
                     }
                     if hints {
                         let label = RichText::new(&hint).color(palette.ink_soft);
