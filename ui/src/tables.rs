@@ -55,7 +55,7 @@ const PROPOSED: usize = 5;
 
 impl ToileApp {
     pub(crate) fn show_tables(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             for (tab, name) in [
                 (Tab::Measurements, "Measurements"),
                 (Tab::Variables, "Variables"),

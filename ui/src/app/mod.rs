@@ -15,6 +15,7 @@ mod files;
 mod findings;
 mod garment_pane;
 mod job;
+mod layout;
 mod marker_pane;
 mod notice;
 mod pacing;
@@ -41,7 +42,7 @@ use background_work::{BackgroundWork, WorkEvent};
 use command_table::KeysTaken;
 use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
-use egui::{Panel, Ui};
+use egui::Ui;
 use exporting::{ExportMemory, Exporting};
 use marker_pane::{SearchChoice, Searching};
 use notice::Notice;
@@ -57,14 +58,6 @@ use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silen
 
 /// Time between frames while something runs by itself.
 const FRAME: Duration = Duration::from_millis(33);
-/// Share of the window's width the 3D view begins with.
-const GARMENT_SHARE: f32 = 0.33;
-/// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
-const TABLES: f32 = 220.0;
-const TABLES_SHARE: f32 = 0.45;
-/// Most of the window's width that the 3D view may take.
-const GARMENT_MOST: f32 = 0.6;
-
 /// The window. Documents are decided on by the session alone; this holds what is seen of them.
 pub struct ToileApp {
     pub(crate) session: Session,
@@ -474,88 +467,7 @@ impl ToileApp {
         }
     }
 
-    /// Bars and views, from the rim of the window inward.
-    fn parts(&mut self, ui: &mut Ui) {
-        self.offer_length();
-        let frame = theme::bar(ui.ctx());
-        Panel::top("menus")
-            .frame(frame)
-            .resizable(false)
-            .show(ui, |ui| self.menu_bar(ui));
-        Panel::bottom("status")
-            .frame(frame)
-            .resizable(false)
-            .show(ui, |ui| self.status(ui));
-        if self.panes.findings {
-            Panel::bottom("findings")
-                .frame(frame)
-                .default_size(130.0)
-                .resizable(true)
-                .show(ui, |ui| self.list_findings(ui));
-        }
-        if !self.is_open() {
-            egui::CentralPanel::default()
-                .frame(egui::Frame::new().fill(theme::Palette::of(ui.ctx()).table))
-                .show(ui, |ui| self.welcome(ui));
-            return;
-        }
-        if self.panes.marker {
-            let height = ui.available_height();
-            Panel::bottom("marker")
-                .frame(frame)
-                .resizable(true)
-                .default_size(height * 0.55)
-                .size_range(140.0..=(height * 0.8).max(140.0))
-                .show(ui, |ui| self.marker_side(ui));
-        }
-        Panel::left("tools")
-            .frame(frame)
-            .resizable(false)
-            .exact_size(self.tool_bar_width())
-            .show(ui, |ui| self.tool_bar(ui));
-        let beside = self.panes.tables && self.panes.tables_beside;
-        if self.panes.tables && !beside {
-            Panel::bottom("tables")
-                .frame(frame)
-                .default_size(TABLES)
-                .min_size(self.tables.least_height())
-                .resizable(true)
-                .show(ui, |ui| self.show_tables(ui));
-        }
-        if self.panes.garment || beside {
-            let width = ui.available_width();
-            Panel::right("side")
-                .frame(egui::Frame::new())
-                .resizable(true)
-                .default_size(width * GARMENT_SHARE)
-                .size_range(240.0..=(width * GARMENT_MOST).max(240.0))
-                .show(ui, |ui| self.side(ui, beside));
-        }
-        egui::CentralPanel::default()
-            .frame(egui::Frame::new())
-            .show(ui, |ui| self.pattern_side(ui));
-    }
-
-    /// Beside the pattern: the garment, and under it the tables where they stand there.
-    fn side(&mut self, ui: &mut Ui, tables: bool) {
-        let frame = theme::bar(ui.ctx());
-        if !self.panes.garment {
-            frame.show(ui, |ui| self.show_tables(ui));
-            return;
-        }
-        if tables {
-            let height = ui.available_height();
-            Panel::bottom("tables beside")
-                .frame(frame)
-                .default_size(height * TABLES_SHARE)
-                .size_range(100.0..=(height * 0.8).max(100.0))
-                .resizable(true)
-                .show(ui, |ui| self.show_tables(ui));
-        }
-        self.garment_side(ui);
-    }
-
-    fn pattern_side(&mut self, ui: &mut Ui) {
+    pub(super) fn pattern_side(&mut self, ui: &mut Ui) {
         let seen = |app: &Self| {
             let hover = app.view.hover.map(|hit| hit.item);
             (app.view.selection.clone(), hover, app.session.revision())
