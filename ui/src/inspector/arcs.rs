@@ -2,7 +2,7 @@
 //! tangent of a quarter of the angle.
 
 use crate::app::ToileApp;
-use crate::fields::Entered;
+use crate::fields::{Entered, labelled};
 use crate::tools::number;
 use egui::Ui;
 use toile_pattern::plan::{self, NumberAddress, NumberEntry};
@@ -47,7 +47,6 @@ impl ToileApp {
         let Some(arc) = Arc::new(&base, id) else {
             return;
         };
-        let label = ui.label("radius").id;
         let field = egui::Id::unique(("radius", id));
         let shown = plan::number_text(&base, &Number::Value(arc.radius()), Want::Length);
         let unit = base.pattern().unit;
@@ -57,9 +56,10 @@ impl ToileApp {
             arc.angle(&found)?;
             Ok(format!("= {}", number::show(value, Want::Length, unit)))
         };
-        let entered = self
-            .typed
-            .number_field(ui, (field, label), &shown, &self.base, told);
+        let entered = labelled(ui, "radius", |ui, label| {
+            self.typed.number_field(ui, (field, label), &shown, told)
+        });
+        self.typed.show_proposals(ui, field, &self.base);
         let Entered::Text(text) = entered else {
             return;
         };
