@@ -141,7 +141,7 @@ fn tools_are_signs_and_a_key_brings_their_names() {
     let width = |window: &Window| window.get_by_label("Fisheye dart").rect().width();
     assert!(width(&window) <= 44.0);
     let narrow = canvas(&window);
-    key(&mut window, Modifiers::NONE, Key::F4);
+    key(&mut window, Modifiers::NONE, Key::F2);
     assert!(width(&window) > 120.0);
     assert!(canvas(&window).width() < narrow.width());
     // Every tool is seen without scrolling on the smallest of the screens.

@@ -346,7 +346,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     command(
         Menu::View,
         "Tool names",
-        key(PLAIN, Key::F4),
+        key(PLAIN, Key::F2),
         "Show or hide the names of the tools beside their signs",
         always,
         |app| app.panes.tool_names = !app.panes.tool_names,

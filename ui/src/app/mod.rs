@@ -269,15 +269,12 @@ impl ToileApp {
             }
         }
         for event in events {
-            match event {
-                Event::FilesWritten { paths } => {
-                    let names: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
-                    self.notice = Notice::news(format!("Saved {}", names.join(", ")));
-                    if let Some(path) = self.session.project().source.clone() {
-                        self.preferences.opened(&path);
-                    }
+            if let Event::FilesWritten { paths } = event {
+                let names: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
+                self.notice = Notice::news(format!("Saved {}", names.join(", ")));
+                if let Some(path) = self.session.project().source.clone() {
+                    self.preferences.opened(&path);
                 }
-                _ => {}
             }
         }
         let warned = events.iter().filter_map(|event| match event {

@@ -197,7 +197,7 @@ fn placed(
     // Numbers alone say where, though the pointer is elsewhere, as in the field of a name.
     let sheet = sheet.or(reading.sheet).ok_or("point at a sheet first")?;
     let (at, spec) = match way {
-        Some(Way::FromLast | Way::Radius) => typed.from_last(),
+        Some(Way::FromLast | Way::Radius) => typed.after_last(),
         Some(Way::Beside) => typed.beside(false),
         Some(Way::Size) => typed.beside(state.pointed),
         Some(Way::Turn) => tangent::turned_place(state.answers.last(), typed.numbers, reading),
@@ -247,7 +247,7 @@ impl TypedPlace<'_> {
         self.pointed.map_or_else(Vec2::zeros, |at| at - self.origin)
     }
 
-    fn from_last(&self) -> Result<(Vec2, Spec), Unanswered> {
+    fn after_last(&self) -> Result<(Vec2, Spec), Unanswered> {
         let way = self.way();
         let distance = self.or_pointed(0, way.norm())?;
         let angle = self.or_pointed(1, way.y.atan2(way.x))?;
