@@ -4,6 +4,11 @@ use std::path::{Component, Path, PathBuf};
 
 /// The whole path of a file or a folder, which need not be there yet.
 pub(crate) fn resolved(path: &Path) -> PathBuf {
+    // The folder of a bare file name is the one that is worked in.
+    let path = match path.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => path,
+    };
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let there = whole
         .ancestors()
@@ -40,6 +45,15 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_folder_of_a_bare_name_is_the_one_that_is_worked_in() {
+        let folder = Path::new("p.json").parent().unwrap();
+        let here = resolved(folder);
+        assert!(here.is_absolute());
+        let way = relative(&resolved(Path::new("tables/w.json")), &here);
+        assert_eq!(way.as_deref(), Some(Path::new("tables/w.json")));
+    }
 
     #[test]
     fn the_way_from_a_folder_to_a_file() {

@@ -4,6 +4,7 @@ use super::ToileApp;
 use super::answer::{Answer, main_button};
 use super::export_choice::ExportChoice;
 use super::file_choice::FileChoice;
+use super::notice::Notice;
 use super::print_choice::PrintChoice;
 use crate::fields::text_field;
 use crate::tables::WornWhere;
@@ -109,6 +110,8 @@ impl ToileApp {
                     }
                     _ => None,
                 };
+                // What is told after it is told of it.
+                self.notice = Notice::default();
                 then(self);
                 self.leave(next);
             }
@@ -117,7 +120,8 @@ impl ToileApp {
 
     /// What comes after a dialog, if the changes it asked about are safe or given up.
     fn leave(&mut self, next: Option<Dialog>) {
-        if self.dialog.is_none() {
+        // What could not be saved is not left for another pattern.
+        if self.dialog.is_none() && !self.notice.is_fault() {
             self.dialog = next;
         }
         // Saving failed, or asks for a file first: the window stays.

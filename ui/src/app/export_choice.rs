@@ -98,8 +98,14 @@ impl ExportChoice {
     /// The files that are there already and would be replaced.
     fn would_replace(&self) -> Vec<PathBuf> {
         let folder = Path::new(self.folder.trim());
-        let files = self.formats.iter().map(|format| folder.join(format.file()));
-        files.filter(|file| file.exists()).collect()
+        let mut there: Vec<PathBuf> = std::fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| self.formats.iter().any(|format| is_written(*format, path)))
+            .collect();
+        there.sort();
+        there
     }
 
     fn set(&mut self, format: ExportFormat, is_on: bool) {
@@ -109,6 +115,27 @@ impl ExportChoice {
             self.formats.sort_unstable();
         }
     }
+}
+
+/// Whether a file is one that a format may write: its own, or one more of several fabrics or layers.
+fn is_written(format: ExportFormat, path: &Path) -> bool {
+    let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+        return false;
+    };
+    let own = format.file();
+    let (stem, end) = own.rsplit_once('.').unwrap_or((own, ""));
+    let rest = |stem: &str| {
+        name.strip_prefix(stem)?
+            .strip_prefix('-')?
+            .strip_suffix(end)
+    };
+    let numbered = |rest: &str| {
+        rest.trim_end_matches('.')
+            .chars()
+            .all(|c| c.is_ascii_digit())
+    };
+    let is_layer = format == ExportFormat::Obj && rest("layer").is_some();
+    name == own || rest(stem).is_some_and(numbered) || is_layer
 }
 
 impl ToileApp {

@@ -125,7 +125,11 @@ impl ToileApp {
                 self.notice = Notice::news("The export was stopped: nothing was written");
             }
             Err(fault) => {
-                if self.dialog.is_none() {
+                // For another pattern, opened meanwhile, it was not asked.
+                let source = &self.session.project().source;
+                let last = self.exports.last.as_ref();
+                let is_of_pattern = last.is_some_and(|(_, of)| of == source);
+                if self.dialog.is_none() && is_of_pattern {
                     let choice = exporting.choice;
                     let fault = fault.clone();
                     self.dialog = Some(Dialog::Export(Box::new(ExportChoice { fault, ..choice })));

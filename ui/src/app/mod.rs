@@ -439,6 +439,7 @@ impl ToileApp {
                 command.name
             ));
         }
+        self.take_picked_colour(&context);
         self.nudge(&context);
         self.take_clipboard(&context);
         self.take_news();

@@ -155,11 +155,13 @@ impl TableLayout {
         self.sheets.get(&id).copied().unwrap_or_default()
     }
 
-    /// Sheets that are seen elsewhere than where the document has them, with the places [m] they are
-    /// seen at. As soon as the document says where one of several sheets lies it has to say it of all.
+    /// Sheets that are laid elsewhere than where the document has them, with the places [m] they are laid at,
+    /// pushes apart from what grew not counted. As soon as the document says where one of several sheets lies it
+    /// has to say it of all.
     pub fn laid_apart(&self, pattern: &Pattern) -> Vec<(SheetId, [f64; 2])> {
         let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
-        let seen = free.map(|sheet| (sheet, <[f64; 2]>::from(self.sheet(sheet.id))));
+        let laid = |id: SheetId| self.sheet(id) - self.pushed.get(&id).copied().unwrap_or_default();
+        let seen = free.map(|sheet| (sheet, <[f64; 2]>::from(laid(sheet.id))));
         let apart = seen.filter(|(sheet, place)| *place != sheet.on_table);
         apart.map(|(sheet, place)| (sheet.id, place)).collect()
     }

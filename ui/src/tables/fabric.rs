@@ -57,7 +57,6 @@ pub struct FabricTable {
 
 impl ToileApp {
     pub(super) fn fabric_table(&mut self, ui: &mut Ui) {
-        self.take_picked_colour(ui);
         let spacing = ui.spacing_mut();
         spacing.item_spacing.y = LINE_GAP;
         spacing.interact_size.y = LINE;
@@ -358,8 +357,9 @@ impl ToileApp {
     }
 
     /// Takes over a colour once it is picked: one step of the history.
-    fn take_picked_colour(&mut self, ui: &Ui) {
-        let is_picking = Popup::is_any_open(ui.ctx()) || ui.input(|input| input.pointer.any_down());
+    pub(crate) fn take_picked_colour(&mut self, context: &egui::Context) {
+        let is_picking =
+            Popup::is_any_open(context) || context.input(|input| input.pointer.any_down());
         if is_picking {
             return;
         }

@@ -131,24 +131,25 @@ impl ToileApp {
             }),
         });
         ui.label(RichText::new(&one.file).color(palette.ink_soft));
-        if let Some(k) = one.other {
+        let mut is_taken_off = false;
+        if one.other.is_some() {
             let words = format!("Take off {}", one.name);
             let button = ui.add(Button::new("Take off"));
             button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &words));
-            if button.clicked() {
-                let (layer, mut others) = self.layers();
+            is_taken_off = button.clicked();
+        }
+        let (mut layer, mut others) = self.layers();
+        match (one.other, chosen) {
+            // Another row may have taken one off in this frame.
+            (Some(k), _) if others.len() <= k => return,
+            (Some(k), _) if is_taken_off => {
                 others.remove(k);
-                self.execute(Command::SetLayers { layer, others });
             }
+            (Some(k), Some(number)) => others[k].layer = number,
+            (None, Some(number)) => layer = number,
+            (_, None) => return,
         }
-        if let Some(number) = chosen {
-            let (mut layer, mut others) = self.layers();
-            match one.other {
-                None => layer = number,
-                Some(k) => others[k].layer = number,
-            }
-            self.execute(Command::SetLayers { layer, others });
-        }
+        self.execute(Command::SetLayers { layer, others });
     }
 
     /// The garment's own layer, and the others.

@@ -243,8 +243,9 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     let id = planning.run(|evaluation| {
         let count = count.round() as u16;
         let (line, even) = plan::even_cuts(evaluation, *panel, [*from, *to], count)?;
-        let lines = match evaluation.number(first, Want::Length) {
-            Some(0.0) => even,
+        let [at, apart] = [first, spacing].map(|n| evaluation.number(n, Want::Length));
+        let lines = match (at, apart) {
+            (Some(0.0), Some(0.0)) => even,
             _ => placed_cuts(evaluation, (*panel, [*from, *to]), (count, first, spacing))?,
         };
         let wish = PleatWish {

@@ -288,7 +288,10 @@ fn accept_place(
             _ => None,
         },
     };
-    let closes = given.as_ref().is_some_and(|given| closes(state, given));
+    let numbers = typable.numbers();
+    let closes = given
+        .as_ref()
+        .is_some_and(|given| closes(state, given, numbers));
     if let Some(placed) = given.filter(|_| !closes) {
         state.places.push(placed);
         state.clear_typed();
@@ -310,14 +313,14 @@ fn accept_place(
     Ok(true)
 }
 
-/// Whether a place joins the first of several.
-fn closes(state: &SlotState, given: &Placed) -> bool {
+/// Whether a place joins the first of several; the first fields, so many, are those of its numbers.
+fn closes(state: &SlotState, given: &Placed, numbers: usize) -> bool {
     let pointer = state.pointer.as_ref();
     let near = pointer.map_or(0.0, |pointer| CLOSES * pointer.pixel);
-    // Numbers say exactly where.
-    let near = match state.is_typing() {
-        true => 1e-9,
-        false => near,
+    // Numbers say exactly where; a name says nothing of it.
+    let near = match state.typed.is_blank(numbers) {
+        true => near,
+        false => 1e-9,
     };
     let first = state.places.first();
     first.is_some_and(|first| state.places.len() > 2 && (given.at - first.at).norm() <= near)

@@ -246,7 +246,9 @@ impl Typable {
     /// Chooses the way of a sign.
     fn choose(&self, state: &mut SlotState, sign: char) -> Result<(), String> {
         let found = self.ways.iter().position(|way| way.sign() == Some(sign));
-        let found = found.ok_or_else(|| match self.ways.is_empty() {
+        let places = [Way::Coordinates, Way::FromLast, Way::Beside];
+        let asks_place = self.ways.iter().any(|way| places.contains(way));
+        let found = found.ok_or_else(|| match !asks_place {
             true => format!("{sign} chooses other numbers of a place, and none is asked for here"),
             false => format!("{sign} counts from a place that was given before: there is none yet"),
         })?;

@@ -40,6 +40,7 @@ pub(crate) fn true_darts(mut stage: Stage, going_on: &[CornerName]) -> (Stage, V
     stage.untrued = stage.lines[outline].edges.clone();
     divide_arcs(&mut stage, outline);
     let rows = rows(&stage, outline);
+    refused.extend(beside_no_row(&stage, outline, &rows));
     for row in &rows {
         let plain = row.plain(&stage, outline, going_on);
         match plain.is_smooth() {
@@ -85,6 +86,18 @@ impl Stage {
         }
         stage
     }
+}
+
+/// Darts to be trued that take something in, but have no edge that runs on across their mouth.
+fn beside_no_row(stage: &Stage, outline: usize, rows: &[DartRow]) -> Vec<OperationId> {
+    let edges = &stage.lines[outline].edges;
+    let is_open = |by: OperationId| edges.iter().any(|e| e.half == 0 && e.name == leg(by, 0));
+    let darts = stage.darts.iter().enumerate();
+    let lone = darts.filter(|(k, dart)| {
+        let is_in_row = rows.iter().any(|row| row.darts.contains(k));
+        dart.trued && dart.half == 0 && is_open(dart.by) && !is_in_row
+    });
+    lone.map(|(_, dart)| dart.by).collect()
 }
 
 /// Divides arcs of edges that have trued darts, so that a cubic follows each part closely.
