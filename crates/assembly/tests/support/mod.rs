@@ -6,7 +6,7 @@ pub mod edits;
 use toile_assembly::{Levels, Limb, PlacementBody};
 use toile_geometry::{Curve, SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_pattern::{
-    BodyPart, Corner, Draft, DraftSeam, DraftSpan, EdgeId, EdgeOrigin, Facing, PanelId, Piece,
+    BodyPart, Draft, DraftSeam, DraftSpan, EdgeCorner, EdgeId, EdgeOrigin, Facing, PanelId, Piece,
     PieceEdge, PieceId, SeamId, SeamOrigin, Worn,
 };
 
@@ -29,7 +29,7 @@ pub fn edges(curves: &[Curve]) -> Vec<PieceEdge> {
             origin: EdgeOrigin::drawn(EdgeId(k as u32)),
             curve,
             seam_allowance: 0.0,
-            corner: Corner::Mitre,
+            corner: EdgeCorner::default(),
             reversed: false,
         })
         .collect()
