@@ -358,7 +358,8 @@ fn what_changes_nothing_of_the_cloth_leaves_it_at_rest() {
 #[test]
 fn what_cannot_be_followed_is_told_and_the_garment_goes_on_later() {
     let folder = tempfile::tempdir().unwrap();
-    let path = band(folder.path());
+    let path = folder.path().join("other.toile.json");
+    std::fs::copy(band(folder.path()), &path).unwrap();
     let mut session = prepared(folder.path());
     let job = session.garment_setup().unwrap();
     let mut why = |command: Command| {
