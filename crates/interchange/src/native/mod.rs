@@ -24,7 +24,6 @@ mod write_panel;
 mod write_seam;
 
 pub use fitting::{FABRIC_WIDTHS, Fitting, FittingFabric, FittingLayer, FittingWearer};
-pub use write::{write_document, write_pattern};
 
 use crate::FormatError;
 use item::Item;
@@ -52,6 +51,24 @@ pub fn read_pattern(text: &str) -> Result<(Pattern, Vec<Diagnostic>), FormatErro
     Ok((file.pattern, file.notes))
 }
 
+/// Writes a pattern in the native format. Reading it back gives the same pattern.
+///
+/// # Errors
+/// The pattern has a name that no part may have, or a number that is not finite. Documents that
+/// were only changed by edits have neither.
+pub fn write_pattern(pattern: &Pattern) -> Result<String, FormatError> {
+    write_document(pattern, &Fitting::default())
+}
+
+/// Writes a pattern in the native format with how its garment is tried on. Reading it back gives
+/// both.
+///
+/// # Errors
+/// Those of [`write_pattern`].
+pub fn write_document(pattern: &Pattern, tried_on: &Fitting) -> Result<String, FormatError> {
+    write::write(pattern, |writer| write_fitting::fitting(writer, tried_on))
+}
+
 /// Reads a file in the native format (`*.toile.json`), of this version or an earlier one.
 ///
 /// Fields this version does not know are named in the diagnostics; everything else that is not
@@ -68,7 +85,7 @@ pub fn read_document(text: &str) -> Result<PatternFile, FormatError> {
             migrate::read_version_1(&root, &mut notes)?,
             Fitting::default(),
         ),
-        _ => read::read(&root, &mut notes)?,
+        _ => read::read(&root, read_fitting::fitting, &mut notes)?,
     };
     Ok(PatternFile {
         pattern,

@@ -3,7 +3,6 @@
 use super::fitting::Fitting;
 use super::item::{FieldsOfKind, Item, Written};
 use super::json::Value;
-use super::read_fitting::fitting;
 use super::read_marker::marker;
 use super::read_panel::panel;
 use super::read_seam::{mark, name, seam};
@@ -18,15 +17,19 @@ use toile_pattern::{
     PartId, Pattern, Point, PointRule, Sheet, Size, SizeId, Variable,
 };
 
-/// Reads the pattern at the root of a file, and how it is tried on.
+/// Reads how the garment is tried on.
+pub type FittingReader = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<Fitting, FormatError>;
+
+/// Reads the pattern at the root of a file, and by `fitting` how it is tried on.
 pub fn read(
     root: &Item<'_>,
+    fitting: FittingReader,
     notes: &mut Vec<Diagnostic>,
 ) -> Result<(Pattern, Fitting), FormatError> {
     // Formulas name parts, so the parts come first: names are bound in a second round.
-    let (unbound, _) = Reader::new(Names::default()).document(root)?;
+    let (unbound, _) = Reader::new(Names::default()).document(root, fitting)?;
     let mut reader = Reader::new(Names::new(&unbound));
-    let document = reader.document(root)?;
+    let document = reader.document(root, fitting)?;
     notes.extend(reader.notes);
     Ok(document)
 }
@@ -116,7 +119,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn document(&mut self, root: &Item<'a>) -> Result<(Pattern, Fitting), FormatError> {
+    fn document(
+        &mut self,
+        root: &Item<'a>,
+        fitting: FittingReader,
+    ) -> Result<(Pattern, Fitting), FormatError> {
         let head = root.object(HEAD, &mut self.notes)?;
         if let Some(unit) = head.get("unit") {
             self.unit = unit.choice(UNITS)?;

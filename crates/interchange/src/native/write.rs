@@ -1,10 +1,8 @@
 //! Writes a pattern file: head, sizes, variables, fabrics, sheets; numbers.
 
-use super::fitting::Fitting;
 use super::json::{self, Node, Value};
 use super::units::{UNITS, write_degrees, write_length, write_plain};
 use super::words::{VERSION, word};
-use super::write_fitting::fitting;
 use super::write_marker::marker;
 use super::write_panel::panel;
 use super::write_seam::{mark, name, seam};
@@ -15,27 +13,17 @@ use toile_pattern::{
     PointRule, Rheology, Sheet, is_part_name,
 };
 
-/// Writes a pattern in the native format. Reading it back gives the same pattern.
-///
-/// # Errors
-/// The pattern has a name that no part may have, or a number that is not finite. Documents that
-/// were only changed by edits have neither.
-pub fn write_pattern(pattern: &Pattern) -> Result<String, FormatError> {
-    write_document(pattern, &Fitting::default())
-}
-
-/// Writes a pattern in the native format with how its garment is tried on. Reading it back gives
-/// both.
-///
-/// # Errors
-/// Those of [`write_pattern`].
-pub fn write_document(pattern: &Pattern, tried_on: &Fitting) -> Result<String, FormatError> {
+/// Writes a pattern, and what `fitting` gives of how its garment is tried on.
+pub fn write(
+    pattern: &Pattern,
+    fitting: impl FnOnce(&Writer<'_>) -> Result<Option<Value>, FormatError>,
+) -> Result<String, FormatError> {
     let writer = Writer {
         pattern,
         unit: pattern.unit,
         names: Names::new(pattern),
     };
-    Ok(json::write(&writer.document(tried_on)?))
+    Ok(json::write(&writer.document(fitting(&writer)?)?))
 }
 
 /// Fields of an object in the making.
@@ -108,7 +96,7 @@ pub struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn document(&self, tried_on: &Fitting) -> Result<Value, FormatError> {
+    fn document(&self, tried_on: Option<Value>) -> Result<Value, FormatError> {
         let pattern = self.pattern;
         let mut head = Fields::default();
         head.put("toile", count(VERSION));
@@ -146,7 +134,7 @@ impl Writer<'_> {
         head.put_list("markers", markers?);
         let guides: Result<Vec<_>, _> = pattern.guides.iter().map(|g| self.guide(g)).collect();
         head.put_list("guides", guides?);
-        head.put_if("fitting", fitting(self, tried_on)?);
+        head.put_if("fitting", tried_on);
         head.put("next_id", count(pattern.ids.next));
         Ok(head.done())
     }
