@@ -186,7 +186,7 @@ fn a_distance_is_refused_where_there_is_no_edge() {
     drafter.typed("2");
     let words = drafter.status();
     assert!(
-        words.contains("a distance is measured along an edge"),
+        words.contains("it is measured along an edge"),
         "{words}"
     );
     assert!(drafter.pattern().panels[0].notches.is_empty());
@@ -246,7 +246,7 @@ fn the_distance_from_the_nearer_end_is_told_where_a_notch_would_lie() {
     // What is typed is told in its place.
     drafter.hover(drafter.place(0.14, 0.0));
     drafter.type_text("3");
-    assert_eq!(told(&drafter), "distance 3|");
+    assert_eq!(told(&drafter), "distance 3|\nname ");
     drafter.key(Key::Escape);
     // Inside there is no edge.
     drafter.hover(drafter.place(0.1, 0.25));

@@ -103,7 +103,7 @@ fn what_is_selected_is_not_covered_by_its_inspector() {
 #[test]
 fn tables_stand_where_they_were_dragged_and_are_there_the_next_time() {
     let folder = tempfile::tempdir().unwrap();
-    let size = [1280.0, 800.0];
+    let size = [1700.0, 900.0];
     let mut window = opened(size, Some(folder.path()));
     key(&mut window, Modifiers::NONE, Key::F8);
     let is_beside = |window: &Window| {
@@ -123,13 +123,13 @@ fn tables_stand_where_they_were_dragged_and_are_there_the_next_time() {
         window.drop_at(to);
         window.run_ok();
     };
-    drag(&mut window, pos2(300.0, 760.0));
+    drag(&mut window, pos2(300.0, 860.0));
     assert!(!is_beside(&window));
     let below = window.get_by_label("Add size").rect();
     assert!(below.top() >= canvas(&window).bottom());
     let again = opened(size, Some(folder.path()));
     assert!(!is_beside(&again), "where they were put is not remembered");
-    drag(&mut window, pos2(1200.0, 300.0));
+    drag(&mut window, pos2(1600.0, 300.0));
     assert!(is_beside(&window));
     key(&mut window, Modifiers::SHIFT, Key::F8);
     assert!(!is_beside(&window));

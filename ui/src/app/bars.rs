@@ -94,7 +94,7 @@ impl ToileApp {
             "Isolate" => !self.view.isolated.is_empty(),
             "All sizes" => self.view.grading.is_some(),
             "Tables" => self.panes.tables,
-            "Tables beside" => self.panes.tables_beside,
+            "Tables beside" => self.tables_are_beside,
             "Tool names" => self.panes.tool_names,
             "Findings" => self.panes.findings,
             "Garment view" => self.panes.garment,

@@ -341,7 +341,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(SHIFT, Key::F8),
         "Stand the tables beside the pattern, or below it; their strip can be dragged there too",
         always,
-        |app| app.panes.tables_beside = !app.panes.tables_beside,
+        ToileApp::toggle_tables_side,
     ),
     command(
         Menu::View,

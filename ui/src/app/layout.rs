@@ -4,8 +4,10 @@ use super::ToileApp;
 use crate::theme;
 use egui::{Panel, Ui};
 
-/// Share of the window's width the 3D view begins with.
-const GARMENT_SHARE: f32 = 0.33;
+/// Shares of the window's width that the 3D view begins with: alone, and with the tables under it.
+const GARMENT_SHARES: [f32; 2] = [0.26, 0.33];
+/// Width of a window from which on the tables stand beside the pattern, unless they were dragged [pixels].
+const WIDE: f32 = 1600.0;
 /// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
 const TABLES: f32 = 220.0;
 const TABLES_SHARE: f32 = 0.45;
@@ -52,7 +54,8 @@ impl ToileApp {
             .resizable(false)
             .exact_size(self.tool_bar_width())
             .show(ui, |ui| self.tool_bar(ui));
-        let beside = self.panes.tables && self.panes.tables_beside;
+        self.tables_are_beside = self.tables_stand_beside(ui.ctx());
+        let beside = self.panes.tables && self.tables_are_beside;
         if self.panes.tables && !beside {
             Panel::bottom("tables")
                 .frame(frame)
@@ -66,13 +69,19 @@ impl ToileApp {
             Panel::right("side")
                 .frame(egui::Frame::new())
                 .resizable(true)
-                .default_size(width * GARMENT_SHARE)
+                .default_size(width * GARMENT_SHARES[usize::from(beside)])
                 .size_range(240.0..=(width * GARMENT_MOST).max(240.0))
                 .show(ui, |ui| self.side(ui, beside));
         }
         egui::CentralPanel::default()
             .frame(egui::Frame::new())
             .show(ui, |ui| self.pattern_side(ui));
+    }
+
+    /// Whether the tables stand beside the pattern: where they were dragged, else where there is room.
+    pub(crate) fn tables_stand_beside(&self, context: &egui::Context) -> bool {
+        let is_wide = context.content_rect().width() >= WIDE;
+        self.panes.tables_beside.unwrap_or(is_wide)
     }
 
     /// Beside the pattern: the garment, and under it the tables where they stand there.

@@ -83,6 +83,8 @@ pub struct ToileApp {
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
     pub(crate) panes: Panes,
+    /// Whether the tables stood beside the pattern in the last frame.
+    pub(crate) tables_are_beside: bool,
     /// Whether the inspector stands at the left of the table.
     pub(crate) inspector_is_left: bool,
     /// Why the file that was asked for is not open.
@@ -141,6 +143,7 @@ impl ToileApp {
             tables: Tables::default(),
             typed: TypedTexts::default(),
             panes: preferences.panes,
+            tables_are_beside: false,
             inspector_is_left: false,
             refusal: None,
             closes: false,

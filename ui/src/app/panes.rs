@@ -15,8 +15,9 @@ pub struct Panes {
     pub marker: bool,
     /// Measurements, variables, sizes, history.
     pub tables: bool,
-    /// Whether these stand under the garment, beside the pattern; else they stand below it.
-    pub tables_beside: bool,
+    /// Whether these stand under the garment, beside the pattern; else they stand below it. Until they were
+    /// dragged, where there is room.
+    pub tables_beside: Option<bool>,
     /// Names of the tools beside their signs.
     pub tool_names: bool,
     /// The list of faults.
@@ -35,7 +36,7 @@ impl Default for Panes {
             garment: true,
             marker: false,
             tables: false,
-            tables_beside: true,
+            tables_beside: None,
             tool_names: false,
             findings: false,
             allowances: true,

@@ -282,6 +282,11 @@ impl ToileApp {
         })
     }
 
+    /// Stands the tables on the other side.
+    pub(crate) fn toggle_tables_side(&mut self) {
+        self.panes.tables_beside = Some(!self.tables_are_beside);
+    }
+
     pub(crate) fn change_theme(&mut self) {
         self.wants_theme = true;
     }

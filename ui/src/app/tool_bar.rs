@@ -40,7 +40,7 @@ const GROUPS: &[(&str, &[&str])] = &[
         "Points",
         &["Point from", "Point along", "Perpendicular", "Mirror point"],
     ),
-    ("Change", &["Move", "Turn", "Mirror", "Scale", "Measure"]),
+    ("Alter", &["Move", "Turn", "Mirror", "Scale", "Measure"]),
     (
         "Panel",
         &[
@@ -103,9 +103,9 @@ impl ToileApp {
         let side = height.min(SIGN);
         let button = match self.panes.tool_names {
             // The sign stands where the name would begin.
-            true => Button::new(format!("{}{name}", " ".repeat(7)))
+            true => Button::new(RichText::new(format!("{}{name}", " ".repeat(8))).small())
                 .shortcut_text(RichText::new(key.unwrap_or_default()).small()),
-            false => Button::new(""),
+            false => Button::new(RichText::new("").size(8.0)),
         };
         let button = button
             .selected(in_hand)

@@ -41,12 +41,12 @@ impl TableCamera {
     /// Where a table point is seen.
     pub fn screen(&self, view: Rect, point: TablePoint) -> ScreenPoint {
         let from_centre = (point.0 - self.centre) * self.scale;
-        ScreenPoint(view.center() + ScreenVector::new(from_centre.x as f32, -from_centre.y as f32))
+        ScreenPoint(middle(view) + ScreenVector::new(from_centre.x as f32, -from_centre.y as f32))
     }
 
     /// The table point that is seen there.
     pub fn table(&self, view: Rect, point: ScreenPoint) -> TablePoint {
-        TablePoint(self.centre + self.table_vector(point.0 - view.center()))
+        TablePoint(self.centre + self.table_vector(point.0 - middle(view)))
     }
 
     /// A vector on the screen as a vector on the table [m].
@@ -98,6 +98,11 @@ impl TableCamera {
         self.centre = self.centre.sup(&(bounds.max - half));
         self.centre = self.centre.inf(&(bounds.min + half));
     }
+}
+
+/// The middle of a view on a whole pixel, so that lines of the table are sharp and a click says a round place.
+fn middle(view: Rect) -> Pos2 {
+    view.center().round()
 }
 
 /// The enlargement at which a part of the table fills the view up to its border.

@@ -44,7 +44,7 @@ impl ToileApp {
             .rect_filled(target, 6.0, shade);
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         if handle.drag_stopped() {
-            self.panes.tables_beside = beside;
+            self.panes.tables_beside = Some(beside);
         }
     }
 }
