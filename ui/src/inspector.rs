@@ -10,6 +10,7 @@ use crate::canvas::selection::Item;
 use crate::fields::{Entered, choice, labelled};
 use crate::theme::{self, Palette};
 use crate::tools::{Tool, number};
+use crate::views::pattern::INSPECTOR_ROOM;
 use egui::{Rect, RichText, Ui, vec2};
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
@@ -19,7 +20,7 @@ use toile_pattern::{
 };
 
 /// Width of the inspector, and the room left round it [pixels].
-const WIDTH: f32 = 268.0;
+const WIDTH: f32 = INSPECTOR_ROOM - FRAME - 2.0 * MARGIN;
 const MARGIN: f32 = 10.0;
 /// Room that its frame takes on both sides together [pixels].
 const FRAME: f32 = 14.0;

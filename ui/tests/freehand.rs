@@ -87,6 +87,8 @@ fn lines_and_curves_are_named_as_they_are_drawn() {
         "{}",
         drafter.status()
     );
+    // What was typed goes back, then the place.
+    drafter.key(Key::Escape);
     drafter.key(Key::Escape);
     assert_eq!(names(&drafter), all, "{}", drafter.status());
     // One that is taken back is none, and the keys are commands again.

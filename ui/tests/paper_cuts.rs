@@ -185,10 +185,7 @@ fn a_distance_is_refused_where_there_is_no_edge() {
     drafter.hover(drafter.place(0.08, 0.1));
     drafter.typed("2");
     let words = drafter.status();
-    assert!(
-        words.contains("it is measured along an edge"),
-        "{words}"
-    );
+    assert!(words.contains("it is measured along an edge"), "{words}");
     assert!(drafter.pattern().panels[0].notches.is_empty());
     // Where there is one, what is typed is taken.
     drafter.hover(drafter.place(0.08, 0.0));
@@ -269,6 +266,8 @@ fn a_point_is_named_as_it_is_drawn() {
     drafter.typed("tip");
     let words = drafter.status();
     assert!(words.contains("is taken"), "{words}");
+    // What was typed goes back, then the tool is put down.
+    drafter.key(Key::Escape);
     drafter.key(Key::Escape);
     assert_eq!(drafter.pattern().sheets[0].points.len(), 1);
     assert_eq!(drafter.window.state().session().past().len(), steps);

@@ -5,7 +5,7 @@ use crate::theme;
 use egui::{Panel, Ui};
 
 /// Shares of the window's width that the 3D view begins with: alone, and with the tables under it.
-const GARMENT_SHARES: [f32; 2] = [0.26, 0.33];
+const GARMENT_SHARES: [f32; 2] = [0.245, 0.33];
 /// Width of a window from which on the tables stand beside the pattern, unless they were dragged [pixels].
 const WIDE: f32 = 1600.0;
 /// Height the tables begin with below the pattern [pixels], and under the garment [share of it].

@@ -81,6 +81,12 @@ impl TableCamera {
         }
     }
 
+    /// Shows all of a part of the table in a part of the view.
+    pub fn fit_into(&mut self, view: Rect, room: Rect, bounds: &Bounds2) {
+        self.fit(room, bounds);
+        self.centre += self.table_vector(middle(view) - middle(room));
+    }
+
     /// Moves the table, and shows it smaller if need be, just so far that all of a part is seen.
     pub fn reveal(&mut self, view: Rect, bounds: &Bounds2) {
         // What touches the rim of the view is hardly seen.

@@ -29,6 +29,8 @@ pub const ZOOM_STEP: f64 = 1.25;
 /// Parts up to this many are named for assistive technology; of more only those of the sheets that
 /// something selected is on.
 const MOST_NAMED: usize = 600;
+/// Width that the inspector takes over the table [pixels].
+pub const INSPECTOR_ROOM: f32 = 300.0;
 /// Half the width of the named node of a part [pixels].
 const NAMED_REACH: f32 = 5.0;
 
@@ -97,6 +99,12 @@ pub struct PatternView {
     walked: Option<SeamId>,
     /// How the table was seen before a walk moved it.
     before_walk: Option<TableCamera>,
+}
+
+/// The part of the view that stays free beside the inspector, where there is room for both.
+fn free_room(view: Rect) -> Rect {
+    let taken = INSPECTOR_ROOM * f32::from(u8::from(view.width() > 2.0 * INSPECTOR_ROOM));
+    Rect::from_min_max(view.min, Pos2::new(view.max.x - taken, view.max.y))
 }
 
 impl Default for PatternView {
@@ -297,7 +305,7 @@ impl PatternView {
             && view.width() > 50.0
             && let Some(bounds) = self.table_layout.bounds(&self.scene)
         {
-            self.camera.fit(view, &bounds);
+            self.camera.fit_into(view, free_room(view), &bounds);
             self.wants_fit = false;
             self.fitted = Some(view.size());
         }
