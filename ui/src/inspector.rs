@@ -40,12 +40,13 @@ fn inspector_place(table: Rect, left: bool) -> Rect {
 
 impl ToileApp {
     /// What is selected, over an upper corner of the table; where nothing is selected nothing is there. It goes to
-    /// the other corner where it would lie on what is selected. While a drawing tool is under way it is out of the
-    /// way.
+    /// the other corner where it would lie on what is selected. While a drawing tool is under way, and until it
+    /// has made something, it is out of the way.
     pub(crate) fn show_inspector(&mut self, ui: &mut Ui, table: Rect) {
         let items = self.view.selection.items().to_vec();
         let draws = matches!(self.view.tool, Tool::Slots(_));
-        let is_away = draws && self.view.is_busy();
+        let is_known = self.selected_before.as_ref() == Some(&self.view.selection);
+        let is_away = draws && (is_known || self.view.is_busy());
         if items.is_empty() || is_away || table.width() < LEAST_TABLE {
             return;
         }

@@ -31,6 +31,7 @@ mod tool_commands;
 mod tool_icons;
 mod welcome;
 
+use crate::canvas::selection::Selection;
 use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
 use crate::theme;
@@ -85,6 +86,8 @@ pub struct ToileApp {
     pub(crate) panes: Panes,
     /// Whether the tables stood beside the pattern in the last frame.
     pub(crate) tables_are_beside: bool,
+    /// What was selected when the drawing tool in hand was taken: it is not told over the table meanwhile.
+    pub(crate) selected_before: Option<Selection>,
     /// Whether the inspector stands at the left of the table.
     pub(crate) inspector_is_left: bool,
     /// Why the file that was asked for is not open.
@@ -144,6 +147,7 @@ impl ToileApp {
             typed: TypedTexts::default(),
             panes: preferences.panes,
             tables_are_beside: false,
+            selected_before: None,
             inspector_is_left: false,
             refusal: None,
             closes: false,

@@ -49,6 +49,8 @@ impl ToileApp {
         self.notice = Notice::default();
         self.leave_gesture();
         self.view.take(tool);
+        let draws = matches!(tool, Tool::Slots(_));
+        self.selected_before = draws.then(|| self.view.selection.clone());
     }
 
     /// Nothing that a tool shows is made.

@@ -9,7 +9,10 @@ use egui::{
 impl ToileApp {
     /// The rest of the strip, by which the tables are dragged beside the pattern or below it.
     pub(super) fn tables_handle(&mut self, ui: &mut Ui) {
-        let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
+        let size = vec2(
+            ui.available_size_before_wrap().x.max(0.0),
+            ui.spacing().interact_size.y,
+        );
         let (rect, handle) = ui.allocate_exact_size(size, Sense::drag());
         let handle = handle.on_hover_cursor(CursorIcon::Grab);
         handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Move tables"));
