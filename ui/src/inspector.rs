@@ -11,7 +11,7 @@ use crate::fields::{Entered, choice, labelled};
 use crate::theme::{self, Palette};
 use crate::tools::{Tool, number};
 use crate::views::pattern::INSPECTOR_ROOM;
-use egui::{Rect, RichText, Ui, vec2};
+use egui::{Rect, RichText, Ui, Vec2, vec2};
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
@@ -24,8 +24,8 @@ const WIDTH: f32 = INSPECTOR_ROOM - FRAME - 2.0 * MARGIN;
 const MARGIN: f32 = 10.0;
 /// Room that its frame takes on both sides together [pixels].
 const FRAME: f32 = 14.0;
-/// Width of the table below which there is no room for it [pixels].
-const LEAST_TABLE: f32 = WIDTH + 2.0 * MARGIN;
+/// Width and height of the table below which there is no room for it [pixels].
+const LEAST_TABLE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
 
 /// The part of the table that the inspector may take, at its right or at its left.
 fn inspector_place(table: Rect, left: bool) -> Rect {
@@ -47,7 +47,8 @@ impl ToileApp {
         let draws = matches!(self.view.tool, Tool::Slots(_));
         let is_known = self.selected_before.as_ref() == Some(&self.view.selection);
         let is_away = draws && (is_known || self.view.is_busy());
-        if items.is_empty() || is_away || table.width() < LEAST_TABLE {
+        let has_room = table.size().min(LEAST_TABLE) == LEAST_TABLE;
+        if items.is_empty() || is_away || !has_room {
             return;
         }
         let corners = [false, true].map(|left| inspector_place(table, left));

@@ -248,3 +248,29 @@ fn pieces_that_grow_push_others_away_in_the_view_alone() {
     key(&mut window, Modifiers::COMMAND, Key::Z);
     assert_eq!(places(&window), usual);
 }
+
+/// With everything open in the least window nothing breaks down, and in a usual one the pattern stays seen.
+#[test]
+fn a_crowded_window_shows_what_it_has_room_for() {
+    for size in [[760.0, 480.0], [1280.0, 800.0]] {
+        let mut window = opened(size, None);
+        for open in [Key::F8, Key::F9, Key::F10] {
+            key(&mut window, Modifiers::NONE, open);
+        }
+        key(&mut window, Modifiers::COMMAND, Key::A);
+        for table in [
+            "Variables",
+            "Fabric",
+            "Wearer",
+            "Worn with",
+            "History",
+            "Pattern",
+        ] {
+            window.get_by_label(table).click();
+            window.run_ok();
+        }
+        let least = if size[1] < 600.0 { 0.0 } else { 100.0 };
+        let canvas = canvas(&window);
+        assert!(canvas.height() >= least, "{size:?}: {canvas:?}");
+    }
+}

@@ -20,9 +20,9 @@ fn garmentcode_samples_have_their_areas_and_stitches() {
         println!("skipped: no shared data");
         return;
     };
-    for (file, area, stitches) in [
-        ("shirt_mean_specification.json", 6396.2, 18),
-        ("hoody_mean_specification.json", 5936.0, 12),
+    for (file, area, stitches, kinks) in [
+        ("shirt_mean_specification.json", 6396.2, 18, 12),
+        ("hoody_mean_specification.json", 5936.0, 12, 10),
     ] {
         let path = data.join("garmentcode").join(file);
         let mut session = Session::new();
@@ -44,5 +44,6 @@ fn garmentcode_samples_have_their_areas_and_stitches() {
         let found = session.diagnostics();
         let is_kink = |found: &toile_pattern::Diagnostic| found.code == toile_pattern::Code::Kink;
         assert!(found.iter().all(is_kink), "{file}: {found:?}");
+        assert_eq!(found.len(), kinks, "{file}");
     }
 }

@@ -6,6 +6,9 @@ use egui::{Panel, Ui};
 
 /// Shares of the window's width that the 3D view begins with: alone, and with the tables under it.
 const GARMENT_SHARES: [f32; 2] = [0.245, 0.33];
+/// Height that the marker has at least, and that is left to the pattern over it where there is room [pixels].
+const LEAST_MARKER: f32 = 140.0;
+const LEAST_PATTERN: f32 = 170.0;
 /// Width of a window from which on the tables stand beside the pattern, unless they were dragged [pixels].
 const WIDE: f32 = 1600.0;
 /// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
@@ -42,11 +45,15 @@ impl ToileApp {
         }
         if self.panes.marker {
             let height = ui.available_height();
+            let below = self.panes.tables && !self.tables_stand_beside(ui.ctx());
+            let tables = if below { TABLES } else { 0.0 };
+            // The pattern stays seen over it.
+            let most = (height - tables - LEAST_PATTERN).max(LEAST_MARKER);
             Panel::bottom("marker")
                 .frame(frame)
                 .resizable(true)
-                .default_size(height * 0.55)
-                .size_range(140.0..=(height * 0.8).max(140.0))
+                .default_size((height * 0.55).min(most))
+                .size_range(LEAST_MARKER..=most)
                 .show(ui, |ui| self.marker_side(ui));
         }
         Panel::left("tools")
