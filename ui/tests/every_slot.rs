@@ -133,7 +133,7 @@ impl Table {
         drafter.key(Key::D);
         drafter.click(drafter.part("Edge top of draft"));
         drafter.typed("3");
-        drafter.typed("9");
+        drafter.typed("6");
         drafter.key(Key::L);
         drafter.typed_and("36", Key::Tab);
         drafter.typed("13");
@@ -235,7 +235,7 @@ impl Table {
                 };
                 Vec2::new(x, 0.22)
             }
-            SlotKind::Operation => Vec2::new(0.1425, 0.355),
+            SlotKind::Operation => Vec2::new(0.1425, 0.37),
             SlotKind::Curve | SlotKind::End => ACROSS,
             SlotKind::Panel => Vec2::new(0.08, 0.05),
             SlotKind::Number { .. } => place(2),
