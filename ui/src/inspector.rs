@@ -318,6 +318,14 @@ impl ToileApp {
         let fabrics = pattern.fabrics.iter();
         let fabrics: Vec<_> = fabrics.map(|fabric| (fabric.id, &*fabric.name)).collect();
         choice(ui, "Fabric", &fabrics, &mut changed.fabric);
+        if let Some(cut_from) = self.session.project().garment_cloth().fabric {
+            labelled(ui, "Cut from", |ui, label| {
+                let told = "The whole garment is: F4, Garment cut from";
+                ui.label(&cut_from.name)
+                    .labelled_by(label)
+                    .on_hover_text(told);
+            });
+        }
         self.worn_choice(ui, &mut changed);
         if changed != **panel {
             let label = match changed.cut == panel.cut {

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use toile_pattern::{Marker, PiecePlacement};
+use toile_session::Command;
 use toile_ui::{Beginning, ToileApp};
 
 type Window = Harness<'static, ToileApp>;
@@ -130,4 +131,86 @@ fn a_marker_is_searched_for_moved_locked_and_undone() {
     press(&mut window, Key::Delete);
     assert_eq!(marker(&window).placements.len(), 3);
     assert_eq!(window.state().marker_view().state.waiting, 1);
+}
+
+/// The name and the width of the fabric that the marker lies on.
+fn lies_on(window: &mut Window) -> (String, f64) {
+    let project = window.state().session().project().clone();
+    let marker = marker(window);
+    let fabric = project
+        .pattern
+        .marker_fabric(&marker, &project.garment_cloth());
+    let fabric = fabric.unwrap();
+    (fabric.name, fabric.width)
+}
+
+fn execute(window: &mut Window, command: Command) {
+    window.state_mut().execute(command);
+    window.run_ok();
+}
+
+/// Takes something from a list.
+fn choose(window: &mut Window, list: &str, choice: &str) {
+    window.get_by_role_and_label(Role::ComboBox, list).click();
+    window.run_ok();
+    window.get_by_label(choice).click();
+    window.run_ok();
+}
+
+#[test]
+fn the_marker_lies_on_the_cloth_of_the_garment_and_what_it_keeps_is_mended_by_a_button() {
+    let mut window = window();
+    press(&mut window, Key::F10);
+    let before = lies_on(&mut window);
+    let fabric = Some("denim".to_owned());
+    execute(&mut window, Command::SetFabric { fabric });
+    assert_eq!(lies_on(&mut window), ("denim".to_owned(), 1.5));
+    let shown = window.get_by_role_and_label(Role::ComboBox, "Fabric");
+    assert_eq!(shown.value().as_deref(), Some("denim"));
+    execute(&mut window, Command::SetWidth { width: Some(1.2) });
+    assert_eq!(window.state().marker_view().cloth().size().y, 1.2);
+
+    // It may keep its own, which is told as long as it is so.
+    choose(&mut window, "Fabric", &format!("always {}", before.0));
+    assert_eq!(lies_on(&mut window), before);
+    let told = format!(
+        "The marker stays on {}, and the garment is cut from denim",
+        before.0
+    );
+    assert!(window.query_by_label_contains(&told).is_some());
+    window.get_by_label("Lay on denim").click();
+    window.run_ok();
+    assert_eq!(lies_on(&mut window), ("denim".to_owned(), 1.2));
+    assert!(window.query_by_label_contains("The marker stays").is_none());
+
+    // One step back each.
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run_ok();
+    assert_eq!(lies_on(&mut window), before);
+}
+
+#[test]
+fn words_never_move_the_fabric_of_the_marker() {
+    let mut window = window();
+    press(&mut window, Key::F10);
+    // Other words, the same fabric at the same scale; only its length is that of what lies on it.
+    let place = |window: &Window| {
+        let seen = window.state().marker_view().seen_cloth();
+        (seen.left_top(), seen.height())
+    };
+    let seen = window.state().marker_view().seen_cloth();
+    let before = place(&window);
+    let front = window.get_by_role_and_label(Role::Button, "Waiting piece front");
+    let from = front.rect().center();
+    drag(&mut window, from, seen.center() - from);
+    let words = |window: &Window| {
+        let told = window.query_by_label_contains("% used");
+        told.map_or_else(String::new, |line| line.value().unwrap_or_default())
+    };
+    let first = words(&window);
+    assert_eq!(place(&window), before, "{first}");
+    let at = piece(&window, "Piece front");
+    drag(&mut window, at, vec2(-100.0, 30.0));
+    assert_ne!(words(&window), first);
+    assert_eq!(place(&window), before, "{}", words(&window));
 }

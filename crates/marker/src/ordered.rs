@@ -8,7 +8,8 @@ use std::sync::Arc;
 use toile_interchange::{FabricSettings, FlawSettings, MarkerSettings, Metres, PrintSettings};
 use toile_nesting::{Nap, NestingError, Strip};
 use toile_pattern::{
-    Draft, Marker, MarkerCloth, NapRule, OrderedPiece, OrderedSize, Pattern, SizeId,
+    Draft, Fabric, GarmentCloth, Marker, MarkerCloth, NapRule, OrderedPiece, OrderedSize, Pattern,
+    SizeId,
 };
 
 /// A pattern drafted to the sizes of an order; nothing stands for a pattern without sizes.
@@ -18,6 +19,7 @@ pub type SizeDrafts = [(Option<SizeId>, Arc<Draft>)];
 /// same while pieces are moved.
 pub struct MarkerPieces {
     cloth: MarkerCloth,
+    fabric: Fabric,
     order: Vec<OrderedSize>,
     pub(crate) job: FabricJob,
     pub(crate) options: NestOptions,
@@ -28,23 +30,27 @@ pub struct MarkerPieces {
 }
 
 impl MarkerPieces {
-    /// The pieces of a marker of a pattern, by its drafts to the sizes of the order. Sizes that are
-    /// gone are passed over.
+    /// The pieces of a marker of a pattern on what its garment is cut from, by the drafts to the sizes of the
+    /// order. Sizes that are gone are passed over.
     ///
     /// # Errors
     /// The fabric is gone, a size was not drafted, nothing is cut from the fabric, a piece has no cut
     /// line or cannot be cut from fabric so spread.
     pub fn new(
-        pattern: &Pattern,
+        (pattern, garment): (&Pattern, &GarmentCloth),
         marker: &Marker,
         drafts: &SizeDrafts,
     ) -> Result<Self, MarkerError> {
         let id = marker.cloth.fabric;
-        let fabric = pattern.fabric(id).ok_or_else(|| MarkerError::Unknown {
-            kind: "fabric of the marker",
-            name: id.to_string(),
-            hint: "give the marker one of the pattern's fabrics".to_owned(),
-        })?;
+        let of_panels = pattern.fabric(id);
+        let fabric = pattern.marker_fabric(marker, garment);
+        let (Some(of_panels), Some(fabric)) = (of_panels, fabric) else {
+            return Err(MarkerError::Unknown {
+                kind: "fabric of the marker",
+                name: id.to_string(),
+                hint: "give the marker one of the pattern's fabrics".to_owned(),
+            });
+        };
         let options = options_of(&marker.cloth, &fabric.name);
         let ordered = ordered(pattern, &marker.order);
         let several = ordered.len() > 1;
@@ -64,13 +70,11 @@ impl MarkerPieces {
                 label: name.map(|size| &*size.name).filter(|_| several),
             });
         }
-        let to_cut = pieces_to_cut(&garments, &options, Some(&fabric.name))?;
+        let to_cut = pieces_to_cut(&garments, &options, Some(&of_panels.name))?;
         if to_cut.is_empty() {
             return Err(NestingError::NoItems.into());
         }
-        let drafted = garments.iter().flat_map(|garment| &garment.draft.fabrics);
-        let own = drafted.into_iter().find(|known| known.name == fabric.name);
-        let job = FabricJob::new((&fabric.name, &to_cut), own, &options)?;
+        let job = FabricJob::new((&fabric.name, &to_cut), Some(&fabric), &options)?;
         let keys = job.keys(&ordered);
         let pairs = keys.iter().enumerate().flat_map(|(item, copies)| {
             let copies = copies.iter().zip(0..);
@@ -78,6 +82,7 @@ impl MarkerPieces {
         });
         Ok(Self {
             cloth: marker.cloth.clone(),
+            fabric,
             order: marker.order.clone(),
             index: pairs.collect(),
             job,
@@ -105,10 +110,12 @@ impl MarkerPieces {
         self.job.whole(marker, &self.options)
     }
 
-    /// Whether a marker cuts the same pieces from fabric that lies alike, as long as the drafts are
+    /// Whether a marker of a pattern cuts the same pieces from fabric that lies alike, as long as the drafts are
     /// the same.
-    pub fn serve(&self, marker: &Marker) -> bool {
-        self.cloth == marker.cloth && self.order == marker.order
+    pub fn serve(&self, (pattern, garment): (&Pattern, &GarmentCloth), marker: &Marker) -> bool {
+        self.cloth == marker.cloth
+            && self.order == marker.order
+            && pattern.marker_fabric(marker, garment).as_ref() == Some(&self.fabric)
     }
 }
 

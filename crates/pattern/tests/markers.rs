@@ -67,28 +67,28 @@ fn placement(pattern: &Pattern, id: MarkerId, piece: OrderedPiece) -> PiecePlace
 fn a_marker_is_made_for_one_garment_and_renamed() {
     let (pattern, id) = marked();
     let marker = pattern.marker(id).unwrap();
-    assert_eq!(marker.name, "poplin");
+    assert_eq!(marker.name, "marker");
     assert_eq!(marker.quantity(None), 1);
     let ordered: Vec<OrderedPiece> = pattern.ordered_pieces(marker).collect();
     assert_eq!(ordered, ["front", "back"].map(|name| piece(&pattern, name)));
     let fabric = pattern.fabrics[0].id;
     let (edits, second) = plan::add_marker(&evaluated(&pattern), None, fabric).unwrap();
     let pattern = after(&pattern, &edits);
-    assert_eq!(pattern.marker(second).unwrap().name, "poplin 2");
+    assert_eq!(pattern.marker(second).unwrap().name, "marker 2");
     let evaluation = evaluated(&pattern);
     let renamed = plan::rename(&evaluation, id.into(), "140 wide").unwrap();
     let renamed = after(&pattern, &renamed);
     assert_eq!(renamed.marker_named("140 wide").unwrap().id, id);
-    let taken = plan::rename(&evaluation, id.into(), "poplin 2").unwrap_err();
-    assert!(taken.to_string().contains("marker \"poplin 2\""), "{taken}");
-    let taken = plan::add_marker(&evaluation, Some("poplin"), fabric).unwrap_err();
+    let taken = plan::rename(&evaluation, id.into(), "marker 2").unwrap_err();
+    assert!(taken.to_string().contains("marker \"marker 2\""), "{taken}");
+    let taken = plan::add_marker(&evaluation, Some("marker"), fabric).unwrap_err();
     assert!(taken.to_string().contains("is taken"), "{taken}");
     let gone = plan::add_marker(&evaluation, None, FabricId(77)).unwrap_err();
     assert_eq!(gone, EditError::Missing("fabric 77".into()));
     let gone = plan::remove_marker(&evaluation, id).unwrap();
     assert!(after(&pattern, &gone).marker(id).is_none());
     assert!(pattern.users(fabric.into()).contains(&Place::Marker(id)));
-    assert_eq!(pattern.describe(&Place::Marker(id)), "marker \"poplin\"");
+    assert_eq!(pattern.describe(&Place::Marker(id)), "marker \"marker\"");
 }
 
 #[test]

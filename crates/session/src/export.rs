@@ -121,6 +121,9 @@ impl Session {
             let mut part = ProgressShare::new(watcher, 0.0, DONE[0]);
             let markers = match &export.marker {
                 Some(name) => {
+                    let marker = self.project.pattern.marker_named(name);
+                    let kept = marker.and_then(|marker| self.kept_by(marker));
+                    events.extend(Event::warnings(kept.as_slice()));
                     let (name, finished) = stored(self, name)?;
                     let faults = finished.faults();
                     events.push(Event::Nested(finished.summary()));

@@ -80,7 +80,7 @@ pub use journal::{journal_lines, read_journal};
 pub use journal_files::open_journal;
 pub use live::{LiveFrame, LiveRun};
 pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
-pub use markers::{FoundMarker, MarkerSearch};
+pub use markers::{FoundMarker, MarkerSearch, kept_words};
 pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
     Opened, PatternFormat, SAMPLE, SAMPLES, open_mannequin, open_marker, open_measurements,

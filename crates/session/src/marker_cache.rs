@@ -67,14 +67,15 @@ impl MarkerCache {
         let named = pattern.sizes.iter();
         let named = named.filter(|size| sizes.contains(&Some(size.id)));
         let named: Vec<Arc<Size>> = named.cloned().collect();
+        let garment = project.garment_cloth();
         if let Some(kept) = self.pieces.get(&marker.id)
-            && kept.pieces.serve(marker)
+            && kept.pieces.serve((pattern, &garment), marker)
             && all_same(kept.drafts.iter(), drafts.iter().map(|(_, draft)| draft))
             && all_same(kept.sizes.iter(), named.iter())
         {
             return Ok(kept.pieces.clone());
         }
-        let pieces = Arc::new(MarkerPieces::new(pattern, marker, &drafts)?);
+        let pieces = Arc::new(MarkerPieces::new((pattern, &garment), marker, &drafts)?);
         let kept = CachedPieces {
             drafts: drafts.into_iter().map(|(_, draft)| draft).collect(),
             sizes: named,

@@ -1,10 +1,10 @@
 //! Markers of the document as they lie; searches on a snapshot, taken over as one edit.
 
-use crate::{Command, Event, Session, SessionError, Silent};
+use crate::{Command, Event, Session, SessionError, Shown, Silent};
 use std::sync::Arc;
 use toile_marker::{DocumentMarker, Found, MarkerPieces, SearchWatcher, Start};
 use toile_nesting::Search;
-use toile_pattern::{Marker, MarkerId, plan};
+use toile_pattern::{Marker, MarkerId, MarkerKeeps, Pattern, plan};
 
 /// A search for a marker of a document, on what the document was when it was asked for. It may run
 /// on a thread of its own.
@@ -90,6 +90,20 @@ impl Session {
         Ok(Some(events))
     }
 
+    /// What markers keep though the garment is cut otherwise, in words.
+    pub(crate) fn kept_by_markers(&self) -> Vec<String> {
+        let markers = self.project.pattern.markers.iter();
+        markers.filter_map(|marker| self.kept_by(marker)).collect()
+    }
+
+    /// What a marker keeps though the garment is cut otherwise, in words.
+    pub(crate) fn kept_by(&self, marker: &Marker) -> Option<String> {
+        let pattern = &self.project.pattern;
+        let keeps = pattern.marker_keeps(marker, &self.project.garment_cloth())?;
+        let words = kept_words(pattern, &keeps);
+        Some(format!("marker {:?} {words}", marker.name))
+    }
+
     fn document_marker(&self, id: MarkerId) -> Result<Arc<Marker>, SessionError> {
         let pattern = &self.project.pattern;
         let names = || pattern.markers.iter().map(|marker| marker.name.clone());
@@ -101,6 +115,21 @@ impl Session {
                 name: id.to_string(),
                 hint: there_are(names().collect()),
             })
+    }
+}
+
+/// What a marker keeps, in words that go on from its name.
+pub fn kept_words(pattern: &Pattern, keeps: &MarkerKeeps) -> String {
+    let shown = |metres: f64| Shown(pattern.unit).length(metres);
+    match keeps {
+        MarkerKeeps::Fabric { own, garments } => {
+            format!("stays on {own}, and the garment is cut from {garments}")
+        }
+        MarkerKeeps::Width { own, garments } => format!(
+            "stays {} wide, and the cloth of the garment is {} wide",
+            shown(*own),
+            shown(*garments)
+        ),
     }
 }
 

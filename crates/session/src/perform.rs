@@ -275,6 +275,7 @@ impl Session {
         let warned = notes.into_iter().map(|message| Event::Warned { message });
         let mut events: Vec<Event> = warned.collect();
         events.extend(self.change(next, "Choose fabric"));
+        events.extend(Event::warnings(&self.kept_by_markers()));
         Ok(events)
     }
 
@@ -292,7 +293,9 @@ impl Session {
             width,
             ..self.project.clone()
         };
-        Ok(self.change(next, "Choose fabric width"))
+        let mut events = self.change(next, "Choose fabric width");
+        events.extend(Event::warnings(&self.kept_by_markers()));
+        Ok(events)
     }
 
     fn set_layers(&mut self, layer: u16, others: &[OtherGarment]) -> Outcome {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
 use toile_measure::{Measurements, Origin};
-use toile_pattern::{Diagnostic, Edit, EditError, Pattern, Severity, Wearer};
+use toile_pattern::{Diagnostic, Edit, EditError, GarmentCloth, Pattern, Severity, Wearer};
 
 /// Everything a person decides. Cloning is cheap.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,6 +114,15 @@ impl Project {
             other => other.clone(),
         };
         Ok(next)
+    }
+
+    /// What the whole garment is cut from. A fabric that is missing is passed over.
+    pub fn garment_cloth(&self) -> GarmentCloth {
+        let fabric = self.fabric.as_ref().and_then(|f| f.fabric(&self.pattern));
+        GarmentCloth {
+            fabric: fabric.map(Arc::new),
+            width: self.width,
+        }
     }
 
     /// The figure the mannequin is grown from.

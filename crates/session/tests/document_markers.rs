@@ -530,3 +530,87 @@ fn what_is_kept_of_a_marker_is_what_a_fresh_session_makes() {
     assert_eq!(session.marker(id).unwrap().laid().count(), 4);
     assert_eq!(session.marker(id).unwrap().suspended().len(), 8);
 }
+
+#[test]
+fn a_marker_lies_on_what_the_garment_is_cut_from_and_what_it_keeps_is_told() {
+    let mut session = opened(SAMPLE);
+    let id = marked(&mut session);
+    lay(&mut session, id, (Start::Anew, search(1)));
+    let places = placements(&session, id);
+    let own = session.marker(id).unwrap().finished();
+    let lies_on = |session: &mut Session| {
+        let finished = session.marker(id).unwrap().finished();
+        (finished.fabric, finished.strip.width)
+    };
+    let run = |session: &mut Session, command: Command| {
+        let events = session.execute(command, &mut Silent).unwrap();
+        let told = events.into_iter().filter_map(|event| match event {
+            Event::Warned { message } => Some(message),
+            _ => None,
+        });
+        told.collect::<Vec<_>>()
+    };
+    let denim = || Command::SetFabric {
+        fabric: Some("denim".into()),
+    };
+    let wide = |width| Command::SetWidth { width };
+
+    assert!(run(&mut session, denim()).is_empty());
+    assert_eq!(lies_on(&mut session), ("denim".to_owned(), 1.5));
+    assert_eq!(
+        placements(&session, id),
+        places,
+        "the pieces keep their places"
+    );
+    assert!(run(&mut session, wide(Some(1.2))).is_empty());
+    assert_eq!(lies_on(&mut session), ("denim".to_owned(), 1.2));
+    let outside = state(&mut session, id).outside;
+    assert!(!outside.is_empty(), "what lay beyond 1.2 m is told");
+
+    // A width of its own, and its own fabric, stay: that is told.
+    let usual = session.project().pattern.marker(id).unwrap().cloth.clone();
+    let with = |session: &mut Session, cloth: MarkerCloth| {
+        let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();
+        edit(session, edits);
+    };
+    let width = Some(1.4);
+    with(
+        &mut session,
+        MarkerCloth {
+            width,
+            ..usual.clone()
+        },
+    );
+    let told = run(&mut session, wide(Some(1.1)));
+    assert!(
+        told[0].contains("\"shirts\" stays 140.0 cm wide"),
+        "{told:?}"
+    );
+    let keeps_fabric = true;
+    with(
+        &mut session,
+        MarkerCloth {
+            keeps_fabric,
+            ..usual.clone()
+        },
+    );
+    assert_eq!(lies_on(&mut session), (own.fabric.clone(), own.strip.width));
+    let told = run(&mut session, wide(None));
+    let words = format!("stays on {}, and the garment is cut from denim", own.fabric);
+    assert!(told[0].contains(&words), "{told:?}");
+    with(&mut session, usual);
+
+    // A search is on the same cloth, and is dropped where that changes meanwhile.
+    let job = session.marker_search(id).unwrap();
+    let mut follow = SearchWatcher {
+        report: &mut |_| true,
+        stop: Arc::default(),
+    };
+    let found = job.run((Start::Anew, search(1)), &mut follow).unwrap();
+    assert_eq!(found.found.summary.fabric, "denim");
+    run(&mut session, wide(Some(1.3)));
+    assert!(session.adopt_marker(found).unwrap().is_none());
+    run(&mut session, wide(None));
+    run(&mut session, Command::SetFabric { fabric: None });
+    assert_eq!(lies_on(&mut session), (own.fabric, own.strip.width));
+}

@@ -90,6 +90,9 @@ impl ToileApp {
             ));
         };
         self.marker_view.chosen = Some(id);
+        if let Some(words) = self.why_marker_is_empty(id) {
+            return self.marker_view.clear(Ok(&words));
+        }
         match self.session.marker(id) {
             Ok(laid) => self.marker_view.follow(&laid),
             Err(error) => self.marker_view.clear(Err(error.to_string())),
@@ -100,6 +103,7 @@ impl ToileApp {
     pub(crate) fn marker_side(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| self.marker_bar(ui));
         ui.horizontal_wrapped(|ui| self.search_bar(ui));
+        self.verdict_line(ui);
         for action in self.marker_view.show(ui) {
             self.do_marker(action);
         }
@@ -187,46 +191,6 @@ impl ToileApp {
         }
     }
 
-    fn cloth_fields(&mut self, ui: &mut Ui, marker: &Marker) {
-        let pattern = self.base.pattern().clone();
-        let own = pattern
-            .fabric(marker.cloth.fabric)
-            .map_or(1.5, |fabric| fabric.width);
-        let unit = pattern.unit;
-        let metres = unit.metres();
-        let mut cloth = marker.cloth.clone();
-        let mut width = cloth.width.unwrap_or(own) / metres;
-        let before = width;
-        let label = ui.label("Width").id;
-        let field = DragValue::new(&mut width)
-            .range(0.01 / metres..=20.0 / metres)
-            .suffix(format!(" {}", unit.sign()))
-            .update_while_editing(false);
-        ui.add(field).labelled_by(label);
-        if width != before {
-            cloth.width = Some(width * metres);
-        }
-        let label = ui.label("Plies").id;
-        let field = DragValue::new(&mut cloth.plies)
-            .range(1..=500)
-            .speed(0.05)
-            .update_while_editing(false);
-        ui.add(field).labelled_by(label);
-        let mut price = cloth.price_per_metre.unwrap_or(0.0);
-        let label = ui.label("Price per m").id;
-        let field = DragValue::new(&mut price)
-            .range(0.0..=10_000.0)
-            .speed(0.1)
-            .max_decimals(2)
-            .update_while_editing(false);
-        ui.add(field).labelled_by(label);
-        cloth.price_per_metre = (price > 0.0).then_some(price);
-        if cloth != marker.cloth {
-            let planned = plan::set_marker_cloth(&self.base, marker.id, cloth);
-            self.edit(planned, "Set fabric of marker");
-        }
-    }
-
     fn search_bar(&mut self, ui: &mut Ui) {
         self.command_button(ui, "Search marker");
         self.command_button(ui, "Stop search");
@@ -246,21 +210,39 @@ impl ToileApp {
         for name in ["Turn piece", "Turn over", "Lock piece", "Take off"] {
             self.command_button(ui, name);
         }
-        ui.separator();
-        let palette = Palette::of(ui.ctx());
-        match &self.searching {
-            Some(searching) => {
+    }
+
+    /// What the marker comes to, or how far the search is: a line that is always as high, so that words move
+    /// nothing.
+    fn verdict_line(&mut self, ui: &mut Ui) {
+        let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+        let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let line = egui::UiBuilder::new().max_rect(rect).layout(layout);
+        ui.scope_builder(line, |ui| {
+            let palette = Palette::of(ui.ctx());
+            if let Some(searching) = &self.searching {
                 let progress = searching.job.progress();
                 let bar = egui::ProgressBar::new(progress.share as f32).desired_width(120.0);
                 ui.add(bar);
-                ui.label(progress.detail);
+                ui.add(egui::Label::new(progress.detail).truncate());
+                return;
             }
-            None => {
-                let (words, is_wrong) = self.marker_words();
-                let colour = if is_wrong { palette.fault } else { palette.ink };
-                ui.label(RichText::new(words).color(colour));
-            }
-        }
+            let mended = self.mend_button(ui);
+            let (words, is_wrong) = self.marker_words();
+            let colour = match (is_wrong, &mended) {
+                (true, _) => palette.fault,
+                (false, Some(_)) => palette.warning,
+                (false, None) => palette.ink,
+            };
+            let words = match mended {
+                Some(kept) if words.is_empty() => kept,
+                Some(kept) => format!("{kept}; {words}"),
+                None => words,
+            };
+            let words = RichText::new(words).color(colour);
+            ui.add(egui::Label::new(words).truncate());
+        });
     }
 
     /// What the marker comes to, and whether it cannot be cut as it lies.

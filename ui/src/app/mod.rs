@@ -16,6 +16,7 @@ mod findings;
 mod garment_pane;
 mod job;
 mod layout;
+mod marker_cloth;
 mod marker_pane;
 mod notice;
 mod pacing;

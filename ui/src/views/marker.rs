@@ -63,6 +63,7 @@ pub struct MarkerView {
     hover: Option<OrderedPiece>,
     drag: Option<(Vec2, Vec<OrderedPiece>)>,
     wants_fit: bool,
+    seen: Rect,
 }
 
 impl Default for MarkerView {
@@ -79,6 +80,7 @@ impl Default for MarkerView {
             hover: None,
             drag: None,
             wants_fit: true,
+            seen: Rect::NOTHING,
         }
     }
 }
@@ -92,6 +94,16 @@ impl MarkerView {
     /// Shows all of it when it is next drawn.
     pub fn fit(&mut self) {
         self.wants_fit = true;
+    }
+
+    /// The fabric as it lies [m].
+    pub fn cloth(&self) -> Bounds2 {
+        self.cloth
+    }
+
+    /// Where the fabric is seen on the screen, as it was drawn last.
+    pub fn seen_cloth(&self) -> Rect {
+        self.seen
     }
 
     /// Nothing is to be seen: there is nothing yet, or it cannot be shown.
@@ -114,6 +126,7 @@ impl MarkerView {
             .collect();
         let strip = laid.strip();
         let length = strip.max_length.unwrap_or(self.state.length).max(0.5);
+        self.wants_fit |= self.cloth.max.y != strip.width;
         self.cloth = Bounds2 {
             min: Vec2::zeros(),
             max: Vec2::new(length, strip.width),
@@ -189,6 +202,8 @@ impl MarkerView {
             self.camera.fit(view, &all);
             self.wants_fit = false;
         }
+        let corners = [self.cloth.min, self.cloth.max].map(|at| self.screen(view, at));
+        self.seen = Rect::from_two_pos(corners[0], corners[1]);
         let mut actions = self.pointed(ui, &response);
         actions.extend(self.keyed(ui, &response));
         self.paint(ui, view);
@@ -386,7 +401,7 @@ impl MarkerView {
             return;
         }
         let corner = |at: Vec2| self.screen(view, at);
-        let cloth = Rect::from_two_pos(corner(self.cloth.min), corner(self.cloth.max));
+        let cloth = self.seen;
         painter.rect_filled(cloth, 0.0, palette.panel);
         for y in [self.selvedge, self.cloth.max.y - self.selvedge] {
             let ends = [Vec2::new(0.0, y), Vec2::new(self.cloth.max.x, y)].map(corner);

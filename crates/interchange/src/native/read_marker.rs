@@ -10,6 +10,7 @@ const FIELDS: &[&str] = &[
     "id",
     "name",
     "fabric",
+    "keeps_fabric",
     "width",
     "length",
     "selvedge",
@@ -74,6 +75,7 @@ fn cloth<'a>(reader: &mut Reader<'a>, fields: &Object<'a>) -> Result<MarkerCloth
         None => usual.spread,
     };
     Ok(MarkerCloth {
+        keeps_fabric: fields.flag_or("keeps_fabric", false)?,
         width,
         length: at_hand,
         selvedge,

@@ -32,6 +32,9 @@ fn cloth(
     let usual = MarkerCloth::of(cloth.fabric);
     let length = |value: f64| writer.number(&Number::Value(value), Measure::Length, what);
     fields.put("fabric", count(cloth.fabric.0));
+    if cloth.keeps_fabric {
+        fields.put("keeps_fabric", Value::Flag(true));
+    }
     for (name, value) in [("width", cloth.width), ("length", cloth.length)] {
         if let Some(value) = value {
             fields.put(name, length(value)?);

@@ -74,6 +74,7 @@ fn cloth(dice: &mut Dice, pattern: &Pattern) -> MarkerCloth {
     });
     let flaws = flaws.collect();
     MarkerCloth {
+        keeps_fabric: dice.chance(30),
         width,
         length: at_hand,
         selvedge: if dice.chance(50) {

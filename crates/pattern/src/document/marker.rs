@@ -3,7 +3,7 @@
 //! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
 
 use super::Pattern;
-use crate::{FabricId, MarkerId, PanelId, SizeId};
+use crate::{Fabric, FabricId, MarkerId, PanelId, SizeId};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -36,7 +36,9 @@ pub struct Marker {
 pub struct MarkerCloth {
     /// The fabric; the pieces cut from it are laid.
     pub fabric: FabricId,
-    /// Full width laid open, of a tube its girth [m]; nothing means the fabric's own.
+    /// Whether they lie on it whatever the garment is cut from.
+    pub keeps_fabric: bool,
+    /// Full width laid open, of a tube its girth [m]; nothing means the roll's, or the fabric's own.
     pub width: Option<f64>,
     /// Length at hand, all plies together [m]; nothing means as much as it takes.
     pub length: Option<f64>,
@@ -62,6 +64,15 @@ pub struct MarkerCloth {
     pub print: Option<Print>,
     /// Flaws no piece may lie on.
     pub flaws: Vec<Flaw>,
+}
+
+/// What a whole garment is cut from, where that is chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GarmentCloth {
+    /// The fabric that takes the place of every panel's.
+    pub fabric: Option<Arc<Fabric>>,
+    /// Width of the roll [m]; nothing means the fabric's own.
+    pub width: Option<f64>,
 }
 
 /// Which way pieces may point along the warp.
@@ -167,6 +178,25 @@ pub struct PiecePlacement {
     pub locked: bool,
 }
 
+/// What a marker keeps though the garment is cut otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MarkerKeeps {
+    /// Its fabric.
+    Fabric {
+        /// Its name.
+        own: String,
+        /// Name of what the garment is cut from.
+        garments: String,
+    },
+    /// Its width.
+    Width {
+        /// Its own [m].
+        own: f64,
+        /// That of what the garment is cut from [m].
+        garments: f64,
+    },
+}
+
 /// A fault that no marker may have, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MarkerFault {
@@ -185,6 +215,7 @@ impl MarkerCloth {
     pub fn of(fabric: FabricId) -> Self {
         Self {
             fabric,
+            keeps_fabric: false,
             width: None,
             length: None,
             selvedge: USUAL_SELVEDGE,
@@ -322,6 +353,51 @@ impl Pattern {
     /// The marker with that name.
     pub fn marker_named(&self, name: &str) -> Option<&Arc<Marker>> {
         self.markers.iter().find(|marker| marker.name == name)
+    }
+
+    /// The fabric that a marker's pieces lie on, as wide as it is there: what the garment is cut from, unless the
+    /// marker keeps its own. Nothing where its own is gone.
+    pub fn marker_fabric(&self, marker: &Marker, garment: &GarmentCloth) -> Option<Fabric> {
+        let own = self.fabric(marker.cloth.fabric)?;
+        let (fabric, roll) = match (marker.cloth.keeps_fabric, &garment.fabric) {
+            (true, _) => (own, None),
+            (false, Some(chosen)) => (chosen, garment.width),
+            (false, None) => (own, garment.width),
+        };
+        Some(Fabric {
+            width: marker.cloth.width.or(roll).unwrap_or(fabric.width),
+            ..(**fabric).clone()
+        })
+    }
+
+    /// What of a marker does not follow what the garment is cut from, in words.
+    pub fn marker_keeps(&self, marker: &Marker, garment: &GarmentCloth) -> Option<MarkerKeeps> {
+        let own = self.fabric(marker.cloth.fabric)?;
+        let follows = Marker {
+            cloth: MarkerCloth {
+                keeps_fabric: false,
+                width: None,
+                ..marker.cloth.clone()
+            },
+            ..marker.clone()
+        };
+        let garments = self.marker_fabric(&follows, garment)?;
+        let keeps_fabric = marker.cloth.keeps_fabric && garments.name != own.name;
+        if keeps_fabric {
+            return Some(MarkerKeeps::Fabric {
+                own: own.name.clone(),
+                garments: garments.name,
+            });
+        }
+        let is_chosen = garment.fabric.is_some() || garment.width.is_some();
+        let own = marker
+            .cloth
+            .width
+            .filter(|own| is_chosen && *own != garments.width)?;
+        Some(MarkerKeeps::Width {
+            own,
+            garments: garments.width,
+        })
     }
 
     /// Every piece that a marker's order cuts from its fabric: by size, garment, panel and copy.

@@ -13,8 +13,8 @@ pub use builder::PanelBuilder;
 pub use guide::{Guide, GuideRun};
 pub(crate) use lineage::StageLineage;
 pub use marker::{
-    Flaw, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, NapRule, OrderedPiece, OrderedSize,
-    PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,
+    Flaw, GarmentCloth, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, MarkerKeeps, NapRule,
+    OrderedPiece, OrderedSize, PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,
 };
 pub use operation::{
     Apex, Bridge, Operation, OperationKind, PleatKind, PleatLine, Pressed, Side, SpreadCut, Turned,

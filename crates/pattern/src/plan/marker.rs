@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 /// The edits that add a marker of a fabric for one garment of the base size; and the marker.
-/// Without a name it is called as the fabric is.
+/// Without a name it is called "marker", the second "marker 2".
 ///
 /// # Errors
 /// The fabric is not there; the name is taken or can be none.
@@ -23,7 +23,7 @@ pub fn add_marker(
 ) -> Result<(Vec<Edit>, MarkerId), EditError> {
     let pattern = evaluation.pattern();
     let missing = || EditError::Missing(fabric.to_string());
-    let cloth = pattern.fabric(fabric).ok_or_else(missing)?;
+    pattern.fabric(fabric).ok_or_else(missing)?;
     let owner = |name: &str| {
         pattern
             .marker_named(name)
@@ -31,7 +31,7 @@ pub fn add_marker(
     };
     let name = match name {
         Some(name) => wished(name, owner)?,
-        None => free_name(&cloth.name, |name| owner(name).is_some()),
+        None => free_name("marker", |name| owner(name).is_some()),
     };
     let mut ids = pattern.ids;
     let id: MarkerId = ids.take();

@@ -1,0 +1,176 @@
+//! What a marker is laid on: fabric, width, plies, price, and what of it does not follow the garment.
+
+use super::ToileApp;
+use egui::{ComboBox, DragValue, Ui};
+use toile_pattern::plan;
+use toile_pattern::{FabricId, Marker, MarkerCloth, MarkerId, MarkerKeeps};
+use toile_session::{Shown, kept_words};
+
+/// Widths that differ by less are the same [m].
+const SAME_WIDTH: f64 = 1e-9;
+
+impl ToileApp {
+    pub(super) fn cloth_fields(&mut self, ui: &mut Ui, marker: &Marker) {
+        let mut cloth = marker.cloth.clone();
+        self.fabric_choice(ui, marker, &mut cloth);
+        self.width_field(ui, marker, &mut cloth);
+        let label = ui.label("Plies").id;
+        let field = DragValue::new(&mut cloth.plies)
+            .range(1..=500)
+            .speed(0.05)
+            .update_while_editing(false);
+        ui.add(field).labelled_by(label);
+        let mut price = cloth.price_per_metre.unwrap_or(0.0);
+        let label = ui.label("Price per m").id;
+        let field = DragValue::new(&mut price)
+            .range(0.0..=10_000.0)
+            .speed(0.1)
+            .max_decimals(2)
+            .update_while_editing(false);
+        ui.add(field).labelled_by(label);
+        cloth.price_per_metre = (price > 0.0).then_some(price);
+        if cloth != marker.cloth {
+            self.set_marker_cloth(marker.id, cloth);
+        }
+    }
+
+    fn set_marker_cloth(&mut self, id: MarkerId, cloth: MarkerCloth) {
+        let planned = plan::set_marker_cloth(&self.base, id, cloth);
+        self.edit(planned, "Set fabric of marker");
+        self.follow_marker();
+    }
+
+    /// The fabric its pieces lie on: what the garment is cut from, or always its own.
+    fn fabric_choice(&self, ui: &mut Ui, marker: &Marker, cloth: &mut MarkerCloth) {
+        let pattern = self.base.pattern();
+        let garment = self.session.project().garment_cloth();
+        let name = |marker: &Marker| {
+            let fabric = pattern.marker_fabric(marker, &garment);
+            fabric.map_or_else(|| "gone".to_owned(), |fabric| fabric.name)
+        };
+        let mut following = marker.clone();
+        following.cloth.keeps_fabric = false;
+        let own = pattern.fabric(cloth.fabric).map(|own| own.name.clone());
+        let others = self.fabrics_cut(marker.cloth.fabric);
+        let label = ui.label("Fabric").id;
+        ComboBox::from_id_salt("marker fabric")
+            .selected_text(name(marker))
+            .show_ui(ui, |ui| {
+                let words = format!("as the garment: {}", name(&following));
+                ui.selectable_value(&mut cloth.keeps_fabric, false, words);
+                if let Some(own) = own {
+                    let words = format!("always {own}");
+                    ui.selectable_value(&mut cloth.keeps_fabric, true, words);
+                }
+                for (id, name) in others {
+                    let words = format!("the pieces of {name}");
+                    ui.selectable_value(&mut cloth.fabric, id, words);
+                }
+            })
+            .response
+            .labelled_by(label);
+    }
+
+    /// Other fabrics that panels are cut from, those of most panels first.
+    fn fabrics_cut(&self, but: FabricId) -> Vec<(FabricId, String)> {
+        let pattern = self.base.pattern();
+        let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
+        let others = pattern.fabrics.iter().filter(|fabric| fabric.id != but);
+        let mut others: Vec<_> = others.filter(|fabric| count(fabric.id) > 0).collect();
+        others.sort_by_key(|fabric| std::cmp::Reverse(count(fabric.id)));
+        let named = others.into_iter().map(|own| (own.id, own.name.clone()));
+        named.collect()
+    }
+
+    /// Its width. That of the roll, or of the fabric, is followed; another is its own.
+    fn width_field(&self, ui: &mut Ui, marker: &Marker, cloth: &mut MarkerCloth) {
+        let pattern = self.base.pattern();
+        let garment = self.session.project().garment_cloth();
+        let width_of = |width: Option<f64>| {
+            let mut marker = marker.clone();
+            marker.cloth.width = width;
+            let fabric = pattern.marker_fabric(&marker, &garment);
+            fabric.map_or(1.5, |fabric| fabric.width)
+        };
+        let unit = pattern.unit;
+        let metres = unit.metres();
+        let followed = width_of(None);
+        let mut width = width_of(cloth.width) / metres;
+        let before = width;
+        let label = ui.label("Width").id;
+        let field = DragValue::new(&mut width)
+            .range(0.01 / metres..=20.0 / metres)
+            .suffix(format!(" {}", unit.sign()))
+            .update_while_editing(false);
+        ui.add(field).labelled_by(label);
+        if width != before {
+            let typed = width * metres;
+            cloth.width = ((typed - followed).abs() > SAME_WIDTH).then_some(typed);
+        }
+    }
+
+    /// Where the marker on show does not follow what the garment is cut from: the button that mends it, and
+    /// what it keeps.
+    pub(super) fn mend_button(&mut self, ui: &mut Ui) -> Option<String> {
+        let pattern = self.base.pattern().clone();
+        let marker = pattern.marker(self.marker_id()?)?.clone();
+        let garment = self.session.project().garment_cloth();
+        let mut cloth = marker.cloth.clone();
+        let (button, words) = match pattern.marker_keeps(&marker, &garment) {
+            Some(keeps) => {
+                let button = match &keeps {
+                    MarkerKeeps::Fabric { garments, .. } => {
+                        cloth.keeps_fabric = false;
+                        format!("Lay on {garments}")
+                    }
+                    MarkerKeeps::Width { garments, .. } => {
+                        cloth.width = None;
+                        format!("Take {}", Shown(pattern.unit).length(*garments))
+                    }
+                };
+                let words = kept_words(&pattern, &keeps);
+                (button, format!("The marker {words}"))
+            }
+            None if self.has_pieces_to_lay(&marker) => return None,
+            None => {
+                let (id, name) = self.fabrics_cut(cloth.fabric).into_iter().next()?;
+                cloth.fabric = id;
+                (format!("Lay the pieces of {name}"), String::new())
+            }
+        };
+        if ui.button(button).clicked() {
+            self.set_marker_cloth(marker.id, cloth);
+        }
+        Some(words)
+    }
+
+    /// Whether any panel is cut from the fabric of a marker.
+    fn has_pieces_to_lay(&self, marker: &Marker) -> bool {
+        let mut panels = self.base.pattern().panels.iter();
+        panels.any(|panel| panel.fabric == marker.cloth.fabric)
+    }
+
+    /// Why a marker has no pieces, and what to do, if that is so.
+    pub(super) fn why_marker_is_empty(&self, id: MarkerId) -> Option<String> {
+        let pattern = self.base.pattern();
+        let marker = pattern.marker(id)?;
+        let own = pattern.fabric(marker.cloth.fabric)?;
+        let words = match () {
+            () if pattern.panels.is_empty() => {
+                "The pieces are laid here: draw a panel first".to_owned()
+            }
+            () if marker.order.is_empty() => {
+                "No garment is ordered: say above how many of which size are cut".to_owned()
+            }
+            () if !self.has_pieces_to_lay(marker) => {
+                format!("No panel is cut from {}", own.name)
+            }
+            () if pattern.ordered_pieces(marker).next().is_none() => {
+                "The panels are cut no times: say beside the pattern how often each is cut"
+                    .to_owned()
+            }
+            () => return None,
+        };
+        Some(words)
+    }
+}
