@@ -170,6 +170,32 @@ fn every_kind_of_wearer_is_undone_exactly_and_there_again() {
     drafter.press("As the pattern says");
     let now = kept(&mut drafter);
     assert_eq!(now.body, BodyChoice::OfPattern);
+    // The last one of a file is still in the list.
+    let words = drafter.window.get_by_label_contains("form.json");
+    let at = words.rect().center();
+    drafter.click(at);
+    let now = kept(&mut drafter);
+    assert!(matches!(now.body, BodyChoice::Shaped { .. }));
+}
+
+#[test]
+fn a_typed_girth_leaves_the_wearer_as_tall_as_before() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.key(Key::F3);
+    drafter.press("Man");
+    let before = project(&drafter).body_measurements();
+    drafter.enter("Find measurement", "waist girth");
+    drafter.enter("Waist girth", "120");
+    let after = project(&drafter);
+    measures(&after, "waist", 1.2);
+    let height = before.get("height").unwrap();
+    let now = after.body_measurements().get("height").unwrap();
+    assert!((now - height).abs() < 6e-4, "{height} {now}");
+    // A height that is asked for is taken as it is.
+    drafter.enter("Find measurement", "floor crown");
+    drafter.enter("Height", "190");
+    measures(&project(&drafter), "height", 1.9);
+    measures(&project(&drafter), "waist", 1.2);
 }
 
 #[test]

@@ -302,13 +302,18 @@ impl Session {
         let mut worn = Vec::new();
         let mut notes = Vec::new();
         for other in others {
-            let was_missing =
-                |worn: &&WornGarment| worn.source == other.path && worn.pattern.is_none();
-            let pattern = match self.opened_to_wear(&other.path, &mut notes) {
-                Ok(pattern) => Some(pattern),
-                // One that was missing when the pattern was opened stays named.
-                Err(_) if self.project.others.iter().any(|w| was_missing(&w)) => None,
-                Err(error) => return Err(error),
+            let mut worn_now = self.project.others.iter();
+            let known = worn_now.find(|worn| worn.source == other.path);
+            let pattern = match (self.opened_to_wear(&other.path, &mut notes), known) {
+                (Ok(pattern), _) => Some(pattern),
+                // What is worn already stays as it was opened, and what was missing stays named.
+                (Err(error), Some(known)) => {
+                    if known.pattern.is_some() {
+                        notes.push(format!("{error}; it is worn as it was when it was opened"));
+                    }
+                    known.pattern.clone()
+                }
+                (Err(error), None) => return Err(error),
             };
             worn.push(WornGarment {
                 pattern,

@@ -5,7 +5,9 @@ mod support;
 
 use std::path::Path;
 use support::{BAND, files, lasting};
-use toile_session::{Command, OtherGarment, Quality, Session, SessionError, Silent, open_journal};
+use toile_session::{
+    Command, Event, OtherGarment, Quality, Session, SessionError, Silent, open_journal,
+};
 
 /// The band, and a wider one for over it.
 fn bands(folder: &Path) -> [std::path::PathBuf; 2] {
@@ -155,4 +157,15 @@ fn layers_that_cannot_be_worn_are_refused_and_nothing_changes() {
     assert_eq!(session.garment_setup().unwrap().parts.len(), 1);
     session.execute(Command::Redo, &mut Silent).unwrap();
     assert_eq!(session.garment_setup().unwrap().parts[1].layer, 2);
+
+    // Its file deleted, its layer still changes: it is worn as it was opened, and that is said.
+    std::fs::remove_file(&paths[1]).unwrap();
+    let mut deeper = worn(&paths[1]);
+    if let Command::SetLayers { layer, .. } = &mut deeper {
+        *layer = 0;
+    }
+    let events = session.execute(deeper, &mut Silent).unwrap();
+    let is_told = |event: &Event| matches!(event, Event::Warned { message } if message.contains("as it was when it was opened"));
+    assert!(events.iter().any(is_told), "{events:?}");
+    assert_eq!(session.garment_setup().unwrap().parts.len(), 2);
 }

@@ -13,6 +13,8 @@ use toile_session::{BodyChoice, Command, Figure};
 
 /// Width of the choice of a wearer [pixels].
 const CHOICE: f32 = 420.0;
+/// The measurement that stays when another one is typed.
+const HEIGHT: &str = "height";
 /// Width of a measurement's value [pixels].
 const VALUE: f32 = 96.0;
 
@@ -24,6 +26,8 @@ pub struct WearerTable {
     /// Every figure with its height and its bust or chest girth [m].
     figures: Vec<(Figure, [f64; 2])>,
     known: Option<Known>,
+    /// The wearer of measurements or of a file that was chosen last: to be chosen again after another.
+    own: Option<BodyChoice>,
 }
 
 /// The measurements of a wearer, which take longer to predict than a frame to show.
@@ -51,7 +55,7 @@ fn figure_words(figure: Figure) -> String {
     match figure {
         Figure::Woman => "Woman".to_owned(),
         Figure::Man => "Man".to_owned(),
-        Figure::Mean => "Mean of woman and man".to_owned(),
+        Figure::Mean => "Average adult".to_owned(),
         child => {
             let years = child.name().trim_start_matches("child-");
             format!("Child of {years} years")
@@ -96,14 +100,27 @@ impl ToileApp {
             }
         });
         let palette = Palette::of(ui.ctx());
-        match &body {
-            BodyChoice::Measured { .. } | BodyChoice::Shaped { .. } => {
-                let _ = ui.selectable_label(true, body.words());
-            }
-            BodyChoice::Missing { .. } => {
-                ui.label(RichText::new(body.words()).color(palette.fault));
-            }
-            _ => {}
+        if let BodyChoice::Missing { .. } = &body {
+            ui.label(RichText::new(body.words()).color(palette.fault));
+        }
+        if matches!(
+            body,
+            BodyChoice::Measured { .. } | BodyChoice::Shaped { .. }
+        ) {
+            self.tables.wearer.own = Some(body.clone());
+        }
+        let own = self
+            .tables
+            .wearer
+            .own
+            .clone()
+            .filter(|own| *own == body || chosen_again(own).is_some());
+        if let Some(own) = own
+            && ui.selectable_label(own == body, own.words()).clicked()
+            && own != body
+            && let Some(again) = chosen_again(&own)
+        {
+            self.execute(again);
         }
         if self.tables.wearer.figures.is_empty() {
             let girths = |figure: Figure| {
@@ -209,7 +226,7 @@ impl ToileApp {
                 .hint_text("waist, knee, back\u{2026}")
                 .desired_width(180.0);
             ui.add(field).labelled_by(label);
-            let words = "Type a value to ask for it, empty a field to have it predicted";
+            let words = "Type what was measured; what is left empty is estimated from it";
             ui.label(RichText::new(words).color(Palette::of(ui.ctx()).ink_soft));
         });
         let rows = found_rows(&known, &self.tables.wearer.search);
@@ -224,22 +241,22 @@ impl ToileApp {
                 .striped(true)
                 .show(ui, |ui| {
                     for row in &rows {
-                        self.wearer_row(ui, row, &known.asked);
+                        self.wearer_row(ui, row, &known);
                         ui.end_row();
                     }
                 });
         });
     }
 
-    fn wearer_row(&mut self, ui: &mut Ui, row: &Row, asked: &Measurements) {
+    fn wearer_row(&mut self, ui: &mut Ui, row: &Row, known: &Known) {
         let palette = Palette::of(ui.ctx());
         let words = match row.is_asked {
             true => RichText::new(&row.label),
             false => RichText::new(&row.label).color(palette.ink_soft),
         };
         let mut label = named(ui, 0.0, words);
-        if let Some(known) = definition(&row.name) {
-            label = label.on_hover_text(format!("{}: {}", row.name, known.meaning));
+        if let Some(entry) = definition(&row.name) {
+            label = label.on_hover_text(format!("{}: {}", row.name, entry.meaning));
         }
         let base = self.base.clone();
         // What was predicted is told to a tenth of a millimetre.
@@ -259,8 +276,8 @@ impl ToileApp {
             })
         });
         let origin = match row.is_asked {
-            true => RichText::new("asked"),
-            false => RichText::new("predicted").italics().color(palette.ink_soft),
+            true => RichText::new("given"),
+            false => RichText::new("estimated").italics().color(palette.ink_soft),
         };
         ui.label(origin);
         if let Entered::Text(text) = entered.inner {
@@ -269,7 +286,7 @@ impl ToileApp {
                 false => number::parse(&text, row.want, &base)
                     .and_then(|found| base.number_or_fault(&found, row.want).map(Some)),
             };
-            let changed = value.and_then(|value| with_measurement(asked, &row.name, value));
+            let changed = value.and_then(|value| with_measurement(known, &row.name, value));
             let faults = changed.and_then(|measurements| {
                 let figure = None;
                 match self.execute(Command::SetMeasurements {
@@ -313,17 +330,53 @@ impl ToileApp {
     }
 }
 
-/// A table with one measurement more, less, or of another value.
-fn with_measurement(
-    asked: &Measurements,
-    name: &str,
-    value: Option<f64>,
-) -> Result<Measurements, String> {
-    let mut table = asked.clone();
+/// How a wearer of measurements or of a file is chosen once more. An edited mannequin is in no file.
+fn chosen_again(own: &BodyChoice) -> Option<Command> {
+    match own {
+        BodyChoice::Measured {
+            figure,
+            path: None,
+            measurements,
+        } => Some(Command::SetMeasurements {
+            figure: Some(*figure),
+            measurements: (**measurements).clone(),
+        }),
+        BodyChoice::Measured {
+            figure,
+            path: Some(path),
+            ..
+        } => Some(Command::SetBody {
+            figure: Some(*figure),
+            measurements: Some(path.clone()),
+        }),
+        BodyChoice::Shaped {
+            path: Some(path), ..
+        } => Some(Command::SetBody {
+            figure: None,
+            measurements: Some(path.clone()),
+        }),
+        _ => None,
+    }
+}
+
+/// The table of a wearer with one measurement more, less, or of another value. A wearer of a girth that
+/// is typed is as tall as before, so that it does not move what is measured from the floor up.
+fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Measurements, String> {
+    let mut table = known.asked.clone();
+    let mut ask = |name: &str, value: f64| {
+        let asked = table.set(name, value, Origin::Asked);
+        asked.map_err(|error| error.to_string())
+    };
     match value {
-        Some(value) => table
-            .set(name, value, Origin::Asked)
-            .map_err(|error| error.to_string())?,
+        Some(value) => {
+            ask(name, value)?;
+            if name != HEIGHT
+                && !known.asked.contains(HEIGHT)
+                && let Some(height) = known.all.get(HEIGHT)
+            {
+                ask(HEIGHT, (height * 1e3).round() / 1e3)?;
+            }
+        }
         None => {
             table.remove(name);
         }
