@@ -62,7 +62,7 @@ fn broken(ui: &Ui, text: &dyn TextBuffer, width: f32) -> Arc<Galley> {
 }
 
 /// Selects all that stands in a field.
-fn choose_all(ui: &Ui, id: egui::Id, text: &str) {
+pub fn choose_all(ui: &Ui, id: egui::Id, text: &str) {
     let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
     let mut state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap_or_default();
     state.cursor.set_char_range(Some(all));

@@ -4,11 +4,13 @@ mod fabric;
 mod fabric_words;
 mod handle;
 mod history;
+mod line_field;
 mod properties;
 mod wearer;
 mod worn_with;
 
 pub use fabric::FabricTable;
+pub use line_field::is_empty_field;
 pub use wearer::WearerTable;
 pub use worn_with::WornWhere;
 
@@ -20,6 +22,7 @@ use crate::theme::Palette;
 use crate::tools::number;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Color32, Grid, Id, PopupCloseBehavior, RichText, ScrollArea, TextStyle, Ui};
+use line_field::{is_entered, line_field};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, Pattern, SizeId, VariableId, Want, plan};
 
@@ -113,12 +116,9 @@ impl ToileApp {
                 return;
             }
             let label = ui.label("New measurement").id;
-            let field = egui::TextEdit::singleline(&mut self.tables.new_measurement)
-                .hint_text("waist, or your own name")
-                .desired_width(180.0);
-            let response = ui.add(field).labelled_by(label);
-            let entered =
-                response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let text = &mut self.tables.new_measurement;
+            let response = line_field(ui, label, text, ("waist, or your own name", 180.0));
+            let entered = is_entered(ui, &response);
             let wanted = self.tables.new_measurement.trim().to_lowercase();
             let found: Vec<&Definition> = match wanted.is_empty() {
                 true => Vec::new(),
@@ -356,12 +356,10 @@ impl ToileApp {
     fn variable_table(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let label = ui.label("New variable").id;
-            let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
-                .hint_text("ease = 2cm")
-                .desired_width((ui.available_width() - ADD_BUTTON).clamp(220.0, 480.0));
-            let response = ui.add(field).labelled_by(label);
-            let entered =
-                response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let width = (ui.available_width() - ADD_BUTTON).clamp(220.0, 480.0);
+            let text = &mut self.tables.new_variable;
+            let response = line_field(ui, label, text, ("ease = 2cm", width));
+            let entered = is_entered(ui, &response);
             if ui.button("Add variable").clicked() || entered {
                 self.add_variable();
                 // The next is typed without reaching for the field again.

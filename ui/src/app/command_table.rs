@@ -24,6 +24,8 @@ pub struct KeysTaken {
     pub typing: bool,
     /// A field for text has the focus: those it edits with too.
     pub text: bool,
+    /// That field is empty: nothing in it is undone.
+    pub empty: bool,
     /// A tool is in hand: those a number begins with, and letters and digits of views.
     pub tool: bool,
     /// A seam is walked, which Home and End lead along.
@@ -38,6 +40,11 @@ pub struct KeysTaken {
 fn edits_text(key: Key) -> bool {
     use Key::{A, C, V, X, Y, Z};
     matches!(key, A | C | V | X | Y | Z)
+}
+
+/// Whether a key with the command key takes an edit back, or does it again.
+fn undoes(key: Key) -> bool {
+    matches!(key, Key::Y | Key::Z)
 }
 
 /// Whether a key types nothing.
@@ -117,7 +124,9 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Pressed {
             let plain = !key.modifiers.command && !is_function(key.logical_key);
             let waits = keys.modal
                 || (keys.typing || begun) && plain
-                || keys.text && edits_text(key.logical_key)
+                || keys.text
+                    && edits_text(key.logical_key)
+                    && !(keys.empty && undoes(key.logical_key))
                 || keys.tool && plain && begins_number(key.logical_key)
                 || keys.escape && key.logical_key == Key::Escape;
             if waits || !input.consume_shortcut(&key) {

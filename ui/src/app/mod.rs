@@ -22,6 +22,7 @@ mod notice;
 mod pacing;
 mod palette;
 pub mod panes;
+mod pattern_cards;
 mod perform;
 mod preferences;
 mod print_choice;
@@ -101,6 +102,8 @@ pub struct ToileApp {
     recovery: Option<Recovery>,
     /// Documents a crash left, to be offered.
     pub(crate) abandoned: Vec<Abandoned>,
+    /// Pictures of the first page.
+    pattern_cards: pattern_cards::PatternCards,
     /// The project that was last given to be kept.
     kept: Option<Project>,
     pub(crate) revision: Option<u64>,
@@ -157,6 +160,7 @@ impl ToileApp {
             preferences,
             recovery: None,
             abandoned: Vec::new(),
+            pattern_cards: Default::default(),
             kept: None,
             revision: None,
             octave: 0,
@@ -429,6 +433,7 @@ impl ToileApp {
         let keys = KeysTaken {
             typing,
             text: self.types(&context),
+            empty: crate::tables::is_empty_field(&context),
             tool: self.view.tool.takes_keys(),
             walks: matches!(self.view.tool, Tool::Walk),
             escape: self.menu_is_open || self.view.is_busy(),

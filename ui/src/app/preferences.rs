@@ -176,6 +176,7 @@ impl Beginning {
             .with_app_id("toile")
             .with_inner_size(preferences.window())
             .with_min_inner_size(LEAST_WINDOW)
-            .with_maximized(preferences.fills_screen)
+            // The first time it takes the screen, whose size nobody knows yet.
+            .with_maximized(preferences.fills_screen || preferences.window.is_none())
     }
 }

@@ -2,17 +2,19 @@
 
 use super::ToileApp;
 use super::answer::{Answer, filled_button, main_button};
+use super::pattern_cards::CARD;
 use crate::theme::Palette;
 use egui::{RichText, Ui, vec2};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toile_session::{Command, SAMPLES};
 
 /// Width of the page [pixels].
-const WIDTH: f32 = 520.0;
+const WIDTH: f32 = 780.0;
 /// Width of its two buttons beside each other [pixels].
 const BUTTONS: f32 = 204.0;
 
 impl ToileApp {
+    /// How to begin: a new pattern, a file, or one of those whose cards are shown.
     pub(crate) fn welcome(&mut self, ui: &mut Ui) {
         let palette = Palette::of(ui.ctx());
         let mut open: Option<PathBuf> = None;
@@ -48,24 +50,21 @@ impl ToileApp {
                     ui.data_mut(|data| data.insert_temp(buttons, width));
                 });
                 ui.add_space(20.0);
-                if !self.preferences.recent.is_empty() {
-                    ui.label(RichText::new("Recent").strong());
-                    for path in &self.preferences.recent {
-                        let name = path.file_name().unwrap_or_default().to_string_lossy();
-                        let link = ui.link(&*name);
-                        if link.on_hover_text(path.display().to_string()).clicked() {
-                            open = Some(path.clone());
-                        }
-                    }
-                    ui.add_space(12.0);
-                }
-                ui.label(RichText::new("Patterns that come with the program").strong());
-                for (path, name) in SAMPLES {
-                    if ui.link(*name).clicked() {
-                        open = Some(PathBuf::from(path));
+                let recent = self.preferences.recent.iter();
+                let recent: Vec<(PathBuf, String)> =
+                    recent.map(|path| (path.clone(), name_of(path))).collect();
+                let shipped: Vec<(PathBuf, String)> = SAMPLES
+                    .iter()
+                    .map(|(path, name)| (PathBuf::from(path), (*name).to_owned()))
+                    .collect();
+                for (title, patterns) in [
+                    ("Recent", recent),
+                    ("Patterns that come with the program", shipped),
+                ] {
+                    if let Some(path) = self.cards(ui, title, &patterns) {
+                        open = Some(path);
                     }
                 }
-                ui.add_space(20.0);
                 ui.label(
                     RichText::new("A pattern file can be dropped anywhere on this window")
                         .color(palette.ink_soft),
@@ -73,8 +72,40 @@ impl ToileApp {
             });
         });
         if let Some(path) = open {
+            // Files may have changed when the page is seen again.
+            self.pattern_cards.clear();
             self.open(&path);
         }
+    }
+
+    /// Cards of patterns in rows under a title; the file of one that was clicked.
+    fn cards(
+        &mut self,
+        ui: &mut Ui,
+        title: &str,
+        patterns: &[(PathBuf, String)],
+    ) -> Option<PathBuf> {
+        if patterns.is_empty() {
+            return None;
+        }
+        let mut open = None;
+        ui.label(RichText::new(title).strong());
+        ui.add_space(4.0);
+        let gap = ui.spacing().item_spacing.x;
+        let fit = ((ui.available_width() + gap) / (CARD.x + gap)).floor();
+        for row in patterns.chunks((fit as usize).max(1)) {
+            ui.horizontal(|ui| {
+                let width = row.len() as f32 * (CARD.x + gap) - gap;
+                ui.add_space((ui.available_width() - width).max(0.0) * 0.5);
+                for (path, name) in row {
+                    if self.pattern_cards.card(ui, (path, name)) {
+                        open = Some(path.clone());
+                    }
+                }
+            });
+        }
+        ui.add_space(16.0);
+        open
     }
 
     /// Offers the documents a crash left.
@@ -138,4 +169,11 @@ impl ToileApp {
             self.notice = super::notice::Notice::warning(error.to_string());
         }
     }
+}
+
+/// The name of a pattern file, without the endings of its kind.
+fn name_of(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.trim_end_matches(".json").trim_end_matches(".toile");
+    stem.to_owned()
 }

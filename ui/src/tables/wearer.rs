@@ -1,11 +1,12 @@
 //! The wearer: who tries the garment on, in which size, and all measurements of theirs.
 
+use super::line_field::line_field;
 use super::named;
 use crate::app::ToileApp;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Grid, Id, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Grid, Id, RichText, Role, ScrollArea, Ui, WidgetInfo};
 use std::path::Path;
 use toile_measure::{CATALOGUE, FURTHER, Measurements, Origin, UnitKind, definition};
 use toile_pattern::{DisplayUnit, Number, Want, plan};
@@ -222,10 +223,8 @@ impl ToileApp {
         let known = self.known_wearer();
         ui.horizontal(|ui| {
             let label = ui.label("Find measurement").id;
-            let field = TextEdit::singleline(&mut self.tables.wearer.search)
-                .hint_text("waist, knee, back\u{2026}")
-                .desired_width(180.0);
-            ui.add(field).labelled_by(label);
+            let search = &mut self.tables.wearer.search;
+            line_field(ui, label, search, ("waist, knee, back\u{2026}", 180.0));
             let words = "Type what was measured; what is left empty is estimated from it";
             ui.label(RichText::new(words).color(Palette::of(ui.ctx()).ink_soft));
         });
