@@ -1,5 +1,6 @@
 //! Text fields: what is typed into one that was just entered takes the place of what stands there.
 
+use crate::glossary::meaning;
 use crate::theme::Palette;
 use egui::text::LayoutJob;
 use egui::text::{CCursor, CCursorRange};
@@ -86,7 +87,7 @@ const LABEL: f32 = 92.0;
 
 /// A field with its label left of it, grey; `add` is given the label's id. Fields under each other stand in one
 /// column.
-pub fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui, egui::Id) -> R) -> R {
+pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) -> R) -> R {
     let soft = Palette::of(ui.ctx()).ink_soft;
     ui.horizontal_top(|ui| {
         let height = ui.spacing().interact_size.y;
@@ -95,8 +96,12 @@ pub fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui, egui::Id)
             ui.set_min_height(height);
             // On the line of what is written in the field.
             ui.add_space(ui.spacing().button_padding.y);
-            let words = RichText::new(label).small().color(soft);
-            ui.add(egui::Label::new(words).wrap()).id
+            let words = RichText::new(name).small().color(soft);
+            let label = ui.add(egui::Label::new(words).wrap());
+            match meaning(name) {
+                Some(meaning) => label.on_hover_text(meaning).id,
+                None => label.id,
+            }
         });
         ui.vertical(|ui| add(ui, place.inner)).inner
     })

@@ -7,6 +7,7 @@
 mod app;
 mod canvas;
 mod fields;
+mod glossary;
 mod gpu;
 mod inspector;
 mod tables;

@@ -253,6 +253,14 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     )
     .under_rule(),
     command(
+        Menu::Edit,
+        "Words",
+        key(PLAIN, Key::F1),
+        "Look up a word of the trade that the program uses",
+        always,
+        ToileApp::ask_words,
+    ),
+    command(
         Menu::View,
         "Fit",
         key(PLAIN, Key::F),

@@ -32,6 +32,7 @@ mod tool_bar;
 mod tool_commands;
 mod tool_icons;
 mod welcome;
+mod words;
 
 use crate::canvas::selection::Selection;
 use crate::fields::TypedTexts;

@@ -1,0 +1,172 @@
+//! Cards of patterns on the first page: the pieces of each as they lie on the table, and its name.
+
+use super::job::Job;
+use crate::canvas::fill::Fill;
+use crate::canvas::scene::Scene;
+use crate::canvas::table_layout::TableLayout;
+use crate::theme::Palette;
+use egui::epaint::Vertex;
+use egui::{Color32, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toile_geometry::{Bounds2, Vec2};
+use toile_pattern::Evaluation;
+use toile_session::{SessionError, open_pattern};
+
+/// Size of a card, its name included [pixels].
+pub const CARD: egui::Vec2 = vec2(148.0, 150.0);
+/// Height of its name [pixels].
+const NAME: f32 = 26.0;
+/// Room round the pieces [pixels].
+const MARGIN: f32 = 10.0;
+/// Enlargement that lines are drawn for: two to this power [pixels per metre].
+const OCTAVE: i32 = 8;
+
+/// The pictures of patterns that were asked for, by their files.
+#[derive(Default)]
+pub struct PatternCards {
+    pictures: BTreeMap<PathBuf, Picture>,
+}
+
+/// A picture, or the work on it.
+enum Picture {
+    Drawing(Job<Pieces>),
+    Drawn(Pieces),
+    /// The file is gone or cannot be read: it is said when it is opened.
+    Missing,
+}
+
+/// The pieces of a pattern where they lie on the table [m].
+struct Pieces {
+    /// Fills, where they lie, and whether they are mirrored halves.
+    fills: Vec<(Fill, Vec2, bool)>,
+    lines: Vec<Vec<Vec2>>,
+    bounds: Bounds2,
+}
+
+impl Pieces {
+    fn of_file(path: &Path) -> Result<Self, SessionError> {
+        let pattern = Arc::new(open_pattern(path)?.pattern);
+        let base = pattern.base_measurements().cloned().unwrap_or_default();
+        let evaluation = Evaluation::new(&pattern, &base);
+        let draft = Arc::new(evaluation.draft().0);
+        let mut scene = Scene::default();
+        scene.update(&evaluation, &draft, OCTAVE);
+        let mut layout = TableLayout::default();
+        layout.open(&pattern, &scene);
+        layout.push_apart(&pattern, &scene);
+        let mut fills = Vec::new();
+        let mut lines: Vec<Vec<Vec2>> = Vec::new();
+        for panel in &scene.panels {
+            let at = layout.panel(panel.id);
+            let shape = &panel.shape;
+            fills.push((shape.fill.clone(), at, false));
+            fills.push((shape.mirrored_fill.clone(), at, true));
+            let darts = shape.darts.iter().map(|(_, _, line)| line);
+            let rings = shape.rings.iter().chain(&shape.mirrored).chain(darts);
+            let placed = |ring: &Vec<Vec2>| ring.iter().map(|p| p + at).collect();
+            lines.extend(rings.map(placed));
+        }
+        Ok(Self {
+            fills,
+            bounds: Bounds2::of(lines.iter().flatten().copied()),
+            lines,
+        })
+    }
+
+    /// Draws the pieces as large as they fit.
+    fn paint(&self, ui: &Ui, room: Rect) {
+        let bounds = self.bounds;
+        let size = bounds.max - bounds.min;
+        if !(size.x > 0.0 && size.y > 0.0) {
+            return;
+        }
+        let scale = (f64::from(room.width()) / size.x).min(f64::from(room.height()) / size.y);
+        let middle = (bounds.min + bounds.max) / 2.0;
+        let seen = |p: Vec2| -> Pos2 {
+            let from_middle = (p - middle) * scale;
+            room.center() + vec2(from_middle.x as f32, -from_middle.y as f32)
+        };
+        let palette = Palette::of(ui.ctx());
+        for (fill, at, is_mirrored) in &self.fills {
+            let colour = match is_mirrored {
+                true => palette.panel_mirrored,
+                false => palette.panel,
+            };
+            let vertex = |p: &[f32; 2]| Vertex {
+                pos: seen(Vec2::from(p.map(f64::from)) + at),
+                uv: egui::epaint::WHITE_UV,
+                color: colour,
+            };
+            ui.painter().add(Shape::mesh(Mesh {
+                indices: fill.indices.clone(),
+                vertices: fill.points.iter().map(vertex).collect(),
+                ..Mesh::default()
+            }));
+        }
+        for line in &self.lines {
+            let line = line.iter().map(|p| seen(*p)).collect();
+            let stroke = Stroke::new(1.0, palette.ink_soft);
+            ui.painter().add(Shape::line(line, stroke));
+        }
+    }
+}
+
+impl PatternCards {
+    /// A card of a pattern; whether it was clicked.
+    pub fn card(&mut self, ui: &mut Ui, (path, name): (&Path, &str)) -> bool {
+        let palette = Palette::of(ui.ctx());
+        let (room, response) = ui.allocate_exact_size(CARD, Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+        let visuals = ui.style().interact(&response);
+        let stroke = match response.hovered() || response.has_focus() {
+            true => Stroke::new(1.5, palette.accent),
+            false => visuals.bg_stroke,
+        };
+        ui.painter().rect(
+            room.shrink(1.0),
+            4.0,
+            palette.table,
+            stroke,
+            egui::StrokeKind::Inside,
+        );
+        let mut inner = room.shrink(MARGIN);
+        inner.max.y -= NAME - MARGIN;
+        let picture = self.pictures.entry(path.to_owned()).or_insert_with(|| {
+            let path = path.to_owned();
+            Picture::Drawing(Job::start(move |_| Pieces::of_file(&path)))
+        });
+        if let Picture::Drawing(job) = picture {
+            match job.result() {
+                Some(Ok(pieces)) => *picture = Picture::Drawn(pieces),
+                Some(Err(_)) => *picture = Picture::Missing,
+                None => ui.ctx().request_repaint(),
+            }
+        }
+        match picture {
+            Picture::Drawn(pieces) => pieces.paint(ui, inner),
+            Picture::Drawing(_) => {}
+            Picture::Missing => words(ui, inner, "not to be read", palette.ink_soft),
+        }
+        let mut below = room.shrink(6.0);
+        below.min.y = below.max.y - NAME + 6.0;
+        words(ui, below, name, palette.ink);
+        response.on_hover_text(path.display().to_string()).clicked()
+    }
+
+    /// Forgets the pictures.
+    pub fn clear(&mut self) {
+        self.pictures.clear();
+    }
+}
+
+/// Words in the middle of a room, cut to its width.
+fn words(ui: &Ui, room: Rect, words: &str, colour: Color32) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple_singleline(words.to_owned(), font, colour);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.width());
+    let galley = ui.painter().layout_job(job);
+    let at = room.center() - galley.size() / 2.0;
+    ui.painter().galley(at, galley, colour);
+}

@@ -1,0 +1,41 @@
+//! Fields over a table that hold no value of the document: what is searched for, what is made next.
+
+use crate::fields::choose_all;
+use egui::{Id, Key, Response, TextEdit, Ui};
+
+/// A field of one line with a hint where it is empty, named by a label. What is typed into one that was just
+/// entered takes the place of what stands there.
+pub fn line_field(
+    ui: &mut Ui,
+    label: Id,
+    text: &mut String,
+    (hint, width): (&str, f32),
+) -> Response {
+    let field = TextEdit::singleline(text)
+        .hint_text(hint)
+        .desired_width(width);
+    let response = ui.add(field).labelled_by(label);
+    if response.gained_focus() {
+        choose_all(ui, response.id, text);
+    }
+    if response.has_focus() && text.is_empty() {
+        let frame = ui.ctx().cumulative_frame_nr();
+        ui.data_mut(|data| data.insert_temp(emptied(), frame));
+    }
+    response
+}
+
+/// Whether Enter was pressed in it.
+pub fn is_entered(ui: &Ui, response: &Response) -> bool {
+    response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
+}
+
+/// Whether the keys go to such a field that is empty: it has no text to undo.
+pub fn is_empty_field(context: &egui::Context) -> bool {
+    let frame: Option<u64> = context.data(|data| data.get_temp(emptied()));
+    frame.is_some_and(|frame| frame + 1 >= context.cumulative_frame_nr())
+}
+
+fn emptied() -> Id {
+    Id::unique("emptied line field")
+}
