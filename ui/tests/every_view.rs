@@ -35,7 +35,7 @@ const VIEWS: &[View] = &[
             let at = drafter.part("Panel front skirt");
             drafter.click(at);
         },
-        shows: &["Name", "Cut"],
+        shows: &["Name"],
     },
     View {
         name: "table-measurements",
@@ -86,7 +86,7 @@ const VIEWS: &[View] = &[
         name: "walk-seam",
         reach: |drafter| {
             drafter.choose("Walk seam");
-            let at = drafter.part("Seam 1");
+            let at = drafter.part("Edge side_hip of front skirt");
             drafter.click(at);
         },
         shows: &["Pattern view"],

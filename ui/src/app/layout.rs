@@ -14,6 +14,8 @@ const WIDE: f32 = 1600.0;
 /// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
 const TABLES: f32 = 220.0;
 const TABLES_SHARE: f32 = 0.45;
+/// Width that its row of buttons takes [pixels]: it begins no narrower in a window that has room for it.
+const GARMENT_ROW: f32 = 344.0;
 /// Most of the window's width that the 3D view may take.
 const GARMENT_MOST: f32 = 0.6;
 
@@ -73,10 +75,12 @@ impl ToileApp {
         }
         if self.panes.garment || beside {
             let width = ui.available_width();
+            let share = width * GARMENT_SHARES[usize::from(beside)];
+            let row = GARMENT_ROW.min(width * GARMENT_SHARES[1]);
             Panel::right("side")
                 .frame(egui::Frame::new())
                 .resizable(true)
-                .default_size(width * GARMENT_SHARES[usize::from(beside)])
+                .default_size(share.max(row))
                 .size_range(240.0..=(width * GARMENT_MOST).max(240.0))
                 .show(ui, |ui| self.side(ui, beside));
         }

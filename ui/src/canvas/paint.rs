@@ -29,6 +29,8 @@ const NOTCH: f32 = 9.0;
 /// How much is seen of what steps of a panel led away from.
 const FAINT: f32 = 0.55;
 
+/// Sizes of the letters of a panel's name: the usual, and where that has no room [pixels].
+const CAPTION_SIZES: [f32; 2] = [15.0, 12.0];
 /// How many places are tried for the name of a panel, half its height apart.
 const CAPTION_STEPS: usize = 12;
 
@@ -356,34 +358,52 @@ impl Picture<'_> {
     }
 
     /// The panel's name, and under it how it is cut where there is room for both: inside, in a gap of the
-    /// grainline; else the name alone, under the panel if it has no room inside.
+    /// grainline; else the name alone, in smaller letters where they alone fit, under the panel if it has no room inside.
     fn caption(&self, panel: &PanelScene, labels: &mut Vec<Rect>) {
         let origin = self.table_layout.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
             self.painter
                 .layout_no_wrap(text.to_owned(), theme::font(size), colour)
         };
-        let name = layout(&panel.name, 15.0, self.palette.ink);
         let cut = layout(&panel.cut, 12.0, self.palette.ink_soft);
-        let bounds = &panel.shape.drawn_bounds;
-        let [low, high] = [bounds.min, bounds.max].map(|p| self.seen(origin, p));
+        let shape = &panel.shape;
+        let [low, high] = [shape.drawn_bounds.min, shape.drawn_bounds.max];
+        // A folded panel has room across its fold too.
+        let across = Vec2::new(
+            (shape.bounds.min.x + shape.bounds.max.x) * 0.5,
+            shape.middle.y,
+        );
+        let rooms = [
+            ([low, high], shape.middle),
+            ([shape.bounds.min, shape.bounds.max], across),
+        ];
         let room = 2.0 * NUMBER_INSET as f32;
-        let fits = |size: egui::Vec2| {
+        let fits = |size: egui::Vec2, corners: [Vec2; 2]| {
+            let [low, high] = corners.map(|p| self.seen(origin, p));
             size.x + room + 16.0 < (high.x - low.x).abs() && size.y + room < (low.y - high.y).abs()
         };
+        let [name, small] = CAPTION_SIZES.map(|size| layout(&panel.name, size, self.palette.ink));
         let both = vec2(
             name.size().x.max(cut.size().x),
             name.size().y + cut.size().y,
         );
-        let (size, lines) = match fits(both) && !panel.cut.is_empty() {
-            true => (both, vec![name, cut]),
-            false => (name.size(), vec![name]),
-        };
-        let inside = fits(size);
-        let middle = match inside {
-            true => self.seen(origin, panel.shape.middle),
-            false => Pos2::new((low.x + high.x) * 0.5, low.y + 8.0 + size.y * 0.5),
-        };
+        let mut choices = Vec::new();
+        if !panel.cut.is_empty() {
+            choices.push((both, vec![name.clone(), cut]));
+        }
+        choices.push((name.size(), vec![name.clone()]));
+        choices.push((small.size(), vec![small]));
+        let found = choices.into_iter().find_map(|(size, lines)| {
+            let (_, at) = rooms.iter().find(|(corners, _)| fits(size, *corners))?;
+            Some((size, lines, self.seen(origin, *at)))
+        });
+        let inside = found.is_some();
+        let (size, lines, middle) = found.unwrap_or_else(|| {
+            let [low, high] = [low, high].map(|p| self.seen(origin, p));
+            let below = low.y + 8.0 + name.size().y * 0.5;
+            let middle = Pos2::new((low.x + high.x) * 0.5, below);
+            (name.size(), vec![name], middle)
+        });
         // Where another label stands it goes up or down inside, or farther below.
         let steps = (0..CAPTION_STEPS).flat_map(|k| match inside {
             true => [k as f32, -(k as f32)],
