@@ -27,7 +27,7 @@ const VIEWS: &[View] = &[
     View {
         name: "pattern",
         reach: |_| {},
-        shows: &["Pattern view", "Select", "3D view", "Front view"],
+        shows: &["Pattern view", "Select", "3D view", "Drape"],
     },
     View {
         name: "panel",
