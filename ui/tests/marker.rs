@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use toile_geometry::{Polygon, PreparedPolygon, Vec2};
 use toile_pattern::{Marker, PiecePlacement};
 use toile_session::Command;
 use toile_ui::{Beginning, ToileApp};
@@ -14,9 +15,14 @@ use toile_ui::{Beginning, ToileApp};
 type Window = Harness<'static, ToileApp>;
 
 fn window() -> Window {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns/t-shirt.toile.json");
+    window_of("t-shirt", 1400.0)
+}
+
+fn window_of(pattern: &str, width: f32) -> Window {
+    let file = format!("../patterns/{pattern}.toile.json");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
     let mut window = Harness::builder()
-        .with_size(vec2(1400.0, 1000.0))
+        .with_size(vec2(width, 1000.0))
         .with_theme(egui::Theme::Light)
         .with_max_steps(8)
         .with_step_dt(1.0 / 60.0)
@@ -60,6 +66,13 @@ fn drag(window: &mut Window, from: Pos2, by: egui::Vec2) {
     window.run_ok();
 }
 
+fn drag_with_alt(window: &mut Window, from: Pos2, by: egui::Vec2) {
+    window.event(egui::Event::ModifiersChanged(Modifiers::ALT));
+    drag(window, from, by);
+    window.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    window.run_ok();
+}
+
 #[test]
 fn a_marker_is_searched_for_moved_locked_and_undone() {
     let mut window = window();
@@ -87,10 +100,15 @@ fn a_marker_is_searched_for_moved_locked_and_undone() {
     assert!(state.efficiency > 0.5, "{state:?}");
     window.run_ok();
 
-    // A piece dragged over another is one step of the history, and is said to overlap.
+    // A piece let go over another goes back.
     let steps = window.state().session().past().len();
     let [front, back] = ["Piece front", "Piece back"].map(|name| piece(&window, name));
     drag(&mut window, front, (back - front) * 0.8);
+    assert_eq!(window.state().session().past().len(), steps);
+    assert_eq!(marker(&window).placements, found.placements);
+    assert!(window.query_by_label_contains("hold Alt").is_some());
+    // With Alt it stays: one step of the history, and it is said to overlap.
+    drag_with_alt(&mut window, front, (back - front) * 0.8);
     assert_eq!(window.state().session().past().len(), steps + 1);
     assert_ne!(marker(&window).placements, found.placements);
     assert!(!window.state().marker_view().state.overlaps.is_empty());
@@ -213,4 +231,133 @@ fn words_never_move_the_fabric_of_the_marker() {
     drag(&mut window, at, vec2(-100.0, 30.0));
     assert_ne!(words(&window), first);
     assert_eq!(place(&window), before, "{}", words(&window));
+}
+
+/// Searches until all is laid.
+fn search(window: &mut Window) {
+    window.key_press_modifiers(Modifiers::SHIFT, Key::F10);
+    window.run_ok();
+    let begun = Instant::now();
+    while marker(window).placements.is_empty() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+        window.run_ok();
+    }
+    window.run_ok();
+}
+
+/// The outlines of the pieces that are laid, by name.
+fn outlines(window: &Window) -> Vec<(String, PreparedPolygon)> {
+    let id = marker(window).id;
+    let mut session = window.state().session().snapshot_to_export();
+    let laid = session.marker(id).unwrap();
+    let outline = |piece: toile_session::LaidPiece<'_>| {
+        let outline: Polygon = piece.cut.polygon().mapped(|at| piece.pose.apply(at));
+        (piece.name.to_owned(), PreparedPolygon::new(&outline))
+    };
+    laid.laid().map(outline).collect()
+}
+
+/// The least distance of a piece to all others, once it is moved [m].
+fn apart(all: &[(String, PreparedPolygon)], name: &str, by: Vec2) -> f64 {
+    let own = all.iter().find(|(own, _)| own == name).unwrap();
+    let moved = PreparedPolygon::new(&own.1.polygon().translated(by));
+    let others = all.iter().filter(|(other, _)| other != name);
+    let distances = others.map(|(_, other)| other.distance(&moved));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_piece_let_go_beside_another_lies_against_it_at_the_gap() {
+    let mut window = window();
+    press(&mut window, Key::F10);
+    search(&mut window);
+    // Room for pieces beyond the end.
+    let at = piece(&window, "Piece front");
+    let seen = window.state().marker_view().seen_cloth();
+    let scale = f64::from(seen.height()) / window.state().marker_view().cloth().size().y;
+    window.hover_at(at);
+    for (near, with_alt) in [(0.008, false), (0.004, false), (0.008, true)] {
+        let all = outlines(&window);
+        // So far to the right that the others are so near.
+        let (mut low, mut high) = (0.0, 4.0);
+        for x in [3.0, 2.0, 1.0] {
+            if apart(&all, "front", Vec2::new(x, 0.0)) > near {
+                high = x;
+            }
+        }
+        while high - low > 1e-6 {
+            let middle: f64 = 0.5 * (low + high);
+            match apart(&all, "front", Vec2::new(middle, 0.0)) > near {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        let steps = window.state().session().past().len();
+        let way = vec2((high * scale) as f32, 0.0);
+        let from = piece(&window, "Piece front");
+        match with_alt {
+            true => drag_with_alt(&mut window, from, way),
+            false => drag(&mut window, from, way),
+        }
+        assert_eq!(window.state().session().past().len(), steps + 1);
+        let all = outlines(&window);
+        let gap = marker(&window).cloth.gap;
+        let lies = apart(&all, "front", Vec2::zeros());
+        match with_alt {
+            true => assert!((lies - near).abs() < 1e-3, "{lies}"),
+            false => assert!((lies - gap).abs() < 1e-9, "{lies}"),
+        }
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        window.run_ok();
+    }
+}
+
+#[test]
+fn every_piece_keeps_its_name_and_no_name_lies_over_another() {
+    let mut window = window_of("dress", 900.0);
+    press(&mut window, Key::F10);
+    search(&mut window);
+    let names = window.state().marker_view().names().to_vec();
+    assert!(names.iter().any(|name| name.led_to.is_some()), "{names:?}");
+    for (k, name) in names.iter().enumerate() {
+        for other in &names[..k] {
+            assert!(!name.rect.intersects(other.rect), "{name:?} {other:?}");
+        }
+    }
+    let laid = marker(&window).placements.len();
+    assert_eq!(names.len(), laid, "{names:?}");
+}
+
+#[test]
+fn what_a_search_has_is_seen_while_it_goes_on() {
+    let mut window = window();
+    press(&mut window, Key::F10);
+    let base = window.state().session().snapshot_to_export().evaluation();
+    let made = marker(&window);
+    let order = made.order.iter().map(|ordered| toile_pattern::OrderedSize {
+        quantity: 8,
+        ..*ordered
+    });
+    let edits = toile_pattern::plan::set_marker_order(&base, made.id, order.collect()).unwrap();
+    let label = "Set order".to_owned();
+    execute(&mut window, Command::Edit { edits, label });
+    window.key_press_modifiers(Modifiers::SHIFT, Key::F10);
+    window.run_ok();
+    let begun = Instant::now();
+    while window.state().marker_view().state.laid == 0 && begun.elapsed() < Duration::from_secs(60)
+    {
+        std::thread::sleep(Duration::from_millis(5));
+        window.run_ok();
+    }
+    // It is only seen: the document has it once the search is stopped.
+    assert!(marker(&window).placements.is_empty());
+    assert_eq!(window.state().marker_view().state.laid, 32);
+    window.get_by_label("Stop search").click();
+    window.run_ok();
+    while marker(&window).placements.is_empty() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+        window.run_ok();
+    }
+    assert_eq!(marker(&window).placements.len(), 32);
+    assert_eq!(window.state().marker_view().state.waiting, 0);
 }

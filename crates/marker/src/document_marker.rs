@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use toile_cut::CutPiece;
 use toile_geometry::Polygon;
-use toile_nesting::{Locked, Pose, Search, Side, Strip, Unplaced, clashes};
+use toile_nesting::{Item, Locked, Pose, Search, Side, Strip, Unplaced, clashes};
 use toile_pattern::{Marker, OrderedPiece, PiecePlacement};
 
 /// A marker of a document with its pieces where they lie.
@@ -266,9 +266,31 @@ impl DocumentMarker {
         };
         let job = &self.pieces.job;
         let made = job.made((&items, from), search, (&flag, &mut report))?;
-        let key = |k: usize, copy: u32| self.pieces.keys[k][copy as usize];
-        let placements = made.placements.iter().map(|placement| {
-            let piece = key(placement.item, placement.copy);
+        let placements = self.placements_of(&made);
+        let mut summary = self.pieces.finished(made).summary();
+        if stopped || flag.load(Ordering::Relaxed) {
+            let note = "stopped early: the best so far";
+            summary.notes.push(note.to_owned());
+        }
+        Ok(Found {
+            placements,
+            summary,
+        })
+    }
+
+    /// The marker as a search has it meanwhile, by its progress.
+    pub fn under_way(&self, found: &toile_nesting::Marker) -> Self {
+        let marker = Marker {
+            placements: self.placements_of(found),
+            ..(*self.marker).clone()
+        };
+        Self::new(Arc::new(marker), self.pieces.clone())
+    }
+
+    /// Where the pieces of the document lie on a marker that was found.
+    fn placements_of(&self, found: &toile_nesting::Marker) -> Vec<PiecePlacement> {
+        let each = found.placements.iter().map(|placement| {
+            let piece = self.pieces.keys[placement.item][placement.copy as usize];
             let known = self.marker.placement(piece);
             PiecePlacement {
                 piece,
@@ -278,15 +300,16 @@ impl DocumentMarker {
                 locked: known.is_some_and(|known| known.locked),
             }
         });
-        let placements = placements.collect();
-        let mut summary = self.pieces.finished(made).summary();
-        if stopped || flag.load(Ordering::Relaxed) {
-            let note = "stopped early: the best so far";
-            summary.notes.push(note.to_owned());
-        }
-        Ok(Found {
-            placements,
-            summary,
+        each.collect()
+    }
+
+    /// The pieces that are laid, each as the search takes it and its outline on the fabric [m].
+    pub(crate) fn outlines(&self) -> impl Iterator<Item = (OrderedPiece, &Item, Polygon)> {
+        let placed = self.laid.placements.iter().zip(&self.sources);
+        placed.map(|(placement, &source)| {
+            let item = &self.pieces.job.items[placement.item];
+            let outline = placement.pose(item).lay(&item.outline);
+            (self.marker.placements[source].piece, item, outline)
         })
     }
 }

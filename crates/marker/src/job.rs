@@ -171,6 +171,7 @@ impl FabricJob {
             length,
             efficiency: whole.map(efficiency),
             cost: whole.and_then(|length| self.cost(length)),
+            marker: progress.marker,
         }
     }
 

@@ -5,6 +5,7 @@
 //! metres, x along the warp.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod butting;
 mod document_marker;
 mod error;
 mod file;
@@ -23,6 +24,7 @@ mod search;
 mod starting_marker;
 mod summary;
 
+pub use butting::LetGo;
 pub use document_marker::{
     DocumentMarker, Found, LaidPiece, MarkerState, PieceOutside, PieceOverlap, Start, WaitingPiece,
 };

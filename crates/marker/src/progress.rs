@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use toile_nesting::Marker;
 
 /// Progress of a search.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SearchProgress {
     /// Part of the work done, 0..=1.
     pub done: f64,
@@ -14,6 +15,9 @@ pub struct SearchProgress {
     pub efficiency: Option<f64>,
     /// Price of its fabric, all plies together, if a metre's is known.
     pub cost: Option<f64>,
+    /// The best marker so far, for [`DocumentMarker::under_way`](crate::DocumentMarker::under_way); nothing before
+    /// the first, and on rolls. It is the same where nothing is new.
+    pub marker: Option<Arc<Marker>>,
 }
 
 impl SearchProgress {

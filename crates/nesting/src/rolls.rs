@@ -69,6 +69,7 @@ pub fn make_markers_on_rolls(
             let mut told = |progress: Progress| {
                 (control.progress)(Progress {
                     done: done + progress.done * shares[roll],
+                    marker: None,
                     ..progress
                 });
             };

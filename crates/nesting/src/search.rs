@@ -9,6 +9,7 @@ use crate::layout_marker::{finish, layout_of};
 use crate::separate::Limit;
 use crate::side_by_side::side_by_side;
 use crate::{Item, Marker, PENETRATION_LIMIT, Strip, judge};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -66,7 +67,7 @@ impl Search {
 }
 
 /// Progress of a search.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     /// Part of the budget used, 0..=1.
     pub done: f64,
@@ -74,6 +75,8 @@ pub struct Progress {
     pub evaluations: u64,
     /// Length of the best so far, end margins included \[m\]; infinite before the first.
     pub length: f64,
+    /// The best so far; nothing before the first, and on rolls. It is the same where nothing is new.
+    pub marker: Option<Arc<Marker>>,
 }
 
 /// Receives the progress of a search, and may stop it.
@@ -263,6 +266,7 @@ const BEGUN: Progress = Progress {
     done: 0.0,
     evaluations: 0,
     length: f64::INFINITY,
+    marker: None,
 };
 
 /// A search that can be made with so many pieces and flaws, with its islands counted.
@@ -339,17 +343,17 @@ fn run_islands(
     };
     each(&mut islands, threads, (&begin, &mut told));
     share(&mut islands);
-    let mut last = report_progress(&islands, meter, control);
+    let mut last = report_progress(&islands, BEGUN, meter, control);
     for (part, press) in [(EXPLORING, false), (1.0, true)] {
         loop {
             let most = islands.iter().map(Island::queries).max().unwrap_or(0);
             if meter.stops(part) || most >= meter.share(part) {
                 break;
             }
-            let mut again = || (control.progress)(last);
+            let mut again = || (control.progress)(last.clone());
             epoch(&mut islands, meter, (part, press), &mut again);
             share(&mut islands);
-            last = report_progress(&islands, meter, control);
+            last = report_progress(&islands, last, meter, control);
             let now = islands.iter().map(Island::queries).max().unwrap_or(0);
             if now == most {
                 // Nothing is left to try.
@@ -428,22 +432,35 @@ fn best_of(islands: &[Island<'_>]) -> Option<usize> {
     (0..islands.len()).min_by(|&a, &b| order(islands[a].score(), islands[b].score()))
 }
 
-/// Reports the progress of all islands, and returns it.
+/// Reports the progress of all islands since the last, and returns it.
 fn report_progress(
     islands: &[Island<'_>],
+    last: Progress,
     meter: &Meter<'_>,
     control: &mut Control<'_>,
 ) -> Progress {
     let evaluations: u64 = islands.iter().map(Island::queries).sum();
-    let length = best_of(islands).map_or(f64::INFINITY, |k| islands[k].score().1);
-    let margin = islands
-        .first()
-        .map_or(0.0, |i| 2.0 * i.separator.job.strip.end_margin);
+    let best = best_of(islands).and_then(|k| islands[k].best.as_ref().map(|best| (k, best)));
+    let Some((k, best)) = best else {
+        let progress = Progress {
+            done: meter.done(evaluations).min(1.0),
+            evaluations,
+            ..BEGUN
+        };
+        (control.progress)(progress.clone());
+        return progress;
+    };
+    let job = islands[k].separator.job;
+    let length = best.length + 2.0 * job.strip.end_margin;
+    let laid = last
+        .marker
+        .filter(|_| last.length.to_bits() == length.to_bits());
     let progress = Progress {
         done: meter.done(evaluations).min(1.0),
         evaluations,
-        length: length + margin,
+        length,
+        marker: Some(laid.unwrap_or_else(|| Arc::new(finish(job, best)))),
     };
-    (control.progress)(progress);
+    (control.progress)(progress.clone());
     progress
 }

@@ -114,7 +114,7 @@ pub use toile_interchange::{
     ExpectedKind, Lines, MarkerSettings, Paper, Shown, SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
-    DocumentMarker, Found, GivenFlaw, LaidPiece, MarkerError, MarkerFormat, MarkerState,
+    DocumentMarker, Found, GivenFlaw, LaidPiece, LetGo, MarkerError, MarkerFormat, MarkerState,
     MarkerSummary, NestOptions, PieceOutside, PieceOverlap, SearchProgress, SearchWatcher, Start,
     WaitingPiece,
 };

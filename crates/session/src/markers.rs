@@ -33,12 +33,16 @@ impl MarkerSearch {
         how: (Start, Search),
         follow: &mut SearchWatcher<'_>,
     ) -> Result<FoundMarker, SessionError> {
-        let laid = DocumentMarker::new(self.marker.clone(), self.pieces.clone());
         Ok(FoundMarker {
             marker: self.marker.clone(),
             pieces: self.pieces.clone(),
-            found: laid.search(how, follow)?,
+            found: self.laid().search(how, follow)?,
         })
+    }
+
+    /// The marker as it lay when the search was asked for.
+    pub fn laid(&self) -> DocumentMarker {
+        DocumentMarker::new(self.marker.clone(), self.pieces.clone())
     }
 }
 

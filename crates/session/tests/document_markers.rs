@@ -317,7 +317,7 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     let mut told: Vec<SearchProgress> = Vec::new();
     let mut follow = SearchWatcher {
         report: &mut |standing| {
-            told.push(*standing);
+            told.push(standing.clone());
             true
         },
         stop: Arc::default(),

@@ -9,9 +9,12 @@ use crate::theme::Palette;
 use crate::tools::number;
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::{ComboBox, DragValue, RichText, Ui};
+use std::sync::{Arc, Mutex, PoisonError};
 use toile_pattern::plan;
-use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, PiecePlacement, SizeId, Want};
-use toile_session::{FoundMarker, Search, SearchWatcher, SessionError, Start, Watcher};
+use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, SizeId, Want};
+use toile_session::{
+    DocumentMarker, FoundMarker, Search, SearchWatcher, SessionError, Start, Watcher,
+};
 
 /// Width of the field of its name [pixels].
 const NAME_WIDTH: f32 = 110.0;
@@ -21,6 +24,8 @@ const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];
 /// A search that goes on.
 pub struct Searching {
     job: Job<FoundMarker>,
+    /// The marker as the search has it, where that is new.
+    newest: Arc<Mutex<Option<DocumentMarker>>>,
 }
 
 /// How a search is asked for.
@@ -293,6 +298,11 @@ impl ToileApp {
 
     fn do_marker(&mut self, action: MarkerAction) {
         let Some(id) = self.marker_id() else { return };
+        if self.is_searching() {
+            let words = "The search is laying the pieces: Stop search keeps the best so far";
+            self.notice = Notice::news(words);
+            return;
+        }
         let selected = self.marker_view.selection.clone();
         match action {
             MarkerAction::Drag(pieces, way) => {
@@ -303,22 +313,13 @@ impl ToileApp {
                 }
                 self.follow_marker();
             }
-            MarkerAction::Drop => self.commit("Move pieces"),
+            MarkerAction::Drop(pieces, way, how) => self.drop_pieces((id, &pieces), way, how),
             MarkerAction::Leave => {
                 self.session.cancel();
                 self.refresh();
                 self.follow_marker();
             }
-            MarkerAction::Lay(piece, at) => {
-                let laid = PiecePlacement {
-                    piece,
-                    at: at.into(),
-                    turn: 0.0,
-                    flipped: false,
-                    locked: false,
-                };
-                self.marker_edit(plan::place_pieces(&self.base, id, &[laid]), "Lay piece");
-            }
+            MarkerAction::Lay(piece, at, how) => self.lay_piece((id, piece), at, how),
             MarkerAction::Turn(centre, angle) => {
                 let planned =
                     plan::turn_pieces(&self.base, (id, &selected), (angle, centre.into()));
@@ -350,7 +351,7 @@ impl ToileApp {
     }
 
     fn marker_edit(&mut self, planned: Result<Vec<Edit>, EditError>, label: &str) {
-        if !self.marker_view.selection.is_empty() || label == "Lay piece" {
+        if !self.marker_view.selection.is_empty() {
             self.edit(planned, label);
             self.follow_marker();
         }
@@ -386,10 +387,22 @@ impl ToileApp {
         let how = (Start::Anew, Search::seconds(self.search_choice.seconds));
         let unit = self.base.pattern().unit;
         self.panes.marker = true;
+        let newest = Arc::default();
+        let told = Arc::clone(&newest);
         self.searching = Some(Searching {
+            newest,
             job: Job::start(move |follower| {
                 let stop = follower.stop_flag().ok_or(SessionError::Cancelled)?;
+                let laid = search.laid();
+                let mut before = None;
                 let mut report = |progress: &toile_session::SearchProgress| {
+                    if let Some(marker) = &progress.marker
+                        && !before.as_ref().is_some_and(|own| Arc::ptr_eq(own, marker))
+                    {
+                        before = Some(Arc::clone(marker));
+                        let seen = Some(laid.under_way(marker));
+                        *told.lock().unwrap_or_else(PoisonError::into_inner) = seen;
+                    }
                     let mut words = match progress.length {
                         Some(length) => {
                             format!("{} of fabric", number::show(length, Want::Length, unit))
@@ -428,14 +441,25 @@ impl ToileApp {
 
     /// Takes over what a search found.
     pub(super) fn follow_search(&mut self) {
-        let result = self.searching.as_ref().and_then(|s| s.job.result());
-        let Some(result) = result else { return };
+        let Some(searching) = &self.searching else {
+            return;
+        };
+        let Some(result) = searching.job.result() else {
+            let mut newest = searching.newest.lock();
+            let newest = newest.as_mut().ok().and_then(|newest| newest.take());
+            if let Some(laid) = newest.filter(|laid| Some(laid.marker().id) == self.marker_id()) {
+                self.marker_view.follow(&laid);
+                self.marker_view.keep_in_view();
+            }
+            return;
+        };
         self.searching = None;
+        self.follow_marker();
         match result.map(|found| self.session.adopt_marker(found)) {
             Ok(Ok(Some(events))) => {
                 self.handle_events(&events);
-                self.marker_view.fit();
                 self.follow_marker();
+                self.marker_view.keep_in_view();
                 let (words, _) = self.marker_words();
                 self.notice = Notice::news(words);
             }

@@ -17,6 +17,7 @@ mod garment_pane;
 mod job;
 mod layout;
 mod marker_cloth;
+mod marker_drop;
 mod marker_pane;
 mod notice;
 mod pacing;

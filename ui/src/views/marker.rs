@@ -1,41 +1,46 @@
 //! The marker view: pieces on their fabric, seen from above. It changes no document: it says what
 //! is done in it.
 
+use super::marker_names::PieceName;
 use super::marker_piece::PieceScene;
 use crate::canvas::camera::{ScreenPoint, TableCamera, TablePoint};
-use crate::canvas::fill::{Fill, fill};
-use crate::theme::{self, Palette};
-use egui::epaint::Vertex;
 use egui::{
-    Align2, Color32, CursorIcon, EventFilter, Id, Key, Mesh, PointerButton, Pos2, Rect, Response,
-    Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2,
+    CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,
+    WidgetInfo, vec2,
 };
 use std::collections::HashMap;
-use toile_cut::StrokeKind;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{MarkerId, OrderedPiece};
 use toile_session::{DocumentMarker, MarkerState, Pose};
 
 /// Room between pieces that wait beside the fabric [m].
 const GAP: f64 = 0.03;
-/// Smaller letters are not read [pixels].
-const LEAST_LETTERS: f32 = 7.0;
-/// Sizes of the letters that stand in for them, the first that the piece has room for [pixels].
-const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
+/// How near to another a piece is let go to come to lie against it [pixels], and the least and most of it [m].
+const REACH: f64 = 10.0;
+const REACHES: [f64; 2] = [0.003, 0.02];
 /// Quarter of a turn [rad].
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
+
+/// What becomes of pieces that are let go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LetGoAs {
+    /// They lie where they are.
+    Left,
+    /// They come to lie against what is nearer than that [m], and go back from where they lie over another.
+    Butted(f64),
+}
 
 /// Something that is done to a marker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkerAction {
     /// Pieces are dragged: how far from where they were [m].
     Drag(Vec<OrderedPiece>, Vec2),
-    /// The drag is over.
-    Drop,
+    /// The drag is over: how far the pieces were moved [m], and whether they lie as they are let go.
+    Drop(Vec<OrderedPiece>, Vec2, LetGoAs),
     /// The drag is left.
     Leave,
     /// A piece that waits is laid at a place [m].
-    Lay(OrderedPiece, Vec2),
+    Lay(OrderedPiece, Vec2, LetGoAs),
     /// The selected pieces are turned together about a place by an angle [m, rad].
     Turn(Vec2, f64),
     /// They are turned over about a line along the warp [m].
@@ -56,14 +61,16 @@ pub struct MarkerView {
     pub state: MarkerState,
     /// Why there is nothing to see, and whether that is a fault.
     pub nothing: Option<(String, bool)>,
-    camera: TableCamera,
-    pieces: Vec<PieceScene>,
-    cloth: Bounds2,
-    selvedge: f64,
-    hover: Option<OrderedPiece>,
-    drag: Option<(Vec2, Vec<OrderedPiece>)>,
+    pub(super) camera: TableCamera,
+    pub(super) pieces: Vec<PieceScene>,
+    pub(super) cloth: Bounds2,
+    pub(super) selvedge: f64,
+    pub(super) hover: Option<OrderedPiece>,
+    pub(super) drag: Option<(Vec2, Vec<OrderedPiece>)>,
     wants_fit: bool,
-    seen: Rect,
+    wants_all_seen: bool,
+    pub(super) seen: Rect,
+    pub(super) names: Vec<PieceName>,
 }
 
 impl Default for MarkerView {
@@ -80,7 +87,9 @@ impl Default for MarkerView {
             hover: None,
             drag: None,
             wants_fit: true,
+            wants_all_seen: false,
             seen: Rect::NOTHING,
+            names: Vec::new(),
         }
     }
 }
@@ -94,6 +103,16 @@ impl MarkerView {
     /// Shows all of it when it is next drawn.
     pub fn fit(&mut self) {
         self.wants_fit = true;
+    }
+
+    /// Shows all of it when it is next drawn, if some of it lies beyond what is seen.
+    pub fn keep_in_view(&mut self) {
+        self.wants_all_seen = true;
+    }
+
+    /// Where names stand on the screen that are written beside their pieces or in place of their letters.
+    pub fn names(&self) -> &[PieceName] {
+        &self.names
     }
 
     /// The fabric as it lies [m].
@@ -196,19 +215,29 @@ impl MarkerView {
         ui.advance_cursor_after_rect(view);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Marker view"));
         self.navigate(ui, &response);
-        if self.wants_fit && view.width() > 50.0 {
-            let pieces = self.pieces.iter().filter_map(|scene| scene.bounds());
-            let all = pieces.fold(self.cloth, |all, bounds| all.union(&bounds));
-            self.camera.fit(view, &all);
-            self.wants_fit = false;
+        if view.width() > 50.0 {
+            self.fit_in(view);
         }
         let corners = [self.cloth.min, self.cloth.max].map(|at| self.screen(view, at));
         self.seen = Rect::from_two_pos(corners[0], corners[1]);
         let mut actions = self.pointed(ui, &response);
         actions.extend(self.keyed(ui, &response));
+        self.names = self.placed_names(ui, view);
         self.paint(ui, view);
         self.name_pieces(ui, view);
         actions
+    }
+
+    fn fit_in(&mut self, view: Rect) {
+        let pieces = self.pieces.iter().filter_map(|scene| scene.bounds());
+        let all = pieces.fold(self.cloth, |all, bounds| all.union(&bounds));
+        let is_seen = |at: Vec2| view.contains(self.screen(view, at));
+        let hides = self.wants_all_seen && !(is_seen(all.min) && is_seen(all.max));
+        if self.wants_fit || hides {
+            self.camera.fit(view, &all);
+        }
+        self.wants_fit = false;
+        self.wants_all_seen = false;
     }
 
     fn navigate(&mut self, ui: &Ui, response: &Response) {
@@ -282,14 +311,15 @@ impl MarkerView {
                 Some(piece) if released => {
                     let found = self.pieces.iter().find(|scene| scene.piece == piece);
                     if let Some(scene) = found {
-                        actions.push(MarkerAction::Lay(piece, scene.pose.translation + way));
+                        let at = scene.pose.translation + way;
+                        actions.push(MarkerAction::Lay(piece, at, self.let_go_as(ui)));
                     }
                 }
                 Some(_) => {}
                 None => {
-                    actions.push(MarkerAction::Drag(pieces, way));
+                    actions.push(MarkerAction::Drag(pieces.clone(), way));
                     if released {
-                        actions.push(MarkerAction::Drop);
+                        actions.push(MarkerAction::Drop(pieces, way, self.let_go_as(ui)));
                     }
                 }
             }
@@ -315,6 +345,15 @@ impl MarkerView {
             ui.ctx().set_cursor_icon(CursorIcon::Move);
         }
         actions
+    }
+
+    /// What is near on the screen is near, but not more than a few millimetres where pieces are seen small; with
+    /// Alt pieces lie as they are let go.
+    fn let_go_as(&self, ui: &Ui) -> LetGoAs {
+        match ui.input(|input| input.modifiers.alt) {
+            true => LetGoAs::Left,
+            false => LetGoAs::Butted((REACH / self.camera.scale).clamp(REACHES[0], REACHES[1])),
+        }
     }
 
     /// The middle of what is selected [m].
@@ -376,194 +415,16 @@ impl MarkerView {
         ] {
             if pressed(key) && !self.selection.is_empty() {
                 let pieces = self.selection.clone();
-                actions.push(MarkerAction::Drag(pieces, way * 0.001));
-                actions.push(MarkerAction::Drop);
+                let way = way * 0.001;
+                actions.push(MarkerAction::Drag(pieces.clone(), way));
+                actions.push(MarkerAction::Drop(pieces, way, LetGoAs::Left));
             }
         }
         actions
     }
 
-    fn screen(&self, view: Rect, at: Vec2) -> Pos2 {
+    pub(super) fn screen(&self, view: Rect, at: Vec2) -> Pos2 {
         self.camera.screen(view, TablePoint(at)).0
-    }
-
-    fn paint(&self, ui: &Ui, view: Rect) {
-        let painter = ui.painter_at(view);
-        let palette = Palette::of(ui.ctx());
-        painter.rect_filled(view, 0.0, palette.table);
-        if let Some((words, is_fault)) = &self.nothing {
-            let colour = match is_fault {
-                true => palette.fault,
-                false => palette.ink_soft,
-            };
-            let font = theme::font(14.0);
-            painter.text(view.center(), Align2::CENTER_CENTER, words, font, colour);
-            return;
-        }
-        let corner = |at: Vec2| self.screen(view, at);
-        let cloth = self.seen;
-        painter.rect_filled(cloth, 0.0, palette.panel);
-        for y in [self.selvedge, self.cloth.max.y - self.selvedge] {
-            let ends = [Vec2::new(0.0, y), Vec2::new(self.cloth.max.x, y)].map(corner);
-            let stroke = Stroke::new(1.0, palette.rule);
-            painter.line_segment(ends, stroke);
-        }
-        painter.rect_stroke(
-            cloth,
-            0.0,
-            Stroke::new(1.4, palette.pencil),
-            egui::StrokeKind::Outside,
-        );
-        for scene in &self.pieces {
-            let dragged = self
-                .drag
-                .as_ref()
-                .is_some_and(|(_, p)| p.contains(&scene.piece));
-            let shift = match (scene.waits && dragged, ui.input(|i| i.pointer.latest_pos())) {
-                (true, Some(now)) => {
-                    let from = self.drag.as_ref().map_or(Vec2::zeros(), |(from, _)| *from);
-                    self.camera.table(view, ScreenPoint(now)).0 - from
-                }
-                _ => Vec2::zeros(),
-            };
-            self.paint_piece(&painter, (view, palette), scene, shift);
-        }
-        // What would be cut twice.
-        for part in self
-            .state
-            .overlaps
-            .iter()
-            .flat_map(|overlap| &overlap.region)
-        {
-            let rings: Vec<Vec<Vec2>> = part.rings().cloned().collect();
-            let shape = fill(&rings);
-            self.paint_fill(&painter, view, (&shape, palette.fault.gamma_multiply(0.7)));
-        }
-    }
-
-    fn paint_fill(&self, painter: &egui::Painter, view: Rect, (fill, colour): (&Fill, Color32)) {
-        let vertices = fill.points.iter().map(|p| Vertex {
-            pos: self.screen(view, Vec2::new(f64::from(p[0]), f64::from(p[1]))),
-            uv: egui::epaint::WHITE_UV,
-            color: colour,
-        });
-        painter.add(Mesh {
-            vertices: vertices.collect(),
-            indices: fill.indices.clone(),
-            ..Mesh::default()
-        });
-    }
-
-    fn paint_piece(
-        &self,
-        painter: &egui::Painter,
-        (view, palette): (Rect, &Palette),
-        scene: &PieceScene,
-        shift: Vec2,
-    ) {
-        let overlapping = self
-            .state
-            .overlaps
-            .iter()
-            .any(|overlap| overlap.pieces.contains(&scene.piece))
-            || self
-                .state
-                .outside
-                .iter()
-                .any(|outside| outside.piece == scene.piece);
-        let selected = self.selection.contains(&scene.piece);
-        let lit = selected || self.hover == Some(scene.piece);
-        let (ground, line) = match () {
-            () if overlapping => (palette.fault.gamma_multiply(0.28), palette.fault),
-            () if selected => (palette.accent_soft, palette.accent),
-            () if scene.locked => (palette.rule, palette.ink),
-            () => (
-                theme::seam(usize::from(scene.group()) + 1).gamma_multiply(0.22),
-                palette.ink,
-            ),
-        };
-        let at = |p: Vec2| self.screen(view, p + shift);
-        let vertices = scene.fill.points.iter().map(|p| Vertex {
-            pos: at(Vec2::new(f64::from(p[0]), f64::from(p[1]))),
-            uv: egui::epaint::WHITE_UV,
-            color: ground,
-        });
-        painter.add(Mesh {
-            vertices: vertices.collect(),
-            indices: scene.fill.indices.clone(),
-            ..Mesh::default()
-        });
-        for stroke in &scene.drawing.strokes {
-            let mut points: Vec<Pos2> = stroke.points.iter().map(|p| at(*p)).collect();
-            if stroke.closed {
-                points.extend(points.first().copied());
-            }
-            let (width, colour): (f32, Color32) = match stroke.kind {
-                StrokeKind::Cut => (if lit { 2.2 } else { 1.4 }, line),
-                StrokeKind::Sew | StrokeKind::Inside | StrokeKind::Mark | StrokeKind::Drill => {
-                    (0.8, palette.pencil)
-                }
-                StrokeKind::Grain => (1.0, palette.ink_soft),
-                StrokeKind::Fold => (1.2, palette.ink_soft),
-                StrokeKind::Notch => (1.2, line),
-            };
-            painter.add(Shape::line(points, Stroke::new(width, colour)));
-        }
-        self.small_name(painter, scene, (at(scene.middle()), palette));
-        for words in &scene.drawing.words {
-            let size = (words.size * self.camera.scale) as f32;
-            if size < LEAST_LETTERS {
-                continue;
-            }
-            let galley = painter.layout_no_wrap(
-                words.text.clone(),
-                theme::font(size.min(22.0)),
-                palette.ink,
-            );
-            // Seen on the screen y points down: the words are turned the other way.
-            let turn = -words.angle as f32;
-            let half = vec2(galley.size().x * 0.5, galley.size().y);
-            let corner = at(words.at) - egui::emath::Rot2::from_angle(turn) * half;
-            let text = egui::epaint::TextShape::new(corner, galley, palette.ink).with_angle(turn);
-            painter.add(text);
-        }
-        if scene.locked
-            && let Some(bounds) = scene.bounds()
-        {
-            painter.text(
-                at(bounds.centre()) + vec2(0.0, 14.0),
-                Align2::CENTER_CENTER,
-                "locked",
-                theme::font(10.5),
-                palette.ink_soft,
-            );
-        }
-    }
-
-    /// The name of a piece whose own letters are too small to read, where there is room for it.
-    fn small_name(
-        &self,
-        painter: &egui::Painter,
-        scene: &PieceScene,
-        (middle, palette): (Pos2, &Palette),
-    ) {
-        let own = scene.drawing.words.first().map_or(0.0, |words| words.size);
-        let Some(bounds) = scene.bounds() else {
-            return;
-        };
-        if (own * self.camera.scale) as f32 >= LEAST_LETTERS {
-            return;
-        }
-        let room = bounds.size() * self.camera.scale;
-        for letters in SMALL_NAMES {
-            let font = theme::font(letters);
-            let galley = painter.layout_no_wrap(scene.name.clone(), font, palette.ink);
-            let size = galley.size();
-            if f64::from(size.x) < room.x && f64::from(size.y) < room.y {
-                painter.galley(middle - size * 0.5, galley, palette.ink);
-                return;
-            }
-        }
     }
 
     /// Names the pieces for assistive technology.

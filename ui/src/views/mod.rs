@@ -2,5 +2,7 @@
 
 pub mod garment;
 pub mod marker;
+mod marker_names;
+mod marker_paint;
 mod marker_piece;
 pub mod pattern;

@@ -1,0 +1,84 @@
+//! Pieces that are let go on the marker: against their neighbours, or back where they were.
+
+use super::ToileApp;
+use super::notice::Notice;
+use crate::views::marker::LetGoAs;
+use toile_geometry::Vec2;
+use toile_pattern::plan;
+use toile_pattern::{Edit, EditError, MarkerId, OrderedPiece, PiecePlacement};
+use toile_session::LetGo;
+
+impl ToileApp {
+    /// Ends a drag of pieces that were moved by a way [m]: one step of the history, or none.
+    pub(super) fn drop_pieces(
+        &mut self,
+        (id, pieces): (MarkerId, &[OrderedPiece]),
+        way: Vec2,
+        how: LetGoAs,
+    ) {
+        let moved =
+            |app: &Self, by: Vec2| plan::move_pieces(&app.base, (id, pieces), (way + by).into());
+        self.let_go((id, pieces), ("Move pieces", how), moved);
+    }
+
+    /// Lays a piece that waited at a place [m].
+    pub(super) fn lay_piece(
+        &mut self,
+        (id, piece): (MarkerId, OrderedPiece),
+        at: Vec2,
+        how: LetGoAs,
+    ) {
+        let laid = |app: &Self, by: Vec2| {
+            let laid = PiecePlacement {
+                piece,
+                at: (at + by).into(),
+                turn: 0.0,
+                flipped: false,
+                locked: false,
+            };
+            plan::place_pieces(&app.base, id, &[laid])
+        };
+        self.let_go((id, &[piece]), ("Lay piece", how), laid);
+    }
+
+    /// Lets pieces go, by the edits that lay them so far from where they are let go.
+    fn let_go(
+        &mut self,
+        (id, pieces): (MarkerId, &[OrderedPiece]),
+        (label, how): (&str, LetGoAs),
+        edits: impl Fn(&Self, Vec2) -> Result<Vec<Edit>, EditError>,
+    ) {
+        match edits(self, Vec2::zeros()) {
+            Ok(edits) => self.preview(&edits),
+            Err(error) => {
+                self.session.cancel();
+                self.refresh();
+                self.say_fault(error.to_string());
+                return self.follow_marker();
+            }
+        }
+        let rest = match (how, self.session.marker(id)) {
+            (LetGoAs::Butted(reach), Ok(laid)) => laid.let_go(pieces, reach),
+            _ => LetGo::Apart(Vec2::zeros()),
+        };
+        match rest {
+            LetGo::Apart(by) => {
+                if by != Vec2::zeros()
+                    && let Ok(edits) = edits(self, by)
+                {
+                    self.preview(&edits);
+                }
+                self.commit(label);
+            }
+            LetGo::Over(other) => {
+                self.session.cancel();
+                self.refresh();
+                let words = self.base.pattern().piece_words(other);
+                self.notice = Notice::warning(format!(
+                    "It went back, as it lay over {words}: hold Alt to leave it there"
+                ));
+            }
+        }
+        self.follow_marker();
+    }
+}
