@@ -99,7 +99,7 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
             let words = RichText::new(name).small().color(soft);
             let label = ui.add(egui::Label::new(words).wrap());
             match meaning(name) {
-                Some(meaning) => label.on_hover_text(meaning).id,
+                Some(meaning) => label.on_hover_text(meaning.replace('`', "")).id,
                 None => label.id,
             }
         });

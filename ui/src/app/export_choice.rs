@@ -42,8 +42,8 @@ const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
             (ExportFormat::MarkerPdf, "Marker PDF"),
             (ExportFormat::MarkerSvg, "Marker SVG"),
             (ExportFormat::MarkerReport, "Marker report"),
-            (ExportFormat::MarkerJson, "Marker as data"),
-            (ExportFormat::MarkerInstance, "Nesting instance"),
+            (ExportFormat::MarkerJson, "Marker JSON"),
+            (ExportFormat::MarkerInstance, "Nesting problem JSON"),
         ],
     ),
     (

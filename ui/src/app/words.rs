@@ -4,7 +4,7 @@ use super::ToileApp;
 use super::answer::{Answer, main_button};
 use super::dialogs::Dialog;
 use crate::glossary::found;
-use crate::theme::Palette;
+use crate::theme::{Palette, title};
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
 /// Height of the list [pixels].
@@ -41,8 +41,8 @@ pub fn show_words(ui: &mut Ui, text: &mut String) -> Answer {
                 ui.add_space(8.0);
                 ui.label(RichText::new(subject).small().color(soft));
             }
-            ui.label(RichText::new(word.word).strong());
-            ui.label(word.meaning);
+            title(ui, word.word);
+            ui.label(word.meaning.replace('`', ""));
             ui.add_space(4.0);
         }
     });
