@@ -5,8 +5,8 @@ use crate::theme::Palette;
 use egui::text::LayoutJob;
 use egui::text::{CCursor, CCursorRange};
 use egui::{
-    Color32, Galley, Key, Modifiers, Response, RichText, Sense, TextBuffer, TextEdit, TextStyle,
-    Ui, vec2,
+    Color32, Galley, Key, Modifiers, Response, RichText, Role, Sense, TextBuffer, TextEdit,
+    TextStyle, Ui, WidgetInfo, vec2,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -96,8 +96,10 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
             ui.set_min_height(height);
             // On the line of what is written in the field.
             ui.add_space(ui.spacing().button_padding.y);
-            let words = RichText::new(name).small().color(soft);
+            let words = RichText::new(capitalised(name)).small().color(soft);
             let label = ui.add(egui::Label::new(words).wrap());
+            // What messages call it, it is called by those who hear the window too.
+            label.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
             match meaning(name) {
                 Some(meaning) => label.on_hover_text(meaning.replace('`', "")).id,
                 None => label.id,
@@ -106,6 +108,13 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
         ui.vertical(|ui| add(ui, place.inner)).inner
     })
     .inner
+}
+
+/// Words with a capital, as labels begin.
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters).collect()
 }
 
 /// A list to choose a value from, beside its label; a value that is in no entry shows nothing.

@@ -353,6 +353,7 @@ fn the_journal_and_what_is_kept_for_recovery_have_the_guides() {
     let restore = Command::RestorePattern {
         text: drafter.saved(),
         source: None,
+        past: Vec::new(),
     };
     restored.execute(restore, &mut Silent).unwrap();
     assert_eq!(restored.project().pattern.guides, drafter.pattern().guides);

@@ -14,6 +14,8 @@ pub struct LibraryFabric {
     pub name: &'static str,
     /// A short description.
     pub about: &'static str,
+    /// A colour such cloth is often seen in: red, green and blue of sRGB, 0 to 1.
+    pub colour: [f64; 3],
     /// Mass per area [kg/m2].
     pub density: f64,
     /// Thickness [m].
@@ -121,6 +123,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "silk",
         about: "crepe de Chine of 16 momme",
+        colour: [0.93, 0.87, 0.76],
         density: 0.069,
         thickness: 0.20e-3,
         stretch: [tensile_curve(4.0, 0.65), tensile_curve(6.0, 0.60)],
@@ -139,6 +142,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "chiffon",
         about: "silk chiffon of 7 momme",
+        colour: [0.92, 0.80, 0.80],
         density: 0.031,
         thickness: 0.15e-3,
         stretch: [tensile_curve(6.0, 0.60), tensile_curve(8.0, 0.60)],
@@ -157,6 +161,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "poplin",
         about: "cotton poplin, shirting",
+        colour: [0.72, 0.81, 0.90],
         density: 0.12,
         thickness: 0.30e-3,
         stretch: [tensile_curve(3.0, 0.75), tensile_curve(6.0, 0.70)],
@@ -175,6 +180,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "cotton",
         about: "a plain cotton weave of middling weight",
+        colour: [0.95, 0.94, 0.90],
         density: 0.197,
         thickness: 0.45e-3,
         stretch: [tensile_curve(4.0, 0.72), tensile_curve(7.0, 0.68)],
@@ -193,6 +199,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "jersey",
         about: "single cotton jersey; warp is the wale",
+        colour: [0.55, 0.60, 0.66],
         density: 0.16,
         thickness: 0.70e-3,
         stretch: [(150.0, 0.0), (60.0, 0.0)],
@@ -212,6 +219,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "wool",
         about: "worsted winter suiting",
+        colour: [0.40, 0.35, 0.33],
         density: weight(26.35),
         thickness: 0.746e-3,
         stretch: [tensile_curve(6.03, 0.608), tensile_curve(6.03, 0.608)],
@@ -224,6 +232,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "denim",
         about: "washed cotton denim of 10 oz",
+        colour: [0.24, 0.32, 0.47],
         density: WASHED_DENIM.0,
         thickness: 0.993e-3,
         stretch: [tensile_curve(5.21, 0.70), tensile_curve(5.21, 0.70)],
@@ -236,6 +245,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "leather",
         about: "sheep garment leather",
+        colour: [0.42, 0.26, 0.17],
         density: 0.50,
         thickness: 0.80e-3,
         stretch: [(8.0e3, 0.0), (8.0e3, 0.0)],
@@ -255,6 +265,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "felt",
         about: "pressed wool felt of 1 mm",
+        colour: [0.45, 0.50, 0.32],
         density: 0.20,
         thickness: 1.0e-3,
         stretch: [(2.0e3, 0.0), (2.0e3, 0.0)],
@@ -273,6 +284,7 @@ pub static LIBRARY: [LibraryFabric; 10] = [
     LibraryFabric {
         name: "flag-nylon",
         about: "woven flag nylon of 1.6 oz",
+        colour: [0.75, 0.18, 0.17],
         density: 0.054,
         thickness: 0.10e-3,
         stretch: [tensile_curve(3.0, 0.80), tensile_curve(4.0, 0.80)],

@@ -340,6 +340,7 @@ pub(crate) fn drag(result: &mut Timed) -> Result<(), LabError> {
     let command = Command::RestorePattern {
         text: write_pattern(&large).map_err(session_error)?,
         source: None,
+        past: Vec::new(),
     };
     let mut all = vec![measured("large", command, LARGE_STRIDE)?];
     for (path, name) in SAMPLES {

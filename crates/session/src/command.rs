@@ -1,6 +1,6 @@
 //! Commands: everything that can be asked of a session, as data.
 
-use crate::{Export, PanelOrigin, Quality, StampedInput};
+use crate::{Export, PanelOrigin, PastStep, Quality, StampedInput};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_body::{Figure, PrimitiveEdit};
@@ -38,6 +38,9 @@ pub enum Command {
         text: String,
         /// The file it was last saved to.
         source: Option<PathBuf>,
+        /// Steps that led to it and can be taken back, the newest first.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        past: Vec<PastStep>,
     },
     /// Writes the pattern in the native format.
     SavePattern {

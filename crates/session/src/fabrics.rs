@@ -142,7 +142,11 @@ fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
 /// A fabric of the library as one that a pattern can have; nothing where there is none of that name.
 pub fn library_fabric(name: &str) -> Option<Fabric> {
     let library = LibraryFabric::named(name)?;
-    of_material(name, &library.material()).ok()
+    let fabric = of_material(name, &library.material()).ok()?;
+    Some(Fabric {
+        colour: library.colour,
+        ..fabric
+    })
 }
 
 /// The fabric of the library that most figures of a fabric are those of, three at the least: it was copied from

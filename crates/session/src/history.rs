@@ -5,19 +5,25 @@ use std::collections::VecDeque;
 
 /// Most steps kept.
 const MOST_STEPS: usize = 1000;
+/// Most steps that are there again after a crash.
+const MOST_KEPT: usize = 50;
 
 /// One step: the project on the other side of it.
 #[derive(Clone, Debug)]
-struct Step {
-    label: String,
-    project: Project,
+pub struct HistoryStep {
+    /// Its own number: none of the same history has the same.
+    pub(crate) number: u64,
+    pub(crate) label: String,
+    pub(crate) project: Project,
 }
 
 /// Steps that can be taken back, and those that can be done again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct History {
-    past: VecDeque<Step>,
-    future: Vec<Step>,
+    past: VecDeque<HistoryStep>,
+    future: Vec<HistoryStep>,
+    /// How many steps there ever were.
+    count: u64,
 }
 
 impl History {
@@ -27,7 +33,9 @@ impl History {
         if self.past.len() == MOST_STEPS {
             self.past.pop_front();
         }
-        self.past.push_back(Step {
+        self.count += 1;
+        self.past.push_back(HistoryStep {
+            number: self.count,
             label: label.to_owned(),
             project: before,
         });
@@ -36,9 +44,9 @@ impl History {
     /// The project before the last step; `now` can be had back by [`History::redo`].
     pub fn undo(&mut self, now: &Project) -> Option<Project> {
         let step = self.past.pop_back()?;
-        self.future.push(Step {
+        self.future.push(HistoryStep {
             project: now.clone(),
-            label: step.label,
+            ..step.clone()
         });
         Some(step.project)
     }
@@ -46,9 +54,9 @@ impl History {
     /// The project after the step last taken back.
     pub fn redo(&mut self, now: &Project) -> Option<Project> {
         let step = self.future.pop()?;
-        self.past.push_back(Step {
+        self.past.push_back(HistoryStep {
             project: now.clone(),
-            label: step.label,
+            ..step.clone()
         });
         Some(step.project)
     }
@@ -61,6 +69,11 @@ impl History {
     /// Label of the step that would be done again.
     pub fn can_redo(&self) -> Option<&str> {
         self.future.last().map(|step| &*step.label)
+    }
+
+    /// The last steps that can be taken back, the newest first: as many as are there again after a crash.
+    pub fn to_keep(&self) -> Vec<HistoryStep> {
+        self.past.iter().rev().take(MOST_KEPT).cloned().collect()
     }
 
     /// Labels of the steps that can be taken back, the oldest first.

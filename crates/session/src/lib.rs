@@ -74,6 +74,7 @@ pub use event::{Assembled, Draped, Event};
 pub use export_format::{Export, ExportFormat};
 pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
 pub use garment_edit::{CannotFollow, GarmentEdit};
+pub use history::HistoryStep;
 pub use input::is_input;
 pub use interactive_run::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
@@ -94,7 +95,7 @@ pub use piece_facts::{
 pub use placed_panels::PanelOrigin;
 pub use printing::{PrintOptions, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
-pub use recovery::{Abandoned, Recovery, abandoned, state_folder};
+pub use recovery::{Abandoned, PastStep, Recovery, abandoned, state_folder};
 pub use rest_change::RestChange;
 pub use scene::{SceneOutcome, run_scene};
 pub use scene_checkpoint::RunOptions;

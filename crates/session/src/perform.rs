@@ -9,7 +9,7 @@ use crate::outfit::DraftedPart;
 use crate::output::cannot;
 use crate::watcher::{ProgressShare, report_progress};
 use crate::{
-    Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, Project, Session,
+    Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, PastStep, Project, Session,
     SessionError, StampedInput, Watcher, WornGarment,
 };
 use std::fmt::Display;
@@ -33,7 +33,9 @@ impl Session {
             Command::SetOrigin { origin } => self.set_origin(*origin),
             Command::SavePattern { path } => self.save(path, watcher),
             Command::NewPattern { name } => self.start(name),
-            Command::RestorePattern { text, source } => self.restore(text, source.as_deref()),
+            Command::RestorePattern { text, source, past } => {
+                self.restore((text, past), source.as_deref())
+            }
             Command::Edit { edits, label } => self.edit(edits, label),
             Command::Undo => self.travel(History::undo, "undo", "nothing was changed yet"),
             Command::Redo => self.travel(
@@ -132,7 +134,36 @@ impl Session {
         Ok(events)
     }
 
-    fn restore(&mut self, text: &str, source: Option<&Path>) -> Outcome {
+    /// Takes up a pattern that is in no file, with the steps that led to it as far back as they can be read.
+    fn restore(&mut self, (text, past): (&str, &[PastStep]), source: Option<&Path>) -> Outcome {
+        let (next, notes) = self.restored(text, source)?;
+        let mut events = self.begin(next);
+        let mut steps = Vec::new();
+        let mut after = text.to_owned();
+        for step in past {
+            let Some(before) = step.text_before(&after) else {
+                break;
+            };
+            let Ok((project, _)) = self.restored(&before, source) else {
+                break;
+            };
+            steps.push((project, &step.label));
+            after = before;
+        }
+        for (project, label) in steps.into_iter().rev() {
+            self.history.record(project, label);
+        }
+        self.saved = Project::default();
+        events.extend(Event::warnings(&notes));
+        Ok(events)
+    }
+
+    /// The project of a pattern that is in no file, in the present quality, and what is worth telling.
+    fn restored(
+        &self,
+        text: &str,
+        source: Option<&Path>,
+    ) -> Result<(Project, Vec<String>), SessionError> {
         let opened = read_pattern_text(text).map_err(|error| SessionError::Format {
             path: source.unwrap_or(Path::new("recovered pattern")).to_owned(),
             error,
@@ -140,13 +171,11 @@ impl Session {
         let mut next = Project {
             pattern: Arc::new(opened.pattern),
             source: source.map(Path::to_owned),
+            quality: self.project.quality,
             ..Project::default()
         };
         let notes = try_on(&mut next, opened.fitting, self.origin);
-        let mut events = self.begin(next);
-        self.saved = Project::default();
-        events.extend(Event::warnings(&notes));
-        Ok(events)
+        Ok((next, notes))
     }
 
     /// Puts another project in place of the present one, in its quality, with a history of its own.

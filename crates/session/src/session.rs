@@ -2,7 +2,7 @@
 
 use crate::derived::Derived;
 use crate::fitting::{document_text, files_to_try_on};
-use crate::history::History;
+use crate::history::{History, HistoryStep};
 use crate::input::is_pipe;
 use crate::journal::Journal;
 use crate::output::cannot;
@@ -73,6 +73,12 @@ impl Session {
     /// Labels of the steps that can be taken back, the oldest first.
     pub fn past(&self) -> Vec<&str> {
         self.history.past().collect()
+    }
+
+    /// The last steps that can be taken back, the newest first, to be kept by
+    /// [`Recovery::keep`](crate::Recovery::keep).
+    pub fn steps_to_keep(&self) -> Vec<HistoryStep> {
+        self.history.to_keep()
     }
 
     /// Labels of the steps that can be done again, the next first.
@@ -194,6 +200,7 @@ impl Session {
             Command::OpenPattern { path } if is_pipe(path) => Ok(Command::RestorePattern {
                 text: document_text(&self.project, None).map_err(cannot("journal.jsonl"))?,
                 source: None,
+                past: Vec::new(),
             }),
             _ => Ok(command),
         }

@@ -247,7 +247,11 @@ fn pieces_keep_their_places_while_fifty_points_move_and_overlaps_are_listed() {
     // The quick check, kept up from move to move, says what a fresh session says.
     let text = write_pattern(&session.project().pattern).unwrap();
     let mut fresh = Session::new();
-    let restore = Command::RestorePattern { text, source: None };
+    let restore = Command::RestorePattern {
+        text,
+        source: None,
+        past: Vec::new(),
+    };
     fresh.execute(restore, &mut Silent).unwrap();
     assert_eq!(state(&mut fresh, id), found);
     let words = |session: &mut Session| {
@@ -512,7 +516,11 @@ fn what_is_kept_of_a_marker_is_what_a_fresh_session_makes() {
         edit(&mut session, edits);
         let mut fresh = Session::new();
         let text = write_pattern(&session.project().pattern).unwrap();
-        let restore = Command::RestorePattern { text, source: None };
+        let restore = Command::RestorePattern {
+            text,
+            source: None,
+            past: Vec::new(),
+        };
         fresh.execute(restore, &mut Silent).unwrap();
         let seen = |session: &mut Session| {
             let laid = session.marker(id).unwrap();

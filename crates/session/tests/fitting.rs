@@ -327,13 +327,14 @@ fn a_crash_loses_nothing_of_it() {
     }
     let states = folder.join("states");
     let recovery = Recovery::start(&states).unwrap();
-    recovery.keep(session.project());
+    recovery.keep(session.project(), session.steps_to_keep());
     drop(recovery);
     let found = abandoned(&states).unwrap().remove(0);
     let mut again = Session::new();
     let restore = Command::RestorePattern {
         text: found.text.clone(),
         source: found.source.clone(),
+        past: found.past.clone(),
     };
     let events = run(&mut again, restore).unwrap();
     assert_eq!(warned(&events), [""; 0]);

@@ -60,7 +60,7 @@ fn edit_until_killed(folder: &Path) {
     let start = Instant::now();
     for k in 1.. {
         count(&mut session, k);
-        recovery.keep(session.project());
+        recovery.keep(session.project(), session.steps_to_keep());
         let line = format!("{k} {}\n", start.elapsed().as_millis());
         std::io::Write::write_all(&mut notes, line.as_bytes()).unwrap();
         std::thread::sleep(Duration::from_millis(5));
@@ -149,7 +149,7 @@ fn a_damaged_state_is_never_taken_for_whole() {
             source: Some(PathBuf::from("band.json")),
             ..session.project().clone()
         };
-        recovery.keep(&kept);
+        recovery.keep(&kept, session.steps_to_keep());
         let newest = || file(&states, "newest").is_some_and(|path| holds(&path, k));
         let start = Instant::now();
         while !newest() {
@@ -212,7 +212,7 @@ fn what_was_saved_is_not_offered() {
     let mut session = opened(folder.path());
     let recovery = Recovery::start(&states).unwrap();
     count(&mut session, 7);
-    recovery.keep(session.project());
+    recovery.keep(session.project(), session.steps_to_keep());
     recovery.clear();
     drop(recovery);
     assert_eq!(fs::read_dir(&states).unwrap().count(), 0);
@@ -230,6 +230,7 @@ fn a_recovered_document_is_unsaved_and_replays() {
     let restore = Command::RestorePattern {
         text: BAND.into(),
         source: Some(folder.path().join("band.toile.json")),
+        past: Vec::new(),
     };
     session.execute(restore, &mut Silent).unwrap();
     assert!(session.is_unsaved());
@@ -240,6 +241,7 @@ fn a_recovered_document_is_unsaved_and_replays() {
     let broken = Command::RestorePattern {
         text: "{".into(),
         source: None,
+        past: Vec::new(),
     };
     let before = session.project().clone();
     assert!(
@@ -249,4 +251,50 @@ fn a_recovered_document_is_unsaved_and_replays() {
             .is_bad_input()
     );
     assert_eq!(*session.project(), before);
+}
+
+#[test]
+fn the_history_is_there_again_after_a_crash() {
+    let _looking = LOCKS.lock();
+    let folder = tempfile::tempdir().unwrap();
+    let states = folder.path().join("states");
+    let mut session = opened(folder.path());
+    let recovery = Recovery::start(&states).unwrap();
+    let last = 60;
+    for k in 1..=last {
+        count(&mut session, k);
+        session.commit(&format!("Count {k}")).unwrap();
+        recovery.keep(session.project(), session.steps_to_keep());
+        // Some states are written on the way, as with a hand that draws.
+        if k % 20 == 0 {
+            std::thread::sleep(Duration::from_millis(600));
+        }
+    }
+    drop(recovery);
+    let found = abandoned(&states).unwrap().pop().unwrap();
+    let length: usize = fs::metadata(file(&states, "newest").unwrap())
+        .unwrap()
+        .len() as usize;
+    assert!(length < 3 * found.text.len(), "{length}");
+    let restore = Command::RestorePattern {
+        text: found.text.clone(),
+        source: found.source.clone(),
+        past: found.past.clone(),
+    };
+    let mut again = Session::new();
+    again.execute(restore, &mut Silent).unwrap();
+    assert_eq!(again.project().pattern, session.project().pattern);
+    let past = session.past();
+    assert_eq!(again.past(), past[past.len() - 50..]);
+    for k in (last - 50..last).rev() {
+        again.execute(Command::Undo, &mut Silent).unwrap();
+        assert_eq!(counted(&again.project().pattern), k);
+    }
+    assert!(again.can_undo().is_none() && again.is_unsaved());
+    for _ in 0..50 {
+        again.execute(Command::Redo, &mut Silent).unwrap();
+    }
+    assert_eq!(again.project().pattern, session.project().pattern);
+    let (replayed, _) = Session::replay(&again.journal(), folder.path(), &mut Silent).unwrap();
+    assert_eq!(replayed.past(), again.past());
 }

@@ -344,7 +344,7 @@ impl ToileApp {
         let is_kept = |kept: &Project| kept.says_the_same(project);
         if self.session.is_unsaved() {
             if !self.kept.as_ref().is_some_and(is_kept) {
-                recovery.keep(project);
+                recovery.keep(project, self.session.steps_to_keep());
                 self.kept = Some(project.clone());
             }
         } else if self.kept.take().is_some() {

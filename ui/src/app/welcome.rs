@@ -162,6 +162,7 @@ impl ToileApp {
         let restore = Command::RestorePattern {
             text: document.text.clone(),
             source: document.source.clone(),
+            past: document.past.clone(),
         };
         if self.execute(restore)
             && let Err(error) = document.discard()

@@ -1,7 +1,7 @@
 //! States of documents that a crash left.
 
 use super::state_file::DocumentState;
-use super::{BEFORE, LOCK, NEWEST, file_of};
+use super::{BEFORE, LOCK, NEWEST, PastStep, file_of};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;
@@ -17,6 +17,8 @@ pub struct Abandoned {
     pub source: Option<PathBuf>,
     /// The pattern in the native format, as it was last kept.
     pub text: String,
+    /// The last steps of its history, the newest first.
+    pub past: Vec<PastStep>,
     /// When it was kept.
     pub kept: Option<SystemTime>,
     folder: PathBuf,
@@ -65,6 +67,7 @@ fn take(folder: &Path, id: String) -> Option<Abandoned> {
             name: state.head.name,
             source: state.head.source,
             text: state.text,
+            past: state.head.past,
             kept,
             folder: folder.to_owned(),
             id: id.clone(),

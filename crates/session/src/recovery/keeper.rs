@@ -1,9 +1,11 @@
 //! Keeps the state of a document on a thread of its own.
 
 use super::state_file::{DocumentState, Head};
-use super::{BEFORE, LOCK, NEWEST, file_of};
+use super::{BEFORE, LOCK, NEWEST, PastStep, file_of};
 use crate::Project;
 use crate::fitting::document_text;
+use crate::history::HistoryStep;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -37,7 +39,7 @@ struct State {
 }
 
 enum Wish {
-    Keep(Box<Project>),
+    Keep(Box<Project>, Vec<HistoryStep>),
     Clear,
 }
 
@@ -75,10 +77,10 @@ impl Recovery {
         })
     }
 
-    /// Keeps a state of the document, within a second. It takes the place of one that is not
-    /// written yet.
-    pub fn keep(&self, project: &Project) {
-        self.wish(Wish::Keep(Box::new(project.clone())));
+    /// Keeps a state of the document with the last steps of its history, the newest first, within a
+    /// second. It takes the place of one that is not written yet.
+    pub fn keep(&self, project: &Project, past: Vec<HistoryStep>) {
+        self.wish(Wish::Keep(Box::new(project.clone()), past));
     }
 
     /// Forgets the states: the document is saved, or its changes are not wanted.
@@ -121,10 +123,11 @@ impl Shared {
     }
 
     fn run(&self, files: &Files) {
+        let mut texts = BTreeMap::new();
         while let Some(wish) = self.next() {
             let begun = Instant::now();
             let done = match wish {
-                Wish::Keep(project) => files.keep(&project),
+                Wish::Keep(project, past) => files.keep(&project, &past, &mut texts),
                 Wish::Clear => files.clear().map_err(|error| error.to_string()),
             };
             self.lock().failure = done.err();
@@ -166,15 +169,41 @@ impl Files {
         file_of(&self.folder, &self.id, ending)
     }
 
-    fn keep(&self, project: &Project) -> Result<(), String> {
+    /// Keeps a state. `texts` are those of the steps that were kept last, by their numbers.
+    fn keep(
+        &self,
+        project: &Project,
+        past: &[HistoryStep],
+        texts: &mut BTreeMap<u64, String>,
+    ) -> Result<(), String> {
         let source = project.source.clone();
-        let text = document_text(project, source.as_deref());
+        let text = document_text(project, source.as_deref()).map_err(|error| error.to_string())?;
+        let mut known = std::mem::take(texts);
+        let mut befores = Vec::with_capacity(past.len());
+        for step in past {
+            let before = match known.remove(&step.number) {
+                Some(before) => before,
+                None => match document_text(&step.project, source.as_deref()) {
+                    Ok(before) => before,
+                    // Older ones could not be told without it.
+                    Err(_) => break,
+                },
+            };
+            befores.push(before);
+        }
+        let afters = std::iter::once(&text).chain(&befores);
+        let steps = past.iter().zip(&befores).zip(afters);
+        let steps = steps
+            .map(|((step, before), after)| PastStep::between(step.label.clone(), before, after));
+        let steps = steps.collect();
+        texts.extend(past.iter().map(|step| step.number).zip(befores));
         let state = DocumentState {
             head: Head {
                 name: project.pattern.name.clone(),
                 source,
+                past: steps,
             },
-            text: text.map_err(|error| error.to_string())?,
+            text,
         };
         let bytes = state.to_bytes().map_err(|error| error.to_string())?;
         self.put(&bytes).map_err(|error| error.to_string())

@@ -1,5 +1,5 @@
 //! Recovery: while a document has changes that are in no file, all of it is kept in a folder of
-//! the user's, so that a crash loses a second's work at most.
+//! the user's, so that a crash loses a second's work at most. The last steps of its history are kept with it.
 //!
 //! Every process has its own three files there: `ID.lock`, which it holds locked as long as it
 //! lives, and the last two states of its document, `ID.newest` and `ID.before`. A state whose lock
@@ -7,10 +7,12 @@
 
 mod abandoned;
 mod keeper;
+mod past_step;
 mod state_file;
 
 pub use abandoned::{Abandoned, abandoned};
 pub use keeper::Recovery;
+pub use past_step::PastStep;
 
 use std::path::{Path, PathBuf};
 

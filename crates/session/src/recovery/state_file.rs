@@ -1,6 +1,7 @@
 //! The file a state of a document is kept in: a line with length and checksum, a line that says
 //! what it is, then the document as its own file would be.
 
+use super::PastStep;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,9 @@ pub(super) struct Head {
     pub name: String,
     /// The file it was last saved to.
     pub source: Option<PathBuf>,
+    /// The last steps of its history, the newest first; files of older versions have none.
+    #[serde(default)]
+    pub past: Vec<PastStep>,
 }
 
 impl DocumentState {
