@@ -5,7 +5,7 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::Key;
-use toile_geometry::Vec2;
+use toile_geometry::{Path, Vec2};
 use toile_pattern::plan;
 
 /// How near the answer is [m], [m2].
@@ -53,7 +53,7 @@ impl Drafter {
         let pattern = self.pattern();
         let edges = pattern.panels[0].edges();
         edges
-            .map(|edge| evaluation.edge(edge.id).unwrap().start().unwrap())
+            .map(|edge| start(evaluation.edge(edge.id).unwrap()))
             .collect()
     }
 
@@ -62,6 +62,10 @@ impl Drafter {
         let curve = pattern.sheets[0].curves.last().unwrap();
         self.evaluation().curve(curve.id).unwrap().length()
     }
+}
+
+fn start(path: &Path) -> Vec2 {
+    path.point(path.at_length(0.0).unwrap())
 }
 
 fn area(corners: &[Vec2]) -> f64 {
@@ -87,7 +91,7 @@ fn a_hexagon_closes() {
     for angle in ["0", "60", "120", "180", "240"] {
         drafter.pair("10", angle);
     }
-    drafter.click(drafter.part("Point A of draft"));
+    drafter.click(drafter.place(0.0, 0.0));
     drafter.look();
     let corners = drafter.corners();
     assert_eq!(corners.len(), 6, "{}", drafter.status());
