@@ -5,8 +5,8 @@ use crate::theme::Palette;
 use egui::text::LayoutJob;
 use egui::text::{CCursor, CCursorRange};
 use egui::{
-    Color32, Galley, Key, Modifiers, Response, RichText, Role, Sense, TextBuffer, TextEdit,
-    TextStyle, Ui, WidgetInfo, vec2,
+    Align2, Area, Color32, Galley, Key, Modifiers, Order, Rect, Response, RichText, Role, Sense,
+    TextBuffer, TextEdit, TextStyle, Ui, WidgetInfo, vec2,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -14,10 +14,33 @@ use toile_pattern::Evaluation;
 
 /// How many names are proposed at once.
 const PROPOSED: usize = 8;
+/// Room that words under a field need above the lower rim of the window, and their least width [pixels].
+const UNDER: f32 = 64.0;
+const LEAST_UNDER: f32 = 270.0;
+
+/// What stands in a field beside its text, in grey. It has the room of the field: nothing moves when it changes.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    /// What holds while the field is empty.
+    pub hint: String,
+    /// What its text comes to; not told while it is typed into.
+    pub value: String,
+}
+
+/// How large a field of one line was, and how long a text it has room for [pixels].
+#[derive(Clone, Copy, Debug)]
+struct Room {
+    size: egui::Vec2,
+    text: f32,
+}
 
 /// A field for a text as wide as there is room. A longer one is seen whole while it is typed into, in
-/// as many lines as it needs, and beside the pointer that rests on it.
+/// as many lines as it needs, and beside the pointer that rests on it. The lines lie over what is below.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
+    text_field_beside(ui, id, text, &Beside::default())
+}
+
+fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Beside) -> Response {
     let had_focus = had_focus(ui, id);
     // What is typed in the very frame in which the field got the keys takes the place of all, too.
     let given_focus = !had_focus && ui.memory(|memory| memory.has_focus(id));
@@ -26,31 +49,128 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
     }
     let before = (!had_focus).then(|| text.clone());
     let is_typed_into = ui.memory(|memory| memory.has_focus(id));
-    let mut lines = broken;
-    let mut field = TextEdit::singleline(text)
-        .id(id)
-        .desired_width(f32::INFINITY);
-    if is_typed_into {
-        field = field.layouter(&mut lines);
-    }
-    let shown = field.show(ui);
-    let is_cut_off = shown.galley.size().x > shown.text_clip_rect.width() + 0.5;
-    let mut response = shown.response.response;
-    if is_cut_off {
-        response = response.on_hover_text(text.as_str());
-    }
+    let room: Option<Room> = ui.data(|data| data.get_temp(id.with("room")));
+    let long = room.filter(|room| is_typed_into && line_of(ui, text).size().x > room.text);
+    let response = match long {
+        Some(room) if is_measured(ui, id, room) => in_lines(ui, id, text, room),
+        _ => in_one_line(ui, id, text, (beside, is_typed_into)),
+    };
     if response.has_focus() {
         note_focus(ui, id);
     }
     if response.has_focus() && !had_focus {
         // One that is gone to by a key may be out of sight.
-        response.scroll_to_me(None);
+        ui.scroll_to_rect(response.rect, None);
         // A click has put the cursor where it was.
         if before.is_some_and(|before| before == *text) {
             choose_all(ui, id, text);
         }
     }
     response
+}
+
+fn in_one_line(
+    ui: &mut Ui,
+    id: egui::Id,
+    text: &mut String,
+    (beside, is_typed_into): (&Beside, bool),
+) -> Response {
+    let soft = Palette::of(ui.ctx()).ink_soft;
+    let grey = |words: &str| RichText::new(words).small().color(soft);
+    let mut field = TextEdit::singleline(text)
+        .id(id)
+        .desired_width(f32::INFINITY);
+    if !beside.hint.is_empty() {
+        field = field.hint_text(grey(&beside.hint));
+    }
+    if !beside.value.is_empty() && !is_typed_into {
+        field = field.suffix(grey(&beside.value));
+    }
+    let shown = field.show(ui);
+    let response = shown.response.response;
+    let told = [&beside.hint, &beside.value].map(|words| &**words);
+    let told = told.into_iter().find(|words| !words.is_empty());
+    if let Some(words) = told {
+        let describe = |node: &mut egui::accesskit::Node| node.set_description(words);
+        ui.ctx().accesskit_node_builder(response.id, describe);
+    }
+    let room = shown.text_clip_rect.width();
+    if !is_typed_into || beside.value.is_empty() {
+        let size = response.rect.size();
+        let room = Room { size, text: room };
+        ui.data_mut(|data| data.insert_temp(id.with("room"), room));
+    }
+    match shown.galley.size().x > room + 0.5 {
+        true => response.on_hover_text(text.as_str()),
+        false => response,
+    }
+}
+
+/// What a field of several lines lies in.
+fn over(id: egui::Id) -> Area {
+    Area::new(id.with("lines"))
+        .order(Order::Foreground)
+        .fade_in(false)
+}
+
+/// Whether what a field of several lines lies in was shown before: at first it is measured, and takes no keys.
+fn is_measured(ui: &Ui, id: egui::Id, room: Room) -> bool {
+    let over = over(id);
+    let is_known = egui::AreaState::load(ui.ctx(), over.layer().id).is_some();
+    if !is_known {
+        let over = over.fixed_pos(ui.next_widget_position());
+        over.show(ui.ctx(), |ui| ui.allocate_space(room.size));
+        ui.ctx().request_repaint();
+    }
+    is_known
+}
+
+/// A field that is typed into in several lines, over what is below it.
+fn in_lines(ui: &mut Ui, id: egui::Id, text: &mut String, room: Room) -> Response {
+    let (place, _) = ui.allocate_exact_size(room.size, Sense::hover());
+    let mut lines = broken;
+    let field = TextEdit::singleline(text)
+        .id(id)
+        .desired_width(f32::INFINITY)
+        .layouter(&mut lines);
+    let shown = over(id).fixed_pos(place.min).show(ui.ctx(), |ui| {
+        ui.set_width(place.width());
+        field.show(ui).response.response
+    });
+    shown.inner
+}
+
+/// Words and names under a field that is typed into, over what is below it, which stays where it is; says which
+/// part of the screen they and the field take.
+fn under(ui: &Ui, id: egui::Id, field: Rect, add: impl FnOnce(&mut Ui)) -> Rect {
+    if !ui.is_rect_visible(field) {
+        return field;
+    }
+    let is_low = field.bottom() + UNDER > ui.ctx().content_rect().bottom();
+    let (pivot, at) = match is_low {
+        true => (Align2::LEFT_BOTTOM, field.left_top() - vec2(0.0, 2.0)),
+        false => (Align2::LEFT_TOP, field.left_bottom() + vec2(0.0, 2.0)),
+    };
+    let over = Area::new(id)
+        .order(Order::Foreground)
+        .pivot(pivot)
+        .fixed_pos(at)
+        .fade_in(false);
+    let shown = over.show(ui.ctx(), |ui| {
+        let frame = egui::Frame::popup(ui.style()).inner_margin(4.0);
+        frame.show(ui, |ui| {
+            ui.set_max_width(field.width().max(LEAST_UNDER));
+            add(ui);
+        });
+    });
+    field.union(shown.response.rect)
+}
+
+/// A text in one line.
+fn line_of(ui: &Ui, text: &str) -> Arc<Galley> {
+    let font = TextStyle::Body.resolve(ui.style());
+    let colour = ui.visuals().text_color();
+    ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, colour))
 }
 
 /// Lays a text out in lines no longer than a width.
@@ -157,6 +277,8 @@ struct Typed {
     fault: String,
     /// Whether it is typed into now, and says something else than what stood there.
     is_begun: bool,
+    /// The part of the screen that it and what is told under it take.
+    place: Option<Rect>,
 }
 
 /// What a text field came to.
@@ -178,12 +300,22 @@ impl TypedTexts {
         shown: &str,
         preview: impl FnOnce(&str) -> Result<String, String>,
     ) -> Entered {
+        self.field_beside(ui, (id, label), (shown, &Beside::default()), preview)
+    }
+
+    fn field_beside(
+        &mut self,
+        ui: &mut Ui,
+        (id, label): (egui::Id, egui::Id),
+        (shown, beside): (&str, &Beside),
+        preview: impl FnOnce(&str) -> Result<String, String>,
+    ) -> Entered {
         let mut text = self
             .typed
             .get(&id)
             .map_or(shown, |typed| &typed.text)
             .to_owned();
-        let response = text_field(ui, id, &mut text).labelled_by(label);
+        let response = text_field_beside(ui, id, &mut text, beside).labelled_by(label);
         if response.gained_focus() || response.changed() {
             let typed = self.typed.entry(id).or_default();
             typed.text.clone_from(&text);
@@ -199,7 +331,7 @@ impl TypedTexts {
                 false => Entered::Text(text.trim().to_owned()),
             };
         }
-        if let Some(typed) = self.typed.get(&id) {
+        if let Some(typed) = self.typed.get_mut(&id) {
             let palette = Palette::of(ui.ctx());
             let (words, colour): (String, Color32) = match typed.fault.is_empty() {
                 false => (typed.fault.clone(), palette.fault),
@@ -209,9 +341,12 @@ impl TypedTexts {
                     Err(words) => (words, palette.fault),
                 },
             };
-            if !words.is_empty() {
-                ui.label(RichText::new(words).small().color(colour));
-            }
+            typed.place = Some(match words.is_empty() {
+                true => response.rect,
+                false => under(ui, id.with("told"), response.rect, |ui| {
+                    ui.label(RichText::new(words).small().color(colour));
+                }),
+            });
         }
         entered
     }
@@ -222,7 +357,7 @@ impl TypedTexts {
         &mut self,
         ui: &mut Ui,
         (id, label): (egui::Id, egui::Id),
-        shown: &str,
+        (shown, beside): (&str, &Beside),
         preview: impl FnOnce(&str) -> Result<String, String>,
     ) -> Entered {
         let before = self.typed.get(&id).map(|typed| typed.text.clone());
@@ -232,7 +367,7 @@ impl TypedTexts {
         {
             self.complete(ui, id, text);
         }
-        let entered = self.field(ui, (id, label), shown, preview);
+        let entered = self.field_beside(ui, (id, label), (shown, beside), preview);
         let has_focus = ui.memory(|memory| memory.has_focus(id));
         let clicked = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_released());
         if self.number == Some(id) && !has_focus && clicked {
@@ -267,21 +402,26 @@ impl TypedTexts {
             return;
         };
         self.proposed = None;
-        self.first = None;
         let found = base.names().completions(&typed.text);
         self.first = found.first().map(|first| first.text.clone());
-        ui.horizontal_wrapped(|ui| {
-            let spacing = ui.spacing_mut();
-            spacing.item_spacing = vec2(4.0, 4.0);
-            spacing.interact_size.y = 0.0;
-            spacing.button_padding = vec2(5.0, 2.0);
-            for completion in found.into_iter().take(PROPOSED) {
-                let words = RichText::new(&completion.word).small();
-                let button = ui.add(egui::Button::new(words).sense(Sense::hover()));
-                if button.contains_pointer() {
-                    self.proposed = Some(completion.text);
+        let Some(place) = typed.place.filter(|_| !found.is_empty()) else {
+            return;
+        };
+        let proposed = &mut self.proposed;
+        under(ui, id.with("names"), place, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                let spacing = ui.spacing_mut();
+                spacing.item_spacing = vec2(4.0, 4.0);
+                spacing.interact_size.y = 0.0;
+                spacing.button_padding = vec2(5.0, 2.0);
+                for completion in found.into_iter().take(PROPOSED) {
+                    let words = RichText::new(&completion.word).small();
+                    let button = ui.add(egui::Button::new(words).sense(Sense::hover()));
+                    if button.contains_pointer() {
+                        *proposed = Some(completion.text);
+                    }
                 }
-            }
+            });
         });
     }
 

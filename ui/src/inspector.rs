@@ -7,9 +7,9 @@ mod steps;
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::{Entered, choice, labelled};
+use crate::fields::{Beside, Entered, choice, labelled};
 use crate::theme::{self, Palette};
-use crate::tools::{Tool, number};
+use crate::tools::{Tool, finished_words, number};
 use crate::views::pattern::INSPECTOR_ROOM;
 use egui::{Rect, RichText, Ui, Vec2, vec2};
 use std::sync::Arc;
@@ -81,18 +81,17 @@ impl ToileApp {
         });
     }
 
-    /// Under a number of an edge that is left out: the panel's, which holds instead.
-    fn tell_of_panel(&self, ui: &mut Ui, panel: PanelId, left_out: &NumberEntry) {
+    /// What holds where a number of an edge is left out: its panel's.
+    fn of_panel(&self, panel: PanelId, left_out: &NumberEntry) -> String {
         let entries = plan::numbers_of(&self.base, panel.into());
         let same = entries.iter().find(|entry| entry.label == left_out.label);
         let number = same.and_then(|entry| entry.number.as_ref());
-        if let Some(value) = number.and_then(|n| self.base.number(n, left_out.want)) {
+        let value = number.and_then(|n| self.base.number(n, left_out.want));
+        value.map_or_else(String::new, |value| {
             let unit = self.base.pattern().unit;
-            let words = number::show(value, left_out.want, unit);
-            let colour = Palette::of(ui.ctx()).ink_soft;
-            let words = RichText::new(format!("{words}, as the panel"));
-            ui.label(words.small().color(colour));
-        }
+            let value = number::show(value, left_out.want, unit);
+            format!("{value}, as the panel")
+        })
     }
 
     fn name_field(&mut self, ui: &mut Ui, item: Item) {
@@ -135,10 +134,11 @@ impl ToileApp {
                     format!("{} {}", entry.label, before + 1)
                 }
             };
-            self.named_number_field(ui, entry, &label);
-            if let (Item::Edge(panel, _), None) = (item, &entry.number) {
-                self.tell_of_panel(ui, panel, entry);
-            }
+            let hint = match item {
+                Item::Edge(panel, _) => self.of_panel(panel, entry),
+                _ => String::new(),
+            };
+            self.named_number_field(ui, entry, (&label, hint));
         }
         match item {
             Item::Panel(panel) => {
@@ -186,38 +186,22 @@ impl ToileApp {
                 let lengths = seams.find(|seam| seam.id == id)?.lengths;
                 Some(format!("{} to {}", length(lengths[0]), length(lengths[1])))
             }
-            Item::Operation(panel, step) => {
-                let pattern = self.base.pattern();
-                let stage = self.base.last_stage(pattern.panel(panel)?)?;
-                let (edge, finished) = stage.edge_beside(step)?;
-                let name = pattern.edge_name(panel, edge)?;
-                Some(format!("{name} finished: {}", length(finished)))
-            }
+            Item::Operation(panel, step) => finished_words(&self.base, panel, step),
             _ => None,
         }
     }
 
     /// One number: its text, its value as it is typed, what is wrong with it.
     pub(crate) fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
-        self.named_number_field(ui, entry, entry.label);
+        self.named_number_field(ui, entry, (entry.label, String::new()));
     }
 
-    /// The same under a label of its own.
-    fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: &str) {
+    /// The same under a label of its own, with what holds while it is empty.
+    fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, told: (&str, String)) {
+        let (label, hint) = told;
         labelled(ui, label, |ui, label| {
-            self.number_text_field(ui, entry, label);
-            let is_formula = entry
-                .number
-                .as_ref()
-                .is_some_and(|n| n.as_formula().is_some());
-            if let Some(number) = entry.number.as_ref().filter(|_| is_formula)
-                && let Some(value) = self.base.number(number, entry.want)
-            {
-                let palette = Palette::of(ui.ctx());
-                let unit = self.base.pattern().unit;
-                let words = format!("= {}", number::show(value, entry.want, unit));
-                ui.label(RichText::new(words).small().color(palette.ink_soft));
-            }
+            let value = self.value_of(entry).unwrap_or_default();
+            self.number_text_field(ui, entry, (label, &Beside { hint, value }));
         });
         self.typed
             .show_proposals(ui, number_field_id(entry), &self.base);
@@ -240,13 +224,27 @@ impl ToileApp {
             };
             let of = format!("of handle {side} {}", point.name);
             for entry in plan::numbers_of(&self.base, handle.into()) {
-                self.named_number_field(ui, &entry, &format!("{} {of}", entry.label));
+                let label = format!("{} {of}", entry.label);
+                self.named_number_field(ui, &entry, (&label, String::new()));
             }
         }
     }
 
-    /// The field of a number alone.
-    pub(crate) fn number_text_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: egui::Id) {
+    /// What a number that is a formula comes to; nothing of one that says it itself.
+    fn value_of(&self, entry: &NumberEntry) -> Option<String> {
+        let number = entry.number.as_ref().filter(|n| n.as_formula().is_some())?;
+        let value = self.base.number(number, entry.want)?;
+        let unit = self.base.pattern().unit;
+        Some(format!("= {}", number::show(value, entry.want, unit)))
+    }
+
+    /// The field of a number alone, with what stands beside its text.
+    pub(crate) fn number_text_field(
+        &mut self,
+        ui: &mut Ui,
+        entry: &NumberEntry,
+        (label, beside): (egui::Id, &Beside),
+    ) {
         let id = number_field_id(entry);
         let shown = entry.number.as_ref().map_or_else(String::new, |number| {
             plan::number_text(&self.base, number, entry.want)
@@ -264,7 +262,8 @@ impl ToileApp {
             };
             Ok(format!("= {}", number::show(value, told, unit)))
         };
-        let entered = self.typed.number_field(ui, (id, label), &shown, value);
+        let shown = (&*shown, beside);
+        let entered = self.typed.number_field(ui, (id, label), shown, value);
         if let Entered::Text(text) = entered {
             let planned = match text.is_empty() {
                 true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),

@@ -16,7 +16,7 @@ pub use worn_with::WornWhere;
 
 use crate::app::ToileApp;
 use crate::app::panes::Tab;
-use crate::fields::Entered;
+use crate::fields::{Beside, Entered};
 use crate::inspector::number_field_id;
 use crate::theme::Palette;
 use crate::tools::number;
@@ -425,7 +425,7 @@ impl ToileApp {
                             if is_asked && has_been_led_to(ui, number_field_id(&entry)) {
                                 self.tables.entered_variable = None;
                             }
-                            self.number_text_field(ui, &entry, label);
+                            self.number_text_field(ui, &entry, (label, &Beside::default()));
                             let field = number_field_id(&entry);
                             self.typed.show_proposals(ui, field, &self.base);
                         }

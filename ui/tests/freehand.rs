@@ -287,13 +287,15 @@ fn an_edge_tells_the_allowance_that_it_has_from_its_panel() {
     drafter.click(drafter.place(0.2, 0.3));
     drafter.key(Key::V);
     drafter.click(drafter.place(0.1, 0.3));
-    assert!(
-        drafter.status().contains("1 cm, as the panel"),
-        "{}",
-        drafter.status()
-    );
+    let told = |drafter: &Drafter| {
+        let window = &drafter.window;
+        let field = window.get_by_role_and_label(egui::Role::TextInput, "seam allowance");
+        field.accesskit_node().description().unwrap_or_default()
+    };
+    assert_eq!(told(&drafter), "1 cm, as the panel");
+    assert!(is_painted(&drafter, "1 cm, as the panel"));
     drafter.enter("seam allowance", "3");
-    assert!(!drafter.status().contains("as the panel"));
+    assert!(!is_painted(&drafter, "as the panel"));
 }
 
 #[test]

@@ -204,3 +204,120 @@ fn an_inner_line_of_a_folded_panel_is_seen_on_both_halves() {
     let halves = [drawn(1.0), drawn(-1.0)];
     assert!(halves.iter().all(|share| *share > 0.5), "{halves:?}");
 }
+
+/// Where the fields for text stand, by name.
+fn fields(drafter: &Drafter) -> Vec<(String, Rect)> {
+    let fields = drafter.window.query_all_by_role(Role::TextInput);
+    fields
+        .map(|field| {
+            let name = field.accesskit_node().label().unwrap_or_default();
+            (name, field.rect())
+        })
+        .collect()
+}
+
+#[test]
+fn no_field_moves_while_one_is_typed_into() {
+    let mut drafter = Drafter::opened("t-shirt");
+    // A curve has a field for its length, and those of its handles.
+    for (part, field) in [
+        ("Edge hem of front", "seam allowance"),
+        ("Edge shoulder of front", "seam allowance"),
+        ("Edge cap_front of sleeve", "length"),
+        ("Panel front", "grain"),
+    ] {
+        drafter.click(drafter.part(part));
+        drafter.window.run_steps(40);
+        if part.contains("cap_front") {
+            drafter.click(drafter.part(part));
+        }
+        let before = fields(&drafter);
+        assert!(before.len() > 1, "{part}: {before:?}");
+        let first = drafter.window.get_by_role_and_label(Role::TextInput, field);
+        first.focus();
+        drafter.window.run();
+        // A value, a fault, a name that is completed, a formula longer than the field.
+        for text in ["3", " +", " waist_l", "ine / 20 + 1cm + 1cm + 1cm + 1cm"] {
+            drafter.type_text(text);
+            let own = |fields: Vec<(String, Rect)>| {
+                let others = fields.into_iter().filter(|(name, _)| name != field);
+                others.collect::<Vec<_>>()
+            };
+            assert_eq!(own(fields(&drafter)), own(before.clone()), "{part}: {text}");
+        }
+        drafter.key(Key::Escape);
+        assert_eq!(fields(&drafter), before, "{part}");
+        if field == "seam allowance" {
+            for text in ["3", "3cm / 2"] {
+                drafter.enter(field, text);
+                assert_eq!(fields(&drafter), before, "{part}: {text} is entered");
+            }
+        }
+    }
+}
+
+#[test]
+fn escape_in_a_field_takes_back_what_is_typed_and_nothing_else() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.click(drafter.part("Edge hem of front"));
+    let selected = drafter.window.state().view().selection.clone();
+    let before = drafter.pattern();
+    let shown = |drafter: &Drafter| {
+        let window = &drafter.window;
+        let field = window.get_by_role_and_label(Role::TextInput, "seam allowance");
+        field.value()
+    };
+    let was = shown(&drafter);
+    for text in ["7", "waist"] {
+        drafter.click(rect(&drafter, Role::TextInput, "seam allowance").center());
+        drafter.type_text(text);
+        assert_eq!(shown(&drafter).as_deref(), Some(text));
+        drafter.key(Key::Escape);
+        assert_eq!(drafter.window.state().view().selection, selected, "{text}");
+        assert_eq!(shown(&drafter), was);
+        assert!(drafter.pattern().says_the_same(&before));
+    }
+    // In a table too; and the next one is for the selection.
+    drafter.key(Key::F8);
+    drafter.press("Variables");
+    drafter.click(rect(&drafter, Role::TextInput, "New variable").center());
+    drafter.type_text("ease");
+    drafter.key(Key::Escape);
+    assert_eq!(drafter.window.state().view().selection, selected);
+    drafter.key(Key::Escape);
+    assert!(drafter.window.state().view().selection.is_empty());
+}
+
+#[test]
+fn what_is_typed_for_a_tool_stays_at_the_pointer() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Still");
+    drafter.key(Key::L);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.hover(drafter.place(0.1, 0.1));
+    let words = |drafter: &Drafter| {
+        let view = drafter.window.state().view();
+        let marks = view.overlay(&drafter.evaluation()).into_iter();
+        let mut words = marks.filter_map(|mark| match mark {
+            toile_ui::Overlay::Words(_, at, words) => Some((at, words)),
+            _ => None,
+        });
+        words.next().unwrap()
+    };
+    let mut places = Vec::new();
+    // A length, a fault in it, and the length again.
+    for (text, line) in [
+        ("2", "length 2|"),
+        ("0", "length 20|"),
+        ("+", "length 20+|"),
+        ("5", "length 20+5|"),
+    ] {
+        drafter.type_text(text);
+        let (at, words) = words(&drafter);
+        assert_eq!(words.lines().next(), Some(line), "{words}");
+        places.push(at);
+    }
+    assert!(places.windows(2).all(|w| w[0] == w[1]), "{places:?}");
+    assert!((places[0] - toile_geometry::Vec2::new(0.1, 0.1)).norm() < 1e-3);
+}

@@ -207,6 +207,7 @@ impl Made {
             intake: row.metres(2).into(),
             apex: Apex::Depth(row.metres(3).into()),
             trued: false,
+            keeps_length: false,
             pressed: Pressed::default(),
         };
         self.plan(row, |e, p| plan::add_operation(e, p, kind))

@@ -39,6 +39,7 @@ impl Pair {
             apex: Apex::Depth(0.06.into()),
             pressed: Pressed::Before,
             trued: true,
+            keeps_length: false,
         };
         let evaluation = Evaluation::new(pattern, pattern.base_measurements().unwrap());
         let length = evaluation.edge(edge.id).unwrap().length();
@@ -238,6 +239,7 @@ fn front(pressed: Pressed) -> (Pattern, OperationId) {
             apex: Apex::Depth(0.11.into()),
             pressed,
             trued: true,
+            keeps_length: false,
         },
         meant: false,
     }));

@@ -87,6 +87,7 @@ fn panel(pattern: &mut Pattern, number: usize) -> (PanelId, Vec<Edge>) {
                 intake: INTAKE.into(),
                 apex: Apex::Point(beside[k]),
                 trued: false,
+                keeps_length: false,
                 pressed: Pressed::default(),
             };
             let (id, name) = (drawing.id(), format!("dart {k}"));

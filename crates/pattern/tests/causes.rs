@@ -132,6 +132,7 @@ fn marks_are_placed_by_corners_that_operations_make() {
         intake: 0.02.into(),
         apex: Apex::Depth(0.1.into()),
         trued: false,
+        keeps_length: false,
         pressed: toile_pattern::Pressed::default(),
     };
     let second = put_operation(&mut pattern, 0, "second dart", kind);

@@ -361,6 +361,7 @@ fn a_corner_that_something_is_placed_by_stays_a_point() {
                 intake: 0.01.into(),
                 apex: Apex::Depth(0.1.into()),
                 trued: false,
+                keeps_length: false,
                 pressed: toile_pattern::Pressed::default(),
             };
             put_operation(pattern, 0, "beside it", kind);

@@ -222,6 +222,112 @@ fn a_trued_dart_that_is_pivoted_leaves_two() {
     }
 }
 
+/// Darts that keep the finished length.
+fn kept(mut kind: OperationKind) -> OperationKind {
+    if let OperationKind::Dart {
+        trued,
+        keeps_length,
+        ..
+    } = &mut kind
+    {
+        (*trued, *keeps_length) = (true, true);
+    }
+    kind
+}
+
+fn finished(pattern: &Pattern) -> Vec<plan::FinishedLength> {
+    let evaluation = Evaluation::new(pattern, &Measurements::adult());
+    let panel = &pattern.panels[0];
+    let steps = panel.operations.iter();
+    steps
+        .filter_map(|step| plan::finished_length(&evaluation, panel.id, step.id))
+        .collect()
+}
+
+#[test]
+fn a_dart_that_keeps_the_finished_length_gives_it_back_at_its_mouth() {
+    // Closed, the trued top is the chord over the angle that the legs leave of it: 40 cm with a dart of
+    // 2.5 by 10 cm in its middle.
+    let (reach, turn) = (0.2_f64.hypot(0.1), (0.2_f64 / 0.1).atan());
+    let chord = |half: f64| 2.0 * reach * (turn - half).sin();
+    let trued = waist(&[0.5], trued);
+    let [own] = finished(&trued)[..] else {
+        panic!("one dart");
+    };
+    assert!((own.length - chord((0.0125_f64 / 0.1).atan())).abs() < 1e-12);
+    assert!(
+        (own.untrued - 0.375).abs() < 1e-12 && own.length < 0.3745,
+        "{own:?}"
+    );
+    let pattern = waist(&[0.5], kept);
+    assert_eq!(kinks(&pattern), []);
+    let [own] = finished(&pattern)[..] else {
+        panic!("one dart");
+    };
+    assert!((own.length - 0.375).abs() < 1e-11, "{own:?}");
+    let half = turn - (0.375 / (2.0 * reach)).asin();
+    let dart = &stage(&pattern).darts[0];
+    let legs = dart.mouth.map(|end| end - dart.apex);
+    let angle = legs[0].perp(&legs[1]).abs().atan2(legs[0].dot(&legs[1]));
+    assert!((angle - 2.0 * half).abs() < 1e-9, "{angle}");
+    assert!((legs[0].norm() - legs[1].norm()).abs() < 1e-12);
+    // Each of two, on a straight edge, a bowed one, one that goes on in a fold.
+    let mut bowed = waist(&[0.3, 0.65], kept);
+    bend(&mut bowed, 0, "top", CurveRule::Arc { bulge: 0.1.into() });
+    let plain = waist(&[], kept);
+    let drawn = |pattern: &Pattern| {
+        let evaluation = Evaluation::new(pattern, &Measurements::adult());
+        evaluation
+            .edge(edge(pattern, "front", "top"))
+            .unwrap()
+            .length()
+    };
+    assert!((drawn(&plain) - 0.4).abs() < 1e-12 && drawn(&bowed) > 0.4);
+    let mut folded = waist(&[0.3, 0.65], kept);
+    let kind = fold(&folded, "left");
+    put_operation(&mut folded, 0, "fold", kind);
+    for pattern in [waist(&[0.3, 0.65], kept), bowed, folded] {
+        let own = finished(&pattern);
+        assert_eq!(own.len(), 2);
+        for own in own {
+            let wanted = drawn(&pattern) - 2.0 * 0.025;
+            assert!((own.length - wanted).abs() < 1e-10, "{own:?} {wanted}");
+        }
+        let found = pattern.check(&Measurements::adult());
+        let on_step = |f: &&Diagnostic| matches!(f.place, Place::Operation(..));
+        assert_eq!(found.iter().filter(on_step).count(), 0, "{found:?}");
+    }
+}
+
+#[test]
+fn a_dart_whose_point_is_near_its_edge_is_not_trued_and_says_so() {
+    // Deep enough it is trued; the nearer its point, the farther would its legs run.
+    for (depth, is_trued) in [(0.1, true), (0.08, true), (0.015, false), (0.005, false)] {
+        for on_fold in [false, true] {
+            let mut pattern = waist(&[], trued);
+            let kind = dart(&pattern, "top", 0.5, 0.03, Apex::Depth(depth.into()));
+            put_operation(&mut pattern, 0, "dart", trued(kind));
+            if on_fold {
+                let kind = fold(&pattern, "left");
+                put_operation(&mut pattern, 0, "fold", kind);
+            }
+            let found = pattern.check(&Measurements::adult());
+            let told: Vec<&Diagnostic> =
+                found.iter().filter(|f| f.code == Code::NotTrued).collect();
+            assert_eq!(told.is_empty(), is_trued, "{depth} {on_fold}: {found:?}");
+            let stage = stage(&pattern);
+            let leg = (stage.darts[0].mouth[0] - stage.darts[0].apex).norm();
+            let drawn = 0.015_f64.hypot(depth);
+            if !is_trued {
+                assert!(told[0].message.contains("so near the edge"), "{}", told[0]);
+                assert_eq!(told[0].severity, Severity::Warning);
+                assert!((leg - drawn).abs() < 1e-12, "{depth}: {leg}");
+            }
+            assert!(leg < 2.0 * drawn + 1e-12, "{depth}: {leg} of {drawn}");
+        }
+    }
+}
+
 #[test]
 fn a_kink_that_is_meant_is_not_told() {
     let mut pattern = waist(&[0.5], |kind| kind);

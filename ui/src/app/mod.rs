@@ -85,6 +85,8 @@ pub struct ToileApp {
     pub(crate) dialog: Option<Dialog>,
     /// Whether a menu or a list to choose from was open when the frame began.
     pub(crate) menu_is_open: bool,
+    /// Whether a field had the keys when the frame before ended: Escape is its own then.
+    field_had_keys: bool,
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
     pub(crate) panes: Panes,
@@ -149,6 +151,7 @@ impl ToileApp {
             notice: Notice::default(),
             dialog: None,
             menu_is_open: false,
+            field_had_keys: false,
             tables: Tables::default(),
             typed: TypedTexts::default(),
             panes: preferences.panes,
@@ -430,7 +433,7 @@ impl ToileApp {
         let typing =
             self.types(&context) || self.view.is_typing() || self.dialog.is_some() || on_marker;
         // While a tool is under way Escape is a step back of the tool, which the canvas takes; while
-        // a menu is open it closes that.
+        // a menu is open it closes that; in a field it takes back what is typed.
         self.menu_is_open = egui::Popup::is_any_open(&context);
         let keys = KeysTaken {
             typing,
@@ -438,7 +441,7 @@ impl ToileApp {
             empty: crate::tables::is_empty_field(&context),
             tool: self.view.tool.takes_keys(),
             walks: matches!(self.view.tool, Tool::Walk),
-            escape: self.menu_is_open || self.view.is_busy(),
+            escape: self.menu_is_open || self.view.is_busy() || self.field_had_keys,
             modal: self.dialog.is_some(),
         };
         let pressed = command_table::pressed(&context, keys);
@@ -474,6 +477,7 @@ impl ToileApp {
         self.preferences.note_window(&context);
         self.show_dialog(&context);
         self.guard_closing(&context);
+        self.field_had_keys = self.types(&context);
         let works = self.printing.is_some() || self.is_exporting() || self.searching.is_some();
         if self.background_work.is_busy() || works {
             context.request_repaint_after(FRAME);

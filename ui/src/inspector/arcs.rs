@@ -2,7 +2,7 @@
 //! tangent of a quarter of the angle.
 
 use crate::app::ToileApp;
-use crate::fields::{Entered, labelled};
+use crate::fields::{Beside, Entered, labelled};
 use crate::tools::number;
 use egui::Ui;
 use toile_pattern::plan::{self, NumberAddress, NumberEntry};
@@ -57,7 +57,8 @@ impl ToileApp {
             Ok(format!("= {}", number::show(value, Want::Length, unit)))
         };
         let entered = labelled(ui, "radius", |ui, label| {
-            self.typed.number_field(ui, (field, label), &shown, told)
+            self.typed
+                .number_field(ui, (field, label), (&shown, &Beside::default()), told)
         });
         self.typed.show_proposals(ui, field, &self.base);
         let Entered::Text(text) = entered else {

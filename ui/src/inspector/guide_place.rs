@@ -2,7 +2,7 @@
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::{Entered, labelled};
+use crate::fields::{Beside, Entered, labelled};
 use crate::tools::number;
 use egui::{Id, Ui};
 use toile_geometry::Vec2;
@@ -38,7 +38,8 @@ impl ToileApp {
         let shown = plan::number_text(&base, &Number::Value(at), Want::Length);
         let field = place_field(id);
         let entered = labelled(ui, label, |ui, label| {
-            self.typed.number_field(ui, (field, label), &shown, told)
+            self.typed
+                .number_field(ui, (field, label), (&shown, &Beside::default()), told)
         });
         self.typed.show_proposals(ui, field, &self.base);
         if let Entered::Text(text) = entered {

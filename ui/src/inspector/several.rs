@@ -3,7 +3,7 @@
 use super::arcs::{kept, numbers_of};
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::{Entered, labelled};
+use crate::fields::{Beside, Entered, labelled};
 use crate::theme::{self, Palette};
 use crate::tools::{Planning, number};
 use egui::{RichText, Ui};
@@ -91,7 +91,8 @@ impl ToileApp {
             Ok(format!("= {}", number::show(value, want, unit)))
         };
         let entered = labelled(ui, &label, |ui, label| {
-            self.typed.number_field(ui, (id, label), &shown, value)
+            self.typed
+                .number_field(ui, (id, label), (&shown, &Beside::default()), value)
         });
         self.typed.show_proposals(ui, id, &self.base);
         if let Entered::Text(text) = entered {

@@ -70,10 +70,22 @@ impl ToileApp {
         };
         let mut kind = step.kind.clone();
         match &mut kind {
-            OperationKind::Dart { pressed, trued, .. } => {
+            OperationKind::Dart {
+                pressed,
+                trued,
+                keeps_length,
+                ..
+            } => {
                 press_choice(ui, pressed);
                 ui.checkbox(trued, "True the edge").on_hover_text(
                     "The edge is redrawn so that it runs on smoothly across the mouth once the dart is closed",
+                );
+                let keeps = ui.add_enabled(
+                    *trued,
+                    egui::Checkbox::new(keeps_length, "Keep the finished length"),
+                );
+                keeps.on_hover_text(
+                    "The mouth is narrower by what truing takes from the edge: the dart takes just its width",
                 );
             }
             OperationKind::Pivot {

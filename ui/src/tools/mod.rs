@@ -7,6 +7,7 @@ mod answering;
 pub mod arc;
 mod composed;
 pub mod draw;
+mod finished;
 mod newest;
 pub mod number;
 pub mod panel;
@@ -25,6 +26,7 @@ mod toward;
 pub mod typing;
 pub mod walk;
 
+pub use finished::finished_words;
 pub use planning::Planning;
 pub use select::SelectState;
 pub use walk::WalkState;

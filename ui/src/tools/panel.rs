@@ -59,8 +59,18 @@ pub static DART: SlotTool = SlotTool {
             apex: Apex::Depth(depth.clone()),
             pressed: Pressed::default(),
             trued: true,
+            keeps_length: false,
         };
-        operation(reading, *panel, kind, "Add dart")
+        let mut plan = operation(reading, *panel, kind, "Add dart")?;
+        plan.told = plan.select.single().and_then(|item| match item {
+            Item::Operation(panel, dart) => {
+                let mut planning = Planning::new(reading);
+                planning.make(plan.edits.clone()).ok()?;
+                super::finished_words(planning.evaluation(), panel, dart)
+            }
+            _ => None,
+        });
+        Ok(plan)
     },
 };
 

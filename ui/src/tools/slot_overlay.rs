@@ -6,7 +6,8 @@ use super::typing::{Typable, Way};
 use super::{Overlay, Reading, along, number};
 use crate::canvas::placed::Placed;
 use crate::canvas::selection::Item;
-use toile_pattern::{Number, Want};
+use toile_geometry::Vec2;
+use toile_pattern::{Number, SheetId, Want};
 
 /// Bytes of a line at the pointer.
 const LINE: usize = 44;
@@ -16,7 +17,7 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     let typable = Typable::new(tool, state, reading);
     let typed = typed_words(&typable, state);
     if !typable.handles.is_empty() {
-        // What is typed is seen on the curve.
+        // What they come to is seen on the curve.
         if let Some(pointer) = state.pointer.as_ref().filter(|_| !typed.is_empty()) {
             marks.push(Overlay::Words(pointer.sheet, pointer.at, typed));
         }
@@ -59,6 +60,14 @@ fn given(state: &SlotState) -> Vec<Overlay> {
     marks
 }
 
+/// Words at a place. While something is typed they stay at the pointer, wherever what is typed leads, and begin
+/// with its fields: no field goes elsewhere while it is typed into.
+fn words_at(state: &SlotState, (sheet, at): (SheetId, Vec2), told: &str, typed: &str) -> Overlay {
+    let pointer = state.pointer.as_ref().filter(|_| state.is_typing());
+    let (sheet, at) = pointer.map_or((sheet, at), |pointer| (pointer.sheet, pointer.at));
+    Overlay::Words(sheet, at, joined(&[typed, told]))
+}
+
 /// What would be given now, and what is typed for it.
 fn told(
     tool: &SlotTool,
@@ -76,8 +85,14 @@ fn told(
         }
         Answer::Number(given) => {
             if let (Some(pointer), SlotKind::Number { label, want, .. }) = (pointer, kind) {
-                let words = number_words(reading, (label, &given, want), &typed);
-                marks.push(Overlay::Words(pointer.sheet, pointer.at, words));
+                let place = (pointer.sheet, pointer.at);
+                let words = number_words(state, reading, (label, &given, want));
+                let told = state
+                    .told
+                    .as_ref()
+                    .map_or_else(String::new, |told| in_lines(told));
+                let words = joined(&[&words, &told]);
+                marks.push(words_at(state, place, &words, &typed));
             }
         }
         Answer::OnLine(panel, Item::Edge(_, edge), at, None) => {
@@ -86,8 +101,8 @@ fn told(
                 let at = told.map_or(at, |(_, at)| at);
                 marks.push(Overlay::Dot(pointer.sheet, at));
                 let distance = told.map(|(distance, _)| number::show(distance, Want::Length, unit));
-                let words = [distance.unwrap_or_default(), typed];
-                marks.push(Overlay::Words(pointer.sheet, at, joined(&words)));
+                let words = distance.unwrap_or_default();
+                marks.push(words_at(state, (pointer.sheet, at), &words, &typed));
             }
         }
         Answer::OnLine(_, _, at, _)
@@ -96,10 +111,10 @@ fn told(
         | Answer::End(Placed { at, .. }, ..) => {
             if let Some(pointer) = pointer {
                 marks.push(Overlay::Dot(pointer.sheet, at));
-                marks.push(Overlay::Words(pointer.sheet, at, typed));
+                marks.push(words_at(state, (pointer.sheet, at), "", &typed));
             }
         }
-        Answer::Inside(sheet, at, _) => marks.push(Overlay::Words(sheet, at, typed)),
+        Answer::Inside(sheet, at, _) => marks.push(words_at(state, (sheet, at), "", &typed)),
         Answer::Chain(chain) => {
             marks.extend(chain.last().map(edge));
             if let (Some(pointer), Some(words)) = (pointer, &state.told) {
@@ -111,16 +126,17 @@ fn told(
     marks
 }
 
-/// A number as it would be, and what is typed for it.
+/// A number as it would be; the label of one that is typed stands before that.
 fn number_words(
+    state: &SlotState,
     reading: &Reading<'_>,
     (label, given, want): (&str, &Number, Want),
-    typed: &str,
 ) -> String {
     let unit = reading.evaluation.pattern().unit;
     let value = reading.evaluation.number(given, want);
     let value = value.map_or_else(String::new, |v| number::show(v, want, unit));
-    format!("{label} {value}  {typed}").trim().to_owned()
+    let sign = if state.is_typing() { "=" } else { label };
+    format!("{sign} {value}")
 }
 
 /// A place as it would be, and what is typed for it.
@@ -150,15 +166,15 @@ fn placed_words(
     words.push(state.named.clone());
     words.retain(|word| !word.is_empty());
     marks.push(Overlay::Dot(placed.sheet, placed.at));
-    let lines = joined(&[words.join("  "), typed]);
-    marks.push(Overlay::Words(placed.sheet, placed.at, lines));
+    let place = (placed.sheet, placed.at);
+    marks.push(words_at(state, place, &words.join("  "), &typed));
     marks
 }
 
 /// Texts that are not empty, in lines.
-fn joined(lines: &[String]) -> String {
+fn joined(lines: &[&str]) -> String {
     let lines = lines.iter().filter(|line| !line.is_empty());
-    lines.cloned().collect::<Vec<_>>().join("\n")
+    lines.copied().collect::<Vec<_>>().join("\n")
 }
 
 fn edge((panel, edge): &ChainEdge) -> Overlay {
@@ -223,9 +239,18 @@ fn other_ways(typable: &Typable, way: usize) -> Option<String> {
 }
 
 pub(super) fn hint(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
-    if let Some(words) = state.refusal.as_ref().or(state.told.as_ref()) {
+    if let Some(words) = &state.refusal {
         return words.clone();
     }
+    let asked = asked(tool, state, reading);
+    match &state.told {
+        Some(told) => format!("{told}. {asked}"),
+        None => asked,
+    }
+}
+
+/// What is asked for now.
+fn asked(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
     let typable = Typable::new(tool, state, reading);
     if state.is_typing() {
         // The pointer may be elsewhere.

@@ -55,7 +55,14 @@ pub fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operati
 
 fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
     let known = &[
-        "line", "mouth", "intake", "depth", "apex", "pressed", "trued",
+        "line",
+        "mouth",
+        "intake",
+        "depth",
+        "apex",
+        "pressed",
+        "trued",
+        "keeps_length",
     ];
     let fields = item.object(known, &mut reader.notes)?;
     fields.of_one_kind(&[], &[(1, &["apex"]), (1, &["depth"])])?;
@@ -69,6 +76,7 @@ fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, F
         },
         pressed: pressed(fields.get("pressed"))?,
         trued: fields.flag_or("trued", false)?,
+        keeps_length: fields.flag_or("keeps_length", false)?,
     })
 }
 

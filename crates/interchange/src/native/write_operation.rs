@@ -22,6 +22,7 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             apex,
             pressed,
             trued,
+            keeps_length,
         } => {
             own.put("line", name(*line));
             own.put("mouth", mark(writer, mouth, &what)?);
@@ -35,6 +36,9 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             put_pressed(&mut own, *pressed);
             if *trued {
                 own.put("trued", Value::Flag(true));
+            }
+            if *keeps_length {
+                own.put("keeps_length", Value::Flag(true));
             }
             "dart"
         }

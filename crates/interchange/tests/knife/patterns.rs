@@ -162,6 +162,7 @@ pub fn star_pattern(seed: u64) -> Pattern {
             intake: Number::Value(0.1 * size),
             apex: Apex::Depth(Number::Value(0.3 * size)),
             trued: false,
+            keeps_length: false,
             pressed: Pressed::After,
         };
         operation(&mut drawing, "dart", dart);

@@ -476,6 +476,7 @@ fn details(dice: &mut Dice, drawing: &mut PanelBuilder<'_>, points: &[PointId]) 
                     false => Apex::Point(any(dice)),
                 },
                 trued: dice.chance(50),
+                keeps_length: dice.chance(50),
                 pressed: match dice.chance(50) {
                     true => Pressed::Before,
                     false => Pressed::After,

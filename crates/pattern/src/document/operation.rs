@@ -36,6 +36,10 @@ pub enum OperationKind {
         /// the dart is closed, its legs equally long.
         #[serde(default)]
         trued: bool,
+        /// Whether, trued, it takes just its width from the finished edge: the mouth is narrower by
+        /// what truing takes besides.
+        #[serde(default)]
+        keeps_length: bool,
     },
     /// A dart inside the panel, pointed at both ends.
     Diamond {

@@ -4,8 +4,8 @@ use super::node::Node;
 use super::numbers::{Computation, Want};
 use super::panels::PanelEvaluation;
 use crate::stage::{
-    DartApex, DartError, DartMouth, FoldError, PlaceError, cut_dart, cut_diamond, true_darts,
-    unfold,
+    DartApex, DartError, DartMouth, FoldError, MOST_GROWTH, NotTrued, PlaceError, cut_dart,
+    cut_diamond, true_darts, unfold, width_kept,
 };
 use crate::{
     Apex, Code, CornerName, Diagnostic, LineName, Mark, Operation, OperationKind, Panel, PanelId,
@@ -136,6 +136,7 @@ impl PanelEvaluation<'_, '_, '_> {
             apex,
             pressed,
             trued,
+            keeps_length,
         } = &operation.kind
         else {
             return None;
@@ -156,7 +157,7 @@ impl PanelEvaluation<'_, '_, '_> {
         let (middle, intake, apex) = (middle?, intake?, apex?);
         let done = match middle {
             Ok(middle) => {
-                let mouth = DartMouth {
+                let mut mouth = DartMouth {
                     by: operation.id,
                     line: *line,
                     middle,
@@ -165,6 +166,9 @@ impl PanelEvaluation<'_, '_, '_> {
                     pressed: *pressed,
                     trued: *trued,
                 };
+                if *keeps_length && *trued && intake > 0.0 {
+                    mouth.intake = self.width_kept(stage, &mouth, (step, place, &what));
+                }
                 // Places on the edge are those of the edge as drawn, whatever was trued before.
                 cut_dart(&stage.as_untrued(), &mouth)
             }
@@ -227,9 +231,23 @@ impl PanelEvaluation<'_, '_, '_> {
     ) -> Stage {
         let going_on = self.going_on(step);
         let (stage, refused) = true_darts(stage, &going_on);
-        if refused.contains(&operation.id) {
+        let own = refused.iter().find(|(by, _)| *by == operation.id);
+        if let Some((_, why)) = own {
+            let (why, hint) = match why {
+                NotTrued::NoLine => (
+                    "no smooth line leads across its mouth".to_owned(),
+                    "move it along the edge, make it narrower, or do not true it",
+                ),
+                NotTrued::TooFar => (
+                    format!(
+                        "its point lies so near the edge that a leg would become over {MOST_GROWTH} times as long \
+                         or as short"
+                    ),
+                    "make it deeper or narrower, or do not true it",
+                ),
+            };
             let what = format!(
-                "{} {:?}: no smooth line leads across its mouth, so it is not trued",
+                "{} {:?}: {why}, so it is not trued",
                 operation.kind.word(),
                 operation.name
             );
@@ -237,10 +255,29 @@ impl PanelEvaluation<'_, '_, '_> {
                 Code::NotTrued,
                 place.clone(),
                 self.words(&what),
-                "move it along the edge, make it narrower, or do not true it",
+                hint,
             ));
         }
         stage
+    }
+
+    /// The width of the mouth of a dart that keeps the finished length [m].
+    fn width_kept(
+        &mut self,
+        stage: &Stage,
+        mouth: &DartMouth,
+        (step, place, what): (usize, &Place, &str),
+    ) -> f64 {
+        let going_on = self.going_on(step);
+        width_kept(stage, mouth, &going_on).unwrap_or_else(|| {
+            self.c.diagnostics.push(Diagnostic::warning(
+                Code::NotTrued,
+                place.clone(),
+                format!("{what}: no width of its mouth keeps the finished length"),
+                "make it narrower, or do not keep the finished length",
+            ));
+            mouth.intake
+        })
     }
 
     fn fold(

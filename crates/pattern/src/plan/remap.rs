@@ -241,6 +241,7 @@ impl Remap {
                 apex,
                 pressed: _,
                 trued: _,
+                keeps_length: _,
             } => {
                 *line = self.name(*line);
                 self.mark(mouth);

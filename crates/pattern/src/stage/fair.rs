@@ -37,6 +37,19 @@ pub(super) struct Redrawn {
     pub ends: Vec<[Vec2; 2]>,
 }
 
+/// Why a row is not redrawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NotTrued {
+    /// No line leads across its darts.
+    NoLine,
+    /// Legs would become longer or shorter than [`MOST_GROWTH`] allows.
+    TooFar,
+}
+
+/// A leg may become so many times as long, or as short. Where a dart's point lies near its edge the
+/// ends of its legs would run far along them, and the line that is smooth across it would have little
+/// to do with the edge as drawn.
+pub(crate) const MOST_GROWTH: f64 = 2.0;
 /// Angles and lengths that differ by less are the same [rad], [m].
 const SAME: f64 = 1e-9;
 /// A handle is at least this share of the chord where the direction counts.
@@ -83,13 +96,26 @@ impl Row {
         })
     }
 
-    /// The row redrawn; nothing if no line across its darts does it.
-    pub fn redrawn(&self) -> Option<Redrawn> {
+    /// The row redrawn.
+    ///
+    /// # Errors
+    /// No line leads across its darts, or only one far from the edge as drawn.
+    pub fn redrawn(&self) -> Result<Redrawn, NotTrued> {
         let straight = match self.is_straight() && self.keeps == [false; 2] {
             true => self.straight(),
             false => None,
         };
-        straight.or_else(|| self.bent())
+        let redrawn = straight.or_else(|| self.bent()).ok_or(NotTrued::NoLine)?;
+        let pairs = self.closings.iter().zip(&redrawn.ends);
+        let is_near = |(closing, ends): (&Closing, &[Vec2; 2])| {
+            let [new, first, second] =
+                [ends[0], closing.ends[0], closing.ends[1]].map(|end| (end - closing.apex).norm());
+            new <= MOST_GROWTH * first.max(second) && MOST_GROWTH * new >= first.min(second)
+        };
+        match pairs.into_iter().all(is_near) {
+            true => Ok(redrawn),
+            false => Err(NotTrued::TooFar),
+        }
     }
 
     /// Along the straight line from one end to the other once all darts are closed.

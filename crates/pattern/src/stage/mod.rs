@@ -4,6 +4,7 @@ mod dart;
 mod diamond;
 mod fair;
 mod fold;
+mod kept_length;
 mod motion;
 mod partition;
 mod pivot;
@@ -15,7 +16,9 @@ mod truing;
 
 pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
 pub(crate) use diamond::cut_diamond;
+pub(crate) use fair::{MOST_GROWTH, NotTrued};
 pub(crate) use fold::{FoldError, unfold};
+pub(crate) use kept_length::width_kept;
 pub(crate) use partition::CutError;
 pub(crate) use pivot::{PivotError, Pivoting, pivot_dart};
 pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, is_sewn, reversed};

@@ -2,7 +2,7 @@
 //! closed, their legs equally long.
 
 use super::dart::parameter;
-use super::fair::{Closing, Row, arriving, between, leaving};
+use super::fair::{Closing, NotTrued, Row, arriving, between, leaving};
 use super::{Stage, StageEdge, with_ends};
 use crate::{CornerName, EdgeCorner, LineKind, Name, OperationId, Role};
 use std::f64::consts::FRAC_PI_8;
@@ -26,9 +26,12 @@ struct DartRow {
     darts: Vec<usize>,
 }
 
-/// The stage with the edges across its trued darts redrawn, and the darts across which no line leads.
+/// The stage with the edges across its trued darts redrawn, and the darts that are not trued, with why.
 /// Edges keep their direction at the corners given, where they go on.
-pub(crate) fn true_darts(mut stage: Stage, going_on: &[CornerName]) -> (Stage, Vec<OperationId>) {
+pub(crate) fn true_darts(
+    mut stage: Stage,
+    going_on: &[CornerName],
+) -> (Stage, Vec<(OperationId, NotTrued)>) {
     let is_outline = |line: &super::StageLine| line.kind == LineKind::Outline;
     let mut refused = Vec::new();
     if !stage.darts.iter().any(|dart| dart.trued && dart.half == 0) {
@@ -40,14 +43,15 @@ pub(crate) fn true_darts(mut stage: Stage, going_on: &[CornerName]) -> (Stage, V
     stage.untrued = stage.lines[outline].edges.clone();
     divide_arcs(&mut stage, outline);
     let rows = rows(&stage, outline);
-    refused.extend(beside_no_row(&stage, outline, &rows));
+    let alone = beside_no_row(&stage, outline, &rows).into_iter();
+    refused.extend(alone.map(|by| (by, NotTrued::NoLine)));
     for row in &rows {
         let plain = row.plain(&stage, outline, going_on);
         match plain.is_smooth() {
             true => {}
             false => match plain.redrawn() {
-                Some(redrawn) => row.put(&mut stage, outline, redrawn),
-                None => refused.extend(row.darts.iter().map(|k| stage.darts[*k].by)),
+                Ok(redrawn) => row.put(&mut stage, outline, redrawn),
+                Err(why) => refused.extend(row.darts.iter().map(|k| (stage.darts[*k].by, why))),
             },
         }
     }

@@ -31,6 +31,7 @@ fn darts_open_where_they_are_put_in_every_size() {
         intake: formula("bust / 50"),
         apex: Apex::Depth(0.1.into()),
         trued: false,
+        keeps_length: false,
         pressed: toile_pattern::Pressed::default(),
     };
     let shallow = add(&mut pattern, kind);

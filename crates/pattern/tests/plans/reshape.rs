@@ -172,6 +172,7 @@ fn a_dart_moved_whole_is_closed_and_its_corners_are_one() {
             intake: 0.01.into(),
             apex: Apex::Depth(0.05.into()),
             trued: false,
+            keeps_length: false,
             pressed: Pressed::default(),
         };
         let found = plan::add_operation(&evaluation, front.id, kind);

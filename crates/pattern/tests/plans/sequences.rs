@@ -125,6 +125,7 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         intake: (z * 0.05).into(),
         apex,
         trued: false,
+        keeps_length: false,
         pressed: toile_pattern::Pressed::default(),
     };
     match which % 48 {

@@ -153,6 +153,7 @@ fn sides_have_notches_and_operations_of_their_panel_and_their_own() {
         intake: 0.02.into(),
         apex: Apex::Depth(0.08.into()),
         trued: false,
+        keeps_length: false,
         pressed: Pressed::default(),
     };
     // Along the lower side the cut runs from its end back to its start.

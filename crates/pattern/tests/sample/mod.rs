@@ -199,6 +199,7 @@ pub fn dart(pattern: &Pattern, name: &str, share: f64, intake: f64, apex: Apex) 
         intake: intake.into(),
         apex,
         trued: false,
+        keeps_length: false,
         pressed: Pressed::default(),
     }
 }

@@ -365,6 +365,7 @@ impl Migration<'_> {
                         DartTip::Apex(apex) => Apex::Point(self.point(*apex)),
                     },
                     trued: false,
+                    keeps_length: false,
                     pressed: Pressed::default(),
                 }
             }

@@ -1,0 +1,52 @@
+//! Trued darts that take just their width from the finished edge: what truing takes besides is given back at
+//! the mouth, which is narrower by it.
+
+use super::dart::{DartMouth, cut_dart};
+use super::truing::true_darts;
+use super::{NOTHING, Stage};
+use crate::{CornerName, Role};
+
+/// Lengths that differ by less are one [m].
+const SAME: f64 = 1e-12;
+/// Most steps to the width: each has about 1.6 times the digits of the one before.
+const MOST_STEPS: usize = 40;
+
+/// The width of a mouth [m] with which a dart, trued, takes just the width that was asked for from the finished
+/// outline, by secants; nothing where none does. Of a dart that cannot be trued it is the width itself.
+pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerName]) -> Option<f64> {
+    let wanted = finished(stage) - mouth.intake;
+    let untrued = stage.as_untrued();
+    let beyond = |intake: f64| -> Option<f64> {
+        let cut = cut_dart(&untrued, &DartMouth { intake, ..*mouth }).ok()?;
+        let (trued, refused) = true_darts(cut, going_on);
+        let is_trued = refused.iter().all(|(by, _)| *by != mouth.by);
+        is_trued.then(|| finished(&trued) - wanted)
+    };
+    let mut before = mouth.intake;
+    let Some(mut beyond_before) = beyond(before) else {
+        return Some(mouth.intake);
+    };
+    // A mouth that is wider takes about as much more.
+    let mut width = before + beyond_before;
+    for _ in 0..MOST_STEPS {
+        if beyond_before.abs() <= SAME {
+            return Some(before);
+        }
+        if !(width > NOTHING && width.is_finite()) {
+            return None;
+        }
+        let beyond_now = beyond(width)?;
+        let slope = (beyond_now - beyond_before) / (width - before);
+        (before, beyond_before) = (width, beyond_now);
+        width -= beyond_now / slope;
+    }
+    // As near as numbers of this size come.
+    (beyond_before.abs() <= 1e3 * SAME).then_some(before)
+}
+
+/// Length of an outline once its darts are closed [m].
+fn finished(stage: &Stage) -> f64 {
+    let edges = stage.outline().iter();
+    let sewn = edges.filter(|edge| edge.name.role() != Some(Role::Leg));
+    sewn.map(|edge| edge.curve.length()).sum()
+}
