@@ -308,6 +308,45 @@ def draft(window, file):
     window.titled("Skirt \N{EN DASH} Toile")
 
 
+def trued(half, stretch):
+    """Length of a straight edge with a trued dart in its middle, half of whose angle is given, and what truing adds
+    to the panel [mm], [mm2]. Beside the mouth lie two stretches of equal length l; one keeps its direction at its far
+    end, the other is free there.
+
+    Of least bending with the kink t, the dart's angle, between them: the mouth is raised by h = 5/16 t l square to the
+    edge; the stretches come to it at the slopes 9/16 t and 7/16 t, and the free one begins at the slope t/4. Each is
+    drawn as the cubic whose handles are a third of its chord, turned by these slopes; its end is moved along the leg,
+    h aside being h tan(t/2) along.
+    """
+    turn = 2.0 * half
+    raised = 5.0 / 16.0 * turn * stretch
+    x, y = stretch - raised * math.tan(half), raised
+    length = area = 0.0
+    for begins, comes in ((0.0, 9.0 / 16.0 * turn), (turn / 4.0, 7.0 / 16.0 * turn)):
+        third = math.hypot(x, y) / 3.0
+        points = [(0.0, 0.0), (third * math.cos(begins), third * math.sin(begins)),
+                  (x - third * math.cos(comes), y - third * math.sin(comes)), (x, y)]
+
+        def at(t):
+            """Place of the cubic, and its derivative."""
+            weights = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t ** 3)
+            place = [sum(w * p[k] for w, p in zip(weights, points)) for k in (0, 1)]
+            steps = [[b[k] - a[k] for k in (0, 1)] for a, b in zip(points, points[1:])]
+            ways = ((1 - t) ** 2, 2 * t * (1 - t), t * t)
+            return place, [3 * sum(w * step[k] for w, step in zip(ways, steps)) for k in (0, 1)]
+
+        # Simpson's rule: exact for the area, a polynomial of the fifth degree, to rounding with this many parts.
+        parts = 2000
+        for k in range(parts + 1):
+            weight = (1 if k in (0, parts) else 4 if k % 2 else 2) / (3.0 * parts)
+            place, way = at(k / parts)
+            length += weight * math.hypot(*way)
+            area += weight * place[1] * way[0]
+        # From the end of the leg down to where the mouth was.
+        area += 0.5 * y * (stretch - x)
+    return length, area
+
+
 def check(toile, file):
     """Holds what the command line tells of the file against numbers of the drawing [mm], [cm2]."""
     done = subprocess.run([str(toile), "--json", "check", str(file)], capture_output=True, text=True)
@@ -315,14 +354,18 @@ def check(toile, file):
         raise Fault(f"toile check: {done.stdout}{done.stderr}")
     told = json.loads(done.stdout)
     left, right = told["pieces"]
+    tops = sum(edge["length_mm"] for edge in left["edges"] if edge["name"] == "top")
     seams = {seam["name"].split()[0]: seam["lengths_mm"] for seam in told["seams"]}
     # The dart is trued: the waist keeps its direction at the seam and is free at the other side, both 87.5 mm
     # from the mouth. Of least bending, it is raised there by 5/16 of the dart's angle times that, along the legs.
     half = math.atan2(12.5, 110.0)
     leg = math.hypot(110.0, 12.5) + 5.0 / 16.0 * 2.0 * half * 87.5 / math.cos(half)
+    waist, raised = trued(half, 87.5)
     numbers = {
         "findings": (len(told["diagnostics"]), 0),
         "pieces on the fold": ([left["folded"], right["folded"]].count(True), 1),
+        "area sewn of the left": (left["sewn"]["area_cm2"], (200.0 * 600.0 - 25.0 * 110.0 / 2.0 + raised) / 100.0),
+        "waist of the left": (tops, waist),
         "width of the dart": (left["darts"][0]["width_mm"], 2.0 * leg * math.sin(half)),
         "first leg of the dart": (left["darts"][0]["legs_mm"][0], leg),
         "second leg of the dart": (left["darts"][0]["legs_mm"][1], leg),

@@ -2,6 +2,8 @@
 
 mod arcs;
 mod guide_place;
+mod mark_words;
+mod press_words;
 mod several;
 mod steps;
 
@@ -127,8 +129,10 @@ impl ToileApp {
         for (k, entry) in entries.iter().enumerate() {
             // Of several of one name, as the cuts of pleats, each has its number.
             let is_same = |other: &&NumberEntry| other.label == entry.label;
+            let known = mark_words::label(self.base.pattern(), entry);
             let label = match entries.iter().filter(is_same).count() {
-                1 => entry.label.to_owned(),
+                1 => known,
+                _ if known != entry.label => known,
                 _ => {
                     let before = entries[..k].iter().filter(is_same).count();
                     format!("{} {}", entry.label, before + 1)
@@ -230,8 +234,11 @@ impl ToileApp {
         }
     }
 
-    /// What a number that is a formula comes to; nothing of one that says it itself.
+    /// What a number comes to that is a formula, or a part of an edge; nothing of one that says it itself.
     fn value_of(&self, entry: &NumberEntry) -> Option<String> {
+        if let Some(words) = mark_words::distance(&self.base, entry) {
+            return Some(format!("= {words}"));
+        }
         let number = entry.number.as_ref().filter(|n| n.as_formula().is_some())?;
         let value = self.base.number(number, entry.want)?;
         let unit = self.base.pattern().unit;

@@ -1,5 +1,5 @@
 //! Darts pivoted and panels spread at the window, from raw events.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod drafter;
 
@@ -52,7 +52,7 @@ fn a_dart_is_trued_by_a_tick_that_is_on() {
     drafter.typed("2");
     // Before it is done it is told what becomes of the finished edge.
     drafter.type_text("15");
-    let words = "top finished: 18 cm \u{2192} 17.96 cm by truing";
+    let words = "top finished: 18 cm -> 17.96 cm by truing";
     assert!(drafter.status().contains(words), "{}", drafter.status());
     drafter.key(Key::Enter);
     drafter.key(Key::Escape);
@@ -60,7 +60,7 @@ fn a_dart_is_trued_by_a_tick_that_is_on() {
     drafter.click(drafter.part("Dart of draft"));
     assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
     let told = |drafter: &Drafter, words: &str| drafter.window.query_by_label(words).is_some();
-    let words = "top finished: 18 cm \u{2192} 17.96 cm by truing";
+    let words = "top finished: 18 cm -> 17.96 cm by truing";
     assert!(told(&drafter, words), "{}", trued_top());
     // Its width alone is taken from the finished edge: what truing takes is given back at the mouth.
     drafter.tick("Keep the finished length");
@@ -346,8 +346,8 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
         drafter.chord(modifiers, key);
         drafter.click(drafter.part("Edge bottom of draft"));
         drafter.click(drafter.part("Edge top of draft"));
-        drafter.typed("2");
         drafter.typed("1.5");
+        drafter.typed("2");
         // Evenly.
         drafter.key(Key::Enter);
         drafter.key(Key::Enter);
@@ -380,7 +380,7 @@ fn six_pleats_lie_where_their_first_and_their_spacing_say() {
     drafter.key(Key::Y);
     drafter.click(drafter.part("Edge bottom of draft"));
     drafter.click(drafter.part("Edge top of draft"));
-    for number in ["6", "1", "2.5", "3"] {
+    for number in ["1", "6", "2.5", "3"] {
         drafter.typed(number);
     }
     assert!(drafter.actions <= 8, "{}", drafter.actions);
@@ -405,6 +405,85 @@ fn six_pleats_lie_where_their_first_and_their_spacing_say() {
             "{k}"
         );
     }
+}
+
+#[test]
+fn six_pleats_lie_where_a_list_of_places_says() {
+    let places = [0.02, 0.045, 0.07, 0.1, 0.12, 0.165];
+    for list in [
+        "2 4.5 7 10 12 16.5",
+        "2, 4.5, 7, 10, 12, 16,5",
+        "2 4,5 7 =4cm + 6cm 12 16.5",
+    ] {
+        let mut drafter = panel();
+        drafter.actions = 0;
+        drafter.key(Key::Y);
+        drafter.click(drafter.part("Edge bottom of draft"));
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.typed("1");
+        // They are seen while they are typed.
+        drafter.type_text(list);
+        let shown = drafter.window.state().view().scene.panels[0].pressed.len();
+        assert_eq!(shown, 6, "{list}: {}", drafter.status());
+        assert!(drafter.pattern().panels[0].operations.is_empty());
+        drafter.key(Key::Enter);
+        println!(
+            "six pleats at given places: {} actions",
+            drafter.actions - 1
+        );
+        // Typed text and the key that takes it are one action.
+        assert!(drafter.actions - 1 <= 8, "{}", drafter.actions);
+        drafter.key(Key::Escape);
+        let pattern = drafter.pattern();
+        let [step] = &pattern.panels[0].operations[..] else {
+            panic!("{list}: {}", drafter.status());
+        };
+        let OperationKind::Pleat { pleats, .. } = &step.kind else {
+            panic!("it is a pleat");
+        };
+        let evaluation = drafter.evaluation();
+        let along = pleats.iter().map(|pleat| match &pleat.ends[0] {
+            Mark::Along { distance, .. } => {
+                evaluation.number(distance, toile_pattern::Want::Length)
+            }
+            Mark::Corner(_) | Mark::Between { .. } | Mark::Notch(_) => None,
+        });
+        let along: Vec<f64> = along.collect::<Option<_>>().unwrap();
+        assert_eq!(along.len(), 6, "{list}");
+        for (found, wanted) in along.iter().zip(places) {
+            assert!((found - wanted).abs() < 1e-9, "{list}: {along:?}");
+        }
+    }
+}
+
+#[test]
+fn numbers_are_seen_from_the_first_on() {
+    let mut drafter = panel();
+    let width = |drafter: &Drafter| {
+        let shape = &drafter.window.state().view().scene.panels[0].shape;
+        shape.bounds.max.x - shape.bounds.min.x
+    };
+    drafter.chord(Modifiers::SHIFT, Key::W);
+    drafter.click(drafter.part("Edge bottom of draft"));
+    drafter.click(drafter.part("Edge top of draft"));
+    // Cuts that open by as much as at first; then by as much as is typed.
+    drafter.type_text("2");
+    assert!(
+        (width(&drafter) - 0.2 - 0.06).abs() < 0.01,
+        "{}",
+        width(&drafter)
+    );
+    drafter.key(Key::Enter);
+    drafter.type_text("5");
+    assert!(
+        (width(&drafter) - 0.2 - 0.1).abs() < 0.02,
+        "{}",
+        width(&drafter)
+    );
+    assert!(drafter.pattern().panels[0].operations.is_empty());
+    drafter.key(Key::Enter);
+    drafter.typed("5");
+    assert!((width(&drafter) - 0.3).abs() < 1e-6, "{}", width(&drafter));
 }
 
 #[test]

@@ -337,7 +337,7 @@ fn a_dart_is_moved_by_its_number() {
     drafter.actions = 0;
     drafter.starts("dart");
     drafter.click(drafter.part("Dart of draft"));
-    drafter.enter("share of the edge", "0.25");
+    drafter.enter("part of the edge", "0.25");
     assert!(drafter.actions <= 4, "{}", drafter.actions);
     drafter.ends("dart");
     let pattern = drafter.pattern();

@@ -90,7 +90,8 @@ fn texts(kind: SlotKind) -> [(&'static str, Option<f64>); 3] {
         } => (ANGLE, ("=30deg + 7.3deg", 37.3)),
         SlotKind::Number {
             want: Want::Plain, ..
-        } => (PLAIN, ("=4 / 2", 2.0)),
+        }
+        | SlotKind::Numbers { .. } => (PLAIN, ("=4 / 2", 2.0)),
         _ => (LENGTH, FORMULA),
     };
     [
@@ -238,7 +239,7 @@ impl Table {
             SlotKind::Operation => Vec2::new(0.1425, 0.37),
             SlotKind::Curve | SlotKind::End => ACROSS,
             SlotKind::Panel => Vec2::new(0.08, 0.05),
-            SlotKind::Number { .. } => place(2),
+            SlotKind::Number { .. } | SlotKind::Numbers { .. } => place(2),
         }
     }
 
@@ -246,7 +247,7 @@ impl Table {
     fn give(&mut self, tool: &SlotTool, slot: usize) {
         let at = Self::site(tool, slot);
         match tool.slots[slot].kind {
-            SlotKind::Number { .. } => self.event(&ToolEvent::Enter),
+            SlotKind::Number { .. } | SlotKind::Numbers { .. } => self.event(&ToolEvent::Enter),
             SlotKind::Places => {
                 self.click(at);
                 self.click(Vec2::new(0.2, 0.27));
@@ -329,7 +330,7 @@ impl Table {
                 "name",
             ];
             let own = match row.tool.slots[row.slot].kind {
-                SlotKind::Number { label, .. } => Some(label),
+                SlotKind::Number { label, .. } | SlotKind::Numbers { label, .. } => Some(label),
                 _ => None,
             };
             let mut labels = labels.into_iter().chain(own);
@@ -542,7 +543,7 @@ impl Seen {
             SlotKind::Number {
                 want: Want::Plain,
                 ..
-            }
+            } | SlotKind::Numbers { .. }
         ) && !self.pattern.says_the_same(&before.pattern);
         let tells = status.contains("7.31 cm");
         match is_new || turns || moved.any(is) || counts || tells {

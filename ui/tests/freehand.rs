@@ -415,15 +415,15 @@ fn each_cut_of_pleats_has_a_field_of_its_own() {
     drafter.key(Key::Y);
     drafter.click(drafter.place(0.15, 0.3));
     drafter.click(drafter.place(0.15, 0.0));
-    drafter.typed("2");
     drafter.typed("3");
+    drafter.typed("2");
     drafter.key(Key::Enter);
     drafter.key(Key::Enter);
     drafter.key(Key::Escape);
-    drafter.enter("cut from 2", "0.7");
-    drafter.enter("cut to 1", "0.6");
+    drafter.enter("pleat 2 at", "0.7");
+    drafter.enter("pleat 1, other edge", "0.6");
     assert!(
-        drafter.status().contains("cut from 1"),
+        drafter.status().contains("pleat 1 at"),
         "{}",
         drafter.status()
     );

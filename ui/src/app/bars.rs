@@ -310,7 +310,7 @@ impl ToileApp {
             egui::WidgetInfo::labeled(egui::Role::Button, response.enabled(), command.name)
         });
         if response.clicked() {
-            (command.does)(self);
+            self.command(command);
         }
     }
 }

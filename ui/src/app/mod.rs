@@ -257,6 +257,7 @@ impl ToileApp {
     pub fn execute(&mut self, command: Command) -> bool {
         match self.session.execute(command, &mut Silent) {
             Ok(events) => {
+                self.forget_fault();
                 self.handle_events(&events);
                 true
             }
@@ -266,6 +267,19 @@ impl ToileApp {
                 false
             }
         }
+    }
+
+    /// What was not done before is of no matter once something is done.
+    pub(crate) fn forget_fault(&mut self) {
+        if self.notice.is_fault() {
+            self.notice = Notice::default();
+        }
+    }
+
+    /// Does a command.
+    pub(crate) fn command(&mut self, command: &command::UiCommand) {
+        self.forget_fault();
+        (command.does)(self);
     }
 
     /// Applies events of the session to the window: notices, views, the garment.
@@ -447,7 +461,7 @@ impl ToileApp {
         let pressed = command_table::pressed(&context, keys);
         for command in pressed.commands {
             if (command.when)(self) {
-                (command.does)(self);
+                self.command(command);
             }
         }
         if let Some(command) = pressed.held {

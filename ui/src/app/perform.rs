@@ -85,8 +85,8 @@ impl ToileApp {
 
     /// What an event of a tool came to.
     pub(crate) fn follow_outcome(&mut self, outcome: Outcome) {
-        if outcome.gets_on && self.notice.is_fault() {
-            self.notice = Notice::default();
+        if outcome.gets_on {
+            self.forget_fault();
         }
         match outcome.shown {
             PreviewChange::Same => {}
@@ -164,7 +164,10 @@ impl ToileApp {
     /// Takes over what is shown, as one step of the history.
     pub(crate) fn commit(&mut self, label: &str) {
         match self.session.commit(label) {
-            Ok(events) => self.handle_events(&events),
+            Ok(events) => {
+                self.forget_fault();
+                self.handle_events(&events);
+            }
             Err(error) => self.notice = Notice::fault(error.to_string()),
         }
     }

@@ -101,6 +101,7 @@ impl Picture<'_> {
                 self.graded(panel, grading);
             }
             self.outline(panel);
+            self.press_arrows(panel);
         }
         for panel in &self.scene.panels {
             self.caption(panel, &mut labels);

@@ -3,6 +3,7 @@
 
 use super::allowance::CutLines;
 use super::panel_shape::PanelShape;
+use super::press::{PressArrow, press_arrows};
 use super::seams::{SeamDrawing, draw_seams};
 use super::walked::{WalkedLast, WalkedSeam};
 use std::collections::{BTreeSet, HashMap};
@@ -143,6 +144,8 @@ pub struct PanelScene {
     pub fold_step: Option<OperationId>,
     /// Both ends of the fold line.
     pub fold: Option<[Vec2; 2]>,
+    /// Which way its darts and pleats are pressed.
+    pub pressed: Vec<PressArrow>,
     /// Whether it cannot be drawn now, and this is how it last was.
     pub is_stale: bool,
 }
@@ -381,6 +384,7 @@ impl Scene {
                 .find(|step| matches!(step.kind, OperationKind::Fold { .. }))
                 .map(|step| step.id),
             fold: fold_line(stage),
+            pressed: press_arrows(stage, evaluation.pattern(), panel),
             is_stale: now.is_none(),
         })
     }

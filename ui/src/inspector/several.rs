@@ -12,7 +12,7 @@ use toile_pattern::{EdgeId, EditError, PanelId, Want};
 
 impl ToileApp {
     pub(crate) fn inspect_several(&mut self, ui: &mut Ui, items: &[Item]) {
-        theme::title(ui, &format!("{} parts selected", items.len()));
+        theme::title(ui, &format!("{} {} selected", items.len(), kind_of(items)));
         let soft = Palette::of(ui.ctx()).ink_soft;
         for words in self.measured_together(items) {
             ui.label(RichText::new(words).color(soft));
@@ -136,5 +136,26 @@ impl ToileApp {
         }
         self.radius_field(ui, curve);
         self.handle_numbers(ui, curve);
+    }
+}
+
+/// What several parts are called together.
+fn kind_of(items: &[Item]) -> &'static str {
+    let word = |item: &Item| match item {
+        Item::Point(_) => "points",
+        Item::Curve(_) => "curves",
+        Item::Edge(..) => "edges",
+        Item::Line(..) => "lines",
+        Item::Notch(..) => "notches",
+        Item::Operation(..) => "steps",
+        Item::Panel(_) => "panels",
+        Item::Seam(_) => "seams",
+        Item::Sheet(_) => "sheets",
+        Item::Guide(_) => "guides",
+    };
+    let first = items.first().map_or("parts", word);
+    match items.iter().all(|item| word(item) == first) {
+        true => first,
+        false => "parts",
     }
 }

@@ -1,5 +1,6 @@
 //! The inspector's list of a panel's operations: their order and settings.
 
+use super::press_words::press_words;
 use crate::app::ToileApp;
 use crate::canvas::selection::{Item, Selection};
 use crate::fields::choice;
@@ -69,6 +70,8 @@ impl ToileApp {
             return;
         };
         let mut kind = step.kind.clone();
+        let [first, second] = press_words(self.view.scene.panel_scene(panel), step);
+        let legs = [(Pressed::Before, first), (Pressed::After, second)];
         match &mut kind {
             OperationKind::Dart {
                 pressed,
@@ -76,7 +79,7 @@ impl ToileApp {
                 keeps_length,
                 ..
             } => {
-                press_choice(ui, pressed);
+                choice(ui, "Pressed", &legs, pressed);
                 ui.checkbox(trued, "True the edge").on_hover_text(
                     "The edge is redrawn so that it runs on smoothly across the mouth once the dart is closed",
                 );
@@ -96,7 +99,7 @@ impl ToileApp {
                     (Turned::ToDart, "from the new mouth to the dart"),
                 ];
                 choice(ui, "Part that is turned", &parts, turned);
-                press_choice(ui, pressed);
+                choice(ui, "Pressed", &legs, pressed);
             }
             OperationKind::Spread { bridge, .. } => {
                 let ways = [(Bridge::Straight, "straight"), (Bridge::Smooth, "smooth")];
@@ -110,8 +113,8 @@ impl ToileApp {
                 ];
                 choice(ui, "Pleat", &kinds, kind);
                 if *kind == PleatKind::Knife {
-                    let sides = [(Side::Left, "left"), (Side::Right, "right")];
-                    choice(ui, "Pressed to", &sides, pressed);
+                    let sides = [(Side::Left, first), (Side::Right, second)];
+                    choice(ui, "Pressed", &sides, pressed);
                 }
             }
             OperationKind::Diamond { .. }
@@ -143,13 +146,4 @@ impl ToileApp {
             );
         }
     }
-}
-
-/// The leg a dart is pressed towards, along the outline.
-fn press_choice(ui: &mut Ui, pressed: &mut Pressed) {
-    let legs = [
-        (Pressed::Before, "its first leg along the outline"),
-        (Pressed::After, "its second leg along the outline"),
-    ];
-    choice(ui, "Pressed towards", &legs, pressed);
 }

@@ -177,17 +177,8 @@ const PLEAT_SLOTS: &[Slot] = &[
         kind: SlotKind::Edge,
     },
     Slot {
-        hint: "Click the edge they go to; a knife pleat is pressed to the left on the way there",
+        hint: "Click the edge they go to; arrows then show which way they are pressed",
         kind: SlotKind::Edge,
-    },
-    Slot {
-        hint: "Type how many pleats",
-        kind: SlotKind::Number {
-            label: "pleats",
-            want: Want::Plain,
-            usual: 1.0,
-            live: None,
-        },
     },
     Slot {
         hint: "Type how deep a fold goes under",
@@ -196,6 +187,13 @@ const PLEAT_SLOTS: &[Slot] = &[
             want: Want::Length,
             usual: 0.03,
             live: None,
+        },
+    },
+    Slot {
+        hint: "Type how many pleats; or where each lies along the first edge as it is finished: 4 8 12.5",
+        kind: SlotKind::Numbers {
+            label: "pleats",
+            usual: 1.0,
         },
     },
     Slot {
@@ -222,10 +220,8 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     let [
         Answer::Edge(panel, from, _),
         Answer::Edge(on, to, _),
-        Answer::Number(count),
         Answer::Number(depth),
-        Answer::Number(first),
-        Answer::Number(spacing),
+        places @ ..,
     ] = answers
     else {
         return Err(refuse("nothing was given", "click an edge"));
@@ -236,17 +232,31 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
             "click another edge of the same panel",
         ));
     }
-    let count = reading.evaluation.number(count, Want::Plain);
-    let count = count.filter(|count| (1.0..=60.0).contains(count) && count.fract() == 0.0);
-    let count = count.ok_or_else(|| refuse("a panel has 1 to 60 pleats", "type a whole number"))?;
     let mut planning = Planning::new(reading);
     let id = planning.run(|evaluation| {
-        let count = count.round() as u16;
-        let (line, even) = plan::even_cuts(evaluation, *panel, [*from, *to], count)?;
-        let [at, apart] = [first, spacing].map(|n| evaluation.number(n, Want::Length));
-        let lines = match (at, apart) {
-            (Some(0.0), Some(0.0)) => even,
-            _ => placed_cuts(evaluation, (*panel, [*from, *to]), (count, first, spacing))?,
+        let edges = (*panel, [*from, *to]);
+        let (line, lines) = match places {
+            [Answer::Numbers(places)] => {
+                let (line, _) = plan::even_cuts(evaluation, *panel, edges.1, 1)?;
+                (line, cuts_at(evaluation, edges, places)?)
+            }
+            [
+                Answer::Number(count),
+                Answer::Number(first),
+                Answer::Number(spacing),
+            ] => {
+                let count = how_many(evaluation, count)?;
+                let (line, even) = plan::even_cuts(evaluation, *panel, edges.1, count)?;
+                let [at, apart] = [first, spacing].map(|n| evaluation.number(n, Want::Length));
+                match (at, apart) {
+                    (Some(0.0), Some(0.0)) => (line, even),
+                    _ => {
+                        let places = spaced(evaluation, edges, (count, first, spacing))?;
+                        (line, cuts_at(evaluation, edges, &places)?)
+                    }
+                }
+            }
+            _ => return Err(refuse("nothing was given", "type how many pleats")),
         };
         let wish = PleatWish {
             line,
@@ -261,29 +271,35 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     Ok(planning.done("Pleat panel", [Item::Operation(*panel, id)]))
 }
 
-/// Places from one edge of a panel to another: the first at a distance along the first edge as it is
-/// finished, the others so far from each other, or evenly up to its end; each at the same share of
-/// the other edge.
-fn placed_cuts(
+/// A count of pleats.
+fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
+    let count = evaluation.number(count, Want::Plain);
+    let count = count.filter(|count| (1.0..=60.0).contains(count) && count.fract() == 0.0);
+    let count = count.map(|count| count.round() as u16);
+    count.ok_or_else(|| {
+        refuse(
+            "a panel has 1 to 60 pleats",
+            "type a whole number, or a place for each with spaces between: 4 8 12.5",
+        )
+    })
+}
+
+/// Places along an edge of a panel as it is finished: the first, and the others so far from each other, or evenly up
+/// to its end.
+fn spaced(
     evaluation: &Evaluation,
-    (panel, [from, to]): (PanelId, [EdgeId; 2]),
+    (panel, [from, _]): (PanelId, [EdgeId; 2]),
     (count, first, spacing): (u16, &Number, &Number),
-) -> Result<Vec<[Mark; 2]>, EditError> {
-    let [near, far] = [from, to].map(|edge| plan::finished_edge(evaluation, panel, edge));
-    let (near, far) = (near?, far?);
-    let value = |number: &Number| {
-        let value = evaluation.number(number, Want::Length);
-        value.ok_or_else(|| refuse("the distance has no value", "type a length"))
-    };
-    let start = value(first)?;
-    let step = match value(spacing)? {
+) -> Result<Vec<Number>, EditError> {
+    let near = plan::finished_edge(evaluation, panel, from)?;
+    let start = length_of(evaluation, first)?;
+    let step = match length_of(evaluation, spacing)? {
         0.0 => (near.length - start) / f64::from(count),
         step => step,
     };
-    let mut cuts = Vec::with_capacity(usize::from(count));
-    for k in 0..count {
+    let place = |k: u16| -> Result<Number, EditError> {
         let by = f64::from(k) * step;
-        let along = match (first.as_formula(), spacing.as_formula()) {
+        Ok(match (first.as_formula(), spacing.as_formula()) {
             _ if k == 0 => first.clone(),
             (_, Some(_)) => {
                 let names = evaluation.names();
@@ -300,18 +316,34 @@ fn placed_cuts(
                 by,
             },
             (None, None) => Number::Value(start + by),
-        };
+        })
+    };
+    (0..count).map(place).collect()
+}
+
+fn length_of(evaluation: &Evaluation, number: &Number) -> Result<f64, EditError> {
+    let value = evaluation.number(number, Want::Length);
+    value.ok_or_else(|| refuse("the distance has no value", "type a length"))
+}
+
+/// Lines from places along one edge of a panel as it is finished, each to the same share of another.
+fn cuts_at(
+    evaluation: &Evaluation,
+    (panel, [from, to]): (PanelId, [EdgeId; 2]),
+    places: &[Number],
+) -> Result<Vec<[Mark; 2]>, EditError> {
+    let [near, far] = [from, to].map(|edge| plan::finished_edge(evaluation, panel, edge));
+    let (near, far) = (near?, far?);
+    let cut = |along: &Number| {
         // Across a closed line edges run against each other.
-        let share = 1.0 - (start + by) / near.length;
-        cuts.push([
-            plan::mark_along(evaluation, &near, (0, &along))?,
-            Mark::Between {
-                ends: far.ends,
-                share: share.into(),
-            },
-        ]);
-    }
-    Ok(cuts)
+        let share = 1.0 - length_of(evaluation, along)? / near.length;
+        let end = Mark::Between {
+            ends: far.ends,
+            share: share.into(),
+        };
+        Ok([plan::mark_along(evaluation, &near, (0, along))?, end])
+    };
+    places.iter().map(cut).collect()
 }
 
 /// Cuts a panel in two along a straight line.

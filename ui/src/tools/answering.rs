@@ -1,5 +1,6 @@
 //! What is given in a slot: by what is typed, else by the pointer.
 
+use super::list::{self, Listed};
 use super::refusal::{Unanswered, no_edge};
 use super::slots::{Answer, SlotKind, SlotState, SlotTool, slot};
 use super::toward::{to_side, turned};
@@ -19,7 +20,11 @@ pub(super) fn answer(
     let kind = slot(tool, state).kind;
     let typable = Typable::new(tool, state, reading);
     typable.refuse_untaken(state)?;
-    let numbers = typed_numbers(&typable, state, reading)?;
+    let numbers = match kind {
+        // Several stand in one field.
+        SlotKind::Numbers { .. } => Vec::new(),
+        _ => typed_numbers(&typable, state, reading)?,
+    };
     let name = || {
         let name = match typable.typed_name(state) {
             "" => &state.named,
@@ -77,6 +82,17 @@ pub(super) fn answer(
             let placed = place()?;
             Ok(Answer::Inside(placed.sheet, placed.at, name()))
         }
+        SlotKind::Numbers { label, usual } => match state.typed.text(0).trim() {
+            "" => Ok(Answer::Number(usual.into())),
+            text => match list::parse(text, reading.evaluation) {
+                Ok(Listed::One(number)) => Ok(Answer::Number(number)),
+                Ok(Listed::Lengths(lengths)) => Ok(Answer::Numbers(lengths)),
+                Err(words) => Err(Unanswered {
+                    field: Some(0),
+                    words: format!("{label}: {words}"),
+                }),
+            },
+        },
         SlotKind::Number { usual, live, .. } => {
             if let Some(typed) = numbers.into_iter().next().flatten() {
                 return Ok(Answer::Number(typed));

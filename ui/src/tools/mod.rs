@@ -8,6 +8,7 @@ pub mod arc;
 mod composed;
 pub mod draw;
 mod finished;
+mod list;
 mod newest;
 pub mod number;
 pub mod panel;

@@ -84,7 +84,12 @@ fn told(
             marks.extend(placed_words(kind, state, reading, (&placed, typed)));
         }
         Answer::Number(given) => {
-            if let (Some(pointer), SlotKind::Number { label, want, .. }) = (pointer, kind) {
+            let asked = match kind {
+                SlotKind::Number { label, want, .. } => Some((label, want)),
+                SlotKind::Numbers { label, .. } => Some((label, Want::Plain)),
+                _ => None,
+            };
+            if let (Some(pointer), Some((label, want))) = (pointer, asked) {
                 let place = (pointer.sheet, pointer.at);
                 let words = number_words(state, reading, (label, &given, want));
                 let told = state
@@ -93,6 +98,17 @@ fn told(
                     .map_or_else(String::new, |told| in_lines(told));
                 let words = joined(&[&words, &told]);
                 marks.push(words_at(state, place, &words, &typed));
+            }
+        }
+        Answer::Numbers(lengths) => {
+            if let Some(pointer) = pointer {
+                let values = lengths.iter().filter_map(|number| {
+                    let value = reading.evaluation.number(number, Want::Length)?;
+                    Some(number::show(value, Want::Length, unit))
+                });
+                let words = format!("= {}", values.collect::<Vec<_>>().join(", "));
+                let place = (pointer.sheet, pointer.at);
+                marks.push(words_at(state, place, &in_lines(&words), &typed));
             }
         }
         Answer::OnLine(panel, Item::Edge(_, edge), at, None) => {

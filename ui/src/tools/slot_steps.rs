@@ -4,7 +4,7 @@
 use super::answering::answer;
 use super::newest;
 use super::refusal::Unanswered;
-use super::slots::{Answer, Plan, SlotKind, SlotState, SlotTool, slot};
+use super::slots::{Answer, Plan, SlotKind, SlotState, SlotTool, is_complete, slot, usual};
 use super::typing::{Typable, is_named};
 use super::{Event, Outcome, PreviewChange, Reading};
 use crate::canvas::placed::Placed;
@@ -197,7 +197,7 @@ fn accept(
     }
     state.clear_typed();
     state.chain.clear();
-    if state.answers.len() < tool.slots.len() {
+    if !is_complete(tool, &state.answers) {
         return Outcome::default();
     }
     match (tool.plan)(&state.answers, reading) {
@@ -340,11 +340,17 @@ fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Pl
         });
     }
     let kind = slot(tool, state).kind;
-    let is_last = state.answers.len() + 1 == tool.slots.len();
-    if !is_last || matches!(kind, SlotKind::Places) {
+    // Numbers are seen from the first on, those after it as they are at first.
+    let rest = tool.slots.iter().skip(state.answers.len() + 1);
+    let rest = rest.map(usual).collect::<Option<Vec<Answer>>>()?;
+    let is_number = matches!(kind, SlotKind::Number { .. } | SlotKind::Numbers { .. });
+    if matches!(kind, SlotKind::Places) || !(is_number || rest.is_empty()) {
         return None;
     }
     let mut answers = state.answers.clone();
     answers.push(answer(tool, state, reading).ok()?);
+    if !is_complete(tool, &answers) {
+        answers.extend(rest);
+    }
     (tool.plan)(&answers, reading).ok()
 }

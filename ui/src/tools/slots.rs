@@ -55,6 +55,13 @@ pub enum SlotKind {
     Panel,
     /// A place inside something, which need not be drawn to anything, and a name for it.
     Inside,
+    /// A plain number; or several lengths, which answer what is asked after it too.
+    Numbers {
+        /// What it is called.
+        label: &'static str,
+        /// The plain number as long as nothing is typed.
+        usual: f64,
+    },
     /// A number: typed, or given by the pointer.
     Number {
         /// What it is called.
@@ -108,6 +115,8 @@ pub enum Answer {
     End(Placed, CurveId, usize),
     /// A panel.
     Panel(PanelId),
+    /// Several lengths [m].
+    Numbers(Vec<Number>),
     /// A place inside something of a sheet [m], and the name if one was typed.
     Inside(SheetId, Vec2, Option<String>),
     /// A number.
@@ -245,4 +254,20 @@ impl SlotState {
 pub(super) fn slot<'t>(tool: &'t SlotTool, state: &SlotState) -> &'t Slot {
     let last = tool.slots.len() - 1;
     &tool.slots[state.answers.len().min(last)]
+}
+
+/// Whether answers are all that a tool needs.
+pub(super) fn is_complete(tool: &SlotTool, answers: &[Answer]) -> bool {
+    let ends = matches!(answers.last(), Some(Answer::Numbers(_)));
+    ends || answers.len() >= tool.slots.len()
+}
+
+/// The answer of a number as long as nothing is typed and nothing is pointed at.
+pub(super) fn usual(slot: &Slot) -> Option<Answer> {
+    match slot.kind {
+        SlotKind::Number { usual, .. } | SlotKind::Numbers { usual, .. } => {
+            Some(Answer::Number(usual.into()))
+        }
+        _ => None,
+    }
 }

@@ -87,6 +87,7 @@ pub(super) fn ways(kind: SlotKind, state: &SlotState) -> Vec<Way> {
         SlotKind::Inside => vec![Way::Coordinates],
         SlotKind::OnLine => vec![Way::Distance],
         SlotKind::Number { label, want, .. } => vec![Way::Number(label, want)],
+        SlotKind::Numbers { label, .. } => vec![Way::Number(label, Want::Any)],
         SlotKind::Edge
         | SlotKind::Chain
         | SlotKind::Operation

@@ -135,7 +135,7 @@ impl NumberAddress {
                 PointNumber::Distance => "distance",
                 PointNumber::Along => "along",
                 PointNumber::Aside => "aside",
-                PointNumber::Share => "share of the way",
+                PointNumber::Share => "part of the way",
             },
             Self::Bulge(_) => "bulge",
             Self::ToLength(_) => "length",
@@ -150,7 +150,7 @@ impl NumberAddress {
                 OperationNumber::Widest => "widest at",
                 OperationNumber::FoldStart(_) => "start",
                 OperationNumber::FoldEnd(_) => "end",
-                OperationNumber::Share => "share moved",
+                OperationNumber::Share => "part moved",
                 OperationNumber::Back => "set back",
                 OperationNumber::Held(_) => "held at",
                 OperationNumber::Cut(_, SpanEnd::From, _) => "cut from",
@@ -323,7 +323,7 @@ impl MarkNumber {
     fn label(self) -> &'static str {
         match self {
             Self::Distance => "distance",
-            Self::Share => "share of the edge",
+            Self::Share => "part of the edge",
         }
     }
 

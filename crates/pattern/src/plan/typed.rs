@@ -5,9 +5,10 @@ use super::impossible;
 use crate::formula::Operation;
 use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
 
-/// Decimals of a value that is shown, in its unit: less than any pattern needs, and few enough
-/// that rounding in the last bits of a value does not show.
-const DECIMALS: usize = 9;
+/// Most decimals of a value that someone typed, in its unit: they are shown as they were typed.
+const TYPED: usize = 6;
+/// How far a value may be from its typed decimals [of its unit].
+const SAME: f64 = 1e-9;
 
 impl DisplayUnit {
     /// Its length [m].
@@ -149,12 +150,28 @@ pub fn number_text(evaluation: &Evaluation, number: &Number, want: Want) -> Stri
 
 fn value_text(evaluation: &Evaluation, value: f64, want: Want) -> String {
     let unit = evaluation.pattern().unit;
-    let (value, sign) = match want {
-        Want::Length => (value / unit.metres(), unit.sign()),
-        Want::Angle => (value.to_degrees(), "deg"),
-        Want::Plain | Want::Any => (value, ""),
+    // Of what was computed no more is shown than a hundredth of a millimetre, or of a degree.
+    let (value, sign, needed) = match want {
+        Want::Length => {
+            let needed = match unit {
+                DisplayUnit::Millimetre => 2,
+                DisplayUnit::Centimetre => 3,
+                DisplayUnit::Metre => 5,
+                DisplayUnit::Inch => 4,
+            };
+            (value / unit.metres(), unit.sign(), needed)
+        }
+        Want::Angle => (value.to_degrees(), "deg", 2),
+        Want::Plain | Want::Any => (value, "", 4),
     };
-    let digits = format!("{value:.DECIMALS$}");
+    let typed = format!("{value:.TYPED$}");
+    let is_typed = typed
+        .parse()
+        .is_ok_and(|typed: f64| (typed - value).abs() <= SAME);
+    let digits = match is_typed {
+        true => typed,
+        false => format!("{value:.needed$}"),
+    };
     let short = match digits.contains('.') {
         true => digits.trim_end_matches('0').trim_end_matches('.'),
         false => &digits,

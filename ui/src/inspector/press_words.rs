@@ -1,0 +1,56 @@
+//! To which side something is pressed, in words.
+
+use crate::canvas::press::press_ways;
+use crate::canvas::scene::PanelScene;
+use toile_geometry::Vec2;
+use toile_pattern::{Operation, OperationKind};
+
+/// The sides that a step may be pressed to, in the order of its choices: to the centre, which lies on the fold, and to
+/// the side; where that is not known, or it leads along the fold, as they are seen from the right side of the cloth.
+pub fn press_words(panel: Option<&PanelScene>, step: &Operation) -> [&'static str; 2] {
+    let found = panel.and_then(|panel| Some((panel, press_ways(&panel.pressed, step)?)));
+    match found {
+        Some((panel, (at, ways))) => ways.map(|way| words(way, at, panel.fold)),
+        None => match step.kind {
+            OperationKind::Pleat { .. } => ["left of its line", "right of its line"],
+            _ => ["before its point", "after its point"],
+        },
+    }
+}
+
+fn words(way: Vec2, at: Vec2, fold: Option<[Vec2; 2]>) -> &'static str {
+    let to_fold = fold.and_then(|[from, to]| {
+        let along = (to - from).try_normalize(1e-12)?;
+        let across = (from - at) - along * (from - at).dot(&along);
+        across.try_normalize(1e-9)
+    });
+    match to_fold.map(|to_fold| to_fold.dot(&way)) {
+        Some(toward) if toward > 0.5 => "to the centre",
+        Some(toward) if toward < -0.5 => "to the side",
+        _ if way.x.abs() >= way.y.abs() => match way.x > 0.0 {
+            true => "to the right",
+            false => "to the left",
+        },
+        _ => match way.y > 0.0 {
+            true => "up",
+            false => "down",
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_centre_lies_on_the_fold() {
+        let fold = Some([Vec2::new(0.0, 0.0), Vec2::new(0.0, 0.6)]);
+        let at = Vec2::new(0.1, 0.5);
+        let told = |x: f64, y: f64, fold| words(Vec2::new(x, y), at, fold);
+        assert_eq!(told(-1.0, 0.1, fold), "to the centre");
+        assert_eq!(told(1.0, 0.1, fold), "to the side");
+        assert_eq!(told(0.1, -1.0, fold), "down");
+        assert_eq!(told(-1.0, 0.1, None), "to the left");
+        assert_eq!(told(0.0, 1.0, None), "up");
+    }
+}
