@@ -407,6 +407,11 @@ fn six_pleats_lie_where_their_first_and_their_spacing_say() {
     }
 }
 
+/// How many steps the history has.
+fn steps(drafter: &Drafter) -> usize {
+    drafter.window.state().session().past().len()
+}
+
 #[test]
 fn six_pleats_lie_where_a_list_of_places_says() {
     let places = [0.02, 0.045, 0.07, 0.1, 0.12, 0.165];
@@ -416,6 +421,7 @@ fn six_pleats_lie_where_a_list_of_places_says() {
         "2 4,5 7 =4cm + 6cm 12 16.5",
     ] {
         let mut drafter = panel();
+        let before = steps(&drafter);
         drafter.actions = 0;
         drafter.key(Key::Y);
         drafter.click(drafter.part("Edge bottom of draft"));
@@ -425,7 +431,7 @@ fn six_pleats_lie_where_a_list_of_places_says() {
         drafter.type_text(list);
         let shown = drafter.window.state().view().scene.panels[0].pressed.len();
         assert_eq!(shown, 6, "{list}: {}", drafter.status());
-        assert!(drafter.pattern().panels[0].operations.is_empty());
+        assert_eq!(steps(&drafter), before);
         drafter.key(Key::Enter);
         println!(
             "six pleats at given places: {} actions",
@@ -463,6 +469,7 @@ fn numbers_are_seen_from_the_first_on() {
         let shape = &drafter.window.state().view().scene.panels[0].shape;
         shape.bounds.max.x - shape.bounds.min.x
     };
+    let before = steps(&drafter);
     drafter.chord(Modifiers::SHIFT, Key::W);
     drafter.click(drafter.part("Edge bottom of draft"));
     drafter.click(drafter.part("Edge top of draft"));
@@ -480,7 +487,7 @@ fn numbers_are_seen_from_the_first_on() {
         "{}",
         width(&drafter)
     );
-    assert!(drafter.pattern().panels[0].operations.is_empty());
+    assert_eq!(steps(&drafter), before);
     drafter.key(Key::Enter);
     drafter.typed("5");
     assert!((width(&drafter) - 0.3).abs() < 1e-6, "{}", width(&drafter));
@@ -588,8 +595,8 @@ fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
         drafter.key(Key::Y);
         drafter.click(drafter.part("Edge top of draft"));
         drafter.click(drafter.part("Edge bottom of draft"));
-        drafter.typed("2");
         drafter.typed("1.5");
+        drafter.typed("2");
         drafter.key(Key::Enter);
         drafter.key(Key::Enter);
     };

@@ -373,6 +373,7 @@ fn pleats_close_to_the_edge_as_drawn() {
         depth: 0.02.into(),
         kind: PleatKind::Knife,
         pressed: Side::Left,
+        trued: true,
     };
     put_operation(&mut pattern, 0, "pleat", kind);
     let found = pattern.check(&Measurements::adult());

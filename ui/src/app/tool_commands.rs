@@ -220,7 +220,7 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         Menu::Panel,
         "Pivot dart",
         key(SHIFT, Key::E),
-        "Move a dart, or a share of it, to another place",
+        "Move a dart, or a part of it, to another place",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&alter::PIVOT)),
     ),
@@ -236,7 +236,7 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         Menu::Panel,
         "Knife pleat",
         key(PLAIN, Key::Y),
-        "Fold pleats pressed to the left, from edge to edge",
+        "Fold pleats pressed to one side, from edge to edge",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&alter::KNIFE_PLEAT)),
     )

@@ -105,7 +105,12 @@ impl ToileApp {
                 let ways = [(Bridge::Straight, "straight"), (Bridge::Smooth, "smooth")];
                 choice(ui, "Line across openings", &ways, bridge);
             }
-            OperationKind::Pleat { kind, pressed, .. } => {
+            OperationKind::Pleat {
+                kind,
+                pressed,
+                trued,
+                ..
+            } => {
                 let kinds = [
                     (PleatKind::Knife, "knife"),
                     (PleatKind::Box, "box"),
@@ -116,6 +121,9 @@ impl ToileApp {
                     let sides = [(Side::Left, first), (Side::Right, second)];
                     choice(ui, "Pressed", &sides, pressed);
                 }
+                ui.checkbox(trued, "True the edge").on_hover_text(
+                    "What lies under is cut along the edge that it lies on when it is folded, else straight across",
+                );
             }
             OperationKind::Diamond { .. }
             | OperationKind::Fold { .. }

@@ -28,9 +28,9 @@ pub static PIVOT: SlotTool = SlotTool {
             kind: SlotKind::OnLine,
         },
         Slot {
-            hint: "Type the share of it that is moved",
+            hint: "Type what part of it is moved: 1 for all, 0.5 for half",
             kind: SlotKind::Number {
-                label: "share",
+                label: "part",
                 want: Want::Plain,
                 usual: 1.0,
                 live: None,
@@ -150,7 +150,7 @@ pub static SPREAD: SlotTool = SlotTool {
     },
 };
 
-/// Folds pleats that are pressed to the left of their lines.
+/// Folds pleats that are pressed to one side.
 pub static KNIFE_PLEAT: SlotTool = SlotTool {
     command: "Knife pleat",
     slots: PLEAT_SLOTS,

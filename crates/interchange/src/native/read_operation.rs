@@ -165,7 +165,9 @@ fn insert<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind,
 }
 
 fn pleat<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
-    let known = &["line", "held", "pleats", "depth", "kind", "pressed"];
+    let known = &[
+        "line", "held", "pleats", "depth", "kind", "pressed", "trued",
+    ];
     let fields = item.object(known, &mut reader.notes)?;
     let mut pleats = Vec::new();
     for item in fields.items("pleats")? {
@@ -187,6 +189,7 @@ fn pleat<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, 
             Some(side) => side.choice(SIDES)?,
             None => Side::Left,
         },
+        trued: fields.flag_or("trued", true)?,
     })
 }
 

@@ -107,6 +107,7 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             depth,
             kind,
             pressed,
+            trued,
         } => {
             own.put("line", name(*line));
             own.put("held", mark(writer, held, &what)?);
@@ -123,6 +124,9 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             own.put("kind", text(word(PLEATS, kind)));
             if *pressed != Side::Left {
                 own.put("pressed", text(word(SIDES, pressed)));
+            }
+            if !*trued {
+                own.put("trued", Value::Flag(false));
             }
             "pleat"
         }

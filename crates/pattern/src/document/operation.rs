@@ -110,6 +110,10 @@ pub enum OperationKind {
         kind: PleatKind,
         /// The side of its line that a knife pleat is pressed to: its underlay lies under that.
         pressed: Side,
+        /// Whether it is trued: what lies under is cut along the edge that it lies on when it is
+        /// folded, else straight across.
+        #[serde(default = "is_trued")]
+        trued: bool,
     },
     /// Lines of the panel that were drawn on a sheet which lies on the stage before this: holes and
     /// internal lines that name this operation.
@@ -117,6 +121,11 @@ pub enum OperationKind {
         /// The sheet.
         sheet: SheetId,
     },
+}
+
+/// Pleats of journals that do not say it are trued.
+fn is_trued() -> bool {
+    true
 }
 
 /// Which part of a panel a pivot turns.

@@ -148,6 +148,7 @@ impl PanelEvaluation<'_, '_, '_> {
             depth,
             kind,
             pressed,
+            trued,
         } = &operation.kind
         else {
             return None;
@@ -185,6 +186,7 @@ impl PanelEvaluation<'_, '_, '_> {
             depth,
             kind: *kind,
             pressed: *pressed,
+            trued: *trued,
         };
         match pleat(stage, &wish) {
             Ok(stage) => Some(stage),

@@ -290,6 +290,7 @@ impl Remap {
                 depth,
                 kind: _,
                 pressed: _,
+                trued: _,
             } => {
                 *line = self.name(*line);
                 self.mark(held);

@@ -177,7 +177,7 @@ pub struct PleatWish {
     pub held: Option<Mark>,
 }
 
-/// The edits that pleat a panel; and the operation.
+/// The edits that pleat a panel; and the operation. The pleats are trued.
 ///
 /// # Errors
 /// The panel is not there or cannot be drawn; there is no line; it cannot be pleated so: the words
@@ -210,6 +210,7 @@ pub fn pleat_panel(
         depth: wish.depth,
         kind: wish.kind,
         pressed: wish.pressed,
+        trued: true,
     };
     add_operation(evaluation, panel, kind)
 }

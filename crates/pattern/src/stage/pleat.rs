@@ -16,6 +16,8 @@ pub(crate) struct Pleating {
     pub depth: f64,
     pub kind: PleatKind,
     pub pressed: Side,
+    /// Whether what lies under is cut along the edge that it lies on.
+    pub trued: bool,
 }
 
 /// A part of the outline beside a pleat.
@@ -110,7 +112,7 @@ fn underlay(
     gap: &Gap<'_>,
     (wish, turn): (&Pleating, f64),
 ) -> Result<Crossed, SpreadError> {
-    let (by, number) = (wish.spread.by, gap.chord.number);
+    let by = wish.spread.by;
     let [start, end] = gap.chord.points;
     let way = end - start;
     let (from, to) = (gap.before.curve.end(), gap.after.curve.start());
@@ -118,9 +120,23 @@ fn underlay(
     let across = across.ok_or(SpreadError::NoDepth)?;
     let count = open.line.edges.len();
     let before = (gap.at + count - 1) % count;
+    let folds = folds(wish, (turn, gap.end));
     let mut layers: Vec<Vec<Piece>> = Vec::new();
+    if !wish.trued {
+        let count = 2 * folds.len();
+        let at = |k: usize| from + (to - from) * (k as f64 / count as f64);
+        let straight = (0..count).map(|k| Piece {
+            curve: Curve::Line {
+                start: at(k),
+                end: at(k + 1),
+            },
+            allowance: gap.before.allowance,
+        });
+        layers.extend(straight.map(|piece| vec![piece]));
+        return Ok(crossed(gap, by, layers));
+    }
     let mut origin = from;
-    for is_before in folds(wish, (turn, gap.end)) {
+    for is_before in folds {
         let motion = open.motion(if is_before { before } else { gap.at });
         let way = motion.direction(way);
         let beside = beside(open, gap, (is_before, wish.depth))?;
@@ -152,6 +168,13 @@ fn underlay(
         }
         origin += twice;
     }
+    Ok(crossed(gap, by, layers))
+}
+
+/// The layers of an underlay as edges, from the end of the edge before it to the start of the one after it.
+fn crossed(gap: &Gap<'_>, by: OperationId, layers: Vec<Vec<Piece>>) -> Crossed {
+    let number = gap.chord.number;
+    let (from, to) = (gap.before.curve.end(), gap.after.curve.start());
     let mut edges: Vec<StageEdge> = Vec::new();
     let last = layers.len();
     for (k, layer) in layers.into_iter().enumerate() {
@@ -178,10 +201,10 @@ fn underlay(
         }
     }
     join(&mut edges, [from, to]);
-    Ok(Crossed {
+    Crossed {
         corners: [0, last].map(|k| corner(by, (number, gap.end), k)),
         edges,
-    })
+    }
 }
 
 fn with(piece: Piece, curve: Curve) -> Piece {

@@ -292,9 +292,9 @@ fn every_number_is_listed_read_and_set() {
             "height on the body",
             "intake",
             "length",
+            "part of the edge",
+            "part of the way",
             "seam allowance",
-            "share of the edge",
-            "share of the way",
             "start",
             "value",
             "widest at",
@@ -368,7 +368,7 @@ fn numbers_without_a_value_are_refused() {
         (
             NumberAddress::Point(p0, PointNumber::Share),
             0.1.into(),
-            "the share of the way of point",
+            "the part of the way of point",
         ),
     ] {
         let told = refusal(plan::set_number(&evaluation, &place, number));

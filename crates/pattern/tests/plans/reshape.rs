@@ -501,7 +501,7 @@ fn numbers_of_pivots_and_spreads_are_shown_and_set() {
     let pivoted = pivot(&mut pattern, wish);
     let entries = plan::numbers_of(&evaluated(&pattern), pivoted.into());
     let labels: Vec<&str> = entries.iter().map(|entry| entry.label).collect();
-    assert_eq!(labels, ["share of the edge", "share moved", "set back"]);
+    assert_eq!(labels, ["part of the edge", "part moved", "set back"]);
     let edits = plan::set_number(&evaluated(&pattern), &entries[1].place, 0.25.into()).unwrap();
     let pattern = done(&pattern, &edits);
     let evaluation = evaluated(&pattern);
