@@ -70,66 +70,8 @@ impl ToileApp {
             return;
         };
         let mut kind = step.kind.clone();
-        let [first, second] = press_words(self.view.scene.panel_scene(panel), step);
-        let legs = [(Pressed::Before, first), (Pressed::After, second)];
-        match &mut kind {
-            OperationKind::Dart {
-                pressed,
-                trued,
-                keeps_length,
-                ..
-            } => {
-                choice(ui, "Pressed", &legs, pressed);
-                ui.checkbox(trued, "True the edge").on_hover_text(
-                    "The edge is redrawn so that it runs on smoothly across the mouth once the dart is closed",
-                );
-                let keeps = ui.add_enabled(
-                    *trued,
-                    egui::Checkbox::new(keeps_length, "Keep the finished length"),
-                );
-                keeps.on_hover_text(
-                    "The mouth is narrower by what truing takes from the edge: the dart takes just its width",
-                );
-            }
-            OperationKind::Pivot {
-                turned, pressed, ..
-            } => {
-                let parts = [
-                    (Turned::FromDart, "from the dart to the new mouth"),
-                    (Turned::ToDart, "from the new mouth to the dart"),
-                ];
-                choice(ui, "Part that is turned", &parts, turned);
-                choice(ui, "Pressed", &legs, pressed);
-            }
-            OperationKind::Spread { bridge, .. } => {
-                let ways = [(Bridge::Straight, "straight"), (Bridge::Smooth, "smooth")];
-                choice(ui, "Line across openings", &ways, bridge);
-            }
-            OperationKind::Pleat {
-                kind,
-                pressed,
-                trued,
-                ..
-            } => {
-                let kinds = [
-                    (PleatKind::Knife, "knife"),
-                    (PleatKind::Box, "box"),
-                    (PleatKind::Inverted, "inverted"),
-                ];
-                choice(ui, "Pleat", &kinds, kind);
-                if *kind == PleatKind::Knife {
-                    let sides = [(Side::Left, first), (Side::Right, second)];
-                    choice(ui, "Pressed", &sides, pressed);
-                }
-                ui.checkbox(trued, "True the edge").on_hover_text(
-                    "What lies under is cut along the edge that it lies on when it is folded, else straight across",
-                );
-            }
-            OperationKind::Diamond { .. }
-            | OperationKind::Fold { .. }
-            | OperationKind::Split { .. }
-            | OperationKind::Insert { .. } => {}
-        }
+        let sides = press_words(self.view.scene.panel_scene(panel), step);
+        kind_choices(ui, &mut kind, sides);
         let mut meant = step.meant;
         if matches!(
             kind,
@@ -153,5 +95,68 @@ impl ToileApp {
                 "Change step",
             );
         }
+    }
+}
+
+/// What may be chosen of a kind of step; the sides it may be pressed to are told by their words.
+fn kind_choices(ui: &mut Ui, kind: &mut OperationKind, [first, second]: [&str; 2]) {
+    let legs = [(Pressed::Before, first), (Pressed::After, second)];
+    match kind {
+        OperationKind::Dart {
+            pressed,
+            trued,
+            keeps_length,
+            ..
+        } => {
+            choice(ui, "Pressed", &legs, pressed);
+            ui.checkbox(trued, "True the edge").on_hover_text(
+                "The edge is redrawn so that it runs on smoothly across the mouth once the dart is closed",
+            );
+            let keeps = ui.add_enabled(
+                *trued,
+                egui::Checkbox::new(keeps_length, "Keep the finished length"),
+            );
+            keeps.on_hover_text(
+                "The mouth is narrower by what truing takes from the edge: the dart takes just its width",
+            );
+        }
+        OperationKind::Pivot {
+            turned, pressed, ..
+        } => {
+            let parts = [
+                (Turned::FromDart, "from the dart to the new mouth"),
+                (Turned::ToDart, "from the new mouth to the dart"),
+            ];
+            choice(ui, "Part that is turned", &parts, turned);
+            choice(ui, "Pressed", &legs, pressed);
+        }
+        OperationKind::Spread { bridge, .. } => {
+            let ways = [(Bridge::Straight, "straight"), (Bridge::Smooth, "smooth")];
+            choice(ui, "Line across openings", &ways, bridge);
+        }
+        OperationKind::Pleat {
+            kind,
+            pressed,
+            trued,
+            ..
+        } => {
+            let kinds = [
+                (PleatKind::Knife, "knife"),
+                (PleatKind::Box, "box"),
+                (PleatKind::Inverted, "inverted"),
+            ];
+            choice(ui, "Pleat", &kinds, kind);
+            if *kind == PleatKind::Knife {
+                let sides = [(Side::Left, first), (Side::Right, second)];
+                choice(ui, "Pressed", &sides, pressed);
+            }
+            ui.checkbox(trued, "True the edge").on_hover_text(
+                "What lies under is cut along the edge that it lies on when it is folded, else straight across",
+            );
+        }
+        OperationKind::Diamond { .. }
+        | OperationKind::Fold { .. }
+        | OperationKind::Split { .. }
+        | OperationKind::Insert { .. } => {}
     }
 }

@@ -82,17 +82,10 @@ pub(super) fn answer(
             let placed = place()?;
             Ok(Answer::Inside(placed.sheet, placed.at, name()))
         }
-        SlotKind::Numbers { label, usual } => match state.typed.text(0).trim() {
-            "" => Ok(Answer::Number(usual.into())),
-            text => match list::parse(text, reading.evaluation) {
-                Ok(Listed::One(number)) => Ok(Answer::Number(number)),
-                Ok(Listed::Lengths(lengths)) => Ok(Answer::Numbers(lengths)),
-                Err(words) => Err(Unanswered {
-                    field: Some(0),
-                    words: format!("{label}: {words}"),
-                }),
-            },
-        },
+        SlotKind::Numbers { label, usual } => {
+            let text = state.typed.text(0).trim();
+            listed(text, (label, usual), reading)
+        }
         SlotKind::Number { usual, live, .. } => {
             if let Some(typed) = numbers.into_iter().next().flatten() {
                 return Ok(Answer::Number(typed));
@@ -101,6 +94,25 @@ pub(super) fn answer(
             let value = said.map_or(usual, |(live, pointer)| live(&state.answers, pointer));
             Ok(Answer::Number(Number::Value(value)))
         }
+    }
+}
+
+/// One plain number or several lengths, as they are typed into one field.
+fn listed(
+    text: &str,
+    (label, usual): (&str, f64),
+    reading: &Reading<'_>,
+) -> Result<Answer, Unanswered> {
+    if text.is_empty() {
+        return Ok(Answer::Number(usual.into()));
+    }
+    match list::parse(text, reading.evaluation) {
+        Ok(Listed::One(number)) => Ok(Answer::Number(number)),
+        Ok(Listed::Lengths(lengths)) => Ok(Answer::Numbers(lengths)),
+        Err(words) => Err(Unanswered {
+            field: Some(0),
+            words: format!("{label}: {words}"),
+        }),
     }
 }
 
