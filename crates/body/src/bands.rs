@@ -2,6 +2,7 @@
 //! a tape tests few of them.
 
 use crate::Part;
+use crate::definitions::NECK_TILT;
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// The range in which a tape searches for triangles of a template.
@@ -9,6 +10,8 @@ use toile_geometry::{TriangleMesh, Vec3};
 pub(crate) enum Near {
     /// Heights above the floor [m].
     Level([f64; 2]),
+    /// Heights square to a tape round the neck, which lies lower in front [m].
+    Neck([f64; 2]),
     /// Distances from the shoulder joint along the arm [m].
     Arm([f64; 2]),
     /// Distances from the middle, and heights above the floor [m].
@@ -27,10 +30,13 @@ impl Near {
 /// The left half's triangles with the place of their first corner, in ascending order.
 pub(crate) struct Bands {
     level: Vec<(f64, u32)>,
+    neck: Vec<(f64, u32)>,
     arm: Vec<(f64, u32)>,
     side: Vec<(f64, u32)>,
     /// Heights of the first corners of triangles, in the order of `side`.
     side_level: Vec<f64>,
+    /// How many vertices the left half has with the middle: they come first.
+    vertices: usize,
 }
 
 impl Bands {
@@ -43,21 +49,32 @@ impl Bands {
             rows
         };
         let level = (0..half).map(|t| (first(t).y, t as u32)).collect();
+        let on_neck = |t: &usize| matches!(parts[*t], Part::Head | Part::Trunk);
+        let tilted = |t: usize| (neck_height(first(t)), t as u32);
         let on_arm = |t: &usize| matches!(parts[*t], Part::LeftArm | Part::Trunk);
         let place = |t: usize| ((first(t) - shoulder).dot(&along), t as u32);
         let side = sorted((0..half).map(|t| (first(t).x, t as u32)).collect());
         Self {
             side_level: side.iter().map(|row| first(row.1 as usize).y).collect(),
             side,
+            vertices: (mesh.triangles[..half].iter().flatten().max())
+                .map_or(0, |&v| v as usize + 1),
             level: sorted(level),
+            neck: sorted((0..half).filter(on_neck).map(tilted).collect()),
             arm: sorted((0..half).filter(on_arm).map(place).collect()),
         }
+    }
+
+    /// How many vertices the left half has with the middle.
+    pub(crate) fn vertices(&self) -> usize {
+        self.vertices
     }
 
     /// The triangles that begin near a place.
     pub(crate) fn of(&self, near: Near) -> impl Iterator<Item = usize> + '_ {
         let (rows, [from, to], heights) = match near {
             Near::Level(range) => (&self.level, range, None),
+            Near::Neck(range) => (&self.neck, range, None),
             Near::Arm(range) => (&self.arm, range, None),
             Near::Side(range, heights) => (&self.side, range, Some(heights)),
         };
@@ -68,4 +85,10 @@ impl Bands {
         };
         (low..high).filter(within).map(|k| rows[k].1 as usize)
     }
+}
+
+/// Height of a point square to a tape round the neck [m].
+pub(crate) fn neck_height(p: Vec3) -> f64 {
+    let (sin, cos) = NECK_TILT.sin_cos();
+    p.y * cos + p.z * sin
 }

@@ -1,7 +1,7 @@
 //! The planes in which a tape goes round our own bodies.
 
 use crate::Part;
-use crate::bands::Near;
+use crate::bands::{Near, neck_height};
 use crate::definitions::{Cut, NECK_TILT};
 use crate::girths::Girth;
 use crate::levels::{Level, Levels};
@@ -21,9 +21,10 @@ pub(crate) struct CutPlane {
 /// where heights are moved besides, farther.
 const REACH: f64 = 0.04;
 const FAR: f64 = 0.08;
-
-/// How far from its middle the skin of a neck may lie [m].
-const NECK: f64 = 0.13;
+/// The same above the ears, where no row of the skin is farther from the next.
+const HEAD: f64 = 0.025;
+/// The same from a tape round the neck, square to it.
+const NECK: f64 = 0.03;
 
 /// How far to both sides the way of an arm is taken from its middles [m].
 const ARM_WAY: f64 = 0.065;
@@ -41,7 +42,7 @@ impl CutPlane {
     pub(crate) fn of(cut: Cut, place: f64, marks: &TemplateMarks, warp: &Warp) -> Self {
         match cut {
             Cut::Trunk => Self::level(Part::Trunk, place, warp.near(place, REACH)),
-            Cut::Head => Self::level(Part::Head, place, warp.near(place, REACH)),
+            Cut::Head => Self::level(Part::Head, place, warp.near(place, HEAD)),
             Cut::Leg => {
                 let reach = match warp.template_level(place) < marks.lower_thigh {
                     true => REACH,
@@ -55,7 +56,11 @@ impl CutPlane {
                 Self {
                     part: Part::Head,
                     plane: [middle, Vec3::new(0.0, cos, sin)],
-                    near: warp.near(middle.y, REACH + NECK * sin / cos),
+                    near: {
+                        let level = warp.template_level(middle.y);
+                        let at = neck_height(Vec3::new(0.0, level, marks.neck.z));
+                        Near::Neck([at - NECK, at + NECK])
+                    },
                 }
             }
             Cut::Arm => {
@@ -114,7 +119,7 @@ impl CutPlane {
         Self {
             part: Part::LeftArm,
             plane: warp.arm_plane(distance),
-            near: Near::Arm([distance - 0.05, distance + 0.05]),
+            near: Near::Arm([distance - 0.03, distance + 0.03]),
         }
     }
 }

@@ -71,7 +71,7 @@ const CALF: [f64; 2] = [0.55, 0.9];
 const ANKLE_MOST: f64 = 0.6;
 /// Least height of the ankle, and heights of the head's girth, over stature.
 const ANKLE_LEAST: f64 = 0.03;
-const HEAD: [f64; 2] = [0.925, 0.97];
+const HEAD: [f64; 2] = [0.94, 0.97];
 /// Shares of the way along the arm from the armpit to the finger tips.
 const UPPER_ARM: [f64; 2] = [0.15, 0.28];
 const FOREARM: [f64; 2] = [0.38, 0.60];

@@ -63,6 +63,7 @@ impl Mannequin {
                 hand: template_body.template.hand,
                 neck_radius: template_body.template.neck_radius,
                 joints: template_body.template.joints,
+                features: template_body.template.features,
             }),
             measurements: Measurements::new(),
             ..body.description()
@@ -128,7 +129,11 @@ fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
         return bad("is not between 0.12 and 6 m tall: give metres");
     }
     let within = |x: &f64| x.is_finite() && x.abs() <= frame.height;
-    if !places.iter().flatten().chain(&lengths).all(within) {
+    let thumb = frame.features.iter().flat_map(|f| &f.thumb);
+    if !(places.iter().chain(thumb).flatten())
+        .chain(&lengths)
+        .all(within)
+    {
         return bad("has a place beyond its height: give metres");
     }
     let rising = [

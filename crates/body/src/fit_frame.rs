@@ -97,6 +97,7 @@ pub(crate) fn find(scan: &Scan) -> Result<FoundFrame, BodyError> {
             hand: 0.86 * (tip - wrist).norm(),
             neck_radius: neck.radius,
             joints,
+            features: None,
         },
         finger_tip: tip,
         chin: neck.narrowest - 0.004 * height,

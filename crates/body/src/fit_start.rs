@@ -2,7 +2,7 @@
 
 use crate::fit_frame::FoundFrame;
 use crate::rings::at_length;
-use crate::template::{BodyFrame, Template};
+use crate::template::{BodyFrame, Template, plain_primitives};
 use crate::{Figure, Part, Primitive, Scan};
 use nalgebra::{Rotation3, UnitQuaternion};
 use toile_geometry::Vec3;
@@ -77,6 +77,7 @@ pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitiv
         hand: template.hand,
         neck_radius: template.neck_radius,
         joints: template.joints,
+        features: None,
     };
     let from = Side {
         scan: own,
@@ -86,22 +87,33 @@ pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitiv
         scan,
         frame: &found.frame,
     };
-    let mut rows: Vec<Primitive> = template
-        .primitives
-        .iter()
-        .filter(|p| !p.is_right())
-        .copied()
-        .collect();
-    rows.retain(|p| p.part != Part::LeftLeg);
-    let mut all: Vec<Primitive> = rows
+    let mut all: Vec<Primitive> = plain_primitives(Figure::Woman)
         .iter()
         .map(|p| match p.part {
             Part::Trunk | Part::Head => carried(p, &from, &to),
             _ => along_bone(p, &from, &to),
         })
         .collect();
+    all.extend(hand(&to));
     all.extend(leg(&to));
     all
+}
+
+/// Primitives of a hand: one behind another.
+fn hand(to: &Side) -> Vec<Primitive> {
+    let bones = to.bones(Part::LeftArm);
+    let [wrist, end] = [bones[2], bones[3]];
+    let height = to.frame.height;
+    [
+        (0.2, [0.026, 0.026, 0.045]),
+        (0.5, [0.026, 0.029, 0.048]),
+        (0.83, [0.026, 0.028, 0.038]),
+    ]
+    .map(|(share, radii)| {
+        let at = wrist + (end - wrist) * share;
+        Primitive::new(Part::LeftArm, at.into(), radii.map(|r| r * height))
+    })
+    .into()
 }
 
 /// Primitives of a leg: pairs along it, by turns before and behind and beside one another, and

@@ -14,7 +14,8 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 pub struct Landmarks {
     /// Top of the head.
     pub crown: Vec3,
-    /// Under the chin: where the front middle between neck and mouth steps forward most.
+    /// Under the chin: where the front middle has stepped forward from the throat to the chin by three
+    /// quarters.
     pub chin: Vec3,
     /// Base of the neck at the back, over the seventh neck vertebra.
     pub nape: Vec3,
@@ -134,44 +135,24 @@ impl Landmarks {
     }
 }
 
-/// Under the chin: where an outline of neck and face steps forward most over its height, between
-/// the neck's base and the mouth.
+/// Under the chin: where an outline of neck and face, coming from the throat, has stepped forward
+/// by three quarters, between the neck's base and the mouth.
 fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
     /// Share of the way from the neck's base to the crown at which the mouth begins.
-    const MOUTH: f64 = 0.45;
+    const MOUTH: f64 = 0.3;
+    const FORWARD: f64 = 0.75;
     outline.retain(|p| p.y < base + MOUTH * (crown - base));
     outline.sort_by(|a, b| a.y.total_cmp(&b.y));
-    outline.dedup_by(|a, b| a.y - b.y < 1e-6);
-    // Middle and slope of each piece of the outline.
-    let slopes: Vec<[f64; 2]> = outline
-        .windows(2)
-        .map(|w| {
-            [
-                0.5 * (w[0].y + w[1].y),
-                (w[1].z - w[0].z) / (w[1].y - w[0].y),
-            ]
-        })
-        .collect();
-    let steepest = (0..slopes.len()).max_by(|&a, &b| slopes[a][1].total_cmp(&slopes[b][1]));
-    let Some(k) = steepest else {
+    let foremost = (0..outline.len()).max_by(|&a, &b| outline[a].z.total_cmp(&outline[b].z));
+    let below = &outline[..foremost.unwrap_or_default()];
+    let throat = below.iter().map(|p| p.z).reduce(f64::min);
+    let (Some(front), Some(throat)) = (foremost, throat) else {
         return Vec3::new(0.0, crown, 0.0);
     };
-    let mut y = slopes[k][0];
-    if k > 0 && k + 1 < slopes.len() {
-        // Between the pieces the parabola through three of them has its top.
-        let [[y0, a], [y1, b], [y2, c]] = [slopes[k - 1], slopes[k], slopes[k + 1]];
-        let (u, v) = (y1 - y0, y2 - y1);
-        let (rise, fall) = ((b - a) / u, (c - b) / v);
-        if rise > fall {
-            let slope = (rise * v + fall * u) / (u + v);
-            y += (0.5 * slope * (u + v) / (rise - fall)).clamp(-0.5 * u, 0.5 * v);
-        }
-    }
-    let next = outline
-        .partition_point(|p| p.y < y)
-        .clamp(1, outline.len() - 1);
-    let [a, b] = [outline[next - 1], outline[next]];
-    Vec3::new(0.0, y, a.z + (b.z - a.z) * (y - a.y) / (b.y - a.y))
+    let depth = throat + FORWARD * (outline[front].z - throat);
+    let behind = below.iter().rposition(|p| p.z < depth).unwrap_or_default();
+    let [a, b] = [outline[behind], outline[behind + 1]];
+    a + (b - a) * ((depth - a.z) / (b.z - a.z)).clamp(0.0, 1.0)
 }
 
 /// Largest `side * z` of a section near the middle [m].

@@ -1,7 +1,7 @@
 //! The rings of an arm with its hand and of a leg with its foot.
 
 use crate::curve::smooth_step;
-use crate::rings::{CROTCH_POINTS, Half, SPACING, TRANSITION, at_length, follow};
+use crate::rings::{CROTCH_POINTS, Half, OPEN, SPACING, TRANSITION, at_length, follow};
 use crate::{BodyError, Part};
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_geometry::Vec3;
@@ -9,17 +9,30 @@ use toile_geometry::Vec3;
 /// Angle between the bones from which on an arm counts as bent [rad].
 pub(crate) const BENT: f64 = 0.02;
 
+/// Which of the places where a ray leaves a limb a ring goes through.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Exit {
+    First,
+    /// Hollows are passed over.
+    Last,
+}
+
 /// The plane of a ring: rays leave `centre` towards `cos a * first + sin a * second`.
 #[derive(Clone, Copy)]
-struct Frame {
-    centre: Vec3,
-    first: Vec3,
-    second: Vec3,
+pub(crate) struct Frame {
+    pub(crate) centre: Vec3,
+    /// Shorter than one where the limb is flat, so that its points lie even.
+    pub(crate) first: Vec3,
+    /// A unit vector.
+    pub(crate) second: Vec3,
+    pub(crate) exit: Exit,
+    /// How far columns gather at the grooves between the fingers, 0 to 1.
+    pub(crate) gathering: f64,
 }
 
 impl Frame {
-    fn direction(&self, angle: f64) -> Vec3 {
-        self.first * angle.cos() + self.second * angle.sin()
+    pub(crate) fn direction(&self, angle: f64) -> Vec3 {
+        (self.first * angle.cos() + self.second * angle.sin()).normalize()
     }
 
     /// Angle of a point about the centre [rad].
@@ -45,17 +58,54 @@ fn even_angles(border: &[Vec3], frame: &Frame) -> Vec<f64> {
 }
 
 /// What a limb's rings are cast on.
-struct Limb<'a> {
-    part: Part,
+pub(crate) struct Limb<'a> {
+    pub(crate) part: Part,
     /// The limb's own part first, then those it grows from.
-    parts: &'a [Part],
+    pub(crate) parts: &'a [Part],
     /// First ring.
-    border: &'a [u32],
+    pub(crate) border: &'a [u32],
     /// A point inside the body behind the border.
-    behind: Vec3,
-    frames: Vec<Frame>,
+    pub(crate) behind: Vec3,
+    pub(crate) frames: Vec<Frame>,
     /// Direction from the last frame's centre to the tip.
-    tip: Vec3,
+    pub(crate) tip: Vec3,
+    /// Number of the border's ring: how many lie between it and the trunk.
+    pub(crate) number: f64,
+    /// Where another limb grows from this one.
+    pub(crate) gap: Option<Gap>,
+}
+
+/// The block of a limb's rings left open for another one.
+#[derive(Clone, Copy)]
+pub(crate) struct Gap {
+    /// The first and the last ring plane.
+    pub(crate) frames: [usize; 2],
+    /// The first column.
+    pub(crate) column: usize,
+    /// How many columns on the last one is.
+    pub(crate) columns: usize,
+}
+
+impl Gap {
+    /// Whether a vertex lies strictly inside, in rings of `n`.
+    fn inside(&self, frame: usize, column: usize, n: usize) -> bool {
+        let on = (column + n - self.column) % n;
+        frame > self.frames[0] && frame < self.frames[1] && on > 0 && on < self.columns
+    }
+
+    /// The vertices round it, walking round the limb that grows from it.
+    pub(crate) fn border(&self, rings: &[Vec<u32>]) -> Vec<u32> {
+        let [low, high] = self.frames;
+        let at = |frame: usize, on: usize| {
+            let ring = &rings[frame];
+            ring[(self.column + on) % ring.len()]
+        };
+        let mut border: Vec<u32> = (0..=self.columns).map(|on| at(low, on)).collect();
+        border.extend((low + 1..=high).map(|frame| at(frame, self.columns)));
+        border.extend((0..self.columns).rev().map(|on| at(high, on)));
+        border.extend((low + 1..high).rev().map(|frame| at(frame, 0)));
+        border
+    }
 }
 
 impl Half<'_> {
@@ -77,29 +127,43 @@ impl Half<'_> {
             .fold(f64::NEG_INFINITY, f64::max)
             + 0.03 * scale;
         let hand = self.template.hand;
-        let frames = if is_bent {
+        let is_fine = self.template.features.is_some() && !is_bent;
+        let mut frames = if is_bent {
             let path = [shoulder, elbow, wrist, wrist + lower * hand];
             self.bent_frames(&path, start)
         } else {
-            let end = (wrist - shoulder).norm() + hand;
+            let whole = if is_fine { 0.0 } else { hand };
+            let end = (wrist - shoulder).norm() + whole;
             let count = ((end - start) / (SPACING * scale)).round() as usize;
             (0..count)
                 .map(|k| Frame {
                     centre: shoulder + along * (start + (end - start) * k as f64 / count as f64),
                     first: Vec3::z().cross(&along),
                     second: Vec3::z(),
+                    exit: Exit::Last,
+                    gathering: 0.0,
                 })
                 .collect()
         };
         let behind = points.iter().sum::<Vec3>() / points.len() as f64;
-        self.limb(&Limb {
+        let before = frames.len();
+        if is_fine {
+            frames.extend(self.hand_frames([wrist, along]));
+        }
+        let arm = Limb {
             part: Part::LeftArm,
             parts: &[Part::LeftArm, Part::Trunk],
             border,
             behind,
             frames,
             tip: if is_bent { lower } else { along },
-        })
+            number: 0.0,
+            gap: None,
+        };
+        match self.template.features {
+            Some(features) if is_fine => self.arm_with_thumb(arm, before, features),
+            _ => self.limb(&arm).map(|_| ()),
+        }
     }
 
     /// Rings across a bent arm from a place along its bones [m]: square to them, turning evenly
@@ -125,6 +189,8 @@ impl Half<'_> {
                         centre: at_length(path, at),
                         first,
                         second: along.cross(&first),
+                        exit: Exit::Last,
+                        gathering: 0.0,
                     },
                 )
             })
@@ -151,6 +217,8 @@ impl Half<'_> {
                     centre: point,
                     first: -Vec3::z(),
                     second: Vec3::x(),
+                    exit: Exit::Last,
+                    gathering: 0.0,
                 };
                 frames.push(self.recentred(Part::LeftLeg, level));
             }
@@ -169,7 +237,10 @@ impl Half<'_> {
             behind,
             frames,
             tip: Vec3::z(),
+            number: 0.0,
+            gap: None,
         })
+        .map(|_| ())
     }
 
     /// Frames of the foot: a fan from the level ring at `ankle` to an upright one over the instep,
@@ -189,6 +260,8 @@ impl Half<'_> {
                 centre: pivot + away * distance,
                 first: away,
                 second: Vec3::x(),
+                exit: Exit::Last,
+                gathering: 0.0,
             });
         }
         let from = pivot - Vec3::y() * (pivot.y - 0.034 * scale);
@@ -200,13 +273,15 @@ impl Half<'_> {
                 centre: from + (to - from) * u,
                 first: -Vec3::y(),
                 second: Vec3::x(),
+                exit: Exit::Last,
+                gathering: 0.0,
             });
         }
         frames
     }
 
     /// The frame with its centre moved to the middle of the limb.
-    fn recentred(&self, part: Part, frame: Frame) -> Frame {
+    pub(crate) fn recentred(&self, part: Part, frame: Frame) -> Frame {
         let mut centre = frame.centre;
         for axis in [frame.second, -frame.first, frame.second] {
             let exit = |d: Vec3| self.field.first_exit(&[part], centre, d);
@@ -235,44 +310,62 @@ impl Half<'_> {
         Ok(ring)
     }
 
-    fn limb(&mut self, limb: &Limb) -> Result<(), BodyError> {
+    /// Angle of each column of a limb's rings [rad].
+    pub(crate) fn angles(&self, limb: &Limb) -> Vec<f64> {
+        let points: Vec<Vec3> = (limb.border.iter())
+            .map(|&v| self.positions[v as usize])
+            .collect();
+        let behind = Frame {
+            centre: limb.behind,
+            ..limb.frames[0]
+        };
+        even_angles(&points, &behind)
+    }
+
+    /// Casts a limb from its border to its tip, and gives the rings of its planes.
+    pub(crate) fn limb(&mut self, limb: &Limb) -> Result<Vec<Vec<u32>>, BodyError> {
         let points: Vec<Vec3> = limb
             .border
             .iter()
             .map(|&v| self.positions[v as usize])
             .collect();
         let first = limb.frames[0];
-        let even = even_angles(
-            &points,
-            &Frame {
-                centre: limb.behind,
-                ..first
-            },
-        );
+        let even = self.angles(limb);
         let targets = even
             .iter()
-            .map(|&angle| self.outermost(limb.part, first.centre, first.direction(angle)))
+            .map(|&angle| self.outermost(limb.part, &first, angle))
             .collect::<Result<Vec<Vec3>, BodyError>>()?;
         let mut ring = limb.border.to_vec();
-        let mut number = 0.0;
+        let mut number = limb.number;
         for k in 1..TRANSITION {
             let u = k as f64 / TRANSITION as f64;
             let origin = limb.behind + (first.centre - limb.behind) * u;
             let mut next = Vec::with_capacity(ring.len());
             for (from, to) in points.iter().zip(&targets) {
                 let guide = from + (to - from) * u;
-                next.push(self.hit(limb.parts, origin, (guide - origin).normalize())?);
+                next.push(Some(self.hit(
+                    limb.parts,
+                    origin,
+                    (guide - origin).normalize(),
+                )?));
             }
             number += 1.0;
             ring = self.ring(limb.part, &ring, &next, number);
         }
-        for frame in &limb.frames {
+        let mut rings = Vec::with_capacity(limb.frames.len());
+        for (t, frame) in limb.frames.iter().enumerate() {
             let mut next = Vec::with_capacity(ring.len());
-            for &angle in &even {
-                next.push(self.outermost(limb.part, frame.centre, frame.direction(angle))?);
+            let angles = crate::fingers::gathered(&even, frame.gathering);
+            for (k, &angle) in angles.iter().enumerate() {
+                let is_open = limb.gap.is_some_and(|gap| gap.inside(t, k, even.len()));
+                next.push(match is_open {
+                    true => None,
+                    false => Some(self.outermost(limb.part, frame, angle)?),
+                });
             }
             number += 1.0;
             ring = self.ring(limb.part, &ring, &next, number);
+            rings.push(ring.clone());
         }
         let last = limb.frames[limb.frames.len() - 1].centre;
         let tip = self.hit(&[limb.part], last, limb.tip)?;
@@ -280,16 +373,18 @@ impl Half<'_> {
         for k in 0..ring.len() {
             self.face(limb.part, [ring[k], ring[(k + 1) % ring.len()], pole]);
         }
-        Ok(())
+        rings.push(vec![pole]);
+        Ok(rings)
     }
 
-    /// Where a ray from a limb's axis last leaves the limb.
-    fn outermost(&self, part: Part, origin: Vec3, direction: Vec3) -> Result<Vec3, BodyError> {
+    /// Where a ray of a ring leaves the limb.
+    fn outermost(&self, part: Part, frame: &Frame, angle: f64) -> Result<Vec3, BodyError> {
         /// Beyond any arm's and any leg's radius, short of the next limb, for a stature of
         /// 1.7 m [m].
         const REACH: [f64; 2] = [0.11, 0.17];
+        let (origin, direction) = (frame.centre, frame.direction(angle));
         // Of what was fitted to a mesh, specks off the limb are not meant.
-        if self.template.armpit.is_some()
+        if (self.template.armpit.is_some() || frame.exit == Exit::First)
             && let Some(distance) = self.field.first_exit(&[part], origin, direction)
         {
             return Ok(origin + direction * distance);
@@ -301,10 +396,11 @@ impl Half<'_> {
         }
     }
 
-    fn ring(&mut self, part: Part, from: &[u32], points: &[Vec3], number: f64) -> Vec<u32> {
+    /// A ring of vertices, joined to the one before; where it has no point it is left open.
+    fn ring(&mut self, part: Part, from: &[u32], points: &[Option<Vec3>], number: f64) -> Vec<u32> {
         let to: Vec<u32> = points
             .iter()
-            .map(|&p| self.ring_point(part, p, number))
+            .map(|point| point.map_or(OPEN, |p| self.ring_point(part, p, number)))
             .collect();
         self.band(part, from, &to);
         to

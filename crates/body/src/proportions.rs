@@ -3,7 +3,7 @@
 
 use crate::curve::smooth_step;
 use crate::scaling::tags;
-use crate::template::BodyFrame;
+use crate::template::{BodyFrame, Features};
 use crate::{BodyError, Description, Mannequin, Part, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
@@ -350,6 +350,9 @@ impl Map {
         [s.pelvis, s.chest, s.neck] = [j.pelvis, j.chest, j.neck].map(|p| self.trunk(p));
         [s.shoulder, s.elbow, s.wrist] = [j.shoulder, j.elbow, j.wrist].map(|p| self.arm(p));
         s.head = self.head(j.head);
+        frame.features = frame.features.map(|f| Features {
+            thumb: f.thumb.map(|p| self.arm(p)),
+        });
         frame.crotch = self.height(frame.crotch);
         frame.armpit = self.height(frame.armpit);
         frame.hand *= self.arm;

@@ -26,6 +26,16 @@ pub(crate) const TRANSITION: usize = 5;
 /// Distance of the rows over the shoulder along the side, for a stature of 1.7 m [m].
 pub(crate) const FAN: f64 = 0.0145;
 
+/// Distance of the rows across the face, for a stature of 1.7 m [m].
+const FACE: f64 = 0.0055;
+/// Depth under the crown up to which they reach, for a stature of 1.7 m [m].
+const ABOVE_BROW: f64 = 0.08;
+/// How far rays gather at nose and ears [rad], and over how many rows they come to it.
+const GATHERING: f64 = 0.09;
+const GATHERED: usize = 4;
+/// The number of a vertex of a grid that is left open for a limb.
+pub(crate) const OPEN: u32 = u32::MAX;
+
 /// A skin before any measurement is applied.
 pub(crate) struct TemplateSkin {
     pub(crate) mesh: TriangleMesh,
@@ -54,6 +64,25 @@ struct Row {
     /// Angle of the rays above the horizontal [rad].
     elevation: f64,
     part: Part,
+    /// Of a row across the face, how far its rays gather at nose and ears [rad]: it has twice
+    /// the columns.
+    gathering: Option<f64>,
+}
+
+impl Row {
+    /// Steps from the front middle to the back middle.
+    fn columns(&self) -> usize {
+        match self.gathering {
+            Some(_) => 2 * HALF,
+            None => HALF,
+        }
+    }
+
+    /// Angle of a column from the front [rad].
+    fn azimuth(&self, column: usize) -> f64 {
+        let even = std::f64::consts::PI * column as f64 / self.columns() as f64;
+        even - self.gathering.unwrap_or_default() * (4.0 * even).sin()
+    }
 }
 
 /// The block of the trunk's grid left open for the arm: first and last row and column.
@@ -67,12 +96,6 @@ impl Hole {
     /// Whether a vertex lies strictly inside.
     fn inside(&self, t: usize, i: usize) -> bool {
         let within = |[low, high]: [usize; 2], at: usize| at > low && at < high;
-        within(self.rows, t) && within(self.columns, i)
-    }
-
-    /// Whether the quad above row `t` and beyond column `i` lies inside.
-    fn covers(&self, t: usize, i: usize) -> bool {
-        let within = |[low, high]: [usize; 2], at: usize| at >= low && at < high;
         within(self.rows, t) && within(self.columns, i)
     }
 
@@ -93,6 +116,8 @@ pub(crate) struct Half<'a> {
     middle: Vec<bool>,
     pub(crate) arm: Vec<f64>,
     pub(crate) leg: Vec<f64>,
+    /// Vertices that fairing leaves where they are.
+    pub(crate) held: Vec<bool>,
     triangles: Vec<[u32; 3]>,
     parts: Vec<Part>,
 }
@@ -106,6 +131,7 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
         middle: Vec::new(),
         arm: Vec::new(),
         leg: Vec::new(),
+        held: Vec::new(),
         triangles: Vec::new(),
         parts: Vec::new(),
     };
@@ -174,6 +200,7 @@ impl Half<'_> {
         self.middle.push(middle);
         self.arm.push(0.0);
         self.leg.push(0.0);
+        self.held.push(false);
         (self.positions.len() - 1) as u32
     }
 
@@ -231,6 +258,7 @@ impl Half<'_> {
             origin,
             elevation,
             part,
+            gathering: None,
         };
         let mut rows = Vec::new();
         // Level rings up to the armpit.
@@ -268,10 +296,20 @@ impl Half<'_> {
             rows.push(row(Vec3::new(0.0, y, z), tilt, Part::Head));
         }
         // The head: level rings, then a fan to the crown.
-        let centre = Vec3::new(0.0, t.height - 0.095 * scale, head.z - 0.005 * scale);
+        let (spacing, under_crown) = match t.features {
+            Some(_) => (FACE, ABOVE_BROW),
+            None => (0.016, 0.095),
+        };
+        let centre = Vec3::new(0.0, t.height - under_crown * scale, head.z - 0.005 * scale);
         let above = Vec3::new(0.0, straight, focus.z + (neck_top.z - focus.z) * 0.45);
-        for p in along(&[above, neck_top, centre], 0.016 * scale) {
-            rows.push(row(p, 0.0, Part::Head));
+        let face = along(&[above, neck_top, centre], spacing * scale);
+        for (k, &p) in face.iter().enumerate() {
+            // Even beside the rows with half the columns.
+            let share = k.min(face.len() - 1 - k) as f64 / GATHERED as f64;
+            rows.push(Row {
+                gathering: t.features.map(|_| GATHERING * share.min(1.0)),
+                ..row(p, 0.0, Part::Head)
+            });
         }
         let crown = 9;
         for k in 1..crown {
@@ -324,12 +362,7 @@ impl Half<'_> {
             self.below_the_chin(&rows, &grid)?;
         }
         for (t, (lower, upper)) in grid.iter().zip(&grid[1..]).enumerate() {
-            for i in 0..HALF {
-                if !hole.covers(t, i) {
-                    let corners = [lower[i], lower[i + 1], upper[i + 1], upper[i]];
-                    self.quad(rows[t + 1].part, corners);
-                }
-            }
+            self.strip(rows[t + 1].part, [lower, upper]);
         }
         let last = rows.len() - 1;
         let crown = self.hit(&[Part::Head], rows[last].origin, Vec3::y())?;
@@ -374,22 +407,25 @@ impl Half<'_> {
     }
 
     /// The vertices of all rows, but for those inside the hole.
-    fn cast_rows(&mut self, rows: &[Row], hole: Hole) -> Result<Vec<[u32; HALF + 1]>, BodyError> {
-        let mut grid = vec![[u32::MAX; HALF + 1]; rows.len()];
+    fn cast_rows(&mut self, rows: &[Row], hole: Hole) -> Result<Vec<Vec<u32>>, BodyError> {
+        let mut grid: Vec<Vec<u32>> = (rows.iter())
+            .map(|row| vec![OPEN; row.columns() + 1])
+            .collect();
         for (t, (row, vertices)) in rows.iter().zip(&mut grid).enumerate() {
             let (sin, cos) = row.elevation.sin_cos();
             for (i, vertex) in vertices.iter_mut().enumerate() {
                 if hole.inside(t, i) {
                     continue;
                 }
-                let angle = std::f64::consts::PI * i as f64 / HALF as f64;
-                let middle = i == 0 || i == HALF;
+                let angle = row.azimuth(i);
+                let middle = i == 0 || i == row.columns();
                 let level = Vec3::new(if middle { 0.0 } else { angle.sin() }, 0.0, angle.cos());
                 let direction = (level * cos + Vec3::y() * sin).normalize();
                 let position = self.hit(reachable(row.part), row.origin, direction)?;
                 *vertex = self.add(position, middle);
                 self.arm[*vertex as usize] = follow(-hole.steps_to(t, i));
                 self.leg[*vertex as usize] = follow(-(t as f64));
+                self.held[*vertex as usize] = row.gathering.is_some();
             }
         }
         Ok(grid)
@@ -397,9 +433,10 @@ impl Half<'_> {
 
     /// Where a tilted ray of the neck went on into a large chin, a level one from the neck's axis
     /// takes its place, evenly between the rows below and the first level row.
-    fn below_the_chin(&mut self, rows: &[Row], grid: &[[u32; HALF + 1]]) -> Result<(), BodyError> {
-        /// How far over the first level row a ray may end, over stature.
-        const OVER: f64 = 0.006;
+    fn below_the_chin(&mut self, rows: &[Row], grid: &[Vec<u32>]) -> Result<(), BodyError> {
+        /// How far over the first level row a ray may end, over stature: less than half the way to
+        /// the next one.
+        const OVER: [f64; 2] = [0.006, 0.0016];
         let is_head = |t: &usize| rows[*t].part == Part::Head;
         let Some(neck) = (1..rows.len()).find(is_head) else {
             return Ok(());
@@ -409,9 +446,10 @@ impl Half<'_> {
             return Ok(());
         };
         let top = rows[level].origin;
+        let over = OVER[usize::from(self.template.features.is_some())];
         for i in 0..=HALF {
             let height = |half: &Self, t: usize| half.positions[grid[t][i] as usize].y;
-            let most = top.y + OVER * self.template.height;
+            let most = top.y + over * self.template.height;
             let Some(first) = (neck..level).find(|&t| height(self, t) > most) else {
                 continue;
             };
@@ -429,27 +467,6 @@ impl Half<'_> {
         Ok(())
     }
 
-    /// Two triangles, split along the shorter diagonal.
-    fn quad(&mut self, part: Part, [a, b, c, d]: [u32; 4]) {
-        let at = |v: u32| self.positions[v as usize];
-        if (at(a) - at(c)).norm() <= (at(b) - at(d)).norm() {
-            self.face(part, [a, b, c]);
-            self.face(part, [a, c, d]);
-        } else {
-            self.face(part, [a, b, d]);
-            self.face(part, [b, c, d]);
-        }
-    }
-
-    /// A band between two rings of the same length, the second one farther out on the limb.
-    pub(crate) fn band(&mut self, part: Part, from: &[u32], to: &[u32]) {
-        let n = from.len();
-        for k in 0..n {
-            let next = (k + 1) % n;
-            self.quad(part, [from[k], from[next], to[next], to[k]]);
-        }
-    }
-
     fn mirrored(self, border: &Borders) -> TemplateSkin {
         let count = self.positions.len();
         let mut mirror: Vec<u32> = vec![0; count];
@@ -458,6 +475,7 @@ impl Half<'_> {
             triangles: self.triangles,
         };
         let (mut arm, mut leg, mut parts) = (self.arm, self.leg, self.parts);
+        let held = self.held;
         for v in 0..count {
             if self.middle[v] {
                 mesh.positions[v].x = 0.0;
@@ -481,7 +499,8 @@ impl Half<'_> {
             });
         }
         // The soles stay flat, the middle stays in the middle, and the right follows the left.
-        crate::fair::fair(&mut mesh, |_, p| p.y <= 0.0);
+        let is_held = |v: usize| held[v.min(mirror[v] as usize)];
+        crate::fair::fair(&mut mesh, |v, p| p.y <= 0.0 || is_held(v));
         for (v, &image) in mirror.iter().enumerate() {
             let image = image as usize;
             if image == v {

@@ -1,7 +1,7 @@
 //! Five scaling parameters on skeleton and primitives (Volino, Magnenat-Thalmann, Shen, Thalmann
 //! 1996): each a ratio, applied one after the other, each with its inverse.
 
-use crate::template::BodyFrame;
+use crate::template::{BodyFrame, Features};
 use crate::{BodyError, Description, Part, Primitive};
 use toile_geometry::Vec3;
 
@@ -193,6 +193,9 @@ impl Step {
         let mut scaled = *frame;
         let s = &mut scaled.joints;
         [s.shoulder, s.elbow, s.wrist] = [j.shoulder, j.elbow, j.wrist].map(high);
+        scaled.features = frame.features.map(|f| Features {
+            thumb: f.thumb.map(high),
+        });
         [s.pelvis, s.chest, s.neck, s.head] = [j.pelvis, j.chest, j.neck, j.head].map(high);
         [s.hip, s.knee, s.ankle, s.toe] = [j.hip, j.knee, j.ankle, j.toe].map(low);
         let across = self.ratios(true, places[0], places[1]).x;

@@ -38,7 +38,7 @@ impl<'a> Skinned<'a> {
         Self {
             triangles: &template.triangles,
             parts,
-            placed: vec![Cell::new(Vec3::repeat(f64::NAN)); template.positions.len()],
+            placed: vec![Cell::new(Vec3::repeat(f64::NAN)); bands.vertices()],
             place: Some(place),
             bands: Some(bands),
         }

@@ -147,6 +147,17 @@ pub struct BodyFrame {
     pub neck_radius: f64,
     /// Joint centres.
     pub joints: Joints,
+    /// Face and thumbs, where the body has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub features: Option<Features>,
+}
+
+/// What a body with nose, ears and thumbs has: its head and hands are cast finely.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Features {
+    /// Middle of the left thumb where it stands clear of the palm, and near its tip [m].
+    pub thumb: [[f64; 3]; 2],
 }
 
 /// A template as it is stored. Rows: centre, effective semi-axes [m], rotation vector [rad]. Rows
@@ -155,9 +166,17 @@ pub(crate) struct Table {
     height: f64,
     crotch: f64,
     joints: Joints,
+    /// Middle of the thumb where it stands clear of the palm, and near its tip [m].
+    thumb: [[f64; 3]; 2],
     trunk: &'static [[f64; 9]],
+    /// Neck and skull.
     head: &'static [[f64; 9]],
+    /// What stands out of it: nose, brow, lids, cheeks, mouth, chin, jaw, ears.
+    face: &'static [[f64; 9]],
+    /// Down to the wrist.
     arm: &'static [[f64; 9]],
+    /// Palm, fingers, thumb.
+    hand: &'static [[f64; 9]],
     leg: &'static [[f64; 9]],
 }
 
@@ -175,6 +194,8 @@ pub(crate) struct Template {
     /// A distance from the middle outside the neck and under the shoulder's slope: the rays of
     /// shoulders and neck cross beyond it [m].
     pub(crate) neck_radius: f64,
+    /// Face and thumbs, where it has any.
+    pub(crate) features: Option<Features>,
     /// Primitives of both sides.
     pub(crate) primitives: Vec<Primitive>,
     /// What is particular about those of the left side and the middle.
@@ -182,23 +203,45 @@ pub(crate) struct Template {
 }
 
 /// Of a body of 1.7 m: from the wrist to the last ring of the hand, and the neck's radius [m].
-pub(crate) const HAND: f64 = 0.165;
+pub(crate) const HAND: f64 = 0.176;
 pub(crate) const NECK_RADIUS: f64 = 0.082;
 
-impl Template {
-    /// The template of a figure.
-    pub(crate) fn of(figure: Figure) -> Self {
-        let table: &'static Table = match figure {
+impl Table {
+    fn of(figure: Figure) -> &'static Self {
+        match figure {
             Figure::Woman => &woman::TABLE,
             Figure::Man => &man::TABLE,
             // A child has the adult's form at its own proportions.
             _ => &mean::TABLE,
-        };
+        }
+    }
+}
+
+/// The left side's and the middle's primitives of a figure's trunk, neck and skull, and of its arm down
+/// to the wrist: without what is fine.
+pub(crate) fn plain_primitives(figure: Figure) -> Vec<Primitive> {
+    let table = Table::of(figure);
+    let rows = [
+        (Part::Trunk, table.trunk),
+        (Part::Head, table.head),
+        (Part::LeftArm, table.arm),
+    ];
+    rows.into_iter()
+        .flat_map(|(part, rows)| rows.iter().map(move |&row| from_row(part, row)))
+        .collect()
+}
+
+impl Template {
+    /// The template of a figure.
+    pub(crate) fn of(figure: Figure) -> Self {
+        let table = Table::of(figure);
         let mut primitives = Vec::new();
         let rows = [
             (Part::Trunk, table.trunk),
             (Part::Head, table.head),
+            (Part::Head, table.face),
             (Part::LeftArm, table.arm),
+            (Part::LeftArm, table.hand),
             (Part::LeftLeg, table.leg),
         ];
         for (part, rows) in rows {
@@ -212,6 +255,7 @@ impl Template {
             armpit: None,
             hand: HAND * scale,
             neck_radius: NECK_RADIUS * scale,
+            features: Some(Features { thumb: table.thumb }),
             primitives: crate::describe::both_sides(primitives),
             rigging: Rigging::default(),
         }
@@ -226,6 +270,7 @@ impl Template {
             armpit: Some(frame.armpit),
             hand: frame.hand,
             neck_radius: frame.neck_radius,
+            features: frame.features,
             primitives,
             rigging: Rigging::default(),
         }
@@ -240,6 +285,7 @@ impl Template {
             hand: self.hand,
             neck_radius: self.neck_radius,
             joints: self.joints,
+            features: self.features,
         })
     }
 }
