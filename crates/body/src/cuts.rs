@@ -23,8 +23,11 @@ const REACH: f64 = 0.04;
 const FAR: f64 = 0.08;
 /// The same above the ears, where no row of the skin is farther from the next.
 const HEAD: f64 = 0.025;
-/// The same from a tape round the neck, square to it.
-const NECK: f64 = 0.03;
+/// The same from a tape round the neck, square to it: round a thick one it lies askew on the template.
+const NECK: f64 = 0.045;
+
+/// The same from a tape across the arm, along it: a tilted one reaches farther than a ring.
+const ARM: f64 = 0.04;
 
 /// How far to both sides the way of an arm is taken from its middles [m].
 const ARM_WAY: f64 = 0.065;
@@ -119,7 +122,7 @@ impl CutPlane {
         Self {
             part: Part::LeftArm,
             plane: warp.arm_plane(distance),
-            near: Near::Arm([distance - 0.03, distance + 0.03]),
+            near: Near::Arm([distance - ARM, distance + ARM]),
         }
     }
 }

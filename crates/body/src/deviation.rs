@@ -123,3 +123,58 @@ impl Mannequin {
         found
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::girths::Girth;
+    use crate::measured::TapedSkin;
+    use crate::tape::Skinned;
+    use crate::{Figure, Mannequin};
+    use toile_measure::{Measurements, Origin};
+
+    /// What a tape that looks near its place reads less what it reads on the whole skin [m].
+    fn gaps(body: &Mannequin) -> Vec<(&'static str, f64)> {
+        let skin = &body.template_body.skin;
+        let place = |v: usize| body.skin().positions[v];
+        let near = Skinned::lazy((&skin.mesh, &skin.bands), &skin.parts, &place);
+        let near = TapedSkin::new(
+            &near,
+            (&body.template_body.marks, &skin.armpit),
+            (&body.levels, &body.warp),
+            &body.crotch,
+        );
+        let girths = Girth::ALL.into_iter();
+        girths
+            .map(|girth| {
+                let whole = body.with_tape(|tape| tape.girth(girth));
+                (girth.name(), near.girth(girth) - whole)
+            })
+            .filter(|(_, gap)| gap.abs() > 1e-9)
+            .collect()
+    }
+
+    #[test]
+    fn a_tape_that_looks_near_its_place_reads_what_it_reads_on_the_whole_skin() {
+        let average = Mannequin::new(&Figure::Man.average(), Figure::Man).unwrap();
+        let average = average.completed();
+        // Arms, necks and trunks at the ends of what people have.
+        for (figure, height, share) in [
+            (Figure::Woman, 1.45, 0.8),
+            (Figure::Woman, 1.85, 1.5),
+            (Figure::Man, 1.55, 1.4),
+            (Figure::Man, 2.05, 0.85),
+            (Figure::Child4, 1.0, 1.0),
+        ] {
+            let mut table = Measurements::new();
+            table.set("height", height, Origin::Asked).unwrap();
+            if share != 1.0 {
+                for name in ["bust", "waist", "hips", "neck", "upper_arm", "forearm"] {
+                    let usual = average.get(name).unwrap() * height / 1.76;
+                    table.set(name, usual * share, Origin::Asked).unwrap();
+                }
+            }
+            let body = Mannequin::new(&table, figure).unwrap();
+            assert_eq!(gaps(&body), [], "{figure:?} {height} {share}");
+        }
+    }
+}

@@ -93,13 +93,21 @@ impl Half<'_> {
         arm.gap = self.gap(&arm, wrist, thumb);
         let first = self.positions.len();
         let rings = self.limb(&arm)?;
+        let mut web = Vec::new();
         if let Some(gap) = arm.gap {
-            self.thumb(&gap.border(&rings), thumb)?;
+            web = gap.border(&rings);
+            let first = self.positions.len() as u32;
+            self.thumb(&web, thumb)?;
+            web.extend(first..first + web.len() as u32);
         }
-        // The hand has no small bumps to be taken away; the rings at the wrist lead over.
+        // The hand has no small bumps to be taken away but where thumb and fingers part; the rings at
+        // the wrist lead over.
         let from = rings.get(wrist + 2).and_then(|ring| ring.iter().min());
         let from = from.map_or(first, |&v| v as usize);
         self.held[from..].fill(true);
+        for v in web {
+            self.held[v as usize] = false;
+        }
         Ok(())
     }
 

@@ -387,6 +387,7 @@ fn arm(input: &SolveInput, s: &Scales, global: f64) -> Vec<[f64; 2]> {
     }
     rows.push([1.1 * m.wrist, s.of(Girth::Wrist)]);
     rows.push([1.3 * m.wrist, global]);
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
     rows
 }

@@ -85,8 +85,15 @@ impl<'a> Skinned<'a> {
 
     /// The segment in which a triangle crosses a plane.
     fn cut(&self, t: usize, [origin, normal]: [Vec3; 2]) -> Option<[Vec3; 2]> {
-        let corners = self.triangles[t].map(|v| self.at(v));
-        let height = corners.map(|p| (p - origin).dot(&normal));
+        let [a, b, c] = self.triangles[t];
+        let corners = [self.at(a), self.at(b), self.at(c)];
+        let above = |p: &Vec3| (p - origin).dot(&normal);
+        let height = [above(&corners[0]), above(&corners[1]), above(&corners[2])];
+        let side = height[0] >= 0.0;
+        // Most triangles near a tape lie on one side of it.
+        if (height[1] >= 0.0) == side && (height[2] >= 0.0) == side {
+            return None;
+        }
         let mut ends = [Vec3::zeros(); 2];
         let mut count = 0;
         for k in 0..3 {

@@ -1,5 +1,7 @@
 //! Levels and landmarks of a template, found on its skin.
 
+use crate::definitions::{BodyMarks, Taping};
+use crate::girths::Girth;
 use crate::rings::TemplateSkin;
 use crate::tape::{OnEdge, Skinned, extent, girth, ridge};
 use crate::template::Template;
@@ -121,9 +123,21 @@ impl TemplateMarks {
         let depth = depth(skin, [crotch + 0.05 * h, bust]);
         let (fork_at, fork) = fork(skin, crotch, h);
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
+        let finger_tip = finger_tip(skin, [shoulder, along]);
+        let armpit = lowest(&skin.mesh, &skin.armpit);
+        // The forearm's scale is set where it is taped, off the elbow.
+        let ends = [skin.armpit[skin.armpit.len() / 2], finger_tip];
+        let body = BodyMarks {
+            stature: h,
+            crotch,
+            armpit,
+            knee,
+            arm: ends.map(|v| (skin.mesh.positions[v as usize] - shoulder).dot(&along)),
+        };
+        let forearm = Taping::of(Girth::Forearm, &body).map(|taping| taping.range);
         Ok(Self {
             crown,
-            armpit: lowest(&skin.mesh, &skin.armpit),
+            armpit,
             crotch,
             bust,
             bust_point: bust_point(skin, bust, tip.x),
@@ -134,7 +148,7 @@ impl TemplateMarks {
             tip,
             tip_on,
             arm_middle: arm_middle(&skinned, [shoulder, along], wrist),
-            finger_tip: finger_tip(skin, [shoulder, along]),
+            finger_tip,
             fold: skin.fold,
             depth,
             sections: sections(skin, [crotch + 0.03 * h, bust], depth),
@@ -146,7 +160,7 @@ impl TemplateMarks {
             ankle: extreme([j.ankle[1] + 0.005 * h, 0.6 * calf], |y| -leg(y)),
             upper_arm: extreme([0.45 * elbow, 0.75 * elbow], arm),
             elbow,
-            forearm: extreme([elbow, elbow + 0.4 * (wrist - elbow)], arm),
+            forearm: extreme(forearm.unwrap_or([elbow, wrist]), arm),
             wrist,
         })
     }
@@ -316,4 +330,21 @@ fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<OnEdge>
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Figure, Mannequin};
+
+    #[test]
+    fn scales_of_an_arm_are_set_apart_from_the_elbow() {
+        for figure in [Figure::Woman, Figure::Man, Figure::Mean] {
+            let body = Mannequin::framed(figure).unwrap();
+            let body = Mannequin::from_description(&body).unwrap();
+            let m = &body.template_body.marks;
+            let rows = [m.upper_arm, m.elbow, m.forearm, m.wrist];
+            let apart = rows.windows(2).all(|w| w[1] - w[0] > 0.07 * m.wrist);
+            assert!(apart, "{figure:?}: {rows:?}");
+        }
+    }
 }

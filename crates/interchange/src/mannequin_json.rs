@@ -297,7 +297,7 @@ mod tests {
     use toile_body::Mannequin;
 
     #[test]
-    fn a_whole_adult_in_eight_kilobytes_reads_back() {
+    fn a_whole_adult_in_ten_kilobytes_reads_back() {
         for figure in [Figure::Woman, Figure::Man, Figure::Child6] {
             let body = Mannequin::new(&figure.average(), figure).unwrap();
             let text = write_mannequin(&body.description()).unwrap();
@@ -381,7 +381,7 @@ mod tests {
         assert!(Mannequin::from_description(&read).is_ok());
         let lost = text.replace(
             "\"particular\":[{\"primitive\":",
-            "\"particular\":[{\"primitive\":9",
+            "\"particular\":[{\"primitive\":900",
         );
         assert!(read_mannequin(&lost).is_err());
     }
