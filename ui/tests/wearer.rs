@@ -131,6 +131,9 @@ fn every_kind_of_wearer_is_undone_exactly_and_there_again() {
     drafter.press("Child of 10 years");
     let now = kept(&mut drafter);
     assert_eq!(now.body, BodyChoice::Sample(Figure::Child10));
+    drafter.press("Dress form");
+    let now = kept(&mut drafter);
+    assert_eq!(now.body, BodyChoice::Sample(Figure::DressForm));
     drafter.press("Woman");
     kept(&mut drafter);
     drafter.press("size XL");

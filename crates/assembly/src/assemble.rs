@@ -39,7 +39,7 @@ pub struct Assembled {
 /// skin where that is possible. The same input gives the same garment.
 ///
 /// # Errors
-/// See [`mesh_pieces`].
+/// See [`mesh_pieces`]; and [`AssemblyError::NoPart`].
 pub fn assemble(
     draft: &Draft,
     body: &PlacementBody,
@@ -47,7 +47,7 @@ pub fn assemble(
 ) -> Result<Assembled, AssemblyError> {
     let meshes = mesh_pieces(draft, options.edge_length)?;
     let mut diagnostics = meshes.diagnostics.clone();
-    let placement = place(draft, &meshes, body, &mut diagnostics);
+    let placement = place(draft, &meshes, body, &mut diagnostics)?;
     let crossings = crossing_triangles(&meshes, &placement.positions);
     let mut named: Vec<[usize; 2]> = crossings.iter().map(|c| c.0).collect();
     named.sort_unstable();

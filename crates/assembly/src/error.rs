@@ -29,6 +29,16 @@ pub enum AssemblyError {
         /// What to do about it.
         remedy: String,
     },
+    /// A piece is worn on a part that the body has not, as arms on a dress form.
+    #[error(
+        "piece \"{piece}\" is worn on {part}, which this body has not; choose a figure that has it"
+    )]
+    NoPart {
+        /// Name of the piece.
+        piece: String,
+        /// The part, in words.
+        part: &'static str,
+    },
     /// The mesh would be larger than any garment needs.
     #[error("about {0} vertices would be made; give a larger edge length")]
     TooLarge(f64),

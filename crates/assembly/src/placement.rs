@@ -7,11 +7,12 @@ use crate::flared_row::set_flared_shifts;
 use crate::flat_pieces::{FlatPiece, flat_pieces, ties};
 use crate::mesh::PieceMeshes;
 use crate::part_frames::{PartFrame, label_skin};
+use crate::placement_body::part_words;
 use crate::role::{Role, roles};
 use crate::rows::{Row, rows, set_heights, set_shifts};
 use crate::surroundings::{Fit, Surroundings, skin_outline};
 use crate::wrap::{lay_over, wrap_row};
-use crate::{Diagnostic, PlacementBody};
+use crate::{AssemblyError, Diagnostic, PlacementBody};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Draft, Facing};
 
@@ -50,16 +51,20 @@ struct Placer<'a> {
 }
 
 /// Places every meshed piece.
+///
+/// # Errors
+/// A piece is worn on a part the body has not.
 pub(crate) fn place(
     draft: &Draft,
     meshes: &PieceMeshes,
     body: &PlacementBody,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Placement {
+) -> Result<Placement, AssemblyError> {
     let turned: Vec<bool> = meshes.pieces.iter().map(is_counter_clockwise).collect();
     let mut laid = flat_pieces(meshes, &turned);
     let drawn = ties(meshes, &laid);
     let mut roles = roles((draft, meshes), (&laid, &drawn), diagnostics);
+    has_parts((draft, meshes), &roles, body)?;
     let labels = label_skin(body);
     let pieces = Pieces {
         draft,
@@ -107,9 +112,28 @@ pub(crate) fn place(
     }
     placer.place_over(diagnostics);
     placer.part_rows(&rows, &mut fits);
-    Placement {
+    Ok(Placement {
         positions: placer.positions,
+    })
+}
+
+/// Refuses a piece worn on a part the body has not.
+fn has_parts(
+    (draft, meshes): (&Draft, &PieceMeshes),
+    roles: &[Role],
+    body: &PlacementBody,
+) -> Result<(), AssemblyError> {
+    for (mesh, role) in meshes.pieces.iter().zip(roles) {
+        if let Role::Wrapped { part, .. } = *role
+            && !body.has(part)
+        {
+            return Err(AssemblyError::NoPart {
+                piece: draft.pieces[mesh.draft_piece].name.clone(),
+                part: part_words(part),
+            });
+        }
     }
+    Ok(())
 }
 
 /// Length round the trunk at the waist [m].

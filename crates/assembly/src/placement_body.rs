@@ -8,10 +8,29 @@ use toile_pattern::BodyPart;
 pub struct PlacementBody<'a> {
     /// The closed skin, outward.
     pub skin: &'a SurfaceTree,
-    /// Axes of the body's parts, all six in the order of [`BodyPart`].
+    /// Axes of the parts the body has, in the order of [`BodyPart`]: a dress form has trunk and neck.
     pub limbs: Vec<Limb>,
     /// Heights above the floor [m].
     pub levels: Levels,
+}
+
+impl PlacementBody<'_> {
+    /// Whether it has a part.
+    pub(crate) fn has(&self, part: BodyPart) -> bool {
+        self.limbs.iter().any(|limb| limb.part == part)
+    }
+}
+
+/// A part in words.
+pub(crate) fn part_words(part: BodyPart) -> &'static str {
+    match part {
+        BodyPart::Trunk => "the trunk",
+        BodyPart::Head => "the head",
+        BodyPart::LeftArm => "the left arm",
+        BodyPart::RightArm => "the right arm",
+        BodyPart::LeftLeg => "the left leg",
+        BodyPart::RightLeg => "the right leg",
+    }
 }
 
 /// The axis of one body part.

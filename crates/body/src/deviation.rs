@@ -42,7 +42,7 @@ const NAMED: f64 = 5.7e-4;
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.
     pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&TapedSkin) -> T) -> T {
-        let skinned = Skinned::finished(self.skin(), &self.template_body.skin.parts);
+        let skinned = Skinned::finished(&self.whole, &self.template_body.skin.parts);
         use_it(&TapedSkin::new(
             &skinned,
             (&self.template_body.marks, &self.template_body.skin.armpit),
@@ -135,7 +135,7 @@ mod tests {
     /// What a tape that looks near its place reads less what it reads on the whole skin [m].
     fn gaps(body: &Mannequin) -> Vec<(&'static str, f64)> {
         let skin = &body.template_body.skin;
-        let place = |v: usize| body.skin().positions[v];
+        let place = |v: usize| body.whole.positions[v];
         let near = Skinned::lazy((&skin.mesh, &skin.bands), &skin.parts, &place);
         let near = TapedSkin::new(
             &near,

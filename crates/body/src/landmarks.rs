@@ -162,22 +162,29 @@ fn middle_extreme(section: &[Vec2], side: f64) -> f64 {
 }
 
 impl Mannequin {
-    /// The axes of all six parts, in the order of [`Part::ALL`].
+    /// The axes of the parts it has, in the order of [`Part::ALL`]: all six, but of a dress form trunk and
+    /// the root of the neck.
     pub fn parts(&self) -> Vec<PartAxis> {
         let l = &self.landmarks;
+        let form = self.form();
+        let has = |part: &Part| form.is_none() || matches!(part, Part::Trunk | Part::Head);
         let at = |joint: Joint| self.skeleton.centre(joint);
         let limb = |joints: [Joint; 3]| joints.map(at).to_vec();
-        Part::ALL
-            .into_iter()
+        let whole = |part: Part| match part {
+            Part::Trunk => l.spine.to_vec(),
+            Part::Head => vec![l.spine[4], at(Joint::Skullbase), l.crown],
+            Part::LeftArm => limb([Joint::LShoulder, Joint::LElbow, Joint::LWrist]),
+            Part::RightArm => limb([Joint::RShoulder, Joint::RElbow, Joint::RWrist]),
+            Part::LeftLeg => limb([Joint::LHip, Joint::LKnee, Joint::LAnkle]),
+            Part::RightLeg => limb([Joint::RHip, Joint::RKnee, Joint::RAnkle]),
+        };
+        let top = form.map(|form| Vec3::new(0.0, form.top, at(Joint::Skullbase).z));
+        (Part::ALL.into_iter().filter(has))
             .map(|part| PartAxis {
                 part,
-                axis: match part {
-                    Part::Trunk => l.spine.to_vec(),
-                    Part::Head => vec![l.spine[4], at(Joint::Skullbase), l.crown],
-                    Part::LeftArm => limb([Joint::LShoulder, Joint::LElbow, Joint::LWrist]),
-                    Part::RightArm => limb([Joint::RShoulder, Joint::RElbow, Joint::RWrist]),
-                    Part::LeftLeg => limb([Joint::LHip, Joint::LKnee, Joint::LAnkle]),
-                    Part::RightLeg => limb([Joint::RHip, Joint::RKnee, Joint::RAnkle]),
+                axis: match (part, top) {
+                    (Part::Head, Some(top)) => vec![l.spine[4], top],
+                    _ => whole(part),
                 },
             })
             .collect()
@@ -187,7 +194,7 @@ impl Mannequin {
     pub fn levels(&self) -> BodyLevels {
         let l = &self.landmarks;
         BodyLevels {
-            crown: l.crown.y,
+            crown: self.form().map_or(l.crown.y, |form| form.top),
             neck: l.neck_sides[0].y,
             shoulder: l.shoulder_tips[0].y,
             chest: self.levels.at(Level::Bust),

@@ -12,6 +12,7 @@ mod definitions;
 mod deform;
 mod describe;
 mod deviation;
+mod dress_form;
 mod edits;
 mod ellipsoids;
 mod error;

@@ -2,10 +2,12 @@
 
 use crate::attach::posed;
 use crate::bones;
+use crate::definitions::NECK_TILT;
+use crate::dress_form::DressForm;
 use crate::field::VISIBLE_RATIO;
 use crate::hang::hang;
 use crate::landmarks::Landmarks;
-use crate::levels::{self, Levels, SkinOffsets};
+use crate::levels::{self, Level, Levels, SkinOffsets};
 use crate::refit::refitted;
 use crate::request::Request;
 use crate::rigging::sources;
@@ -33,7 +35,10 @@ pub struct Mannequin {
     pub(crate) crotch: Vec<u32>,
     pub(crate) skeleton: Skeleton,
     pub(crate) landmarks: Landmarks,
-    skin: TriangleMesh,
+    /// With head, arms and legs; it is what a tape measures.
+    pub(crate) whole: TriangleMesh,
+    /// What is left of it on a dress form.
+    form: Option<DressForm>,
     // The following fields are computed from the others when first asked for.
     tree: OnceLock<SurfaceTree>,
     skinning: OnceLock<Skinning>,
@@ -85,8 +90,12 @@ impl Mannequin {
     /// # Errors
     /// A measurement that no body has, or lengths that leave no room for a landmark.
     pub fn new(measurements: &Measurements, figure: Figure) -> Result<Self, BodyError> {
-        // Children share the template of the mean.
-        let place = (figure as usize).min(Figure::Mean as usize);
+        let place = match figure {
+            Figure::Woman | Figure::DressForm => 0,
+            Figure::Man => 1,
+            // Children share the template of the mean.
+            _ => 2,
+        };
         let template_body =
             TEMPLATE_BODIES[place].get_or_init(|| TemplateBody::of(Template::of(figure)));
         Self::grown(measurements, figure, template_body.clone()?)
@@ -173,20 +182,31 @@ impl Mannequin {
             marks: template_body.marks,
             request,
         };
+        let skeleton = hung(
+            bones::skeleton(&template_body.template, &warp),
+            &skin,
+            &template_body.skin.arm,
+        );
+        let form = (figure == Figure::DressForm).then(|| {
+            let neck = warp.apply(template_body.marks.neck, Follow::default());
+            let (sin, cos) = NECK_TILT.sin_cos();
+            DressForm::of(
+                (&skin, &template_body.skin.parts),
+                [neck, Vec3::new(0.0, cos, sin)],
+                levels.at(Level::Crown),
+            )
+        });
         Self {
             figure,
             measurements: measurements.clone(),
-            skeleton: hung(
-                bones::skeleton(&template_body.template, &warp),
-                &skin,
-                &template_body.skin.arm,
-            ),
+            skeleton,
+            form,
             landmarks: Landmarks::find(&input, (&levels, &warp), &skin),
             crotch: input.crotch_vertices(),
             request: input.request,
             levels,
             warp,
-            skin,
+            whole: skin,
             tree: OnceLock::new(),
             skinning: OnceLock::new(),
             primitives: OnceLock::new(),
@@ -235,7 +255,7 @@ impl Mannequin {
                 body
             })
             .collect();
-        refitted(left, &self.skin, &self.template_body.skin.parts)
+        refitted(left, &self.whole, &self.template_body.skin.parts)
             .iter()
             .zip(sources)
             .map(attached)
@@ -264,20 +284,29 @@ impl Mannequin {
         &self.request.table
     }
 
-    /// The skin: closed, outward, the same triangles for every set of measurements of a figure.
+    /// The skin: closed, outward, of whole bodies the same triangles for every set of measurements of a
+    /// figure. A dress form's has its stand.
     pub fn skin(&self) -> &TriangleMesh {
-        &self.skin
+        self.form.as_ref().map_or(&self.whole, |form| &form.mesh)
+    }
+
+    /// What is left of the body where it is a dress form.
+    pub(crate) fn form(&self) -> Option<&DressForm> {
+        self.form.as_ref()
     }
 
     /// The skin with its box tree, built when first asked for.
     pub fn skin_tree(&self) -> &SurfaceTree {
         self.tree
-            .get_or_init(|| SurfaceTree::new(self.skin.clone()))
+            .get_or_init(|| SurfaceTree::new(self.skin().clone()))
     }
 
     /// The part each triangle of the skin belongs to.
     pub fn part_of_triangle(&self) -> &[Part] {
-        &self.template_body.skin.parts
+        match &self.form {
+            Some(form) => &form.parts,
+            None => &self.template_body.skin.parts,
+        }
     }
 
     /// The joints, where they are at rest.
@@ -285,7 +314,7 @@ impl Mannequin {
         &self.skeleton
     }
 
-    /// The ellipsoid primitives of the body, each in the frame of the joint it is fixed to: a
+    /// The ellipsoid primitives of the body, of a dress form those of the whole body, each in the frame of the joint it is fixed to: a
     /// coarse description of the body, carried from the template's by the map of the skin and
     /// scaled to lie on it.
     pub fn primitives(&self) -> &[AttachedPrimitive] {

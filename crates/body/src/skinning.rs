@@ -46,6 +46,12 @@ impl Skinning {
     /// Hangs the skin at rest on the joints: along the bones by the place of the vertex beside
     /// them, at shoulders and hips by how far it follows the limb.
     pub(crate) fn new(body: &Mannequin, arm: &[f64], leg: &[f64]) -> Self {
+        if body.form().is_some() {
+            // A dress form does not bend.
+            let rigid = vec![(Joint::HumanoidRoot, 1.0)];
+            let shares = vec![rigid; body.skin().positions.len()];
+            return Self { shares };
+        }
         let skeleton = body.skeleton();
         let height = body.levels().crown;
         let at = |joint: Joint| skeleton.centre(joint);

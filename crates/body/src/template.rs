@@ -12,77 +12,62 @@ use crate::{Part, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_measure::{Build, Measurements};
 
-/// Which template a mannequin is grown from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Figure {
+/// The figures with their names on the command line and in files, each declared once.
+macro_rules! figures {
+    ($($(#[$docs:meta])* $figure:ident = $name:literal,)*) => {
+        /// Which template a mannequin is grown from.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum Figure {
+            $($(#[$docs])* #[serde(rename = $name)] $figure,)*
+        }
+
+        impl Figure {
+            /// How many there are.
+            pub const COUNT: usize = [$($name),*].len();
+
+            /// All figures, the adults first.
+            pub const ALL: [Figure; Self::COUNT] = [$(Figure::$figure),*];
+
+            /// The name on the command line and in files.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Figure::$figure => $name,)*
+                }
+            }
+        }
+    };
+}
+
+figures! {
     /// An adult woman.
-    Woman,
+    Woman = "woman",
     /// An adult man.
-    Man,
+    Man = "man",
     /// The mean of both.
-    Mean,
+    Mean = "mean",
+    /// A woman's trunk without head, arms and legs, on a stand.
+    DressForm = "dress-form",
     /// A child of 2 years.
-    #[serde(rename = "child-2")]
-    Child2,
+    Child2 = "child-2",
     /// A child of 4 years.
-    #[serde(rename = "child-4")]
-    Child4,
+    Child4 = "child-4",
     /// A child of 6 years.
-    #[serde(rename = "child-6")]
-    Child6,
+    Child6 = "child-6",
     /// A child of 8 years.
-    #[serde(rename = "child-8")]
-    Child8,
+    Child8 = "child-8",
     /// A child of 10 years.
-    #[serde(rename = "child-10")]
-    Child10,
+    Child10 = "child-10",
     /// A child of 12 years.
-    #[serde(rename = "child-12")]
-    Child12,
+    Child12 = "child-12",
     /// A child of 14 years.
-    #[serde(rename = "child-14")]
-    Child14,
+    Child14 = "child-14",
 }
 
 impl Figure {
-    /// How many there are.
-    pub const COUNT: usize = 10;
-
-    /// All figures, the adults first.
-    pub const ALL: [Figure; Self::COUNT] = [
-        Figure::Woman,
-        Figure::Man,
-        Figure::Mean,
-        Figure::Child2,
-        Figure::Child4,
-        Figure::Child6,
-        Figure::Child8,
-        Figure::Child10,
-        Figure::Child12,
-        Figure::Child14,
-    ];
-
-    /// The name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Figure::Woman => "woman",
-            Figure::Man => "man",
-            Figure::Mean => "mean",
-            Figure::Child2 => "child-2",
-            Figure::Child4 => "child-4",
-            Figure::Child6 => "child-6",
-            Figure::Child8 => "child-8",
-            Figure::Child10 => "child-10",
-            Figure::Child12 => "child-12",
-            Figure::Child14 => "child-14",
-        }
-    }
-
     /// Age of a child [years]; none for an adult.
     pub fn age(self) -> Option<u8> {
         match self {
-            Figure::Woman | Figure::Man | Figure::Mean => None,
+            Figure::Woman | Figure::Man | Figure::Mean | Figure::DressForm => None,
             child => Some(2 * (child as u8 - Figure::Child2 as u8 + 1)),
         }
     }
@@ -95,7 +80,7 @@ impl Figure {
     /// Whose statistics predict what was not measured.
     pub fn build(self) -> Build {
         match self {
-            Figure::Woman => Build::Woman,
+            Figure::Woman | Figure::DressForm => Build::Woman,
             Figure::Man => Build::Man,
             Figure::Mean => Build::Either,
             child => Build::Child(child.age().unwrap_or(8)),
@@ -209,7 +194,7 @@ pub(crate) const NECK_RADIUS: f64 = 0.082;
 impl Table {
     fn of(figure: Figure) -> &'static Self {
         match figure {
-            Figure::Woman => &woman::TABLE,
+            Figure::Woman | Figure::DressForm => &woman::TABLE,
             Figure::Man => &man::TABLE,
             // A child has the adult's form at its own proportions.
             _ => &mean::TABLE,

@@ -217,7 +217,7 @@ pub struct Make {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Whose body: woman, man, mean, child-2, child-4, ... child-14 (by age), a mannequin file, a file of
+    /// Whose body: woman, man, mean, dress-form, child-2, child-4, ... child-14 (by age), a mannequin file, a file of
     /// measurements (native JSON or GarmentCode YAML), or FIGURE:FILE; pattern for as the pattern says, whatever its
     /// file keeps: a woman of the pattern's size, mean for a pattern without sizes. Default: as the file keeps it.
     #[arg(long, value_name = "BODY")]
@@ -397,7 +397,7 @@ pub struct Body {
     /// Height of a table for several sizes, as in 176cm. Default: the table's base height.
     #[arg(long, value_name = "LENGTH", requires = "measurements")]
     pub height: Option<Length>,
-    /// Figure to grow it from: woman, man, mean, or child-2, child-4, ... child-14 (by age).
+    /// Figure to grow it from: woman, man, mean, dress-form, or child-2, child-4, ... child-14 (by age).
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,
     /// A mannequin file (JSON) to make the body from, as --out NAME.json writes it.

@@ -86,7 +86,7 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
             && !is_input(file)
         {
             return Err(Failure::bad_input(format!(
-                "--body: there is no file {}; give woman, man, mean, child-2 to child-14, pattern, a file of measurements, \
+                "--body: there is no file {}; give woman, man, mean, dress-form, child-2 to child-14, pattern, a file of measurements, \
                  or FIGURE:FILE",
                 file.display()
             )));

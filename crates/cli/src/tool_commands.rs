@@ -67,7 +67,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
     }
     let figure = figure_named(&body.figure).ok_or_else(|| {
         Failure::bad_input(format!(
-            "there is no figure {:?}; choose woman, man, mean, or child-2, child-4, ... child-14",
+            "there is no figure {:?}; choose woman, man, mean, dress-form, or child-2, child-4, ... child-14",
             body.figure
         ))
     })?;

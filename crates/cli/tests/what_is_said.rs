@@ -111,3 +111,33 @@ fn a_report_names_the_fabric_that_the_pattern_names() {
         "{warnings}"
     );
 }
+
+#[test]
+fn a_dress_form_wears_what_needs_no_arms_and_legs() {
+    let folder = tempfile::tempdir().unwrap();
+    let drape = |pattern: &str| {
+        let pattern = patterns().join(format!("{pattern}.toile.json"));
+        let pattern = pattern.to_str().unwrap();
+        let body = ["drape", pattern, "--body", "dress-form"];
+        let usual = ["--quality", "preview", "--json"];
+        toile(folder.path(), &[body.as_slice(), &usual].concat())
+    };
+    for (pattern, piece, part) in [
+        ("t-shirt", "sleeve", "the left arm"),
+        ("trousers", "front", "the left leg"),
+    ] {
+        let output = drape(pattern);
+        assert_eq!(output.status.code(), Some(2), "{pattern}");
+        let said = words(&output.stdout) + &words(&output.stderr);
+        assert!(
+            said.contains(piece) && said.contains(&format!("worn on {part}, which this body")),
+            "{said}"
+        );
+    }
+    let output = drape("gathered-skirt");
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for crossings in ["body_intersections", "self_intersections"] {
+        assert_eq!(report["report"][crossings], 0, "{crossings}");
+    }
+}

@@ -73,7 +73,7 @@ pub(crate) fn figure_name(figure: Figure) -> &'static str {
     figure.name()
 }
 
-/// The figure of that name: `woman`, `man`, `mean`, or `child-2` to `child-14` by age.
+/// The figure of that name: `woman`, `man`, `mean`, `dress-form`, or `child-2` to `child-14` by age.
 pub fn figure_named(name: &str) -> Option<Figure> {
     Figure::ALL
         .into_iter()

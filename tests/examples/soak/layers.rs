@@ -35,7 +35,11 @@ pub fn layers(arguments: &[String]) -> Result<(), String> {
         "body,inner,middle,outer,vertices,found,astray,body_crossings,cloth_crossings,layer_crossings,astray_end,residual,wall_s"
     );
     let mut left = Vec::new();
-    for figure in Figure::ALL {
+    // Outfits have sleeves, which a dress form does not wear.
+    let whole = Figure::ALL
+        .into_iter()
+        .filter(|&figure| figure != Figure::DressForm);
+    for figure in whole {
         if !names.is_empty() && !names.iter().any(|name| name == figure.name()) {
             continue;
         }

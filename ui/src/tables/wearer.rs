@@ -57,6 +57,7 @@ fn figure_words(figure: Figure) -> String {
         Figure::Woman => "Woman".to_owned(),
         Figure::Man => "Man".to_owned(),
         Figure::Mean => "Average adult".to_owned(),
+        Figure::DressForm => "Dress form".to_owned(),
         child => {
             let years = child.name().trim_start_matches("child-");
             format!("Child of {years} years")
