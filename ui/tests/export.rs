@@ -216,3 +216,73 @@ fn the_dxf_of_a_marker_in_three_actions_asks_before_it_replaces_a_file() {
     drafter.wait(|drafter| !exports(drafter));
     assert!(std::fs::read(&dxf).unwrap() == bytes);
 }
+
+#[test]
+fn a_window_that_is_closed_waits_for_its_export_and_closed_again_stops_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut drafter, _) = band(folder.path());
+    let close = |drafter: &mut Drafter| {
+        let viewports = &mut drafter.window.input_mut().viewports;
+        let root = viewports.get_mut(&egui::ViewportId::ROOT);
+        root.unwrap().events.push(egui::ViewportEvent::Close);
+        drafter.window.step();
+    };
+    let does = |drafter: &Drafter, command: &egui::ViewportCommand| {
+        let output = &drafter.window.output().viewport_output;
+        output[&egui::ViewportId::ROOT].commands.contains(command)
+    };
+    drafter.window.state_mut().execute(Command::SavePattern {
+        path: folder.path().join("band.toile.json"),
+    });
+    drafter.window.run();
+    let begin = |drafter: &mut Drafter, name: &str| {
+        drafter.chord(Modifiers::COMMAND, Key::E);
+        let written = folder.path().join(name);
+        drafter.enter("Folder", &written.display().to_string());
+        assert!(exports(drafter));
+        written
+    };
+    let written = begin(&mut drafter, "stopped");
+    for _ in 0..2 {
+        close(&mut drafter);
+        assert!(does(&drafter, &egui::ViewportCommand::CancelClose));
+    }
+    drafter.wait(|drafter| !exports(drafter));
+    assert!(!written.exists());
+    drafter.window.step();
+    assert!(does(&drafter, &egui::ViewportCommand::Close));
+
+    let (mut drafter, _) = band(folder.path());
+    let written = begin(&mut drafter, "whole");
+    close(&mut drafter);
+    assert!(does(&drafter, &egui::ViewportCommand::CancelClose));
+    drafter.window.step();
+    let told = drafter.status();
+    assert!(told.contains("closes once the files are written"), "{told}");
+    drafter.wait(|drafter| !exports(drafter));
+    assert_eq!(garments::files(&written).len(), 7, "all of them");
+    drafter.window.step();
+    assert!(does(&drafter, &egui::ViewportCommand::Close));
+}
+
+#[test]
+fn a_marker_that_no_format_shows_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = Session::new();
+    let path = garments::band(folder.path());
+    session
+        .execute(Command::OpenPattern { path }, &mut Silent)
+        .unwrap();
+    let export = Export {
+        dir: folder.path().join("out"),
+        formats: vec![ExportFormat::PiecesSvg, ExportFormat::Glb],
+        marker: Some("shell".into()),
+    };
+    let refused = session.execute(Command::Export(export), &mut Silent);
+    let words = refused.unwrap_err().to_string();
+    assert!(
+        words.contains("\"shell\"") && words.contains("pieces-svg, glb"),
+        "{words}"
+    );
+    assert!(!folder.path().join("out").exists());
+}

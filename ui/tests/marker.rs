@@ -183,13 +183,13 @@ fn the_marker_lies_on_the_cloth_of_the_garment_and_what_it_keeps_is_mended_by_a_
     let fabric = Some("denim".to_owned());
     execute(&mut window, Command::SetFabric { fabric });
     assert_eq!(lies_on(&mut window), ("denim".to_owned(), 1.5));
-    let shown = window.get_by_role_and_label(Role::ComboBox, "Fabric");
+    let shown = window.get_by_role_and_label(Role::ComboBox, "Lies on");
     assert_eq!(shown.value().as_deref(), Some("denim"));
     execute(&mut window, Command::SetWidth { width: Some(1.2) });
     assert_eq!(window.state().marker_view().cloth().size().y, 1.2);
 
     // It may keep its own, which is told as long as it is so.
-    choose(&mut window, "Fabric", &format!("always {}", before.0));
+    choose(&mut window, "Lies on", &format!("always {}", before.0));
     assert_eq!(lies_on(&mut window), before);
     let told = format!(
         "The marker stays on {}, and the garment is cut from denim",

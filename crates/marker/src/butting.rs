@@ -306,7 +306,7 @@ mod tests {
 
     fn around(held: Polygon, others: &[Polygon]) -> Surroundings {
         let piece = |k: usize| OrderedPiece {
-            panel: PanelId(k as u64),
+            panel: PanelId(k as u32),
             copy: 0,
             size: None,
             garment: 0,

@@ -62,6 +62,22 @@ impl BodyChoice {
         }
     }
 
+    /// Its name on paper: that of its file, else of its figure.
+    pub fn short_name(&self) -> String {
+        let path = match self {
+            Self::OfPattern => None,
+            Self::Sample(figure) => return figure_name(*figure).into(),
+            Self::Measured { path, .. } | Self::Shaped { path, .. } => path.as_ref(),
+            Self::Missing { path } => Some(path),
+        };
+        let file = path.and_then(|path| path.file_name());
+        let name = file.map(|name| name.to_string_lossy().into_owned());
+        match name.as_deref().and_then(|name| name.split('.').next()) {
+            Some(stem) if !stem.is_empty() => stem.to_owned(),
+            _ => "the wearer's measurements".to_owned(),
+        }
+    }
+
     /// Whether the body is as the pattern says.
     pub fn is_of_pattern(&self) -> bool {
         matches!(self, Self::OfPattern | Self::Missing { .. })

@@ -39,8 +39,24 @@ impl Export {
     }
 
     /// Whether the pieces are laid for it.
-    pub(crate) fn takes_marker(&self) -> bool {
+    pub fn takes_marker(&self) -> bool {
         self.takes(ExportFormat::is_of_marker)
+    }
+
+    /// Refuses a marker that nothing of it would be written of.
+    fn check_marker(&self) -> Result<(), SessionError> {
+        let Some(marker) = self.marker.as_ref().filter(|_| !self.takes_marker()) else {
+            return Ok(());
+        };
+        let names: Vec<&str> = self.formats.iter().map(|format| format.name()).collect();
+        let names = match names.is_empty() {
+            true => "what has been made".to_owned(),
+            false => names.join(", "),
+        };
+        Err(SessionError::Conflict(format!(
+            "marker {marker:?} is asked for, and nothing of it is in {names}: leave --marker out, or give a format \
+             that shows it, as in --formats marker-svg"
+        )))
     }
 
     fn takes(&self, is_of: impl Fn(ExportFormat) -> bool) -> bool {
@@ -60,6 +76,7 @@ impl Session {
     ) -> Result<Vec<Event>, SessionError> {
         let start = Instant::now();
         // Told before minutes are spent on it.
+        export.check_marker()?;
         check_folder(&export.dir)?;
         let mut events = Vec::new();
         let subject = self.subject(export, (watcher, &mut events))?;

@@ -136,7 +136,11 @@ pub fn print_job(
         .map(|size| cut_pieces(pattern, size, options))
         .collect::<Result<Vec<_>, _>>()?;
     let layers: Vec<PrintLayer> = sizes.iter().map(|size| size.layer()).collect();
-    let pieces = grouped(pattern, &cuts, &layers);
+    // The sizes that are asked for by name are those of the pattern.
+    let made_for = project
+        .made_for()
+        .filter(|_| sizes.iter().all(|size| size.name.is_none()));
+    let pieces = grouped((pattern, made_for.as_ref()), &cuts, &layers);
     if pieces.is_empty() {
         return Err(SessionError::Nothing {
             action: "print",
@@ -158,7 +162,7 @@ pub fn print_job(
         size: Vec2::zeros(),
         title: TitleBlock {
             name: pattern.name.clone(),
-            facts: facts(options, &layers, (&list, pattern.unit)),
+            facts: facts(options, (&layers, made_for), (&list, pattern.unit)),
             unit: pattern.unit,
         },
         title_at: Vec2::zeros(),
@@ -295,7 +299,11 @@ fn cut_pieces(
 }
 
 /// The pieces by panel, each in all its sizes, with what is written on them.
-fn grouped(pattern: &Pattern, cuts: &[Vec<Cut>], layers: &[PrintLayer]) -> Vec<PrintPiece> {
+fn grouped(
+    (pattern, made_for): (&Pattern, Option<&[String; 2]>),
+    cuts: &[Vec<Cut>],
+    layers: &[PrintLayer],
+) -> Vec<PrintPiece> {
     let of_panel = |panel: &Arc<toile_pattern::Panel>| {
         let sizes = cuts.iter().enumerate().filter_map(|(k, cuts)| {
             let found = cuts.iter().find(|cut| cut.whole.id.panel == panel.id)?;
@@ -304,6 +312,12 @@ fn grouped(pattern: &Pattern, cuts: &[Vec<Cut>], layers: &[PrintLayer]) -> Vec<P
         let sizes: Vec<(usize, Arc<CutPiece>)> = sizes.collect();
         let (_, first) = sizes.first()?;
         let mut words = vec![panel.name.clone()];
+        words.extend(
+            Some(&pattern.name)
+                .filter(|style| **style != panel.name)
+                .cloned(),
+        );
+        words.extend(made_for.map(|[name, _]| format!("made for {name}")));
         words.extend(match sizes.len() {
             1 => first.text(TextKind::Size).map(str::to_owned),
             n => Some(match n == layers.len() {
@@ -336,7 +350,7 @@ fn grouped(pattern: &Pattern, cuts: &[Vec<Cut>], layers: &[PrintLayer]) -> Vec<P
 /// What the title block says.
 fn facts(
     options: &PrintOptions,
-    layers: &[PrintLayer],
+    (layers, made_for): (&[PrintLayer], Option<[String; 2]>),
     (list, unit): (&[CutList], DisplayUnit),
 ) -> Vec<String> {
     let names: Vec<&str> = layers.iter().map(|layer| &*layer.name).collect();
@@ -349,7 +363,10 @@ fn facts(
         [only] => only.to_owned(),
         _ => names.join(", ").replace(", size ", ", "),
     };
-    let mut facts = vec![format!("{sizes}, {scale}")];
+    let mut facts = match made_for {
+        Some([name, girths]) => vec![format!("Made to measure for {name}, {scale}"), girths],
+        None => vec![format!("{sizes}, {scale}")],
+    };
     facts.extend(list.iter().map(|list| {
         let count: u32 = list.pieces.iter().map(|piece| piece.quantity).sum();
         let plural = if count == 1 { "" } else { "s" };

@@ -1,7 +1,7 @@
 //! The project: all that is edited, saved and undone; the rest is derived from it.
 
 use crate::choice::sample_of;
-use crate::{BodyChoice, FabricChoice, Quality, SessionError};
+use crate::{BodyChoice, FabricChoice, Quality, SessionError, Shown};
 use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
@@ -155,6 +155,24 @@ impl Project {
             None if self.body.is_of_pattern() => "as drawn".into(),
             None => "drafted to the body".into(),
         }
+    }
+
+    /// Whom it is made to measure for, and the girths of bust, waist and hips; nothing where it is drafted to a size
+    /// of the pattern, or as drawn.
+    pub fn made_for(&self) -> Option<[String; 2]> {
+        if self.size_name().is_some() || self.body.is_of_pattern() {
+            return None;
+        }
+        let measurements = self.drafted_to().measurements;
+        let shown = Shown(self.pattern.unit);
+        let girths = ["bust", "waist", "hips"].into_iter().filter_map(|name| {
+            let girth = measurements.get(name)?;
+            Some(format!("{name} {}", shown.length(girth)))
+        });
+        Some([
+            self.body.short_name(),
+            girths.collect::<Vec<_>>().join(", "),
+        ])
     }
 
     /// Refuses a size the pattern does not have, or one worn with it that has a table of sizes.

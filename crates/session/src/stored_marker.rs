@@ -85,7 +85,23 @@ pub(crate) fn stored(
     name: &str,
 ) -> Result<(String, FinishedMarker), SessionError> {
     let laid = session.marker(marker_named(&session.project().pattern, name)?)?;
-    let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
+    let project = session.project();
+    let pattern = &project.pattern;
+    let marker = laid.marker();
+    let mut name = format!("{}, {}", pattern.name, marker.name);
+    let sizes = marker.order.iter().filter_map(|ordered| {
+        let size = pattern
+            .sizes
+            .iter()
+            .find(|size| Some(size.id) == ordered.size)?;
+        Some(format!("{} x {}", ordered.quantity, size.name))
+    });
+    let sizes: Vec<String> = sizes.collect();
+    if !sizes.is_empty() {
+        name = format!("{name}, {}", sizes.join(", "));
+    } else if let Some([wearer, girths]) = project.made_for() {
+        name = format!("{name}, made to measure for {wearer} ({girths})");
+    }
     Ok((name, laid.finished()))
 }
 

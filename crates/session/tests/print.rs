@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use toile_geometry::{EdgeTree, Polygon, Vec2};
 use toile_interchange::PrintJob;
 use toile_session::{
-    Lines, Paper, PrintOptions, Project, SessionError, Silent, SizeSelection, print_job,
-    print_pattern,
+    BodyChoice, Lines, Paper, PrintOptions, Project, SessionError, Silent, SizeSelection,
+    print_job, print_pattern,
 };
 
 const SAIL: &str = r#"{
@@ -394,4 +394,38 @@ fn what_is_not_there_is_refused_by_its_name() {
         error.to_string().contains("NAME.pdf or NAME.svg"),
         "{error}"
     );
+}
+
+#[test]
+fn paper_says_which_style_and_size_it_is_or_whom_it_is_made_for() {
+    let options = PrintOptions::default();
+    let sized = job("dress", &options);
+    let said = |job: &PrintJob, words: &str| job.title.facts.iter().any(|f| f.starts_with(words));
+    assert!(said(&sized, "size M, true size"), "{:?}", sized.title);
+    for piece in &sized.pieces {
+        assert_eq!(piece.words[1..3], ["Dress", "size M"]);
+    }
+    let measured = Project {
+        body: BodyChoice::Measured {
+            figure: toile_session::Figure::Woman,
+            path: Some("people/anna.measurements.json".into()),
+            measurements: std::sync::Arc::new(toile_session::Figure::Woman.average()),
+        },
+        ..project("dress")
+    };
+    let (made, _) = print_job(&measured, &options, &mut Silent).unwrap();
+    assert!(
+        said(&made, "Made to measure for anna, true size"),
+        "{:?}",
+        made.title
+    );
+    assert!(said(&made, "bust "), "{:?}", made.title);
+    assert!(made.title.facts[1].contains("hips "), "{:?}", made.title);
+    for piece in &made.pieces {
+        assert_eq!(piece.words[1..3], ["Dress", "made for anna"]);
+    }
+    // In a size of the pattern it is made for nobody else.
+    let sizes = SizeSelection::one("M");
+    let (sized, _) = print_job(&measured, &PrintOptions { sizes, ..options }, &mut Silent).unwrap();
+    assert!(said(&sized, "size M, true size"), "{:?}", sized.title);
 }

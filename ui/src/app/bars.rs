@@ -12,8 +12,8 @@ use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Ui};
 use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
-/// Share of the status line that a message may take while a hint stands beside it.
-const MESSAGE_SHARE: f32 = 0.62;
+/// Room that a message leaves for the hint beside it [pixels].
+const HINT_WIDTH: f32 = 160.0;
 
 impl ToileApp {
     pub(crate) fn menu_bar(&mut self, ui: &mut Ui) {
@@ -176,7 +176,8 @@ impl ToileApp {
                     if !words.is_empty() {
                         let label = RichText::new(&words).color(colour);
                         // Beside it there is room for what a click does.
-                        let most = ui.available_width() * if hints { MESSAGE_SHARE } else { 1.0 };
+                        let room = if hints { HINT_WIDTH } else { 0.0 };
+                        let most = (ui.available_width() - room).max(0.0);
                         let label = ui.scope(|ui| {
                             ui.set_max_width(most);
                             ui.add(egui::Label::new(label).truncate())

@@ -134,15 +134,36 @@ impl ToileApp {
         }
     }
 
-    /// Asks before changes are lost.
+    /// Asks before changes are lost, and waits until files are written; closed again, it stops that.
     pub(crate) fn guard_closing(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         if closing && !self.closes && self.is_unsaved() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.waits_to_close = false;
             self.dialog = Some(Dialog::Close);
+            return;
+        }
+        if !(closing || self.closes || self.waits_to_close) {
+            return;
+        }
+        if self.is_writing() {
+            if closing {
+                context.send_viewport_cmd(ViewportCommand::CancelClose);
+            }
+            if closing && self.waits_to_close {
+                self.stop_writing();
+            } else if !self.waits_to_close {
+                self.waits_to_close = true;
+                let words =
+                    "The window closes once the files are written; close it again to stop that";
+                self.notice = Notice::news(words);
+            }
+            return;
         }
         if self.closes {
             self.forget_recovery();
+        }
+        if self.closes || self.waits_to_close {
             context.send_viewport_cmd(ViewportCommand::Close);
         }
     }

@@ -88,10 +88,14 @@ fn meaning(format: ExportFormat) -> &'static str {
 impl ExportChoice {
     /// What is written where.
     pub fn export(&self) -> Export {
-        Export {
+        let export = Export {
             dir: PathBuf::from(self.folder.trim()),
             formats: self.formats.clone(),
-            marker: self.marker.clone(),
+            marker: None,
+        };
+        Export {
+            marker: self.marker.clone().filter(|_| export.takes_marker()),
+            ..export
         }
     }
 

@@ -93,6 +93,16 @@ impl ToileApp {
         self.exporting.is_some()
     }
 
+    /// Whether files are being made and written.
+    pub(super) fn is_writing(&self) -> bool {
+        self.is_exporting() || self.printing.is_some()
+    }
+
+    pub(super) fn stop_writing(&mut self) {
+        self.stop_export();
+        self.stop_printing();
+    }
+
     pub(super) fn export(&mut self, choice: ExportChoice) {
         self.notice = Notice::default();
         let source = self.session.project().source.clone();
@@ -125,6 +135,8 @@ impl ToileApp {
                 self.notice = Notice::news("The export was stopped: nothing was written");
             }
             Err(fault) => {
+                // What failed is seen before the window closes.
+                (self.closes, self.waits_to_close) = (false, false);
                 // For another pattern, opened meanwhile, it was not asked.
                 let source = &self.session.project().source;
                 let last = self.exports.last.as_ref();

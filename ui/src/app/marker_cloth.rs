@@ -52,7 +52,7 @@ impl ToileApp {
         following.cloth.keeps_fabric = false;
         let own = pattern.fabric(cloth.fabric).map(|own| own.name.clone());
         let others = self.fabrics_cut(marker.cloth.fabric);
-        let label = ui.label("Fabric").id;
+        let label = ui.label("Lies on").id;
         ComboBox::from_id_salt("marker fabric")
             .selected_text(name(marker))
             .show_ui(ui, |ui| {

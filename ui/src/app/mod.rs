@@ -77,6 +77,8 @@ pub struct ToileApp {
     pub(crate) background_work: BackgroundWork,
     pub(crate) printing: Option<Printing>,
     pub(crate) exporting: Option<Exporting>,
+    /// Whether the window closes once files are written.
+    pub(crate) waits_to_close: bool,
     pub(crate) exports: ExportMemory,
     /// What was copied last, if the clipboard still holds it.
     pub(crate) copied: Option<Fragment>,
@@ -145,6 +147,7 @@ impl ToileApp {
             background_work: BackgroundWork::default(),
             printing: None,
             exporting: None,
+            waits_to_close: false,
             exports: ExportMemory::default(),
             copied: None,
             wants_clipboard: false,

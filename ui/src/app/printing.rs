@@ -90,6 +90,10 @@ impl ToileApp {
                 }
             }
             Err(fault) => {
+                // What failed is seen before the window closes.
+                if !printing.is_stopped {
+                    (self.closes, self.waits_to_close) = (false, false);
+                }
                 if self.dialog.is_none() && !printing.is_stopped {
                     let fault = fault.clone();
                     let choice = printing.choice.clone();

@@ -2,6 +2,7 @@
 
 use super::marker::MarkerView;
 use super::marker_piece::PieceScene;
+use crate::canvas::camera::ScreenPoint;
 use crate::theme::{self, Palette};
 use egui::epaint::TextShape;
 use egui::{Painter, Pos2, Rect, Stroke, Ui, Vec2 as Way, vec2};
@@ -61,11 +62,12 @@ impl MarkerView {
                 galley.size()
             };
             let middle = self.screen(view, scene.middle());
-            let fits = |size: &Way| size.x < around.width() && size.y < around.height();
             let sizes = SMALL_NAMES.map(|letters| (letters, size_of(letters)));
-            let inside = sizes.iter().find(|(_, size)| fits(size)).copied();
-            let inside =
-                inside.map(|(letters, size)| (letters, Rect::from_center_size(middle, size)));
+            let placed =
+                sizes.map(|(letters, size)| (letters, Rect::from_center_size(middle, size)));
+            let inside = placed
+                .into_iter()
+                .find(|(_, rect)| self.holds(scene, (*rect, view)));
             let is_free = |rect: &Rect| !taken.iter().any(|other| other.intersects(*rect));
             match inside.filter(|(_, rect)| is_free(rect)) {
                 Some((letters, rect)) => {
@@ -98,6 +100,22 @@ impl MarkerView {
             }
         }
         names
+    }
+
+    /// Whether all corners of a place on the screen are in a piece.
+    fn holds(&self, scene: &PieceScene, (rect, view): (Rect, Rect)) -> bool {
+        let corners = [
+            rect.left_top(),
+            rect.right_top(),
+            rect.left_bottom(),
+            rect.right_bottom(),
+        ];
+        let polygon = scene.drawing.fill.as_ref();
+        let is_in = |at: &Pos2| {
+            let at = self.camera.table(view, ScreenPoint(*at)).0;
+            polygon.is_some_and(|polygon| polygon.contains(at))
+        };
+        corners.iter().all(is_in)
     }
 
     /// The box of a piece on the screen, if it is seen and not too small to be named.
