@@ -1,8 +1,7 @@
 //! The marker view: pieces on their fabric, seen from above. It changes no document: it says what
 //! is done in it.
 
-use super::marker_names::PieceName;
-use super::marker_piece::PieceScene;
+use super::marker_piece::{PieceName, PieceScene};
 use crate::canvas::camera::{ScreenPoint, TableCamera, TablePoint};
 use egui::{
     CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,

@@ -1,7 +1,7 @@
 //! The names of pieces on a marker: their own letters, larger ones in their place, or led outside by a line.
 
 use super::marker::MarkerView;
-use super::marker_piece::PieceScene;
+use super::marker_piece::{PieceName, PieceScene};
 use crate::canvas::camera::ScreenPoint;
 use crate::theme::{self, Palette};
 use egui::epaint::TextShape;
@@ -22,18 +22,6 @@ const DISTANCES: [f32; 6] = [10.0, 20.0, 34.0, 50.0, 70.0, 95.0];
 const DIRECTIONS: usize = 16;
 /// White round a name that is led outside [pixels].
 const MARGIN: f32 = 2.0;
-
-/// A name that stands in for a piece's own letters.
-#[derive(Clone, Debug)]
-pub struct PieceName {
-    /// What it says.
-    pub name: String,
-    /// Where it stands on the screen.
-    pub rect: Rect,
-    /// The place in the piece that it is led to, if it stands outside.
-    pub led_to: Option<Pos2>,
-    letters: f32,
-}
 
 impl MarkerView {
     /// Where names stand that are written instead of a piece's own letters, none over another.

@@ -1,10 +1,24 @@
 //! A piece on a marker as drawn.
 
 use crate::canvas::fill::{Fill, fill};
+use egui::{Pos2, Rect};
 use toile_cut::Drawing;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::OrderedPiece;
 use toile_session::Pose;
+
+/// A name that stands in for a piece's own letters.
+#[derive(Clone, Debug)]
+pub struct PieceName {
+    /// What it says.
+    pub name: String,
+    /// Where it stands on the screen.
+    pub rect: Rect,
+    /// The place in the piece that it is led to, if it stands outside.
+    pub led_to: Option<Pos2>,
+    /// Height of its letters [pixels].
+    pub letters: f32,
+}
 
 /// A piece as drawn.
 #[derive(Clone, Debug)]
