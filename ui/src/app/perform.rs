@@ -273,6 +273,10 @@ impl ToileApp {
             Some(_) => None,
             None => Some(self.graded()),
         };
+        // What is shown now comes into view.
+        if self.view.grading.is_some() {
+            self.view.fit();
+        }
     }
 
     /// The outlines of all sizes of the pattern as it is.

@@ -21,7 +21,7 @@ use crate::theme::{GRAB, Palette};
 use crate::tools::{Event, Outcome, Overlay, Pointer, Reading, State, Tool, ToolModifiers};
 use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
-use toile_geometry::Vec2;
+use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
 
 /// Enlargement by one press of a zoom key.
@@ -286,6 +286,18 @@ impl PatternView {
         self.tool.overlay(&self.state, &self.reading(evaluation))
     }
 
+    /// Least rectangle round everything that is shown, the other sizes too [m].
+    fn bounds(&self) -> Option<Bounds2> {
+        let drawn = self.table_layout.bounds(&self.scene);
+        let sizes = self.grading.iter().flat_map(|grading| &grading.sizes);
+        let panels = sizes.flat_map(|size| &size.panels);
+        let graded = panels.map(|(id, rings)| {
+            let at = self.table_layout.panel(*id);
+            Bounds2::of(rings.iter().flatten().map(|p| p + at))
+        });
+        drawn.into_iter().chain(graded).reduce(|a, b| a.union(&b))
+    }
+
     /// Draws the view, and tells what came of what is done in it. The evaluation is that before the
     /// gesture that is shown.
     pub fn show(&mut self, ui: &mut Ui, evaluation: &Evaluation) -> Vec<Outcome> {
@@ -303,7 +315,7 @@ impl PatternView {
         let resized = self.fitted.is_some_and(|size| size != view.size());
         if (self.wants_fit || resized)
             && view.width() > 50.0
-            && let Some(bounds) = self.table_layout.bounds(&self.scene)
+            && let Some(bounds) = self.bounds()
         {
             self.camera.fit_into(view, free_room(view), &bounds);
             self.wants_fit = false;
