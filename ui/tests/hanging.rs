@@ -9,8 +9,8 @@ use egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
 use toile_session::{Command, Quality, Session, Silent};
-use toile_ui::Item;
-use worn::{Window, chord, hanging, is_at_rest, is_grey, press, says, wait};
+use toile_ui::{Beginning, Item};
+use worn::{Window, chord, hanging, hanging_begun, is_at_rest, is_grey, press, says, wait};
 
 /// Drags a point of the front by a way [mm].
 fn drag(window: &mut Window, point: &str, [x, y]: [f32; 2]) {
@@ -179,4 +179,29 @@ fn what_changes_nothing_of_the_cloth_leaves_the_garment_at_rest() {
     assert!(wait(&mut window, is_at_rest));
     assert_eq!(window.state().session().draped(), product);
     assert!(!says(&window, "Moving:"));
+}
+
+#[test]
+fn the_garment_as_it_hung_is_kept_for_the_first_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let states = folder.path().join("states");
+    let mut window = hanging_begun(Beginning {
+        file: Some(garments::band(folder.path())),
+        folder: Some(states.clone()),
+    });
+    let kept = || {
+        let entries = std::fs::read_dir(states.join("drapes"))
+            .into_iter()
+            .flatten();
+        let mut pictures = entries.map(|entry| entry.unwrap().path());
+        pictures.find(|path| path.extension().is_some_and(|ending| ending == "png"))
+    };
+    assert!(wait(&mut window, |_| kept().is_some()));
+    let file = std::io::BufReader::new(std::fs::File::open(kept().unwrap()).unwrap());
+    let mut picture = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; picture.output_buffer_size().unwrap()];
+    let frame = picture.next_frame(&mut bytes).unwrap();
+    assert_eq!((frame.width, frame.height), (240, 360));
+    let colours: std::collections::BTreeSet<&[u8]> = bytes.chunks(3).collect();
+    assert!(colours.len() > 100, "{}", colours.len());
 }

@@ -14,9 +14,12 @@ use crate::{
     Command, Event, Paper, PrintOptions, Project, Session, SessionError, SizeSelection, Watcher,
     pictures, print_job,
 };
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
-use toile_interchange::{check_folder, write_all_atomically, write_glb, write_obj};
+use toile_interchange::{
+    check_folder, write_all_atomically, write_atomically, write_glb, write_obj,
+};
 use toile_marker::{FinishedMarker, MarkerFormat, marker_files};
 
 /// Shares of an export that are done when the markers are laid, when the garment hangs, and when its pieces are
@@ -244,6 +247,20 @@ impl Session {
             files.push(("report.json".into(), report.to_json().into_bytes()));
         }
         Ok(())
+    }
+
+    /// Writes the garment as it was last draped, on its body, as a PNG of a size [pixels].
+    ///
+    /// # Errors
+    /// It was not draped since it was changed, or the file cannot be written.
+    pub fn write_drape_view(&mut self, path: &Path, size: [usize; 2]) -> Result<(), SessionError> {
+        let drape = self.derived.drape.clone().ok_or(SessionError::Nothing {
+            action: "draw",
+            hint: "drape the garment first",
+        })?;
+        let mannequin = self.derived.mannequin(&self.project)?;
+        let picture = pictures::drape_view_png(&drape, mannequin.skin(), size)?;
+        Ok(write_atomically(path, &picture)?)
     }
 
     fn picture_files(

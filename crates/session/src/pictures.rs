@@ -4,8 +4,8 @@ use crate::SessionError;
 use crate::drape::Drape;
 use toile_geometry::TriangleMesh;
 use toile_picture::{
-    ColourMap, ColourScale, Edges, Finish, Legend, Lines, Paint, Scene, Sheet, Surface,
-    drape_picture, fit_picture,
+    Backdrop, Camera, ColourMap, ColourScale, Edges, Finish, Legend, Lines, Paint, Projection,
+    Scene, Sheet, Surface, View, drape_picture, fit_picture, render,
 };
 
 /// Stretch at the end of the colours [%].
@@ -36,12 +36,8 @@ fn garment(drape: &Drape, paint: Paint, line: [f64; 3]) -> Surface {
     }
 }
 
-/// The garment on the mannequin from all sides with what the verdict found, as PNG.
-pub(crate) fn drape_png(
-    drape: &Drape,
-    skin: &TriangleMesh,
-    title: &str,
-) -> Result<Vec<u8>, SessionError> {
+/// The garment in its colours on the mannequin.
+fn worn(drape: &Drape, skin: &TriangleMesh) -> Scene {
     let mut colours = vec![[0.7; 3]; drape.job.garment.triangles.len()];
     for (panel, look) in drape.job.garment.panels.iter().zip(drape.job.panels.iter()) {
         colours[panel.triangles.clone()].fill(look.colour);
@@ -50,12 +46,34 @@ pub(crate) fn drape_png(
     let mean: [f64; 3] =
         [0, 1, 2].map(|k| colours.iter().map(|c| c[k]).sum::<f64>() / colours.len().max(1) as f64);
     let line = mean.map(|c| 0.35 * c);
-    let scene = Scene {
+    Scene {
         surfaces: vec![
             garment(drape, Paint::PerTriangle(colours), line),
             body(skin),
         ],
-    };
+    }
+}
+
+/// The garment on the mannequin from half-way, as a PNG of a size [pixels].
+pub(crate) fn drape_view_png(
+    drape: &Drape,
+    skin: &TriangleMesh,
+    size: [usize; 2],
+) -> Result<Vec<u8>, SessionError> {
+    let scene = worn(drape, skin);
+    let bounds = scene.bounds().unwrap_or_default();
+    let aspect = size[0] as f64 / size[1] as f64;
+    let camera = Camera::fit_to(bounds, View::ThreeQuarter, aspect, Projection::Perspective);
+    Ok(render(&scene, &camera, size, &Backdrop::default())?.to_png()?)
+}
+
+/// The garment on the mannequin from all sides with what the verdict found, as PNG.
+pub(crate) fn drape_png(
+    drape: &Drape,
+    skin: &TriangleMesh,
+    title: &str,
+) -> Result<Vec<u8>, SessionError> {
+    let scene = worn(drape, skin);
     let sheet = Sheet {
         warning: drape.verdict.headline(),
         ..Sheet::studio(title)

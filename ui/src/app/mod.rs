@@ -8,6 +8,7 @@ pub mod command;
 pub mod command_table;
 mod dialogs;
 mod document_commands;
+mod drape_views;
 mod export_choice;
 mod exporting;
 mod file_choice;
@@ -413,6 +414,7 @@ impl ToileApp {
                 }
                 WorkEvent::Frame(frame) => self.stage.set_frame(frame),
                 WorkEvent::Finished(events) => {
+                    self.keep_drape_view();
                     let warned = events.into_iter().filter_map(|event| match event {
                         Event::Warned { message } => Some(message),
                         _ => None,

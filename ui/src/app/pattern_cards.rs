@@ -1,12 +1,17 @@
-//! Cards of patterns on the first page: the pieces of each as they lie on the table, and its name.
+//! Cards of patterns on the first page: the pieces of each as they lie on the table, the garment as it last
+//! hung, and the name.
 
+use super::drape_views;
 use super::job::Job;
 use crate::canvas::fill::Fill;
 use crate::canvas::scene::Scene;
 use crate::canvas::table_layout::TableLayout;
 use crate::theme::Palette;
 use egui::epaint::Vertex;
-use egui::{Color32, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
+use egui::{
+    Color32, ColorImage, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextureHandle,
+    TextureOptions, Ui, WidgetInfo, vec2,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,8 +36,8 @@ pub struct PatternCards {
 
 /// A picture, or the work on it.
 enum Picture {
-    Drawing(Job<Pieces>),
-    Drawn(Pieces),
+    Drawing(Job<(Pieces, Option<ColorImage>)>),
+    Drawn(Pieces, Option<TextureHandle>),
     /// The file is gone or cannot be read: it is said when it is opened.
     Missing,
 }
@@ -115,7 +120,14 @@ impl Pieces {
 
 impl PatternCards {
     /// A card of a pattern; whether it was clicked.
-    pub fn card(&mut self, ui: &mut Ui, (path, name): (&Path, &str)) -> bool {
+    ///
+    /// `folder` is that of the pictures of garments as they hung.
+    pub fn card(
+        &mut self,
+        ui: &mut Ui,
+        (path, name): (&Path, &str),
+        folder: Option<&Path>,
+    ) -> bool {
         let palette = Palette::of(ui.ctx());
         let (room, response) = ui.allocate_exact_size(CARD, Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -135,17 +147,33 @@ impl PatternCards {
         inner.max.y -= NAME - MARGIN;
         let picture = self.pictures.entry(path.to_owned()).or_insert_with(|| {
             let path = path.to_owned();
-            Picture::Drawing(Job::start(move |_| Pieces::of_file(&path)))
+            let hung = folder.map(|folder| drape_views::place(folder, &path));
+            Picture::Drawing(Job::start(move |_| {
+                let hung = hung.and_then(|place| drape_views::read(&place));
+                Ok((Pieces::of_file(&path)?, hung))
+            }))
         });
         if let Picture::Drawing(job) = picture {
             match job.result() {
-                Some(Ok(pieces)) => *picture = Picture::Drawn(pieces),
+                Some(Ok((pieces, hung))) => {
+                    let load = |image| ui.ctx().load_texture(name, image, TextureOptions::LINEAR);
+                    *picture = Picture::Drawn(pieces, hung.map(load));
+                }
                 Some(Err(_)) => *picture = Picture::Missing,
                 None => ui.ctx().request_repaint(),
             }
         }
         match picture {
-            Picture::Drawn(pieces) => pieces.paint(ui, inner),
+            Picture::Drawn(pieces, None) => pieces.paint(ui, inner),
+            Picture::Drawn(pieces, Some(hung)) => {
+                // The garment on the right, as tall as the card.
+                let size = hung.size_vec2();
+                let width = inner.height() * size.x / size.y;
+                let (left, right) = inner.split_left_right_at_x(inner.right() - width);
+                pieces.paint(ui, left.with_max_x(left.right() - 6.0));
+                let whole = Rect::from_min_max(Pos2::ZERO, egui::pos2(1.0, 1.0));
+                ui.painter().image(hung.id(), right, whole, Color32::WHITE);
+            }
             Picture::Drawing(_) => {}
             Picture::Missing => words(ui, inner, "not to be read", palette.ink_soft),
         }

@@ -72,6 +72,11 @@ impl Preferences {
         });
     }
 
+    /// The folder they are kept in, with whatever else the window remembers.
+    pub fn folder(&self) -> Option<&Path> {
+        self.file.as_deref().and_then(Path::parent)
+    }
+
     /// Notes a file that was opened or saved.
     pub fn opened(&mut self, path: &Path) {
         // The samples in the program are no files.

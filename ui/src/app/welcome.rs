@@ -98,7 +98,8 @@ impl ToileApp {
                 let width = row.len() as f32 * (CARD.x + gap) - gap;
                 ui.add_space((ui.available_width() - width).max(0.0) * 0.5);
                 for (path, name) in row {
-                    if self.pattern_cards.card(ui, (path, name)) {
+                    let folder = self.preferences.folder();
+                    if self.pattern_cards.card(ui, (path, name), folder) {
                         open = Some(path.clone());
                     }
                 }

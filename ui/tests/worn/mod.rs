@@ -12,10 +12,14 @@ pub type Window = Harness<'static, ToileApp>;
 
 /// A pattern in a window, its garment coarsely meshed and hanging at rest.
 pub fn hanging(file: &Path) -> Window {
-    let beginning = Beginning {
+    hanging_begun(Beginning {
         file: Some(file.to_owned()),
         folder: None,
-    };
+    })
+}
+
+/// The same in a window that begins as is said.
+pub fn hanging_begun(beginning: Beginning) -> Window {
     let mut window: Window = Harness::builder()
         .with_size(vec2(1200.0, 800.0))
         .with_theme(egui::Theme::Light)
