@@ -342,10 +342,10 @@ mod tests {
             let toward = Vec2::new(angle.cos(), angle.sin());
             // From far away up to so near.
             let mut held = star(toward * 0.5, &b);
-            let far = Surroundings::clearance(&around(held.clone(), &[stays.clone()]),
-                &around(held.clone(), &[stays.clone()]).neighbours[0], Vec2::zeros());
+            let far = Surroundings::clearance(&around(held.clone(), std::slice::from_ref(&stays)),
+                &around(held.clone(), std::slice::from_ref(&stays)).neighbours[0], Vec2::zeros());
             held = held.translated(far.toward * (far.length - off));
-            match around(held.clone(), &[stays.clone()]).let_go(REACH) {
+            match around(held.clone(), std::slice::from_ref(&stays)).let_go(REACH) {
                 LetGo::Apart(way) => {
                     let apart = distance(&held.translated(way), &stays);
                     if off <= REACH {

@@ -74,7 +74,7 @@ impl BodyChoice {
         let name = file.map(|name| name.to_string_lossy().into_owned());
         match name.as_deref().and_then(|name| name.split('.').next()) {
             Some(stem) if !stem.is_empty() => stem.to_owned(),
-            _ => "the wearer's measurements".to_owned(),
+            _ => "the wearer".to_owned(),
         }
     }
 

@@ -6,7 +6,6 @@ use super::export_choice::ExportChoice;
 use super::file_choice::FileChoice;
 use super::notice::Notice;
 use super::print_choice::PrintChoice;
-use super::words::show_words;
 use crate::fields::text_field;
 use crate::tables::WornWhere;
 use crate::theme::Palette;
@@ -93,7 +92,7 @@ impl ToileApp {
                 Dialog::Leave(_) | Dialog::Close => ask_save(ui),
                 Dialog::Recover => self.ask_recover(ui),
                 Dialog::Find(text, chosen) => self.ask_find(ui, text, chosen),
-                Dialog::Words(text) => show_words(ui, text),
+                Dialog::Words(text) => Self::show_words(ui, text),
             };
         });
         // A field for text gives up its focus by Escape first: here one press is enough.

@@ -12,10 +12,10 @@ const LEAST_PATTERN: f32 = 170.0;
 /// Width of a window from which on the tables stand beside the pattern, unless they were dragged [pixels].
 const WIDE: f32 = 1600.0;
 /// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
-const TABLES: f32 = 220.0;
+const TABLES: f32 = 210.0;
 const TABLES_SHARE: f32 = 0.45;
 /// Width that its row of buttons takes [pixels]: it begins no narrower in a window that has room for it.
-const GARMENT_ROW: f32 = 344.0;
+const GARMENT_ROW: f32 = 320.0;
 /// Most of the window's width that the 3D view may take.
 const GARMENT_MOST: f32 = 0.6;
 

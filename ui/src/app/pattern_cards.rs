@@ -15,6 +15,7 @@ use egui::{
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::Evaluation;
 use toile_session::{SessionError, open_pattern};
@@ -25,6 +26,8 @@ pub const CARD: egui::Vec2 = vec2(148.0, 150.0);
 const NAME: f32 = 26.0;
 /// Room round the pieces [pixels].
 const MARGIN: f32 = 10.0;
+/// When a picture that is being drawn is looked for again.
+const SOON: Duration = Duration::from_millis(50);
 /// Enlargement that lines are drawn for: two to this power [pixels per metre].
 const OCTAVE: i32 = 8;
 
@@ -160,7 +163,7 @@ impl PatternCards {
                     *picture = Picture::Drawn(pieces, hung.map(load));
                 }
                 Some(Err(_)) => *picture = Picture::Missing,
-                None => ui.ctx().request_repaint(),
+                None => ui.ctx().request_repaint_after(SOON),
             }
         }
         match picture {

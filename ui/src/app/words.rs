@@ -14,40 +14,40 @@ impl ToileApp {
     pub(crate) fn ask_words(&mut self) {
         self.dialog = Some(Dialog::Words(String::new()));
     }
-}
 
-/// The words that have what is typed, with their meanings.
-pub fn show_words(ui: &mut Ui, text: &mut String) -> Answer {
-    ui.heading("Words");
-    let label = ui.label("Find a word").id;
-    let field = TextEdit::singleline(text).desired_width(f32::INFINITY);
-    let field = ui.add(field).labelled_by(label);
-    field.request_focus();
-    let soft = Palette::of(ui.ctx()).ink_soft;
-    ui.add_space(4.0);
-    let list = ScrollArea::vertical()
-        .max_height(LIST)
-        .auto_shrink([false, false]);
-    list.show(ui, |ui| {
-        let found = found(text);
-        if found.is_empty() {
-            ui.label(RichText::new("No word has this in its name or meaning.").color(soft));
-        }
-        let mut subject = "";
-        for word in found {
-            // Under headings only in the order of the page.
-            if text.trim().is_empty() && word.subject != subject {
-                subject = word.subject;
-                ui.add_space(8.0);
-                ui.label(RichText::new(subject).small().color(soft));
+    /// The words that have what is typed, with their meanings.
+    pub(super) fn show_words(ui: &mut Ui, text: &mut String) -> Answer {
+        ui.heading("Words");
+        let label = ui.label("Find a word").id;
+        let field = TextEdit::singleline(text).desired_width(f32::INFINITY);
+        let field = ui.add(field).labelled_by(label);
+        field.request_focus();
+        let soft = Palette::of(ui.ctx()).ink_soft;
+        ui.add_space(4.0);
+        let list = ScrollArea::vertical()
+            .max_height(LIST)
+            .auto_shrink([false, false]);
+        list.show(ui, |ui| {
+            let found = found(text);
+            if found.is_empty() {
+                ui.label(RichText::new("No word has this in its name or meaning.").color(soft));
             }
-            title(ui, word.word);
-            ui.label(word.meaning.replace('`', ""));
-            ui.add_space(4.0);
+            let mut subject = "";
+            for word in found {
+                // Under headings only in the order of the page.
+                if text.trim().is_empty() && word.subject != subject {
+                    subject = word.subject;
+                    ui.add_space(8.0);
+                    ui.label(RichText::new(subject).small().color(soft));
+                }
+                title(ui, word.word);
+                ui.label(word.meaning.replace('`', ""));
+                ui.add_space(4.0);
+            }
+        });
+        match main_button(ui, "Close") {
+            true => Answer::Leave,
+            false => Answer::Stay,
         }
-    });
-    match main_button(ui, "Close") {
-        true => Answer::Leave,
-        false => Answer::Stay,
     }
 }
