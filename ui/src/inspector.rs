@@ -254,7 +254,7 @@ impl ToileApp {
     ) {
         let id = number_field_id(entry);
         let shown = entry.number.as_ref().map_or_else(String::new, |number| {
-            plan::number_text(&self.base, number, entry.want)
+            plan::number_shown(&self.base, number, entry.want)
         });
         let base = self.base.clone();
         let want = entry.want;

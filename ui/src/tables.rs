@@ -271,7 +271,7 @@ impl ToileApp {
         }
         let base = self.base.clone();
         let shown = value.map_or_else(String::new, |value| {
-            plan::number_text(&base, &Number::Value(value), want)
+            plan::number_shown(&base, &Number::Value(value), want)
         });
         ui.scope(|ui| {
             ui.set_width(VALUE);

@@ -21,6 +21,8 @@ struct View {
     name: &'static str,
     reach: fn(&mut Drafter),
     shows: &'static [&'static str],
+    /// What else is true of it.
+    holds: fn(&Drafter) -> bool,
 }
 
 const VIEWS: &[View] = &[
@@ -28,6 +30,7 @@ const VIEWS: &[View] = &[
         name: "pattern",
         reach: |_| {},
         shows: &["Pattern view", "Select", "3D view", "Drape"],
+        holds: |_| true,
     },
     View {
         name: "panel",
@@ -36,51 +39,61 @@ const VIEWS: &[View] = &[
             drafter.click(at);
         },
         shows: &["Name"],
+        holds: |_| true,
     },
     View {
         name: "table-measurements",
         reach: |drafter| tables(drafter, "Measurements"),
         shows: &["Add size", "New measurement"],
+        holds: |_| true,
     },
     View {
         name: "table-variables",
         reach: |drafter| tables(drafter, "Variables"),
         shows: &["New variable", "Add variable"],
+        holds: |_| true,
     },
     View {
         name: "table-fabric",
         reach: |drafter| drafter.key(Key::F4),
         shows: &["Garment cut from"],
+        holds: |_| true,
     },
     View {
         name: "table-wearer",
         reach: |drafter| drafter.key(Key::F3),
         shows: &["Woman", "Find measurement"],
+        holds: |_| true,
     },
     View {
         name: "table-worn-with",
         reach: |drafter| drafter.chord(Modifiers::SHIFT, Key::F3),
         shows: &["Wear over", "Wear under"],
+        holds: |_| true,
     },
     View {
         name: "table-history",
         reach: |drafter| tables(drafter, "History"),
         shows: &["History"],
+        holds: |_| true,
     },
     View {
         name: "properties",
         reach: |drafter| drafter.choose("Pattern properties"),
         shows: &["Name"],
+        holds: |_| true,
     },
     View {
         name: "sizes-overlaid",
         reach: |drafter| drafter.choose("All sizes"),
         shows: &["Pattern view"],
+        holds: |drafter| drafter.window.state().view().grading.is_some(),
     },
     View {
         name: "marker-table",
         reach: |drafter| drafter.choose("Show marker"),
         shows: &["Marker view"],
+        holds: |_| true,
     },
     View {
         name: "walk-seam",
@@ -90,36 +103,48 @@ const VIEWS: &[View] = &[
             drafter.click(at);
         },
         shows: &["Pattern view"],
+        holds: |drafter| drafter.status().contains("stays"),
     },
     View {
         name: "findings",
         reach: |drafter| drafter.choose("Findings"),
         shows: &["Pattern view"],
+        holds: |drafter| {
+            drafter
+                .window
+                .query_by_label("Nothing is wrong with this pattern.")
+                .is_some()
+        },
     },
     View {
         name: "dialog-find",
         reach: |drafter| drafter.choose("Find"),
         shows: &["Find a command, a part, a variable or a measurement"],
+        holds: |_| true,
     },
     View {
         name: "dialog-words",
         reach: |drafter| drafter.key(Key::F1),
         shows: &["Find a word", "Close", "allowance"],
+        holds: |_| true,
     },
     View {
         name: "dialog-export",
         reach: |drafter| drafter.choose("Export"),
         shows: &["Export"],
+        holds: |_| true,
     },
     View {
         name: "dialog-print",
         reach: |drafter| drafter.choose("Print"),
         shows: &["Print"],
+        holds: |_| true,
     },
     View {
         name: "dialog-open",
         reach: |drafter| drafter.choose("Open"),
         shows: &["Open a pattern", "File"],
+        holds: |_| true,
     },
 ];
 
@@ -177,6 +202,9 @@ fn every_view_has_what_belongs_to_it_inside_the_window() {
             if !found.iter().any(|rect| window.contains_rect(*rect)) {
                 faults.push(format!("{}: {label}: {found:?}", view.name));
             }
+        }
+        if !(view.holds)(&drafter) {
+            faults.push(format!("{} is not there: {}", view.name, drafter.status()));
         }
         drafter.pictures(view.name, screens.as_ref());
     }

@@ -114,5 +114,6 @@ fn a_skirt_block_of_two_panels_with_darts_and_fold_is_drafted_and_sewn() {
             && found.severity == toile_pattern::Severity::Note
             && matches!(found.place, toile_pattern::Place::Seam(_))
     };
+    assert_eq!(findings.len(), 3, "{findings:?}");
     assert!(findings.iter().all(turns), "{findings:?}");
 }

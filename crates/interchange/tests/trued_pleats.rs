@@ -93,7 +93,7 @@ fn folded_pleats_leave_no_kink_on_shipped_edges_in_every_size() {
                         continue;
                     };
                     for size in &pattern.sizes {
-                        let evaluation = Evaluation::new(&pleated, &Wearer::from(size));
+                        let evaluation = Evaluation::new(&pleated, Wearer::from(size));
                         let Some(stage) = evaluation.stage(panel.id, Some(pleat)) else {
                             continue;
                         };

@@ -10,6 +10,8 @@ use toile_pattern::OrderedPiece;
 const EXACT: f64 = 1e-10;
 /// Most steps out of what a piece lies over, and to two neighbours at once.
 const STEPS: usize = 200;
+/// How far in all a piece that is let go may come [reaches]: out of others, to an edge, along it, into a corner.
+const MOVES: f64 = 5.0;
 /// Least sine of the angle between two directions in which a piece is stopped.
 const LEAST_SINE: f64 = 0.2;
 
@@ -50,7 +52,8 @@ struct Surroundings {
 }
 
 impl DocumentMarker {
-    /// Where pieces that are let go as they lie come to rest: moved at most so far [m].
+    /// Where pieces that are let go as they lie come to rest: moved at most so far [m] to be free, and as far
+    /// again to lie against a neighbour and into the corner between two.
     pub fn let_go(&self, pieces: &[OrderedPiece], reach: f64) -> LetGo {
         let strip = self.strip();
         let laid: Vec<_> = self.outlines().collect();
@@ -61,7 +64,7 @@ impl DocumentMarker {
             let bounds = outline.bounds();
             for (piece, other, stays) in laid.iter().filter(|(p, ..)| !is_held(p)) {
                 let gap = strip.gap_between(item, other);
-                if bounds.distance(&stays.bounds()) <= gap + 2.0 * reach {
+                if bounds.distance(&stays.bounds()) <= gap + MOVES * reach {
                     neighbours.push(Neighbour::Piece {
                         own,
                         outline: PreparedPolygon::new(stays),

@@ -11,7 +11,7 @@ const MOST_KEPT: usize = 50;
 /// One step: the project on the other side of it.
 #[derive(Clone, Debug)]
 pub struct HistoryStep {
-    /// Its own number: none of the same history has the same.
+    /// Its own number: no other step of the session has the same.
     pub(crate) number: u64,
     pub(crate) label: String,
     pub(crate) project: Project,
@@ -27,6 +27,14 @@ pub(crate) struct History {
 }
 
 impl History {
+    /// The empty history of another document: its steps have numbers that none had before.
+    pub fn begun_anew(self) -> Self {
+        Self {
+            count: self.count,
+            ..Self::default()
+        }
+    }
+
     /// Notes a step from `before`.
     pub fn record(&mut self, before: Project, label: &str) {
         self.future.clear();

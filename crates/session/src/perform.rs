@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_body::{Figure, PrimitiveEdit};
 use toile_drape::MOST_LAYER;
-use toile_interchange::{FABRIC_WIDTHS, write_atomically, write_mannequin};
+use toile_interchange::{FABRIC_WIDTHS, Fitting, write_atomically, write_mannequin};
 use toile_measure::Measurements;
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
@@ -136,7 +136,8 @@ impl Session {
 
     /// Takes up a pattern that is in no file, with the steps that led to it as far back as they can be read.
     fn restore(&mut self, (text, past): (&str, &[PastStep]), source: Option<&Path>) -> Outcome {
-        let (next, notes) = self.restored(text, source)?;
+        let (next, fitting, notes) = self.restored((text, None), source)?;
+        let mut worn = (fitting, next.clone());
         let mut events = self.begin(next);
         let mut steps = Vec::new();
         let mut after = text.to_owned();
@@ -144,9 +145,10 @@ impl Session {
             let Some(before) = step.text_before(&after) else {
                 break;
             };
-            let Ok((project, _)) = self.restored(&before, source) else {
+            let Ok((project, fitting, _)) = self.restored((&before, Some(&worn)), source) else {
                 break;
             };
+            worn = (fitting, project.clone());
             steps.push((project, &step.label));
             after = before;
         }
@@ -158,24 +160,36 @@ impl Session {
         Ok(events)
     }
 
-    /// The project of a pattern that is in no file, in the present quality, and what is worth telling.
+    /// The project of a pattern that is in no file, in the present quality, how it says that it is tried on, and
+    /// what is worth telling. Where one beside it says the same of that, its files are not read again.
     fn restored(
         &self,
-        text: &str,
+        (text, beside): (&str, Option<&(Fitting, Project)>),
         source: Option<&Path>,
-    ) -> Result<(Project, Vec<String>), SessionError> {
+    ) -> Result<(Project, Fitting, Vec<String>), SessionError> {
         let opened = read_pattern_text(text).map_err(|error| SessionError::Format {
             path: source.unwrap_or(Path::new("recovered pattern")).to_owned(),
             error,
         })?;
+        let pattern = Arc::new(opened.pattern);
+        if let Some((fitting, project)) = beside
+            && *fitting == opened.fitting
+            && project.pattern.sizes == pattern.sizes
+        {
+            let next = Project {
+                pattern,
+                ..project.clone()
+            };
+            return Ok((next, opened.fitting, Vec::new()));
+        }
         let mut next = Project {
-            pattern: Arc::new(opened.pattern),
+            pattern,
             source: source.map(Path::to_owned),
             quality: self.project.quality,
             ..Project::default()
         };
-        let notes = try_on(&mut next, opened.fitting, self.origin);
-        Ok((next, notes))
+        let notes = try_on(&mut next, opened.fitting.clone(), self.origin);
+        Ok((next, opened.fitting, notes))
     }
 
     /// Puts another project in place of the present one, in its quality, with a history of its own.
@@ -184,7 +198,7 @@ impl Session {
             quality: self.project.quality,
             ..next
         };
-        self.history = History::default();
+        self.history = std::mem::take(&mut self.history).begun_anew();
         let mut events = vec![Event::PatternOpened];
         events.extend(self.replace(next));
         events

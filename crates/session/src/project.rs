@@ -158,9 +158,13 @@ impl Project {
     }
 
     /// Whom it is made to measure for, and the girths of bust, waist and hips; nothing where it is drafted to a size
-    /// of the pattern, or as drawn.
+    /// of the pattern, as drawn, or to a figure that nobody was measured for.
     pub fn made_for(&self) -> Option<[String; 2]> {
-        if self.size_name().is_some() || self.body.is_of_pattern() {
+        let is_measured = matches!(
+            self.body,
+            BodyChoice::Measured { .. } | BodyChoice::Shaped { .. }
+        );
+        if self.size_name().is_some() || !is_measured {
             return None;
         }
         let measurements = self.drafted_to().measurements;

@@ -298,3 +298,38 @@ fn the_history_is_there_again_after_a_crash() {
     let (replayed, _) = Session::replay(&again.journal(), folder.path(), &mut Silent).unwrap();
     assert_eq!(replayed.past(), again.past());
 }
+
+#[test]
+fn the_history_of_one_document_is_not_taken_for_that_of_the_next() {
+    let _looking = LOCKS.lock();
+    let folder = tempfile::tempdir().unwrap();
+    let states = folder.path().join("states");
+    let mut session = opened(folder.path());
+    let recovery = Recovery::start(&states).unwrap();
+    let edit = |session: &mut Session, k: u32| {
+        count(session, k);
+        session.commit("Count").unwrap();
+        recovery.keep(session.project(), session.steps_to_keep());
+        // Until it is written.
+        std::thread::sleep(Duration::from_millis(900));
+    };
+    edit(&mut session, 1);
+    // Another document, with as many steps, of the same file.
+    let again = band(folder.path());
+    let open = Command::OpenPattern { path: again };
+    session.execute(open, &mut Silent).unwrap();
+    edit(&mut session, 7);
+    edit(&mut session, 8);
+    drop(recovery);
+    let found = abandoned(&states).unwrap().pop().unwrap();
+    let restore = Command::RestorePattern {
+        text: found.text.clone(),
+        source: found.source.clone(),
+        past: found.past.clone(),
+    };
+    let mut restored = Session::new();
+    restored.execute(restore, &mut Silent).unwrap();
+    assert_eq!(restored.past().len(), 2);
+    restored.execute(Command::Undo, &mut Silent).unwrap();
+    assert_eq!(counted(&restored.project().pattern), 7);
+}

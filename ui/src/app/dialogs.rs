@@ -109,6 +109,7 @@ impl ToileApp {
                     Dialog::Leave(next) => Some(*next),
                     Dialog::Close => {
                         self.closes = true;
+                        self.closes_at = self.session.revision();
                         None
                     }
                     _ => None,
@@ -139,6 +140,12 @@ impl ToileApp {
         if closing && !self.closes && self.is_unsaved() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
             self.waits_to_close = false;
+            self.dialog = Some(Dialog::Close);
+            return;
+        }
+        // What was drawn while files were written is asked for, too.
+        if self.closes && self.is_unsaved() && self.session.revision() != self.closes_at {
+            (self.closes, self.waits_to_close) = (false, false);
             self.dialog = Some(Dialog::Close);
             return;
         }

@@ -42,9 +42,17 @@ pub fn read(place: &Path) -> Option<ColorImage> {
 }
 
 impl ToileApp {
-    /// Keeps a picture of the garment that has just come to rest, if its pattern is in a file. One that cannot be
-    /// kept is missed on the first page and nowhere else.
-    pub(super) fn keep_drape_view(&self) {
+    /// Keeps a picture of the garment that has just come to rest, if its pattern is in a file as it is. One that
+    /// cannot be kept is missed on the first page and nowhere else.
+    pub(super) fn keep_drape_view(&mut self) {
+        if self.is_unsaved()
+            || self
+                .drape_view
+                .as_ref()
+                .is_some_and(|job| job.result().is_none())
+        {
+            return;
+        }
         let Some(folder) = self.preferences.folder() else {
             return;
         };
@@ -54,15 +62,16 @@ impl ToileApp {
         };
         let picture = place(folder, source);
         let recent = self.preferences.recent.iter();
-        let known: Vec<PathBuf> = recent.map(|file| place(folder, file)).collect();
+        let recent = recent.map(|file| place(folder, file));
+        let known: Vec<PathBuf> = recent.chain([picture.clone()]).collect();
         let mut snapshot = self.session.snapshot();
-        Job::start(move |_| {
+        self.drape_view = Some(Job::start(move |_| {
             if let Some(parent) = picture.parent() {
                 forget_others(parent, &known);
                 let _ = fs::create_dir_all(parent);
             }
             snapshot.write_drape_view(&picture, SIZE)
-        });
+        }));
     }
 }
 
@@ -72,7 +81,8 @@ fn forget_others(folder: &Path, known: &[PathBuf]) {
         return;
     };
     for path in entries.flatten().map(|entry| entry.path()) {
-        if !known.contains(&path) {
+        let is_picture = path.extension().is_some_and(|ending| ending == "png");
+        if is_picture && !known.contains(&path) {
             let _ = fs::remove_file(path);
         }
     }

@@ -380,6 +380,9 @@ impl ToileApp {
     /// Lays the pieces in little length, on a thread of its own.
     pub(crate) fn search_marker(&mut self) {
         let Some(id) = self.marker_id() else { return };
+        // A piece that is being dragged goes back: the search lays it.
+        self.session.cancel();
+        self.refresh();
         let search = match self.session.marker_search(id) {
             Ok(search) => search,
             Err(error) => return self.say_fault(error.to_string()),

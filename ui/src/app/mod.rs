@@ -102,6 +102,8 @@ pub struct ToileApp {
     /// Why the file that was asked for is not open.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
+    /// The state of the project for which that was answered.
+    closes_at: u64,
     pub(crate) wants_theme: bool,
     /// A change of the size of the interface that is asked for.
     pub(crate) wants_scale: Option<Option<f32>>,
@@ -111,6 +113,8 @@ pub struct ToileApp {
     pub(crate) abandoned: Vec<Abandoned>,
     /// Pictures of the first page.
     pattern_cards: pattern_cards::PatternCards,
+    /// The work on the picture of the garment that hangs.
+    drape_view: Option<job::Job<()>>,
     /// The project that was last given to be kept.
     kept: Option<Project>,
     pub(crate) revision: Option<u64>,
@@ -164,12 +168,14 @@ impl ToileApp {
             inspector_is_left: false,
             refusal: None,
             closes: false,
+            closes_at: 0,
             wants_theme: false,
             wants_scale: None,
             preferences,
             recovery: None,
             abandoned: Vec::new(),
             pattern_cards: Default::default(),
+            drape_view: None,
             kept: None,
             revision: None,
             octave: 0,
@@ -289,6 +295,9 @@ impl ToileApp {
     /// Applies events of the session to the window: notices, views, the garment.
     pub(crate) fn handle_events(&mut self, events: &[Event]) {
         let opened = events.contains(&Event::PatternOpened);
+        if opened {
+            self.tables.wearer.forget();
+        }
         if !events.is_empty() {
             self.notice = Notice::default();
         }

@@ -48,7 +48,7 @@ impl ToileApp {
             return;
         };
         let field = egui::Id::unique(("radius", id));
-        let shown = plan::number_text(&base, &Number::Value(arc.radius()), Want::Length);
+        let shown = plan::number_shown(&base, &Number::Value(arc.radius()), Want::Length);
         let unit = base.pattern().unit;
         let told = |text: &str| {
             let found = number::parse(text, Want::Length, &base)?;

@@ -35,7 +35,7 @@ impl ToileApp {
             let value = value(text)?;
             Ok(format!("= {}", number::show(value, Want::Length, unit)))
         };
-        let shown = plan::number_text(&base, &Number::Value(at), Want::Length);
+        let shown = plan::number_shown(&base, &Number::Value(at), Want::Length);
         let field = place_field(id);
         let entered = labelled(ui, label, |ui, label| {
             self.typed

@@ -77,7 +77,7 @@ impl ToileApp {
         let want = first.want;
         let text = |entry: &NumberEntry| {
             let number = entry.number.as_ref()?;
-            Some(plan::number_text(&base, number, want))
+            Some(plan::number_shown(&base, number, want))
         };
         // Where they differ, nothing is shown.
         let shown = match entries.iter().all(|entry| text(entry) == text(first)) {

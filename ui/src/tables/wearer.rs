@@ -40,6 +40,15 @@ struct Known {
     all: Measurements,
     /// Those that were asked for.
     asked: Measurements,
+    /// The average height of the figure [m].
+    figure_height: Option<f64>,
+}
+
+impl WearerTable {
+    /// Forgets the wearer of another document.
+    pub fn forget(&mut self) {
+        self.own = None;
+    }
 }
 
 /// A measurement of the wearer.
@@ -261,10 +270,10 @@ impl ToileApp {
         let base = self.base.clone();
         // What was predicted is told to a tenth of a millimetre.
         let shown = match (row.is_asked, row.want) {
-            (true, _) => plan::number_text(&base, &Number::Value(row.value), row.want),
+            (true, _) => plan::number_shown(&base, &Number::Value(row.value), row.want),
             (false, Want::Length) => {
                 let value = (row.value * 1e4).round() / 1e4;
-                plan::number_text(&base, &Number::Value(value), row.want)
+                plan::number_shown(&base, &Number::Value(value), row.want)
             }
             (false, want) => number::show(row.value, want, base.pattern().unit),
         };
@@ -314,6 +323,7 @@ impl ToileApp {
                 revision,
                 all: project.body_measurements(),
                 asked: project.asked_measurements(),
+                figure_height: project.figure().average().get(HEIGHT),
             }
         });
         self.tables.wearer.known.insert(known).clone()
@@ -379,6 +389,13 @@ fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Mea
         }
         None => {
             table.remove(name);
+            // With the last girth goes the height that stayed beside it.
+            let height = known.figure_height.filter(|_| table.len() == 1);
+            if let (Some(usual), Some(given)) = (height, table.get(HEIGHT))
+                && (usual - given).abs() < 1e-3
+            {
+                table.remove(HEIGHT);
+            }
         }
     }
     Ok(table)
@@ -431,6 +448,7 @@ mod tests {
             revision: 0,
             all,
             asked,
+            figure_height: None,
         };
         let whole = found_rows(&known, "");
         assert_eq!(whole.len(), known.all.len());

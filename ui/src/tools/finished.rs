@@ -29,7 +29,7 @@ pub fn finished_words(
                 }
             )
         });
-    if keeps {
+    if keeps && (found.untrued - found.length).abs() < SAME {
         let [length, mouth] = [found.length, found.mouth].map(length);
         return Some(format!(
             "{name} finished: {length}, kept; the mouth is {mouth} wide"

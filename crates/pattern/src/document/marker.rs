@@ -36,7 +36,8 @@ pub struct Marker {
 pub struct MarkerCloth {
     /// The fabric; the pieces cut from it are laid.
     pub fabric: FabricId,
-    /// Whether they lie on it whatever the garment is cut from.
+    /// Whether they lie on it whatever the garment is cut from. Journals of older versions do not say it.
+    #[serde(default)]
     pub keeps_fabric: bool,
     /// Full width laid open, of a tube its girth [m]; nothing means the roll's, or the fabric's own.
     pub width: Option<f64>,

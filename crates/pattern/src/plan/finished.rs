@@ -23,17 +23,21 @@ pub fn finished_length(
     dart: OperationId,
 ) -> Option<FinishedLength> {
     let pattern = evaluation.pattern();
-    let stage = evaluation.last_stage(pattern.panel(panel)?)?;
-    let (edge, length) = stage.edge_beside(dart)?;
-    let own = stage
-        .darts
-        .iter()
-        .find(|own| own.by == dart && own.half == 0)?;
     // What cuts the outline apart forgets how it was before it was trued.
     let owner = pattern.owner_of(panel, dart.into())?;
     let steps = owner.operations.iter().rev();
     let mut stages = steps.filter_map(|step| evaluation.stage(owner.id, Some(step.id)));
     let before = stages.find(|stage| !stage.untrued.is_empty());
+    // Both lengths are of one stage, so that nothing else is taken for truing.
+    let stage = match before {
+        Some(stage) => stage,
+        None => evaluation.last_stage(pattern.panel(panel)?)?,
+    };
+    let (edge, length) = stage.edge_beside(dart)?;
+    let own = stage
+        .darts
+        .iter()
+        .find(|own| own.by == dart && own.half == 0)?;
     let of_edge = |stage: &crate::Stage| -> f64 {
         let own = stage
             .untrued

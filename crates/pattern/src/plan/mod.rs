@@ -86,7 +86,7 @@ pub use split::{Joined, SplitPanel, SplitWish, split_panel};
 pub use swept::{angle_of, bulge_of};
 pub use trace::{Holes, NewPanel, add_line, remove_line, trace_face, trace_panel};
 pub use transform::{Affine, Moved, move_points, transform_points};
-pub use typed::{number_text, read_number};
+pub use typed::{number_shown, number_text, read_number};
 
 use crate::EditError;
 

@@ -5,6 +5,9 @@ use super::impossible;
 use crate::formula::Operation;
 use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
 
+/// Decimals of a value, in its unit: less than any pattern needs, and few enough that rounding in the last
+/// bits of a value does not come to light.
+const DECIMALS: usize = 9;
 /// Most decimals of a value that someone typed, in its unit: they are shown as they were typed.
 const TYPED: usize = 6;
 /// How far a value may be from its typed decimals [of its unit].
@@ -126,31 +129,58 @@ fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
     }
 }
 
-/// A number as it is shown and may be typed again: a formula with the names of the day, a value
-/// with its unit; that of the size on show where sizes have their own.
+/// A number as it may be typed again, and as formulas that are made of it have it: a formula with the
+/// names of the day, a value with its unit; that of the size on show where sizes have their own.
 pub fn number_text(evaluation: &Evaluation, number: &Number, want: Want) -> String {
+    text(evaluation, (number, want), exact)
+}
+
+/// A number as it is shown: as [`number_text`], but of a value that was computed no more than a hundredth
+/// of a millimetre, or of a degree.
+pub fn number_shown(evaluation: &Evaluation, number: &Number, want: Want) -> String {
+    text(evaluation, (number, want), shown)
+}
+
+/// Writes a value in its unit, of which so many decimals are needed.
+type Digits = fn(f64, usize) -> String;
+
+fn exact(value: f64, _: usize) -> String {
+    format!("{value:.DECIMALS$}")
+}
+
+fn shown(value: f64, needed: usize) -> String {
+    let typed = format!("{value:.TYPED$}");
+    let parsed = typed.parse();
+    let is_typed = parsed.is_ok_and(|typed: f64| (typed - value).abs() <= SAME);
+    match is_typed {
+        true => typed,
+        false => format!("{value:.needed$}"),
+    }
+}
+
+fn text(evaluation: &Evaluation, (number, want): (&Number, Want), digits: Digits) -> String {
     let names = evaluation.names();
     match number {
-        Number::Value(value) => value_text(evaluation, *value, want),
+        Number::Value(value) => value_text(evaluation, (*value, want), digits),
         Number::Formula(formula) => formula.text(names),
+        // Typed again, it is a formula: nothing of it is lost.
         Number::Adjusted { formula, by } => {
             let sign = if *by < 0.0 { '-' } else { '+' };
-            let by = value_text(evaluation, by.abs(), want);
+            let by = value_text(evaluation, (by.abs(), want), exact);
             format!("({}) {sign} {by}", formula.text(names))
         }
         Number::PerSize { usual, sizes } => {
             let own = sizes.iter().find(|own| Some(own.0) == evaluation.size());
             match own {
-                Some((_, value)) => value_text(evaluation, *value, want),
-                None => number_text(evaluation, usual, want),
+                Some((_, value)) => value_text(evaluation, (*value, want), digits),
+                None => text(evaluation, (usual, want), digits),
             }
         }
     }
 }
 
-fn value_text(evaluation: &Evaluation, value: f64, want: Want) -> String {
+fn value_text(evaluation: &Evaluation, (value, want): (f64, Want), digits: Digits) -> String {
     let unit = evaluation.pattern().unit;
-    // Of what was computed no more is shown than a hundredth of a millimetre, or of a degree.
     let (value, sign, needed) = match want {
         Want::Length => {
             let needed = match unit {
@@ -164,14 +194,7 @@ fn value_text(evaluation: &Evaluation, value: f64, want: Want) -> String {
         Want::Angle => (value.to_degrees(), "deg", 2),
         Want::Plain | Want::Any => (value, "", 4),
     };
-    let typed = format!("{value:.TYPED$}");
-    let is_typed = typed
-        .parse()
-        .is_ok_and(|typed: f64| (typed - value).abs() <= SAME);
-    let digits = match is_typed {
-        true => typed,
-        false => format!("{value:.needed$}"),
-    };
+    let digits = digits(value, needed);
     let short = match digits.contains('.') {
         true => digits.trim_end_matches('0').trim_end_matches('.'),
         false => &digits,

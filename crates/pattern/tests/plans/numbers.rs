@@ -110,6 +110,16 @@ fn numbers_are_shown_as_they_may_be_typed() {
         (own, Want::Length, "20cm"),
     ];
     let evaluation = evaluated(&pattern);
+    // What was computed is shown shorter than formulas have it; what was typed is shown as it was typed.
+    for (value, exact, shown) in [
+        (0.123_456_789_1, "12.34567891cm", "12.346cm"),
+        (0.123_456, "12.3456cm", "12.3456cm"),
+    ] {
+        let number = Number::Value(value);
+        let [a, b] = [plan::number_text, plan::number_shown]
+            .map(|text| text(&evaluation, &number, Want::Length));
+        assert_eq!([&*a, &*b], [exact, shown]);
+    }
     for (number, want, text) in cases {
         assert_eq!(plan::number_text(&evaluation, &number, want), text);
         let again = plan::read_number(&evaluation, text, want).unwrap();

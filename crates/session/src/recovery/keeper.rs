@@ -43,6 +43,14 @@ enum Wish {
     Clear,
 }
 
+/// The texts of steps that were kept last, by their numbers.
+#[derive(Default)]
+struct KeptTexts {
+    /// The file of the document, from whose folder they name other files.
+    source: Option<PathBuf>,
+    by_number: BTreeMap<u64, String>,
+}
+
 #[derive(Clone)]
 struct Files {
     folder: PathBuf,
@@ -123,7 +131,7 @@ impl Shared {
     }
 
     fn run(&self, files: &Files) {
-        let mut texts = BTreeMap::new();
+        let mut texts = KeptTexts::default();
         while let Some(wish) = self.next() {
             let begun = Instant::now();
             let done = match wish {
@@ -169,16 +177,19 @@ impl Files {
         file_of(&self.folder, &self.id, ending)
     }
 
-    /// Keeps a state. `texts` are those of the steps that were kept last, by their numbers.
+    /// Keeps a state. `texts` are those of the steps that were kept last.
     fn keep(
         &self,
         project: &Project,
         past: &[HistoryStep],
-        texts: &mut BTreeMap<u64, String>,
+        texts: &mut KeptTexts,
     ) -> Result<(), String> {
         let source = project.source.clone();
         let text = document_text(project, source.as_deref()).map_err(|error| error.to_string())?;
-        let mut known = std::mem::take(texts);
+        let mut known = match texts.source == source {
+            true => std::mem::take(&mut texts.by_number),
+            false => BTreeMap::new(),
+        };
         let mut befores = Vec::with_capacity(past.len());
         for step in past {
             let before = match known.remove(&step.number) {
@@ -196,7 +207,8 @@ impl Files {
         let steps = steps
             .map(|((step, before), after)| PastStep::between(step.label.clone(), before, after));
         let steps = steps.collect();
-        texts.extend(past.iter().map(|step| step.number).zip(befores));
+        texts.source.clone_from(&source);
+        texts.by_number = past.iter().map(|step| step.number).zip(befores).collect();
         let state = DocumentState {
             head: Head {
                 name: project.pattern.name.clone(),
