@@ -42,7 +42,7 @@ fn inspector_place(table: Rect, left: bool) -> Rect {
 
 impl ToileApp {
     /// What is selected, over an upper corner of the table; where nothing is selected nothing is there. It goes to
-    /// the other corner where it would lie on what is selected. While a drawing tool is under way, and until it
+    /// the left corner where it would lie on what is selected on the right. While a drawing tool is under way, and until it
     /// has made something, it is out of the way.
     pub(crate) fn show_inspector(&mut self, ui: &mut Ui, table: Rect) {
         let items = self.view.selection.items().to_vec();
@@ -54,14 +54,22 @@ impl ToileApp {
             return;
         }
         let corners = [false, true].map(|left| inspector_place(table, left));
-        let covers = |place: &Rect| self.view.selection_is_in(table, *place);
-        let here = usize::from(self.inspector_is_left);
-        if covers(&corners[here]) && !covers(&corners[1 - here]) {
-            self.inspector_is_left = !self.inspector_is_left;
+        // As tall as it was when it was last shown.
+        let id = egui::Id::unique("inspector");
+        let shown = ui.memory(|memory| memory.area_rect(id));
+        let height = shown.map_or(f32::INFINITY, |shown| shown.height() + MARGIN);
+        let covers = |place: &Rect| {
+            let size = vec2(place.width(), place.height().min(height));
+            let place = Rect::from_min_size(place.min, size);
+            self.view.selection_is_in(table, place)
+        };
+        // On the right wherever it can be; while something is dragged it stays.
+        if !ui.input(|input| input.pointer.any_down()) {
+            self.inspector_is_left = covers(&corners[0]) && !covers(&corners[1]);
         }
         let place = corners[usize::from(self.inspector_is_left)];
         let frame = egui::Frame::popup(ui.style());
-        let area = egui::Area::new(egui::Id::unique("inspector"))
+        let area = egui::Area::new(id)
             .order(egui::Order::Middle)
             .fixed_pos(place.min)
             .default_size(place.size())

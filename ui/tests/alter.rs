@@ -6,36 +6,7 @@ mod drafter;
 use drafter::Drafter;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
-use toile_pattern::{LineKind, Name, Role, Stage, StageEdge};
-
-fn panel() -> Drafter {
-    let mut drafter = Drafter::new();
-    drafter.press("New pattern");
-    drafter.enter("Name", "Altered");
-    drafter.key(Key::R);
-    drafter.click(drafter.place(0.0, 0.0));
-    drafter.click(drafter.place(0.2, 0.3));
-    drafter.key(Key::Escape);
-    drafter.key(Key::Escape);
-    drafter
-}
-
-fn stage(drafter: &Drafter) -> Arc<Stage> {
-    let pattern = drafter.pattern();
-    let evaluation = drafter.evaluation();
-    evaluation.last_stage(&pattern.panels[0]).unwrap().clone()
-}
-
-/// Length of a drawn edge as it is after all operations [m].
-fn length(drafter: &Drafter, name: &str) -> f64 {
-    let pattern = drafter.pattern();
-    let edge = pattern.panels[0].edges().find(|edge| edge.name == name);
-    let edge = toile_pattern::Name::Drawn(edge.unwrap().id);
-    let stage = stage(drafter);
-    let own = stage.outline().iter().filter(|found| found.name == edge);
-    own.map(|found| found.curve.length()).sum()
-}
+use toile_pattern::{LineKind, Name, Role, StageEdge};
 
 /// Length of the trued top with a dart of 2 by 15 cm in its middle [m]: closed, it is the chord
 /// between its corners.
@@ -46,7 +17,7 @@ fn trued_top() -> f64 {
 
 #[test]
 fn a_dart_is_trued_by_a_tick_that_is_on() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.key(Key::D);
     drafter.click(drafter.part("Edge top of draft"));
     drafter.typed("2");
@@ -58,37 +29,37 @@ fn a_dart_is_trued_by_a_tick_that_is_on() {
     drafter.key(Key::Escape);
     drafter.key(Key::Escape);
     drafter.click(drafter.part("Dart of draft"));
-    assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
+    assert!((drafter.finished_length("top") - trued_top()).abs() < 1e-9);
     let told = |drafter: &Drafter, words: &str| drafter.window.query_by_label(words).is_some();
     let words = "top finished: 18 cm -> 17.96 cm by truing";
     assert!(told(&drafter, words), "{}", trued_top());
     // Its width alone is taken from the finished edge: what truing takes is given back at the mouth.
     drafter.tick("Keep the finished length");
-    assert!((length(&drafter, "top") - 0.18).abs() < 1e-9);
+    assert!((drafter.finished_length("top") - 0.18).abs() < 1e-9);
     assert!(told(&drafter, "No faults"));
     drafter.tick("Keep the finished length");
     assert!(told(&drafter, "No faults"));
     drafter.tick("True the edge");
-    assert!((length(&drafter, "top") - 0.18).abs() < 1e-9);
+    assert!((drafter.finished_length("top") - 0.18).abs() < 1e-9);
     assert!(told(&drafter, "No faults, 1 note"));
     let kink = &drafter.window.state().findings()[0];
     assert!(kink.message.contains("top turns by 7.6 degrees"), "{kink}");
     drafter.tick("Kink is meant");
     assert!(told(&drafter, "No faults"));
     drafter.tick("True the edge");
-    assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
+    assert!((drafter.finished_length("top") - trued_top()).abs() < 1e-9);
 }
 
 #[test]
 fn a_dart_is_pivoted_by_four_actions() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.key(Key::D);
     drafter.click(drafter.part("Edge top of draft"));
     drafter.typed("2");
     drafter.typed("15");
     drafter.key(Key::Escape);
     drafter.key(Key::Escape);
-    assert!((length(&drafter, "top") - trued_top()).abs() < 1e-9);
+    assert!((drafter.finished_length("top") - trued_top()).abs() < 1e-9);
     drafter.actions = 0;
     drafter.chord(Modifiers::SHIFT, Key::E);
     drafter.click(drafter.part("Dart of draft"));
@@ -101,7 +72,7 @@ fn a_dart_is_pivoted_by_four_actions() {
         "{}",
         drafter.status()
     );
-    let stage = stage(&drafter);
+    let stage = drafter.stage();
     assert!(
         stage.darts.len() == 1 || stage.darts.len() == 2,
         "{}",
@@ -109,17 +80,17 @@ fn a_dart_is_pivoted_by_four_actions() {
     );
     // The old mouth is closed: the top is as long as it was finished, in one straight line.
     assert!(
-        (length(&drafter, "top") - trued_top()).abs() < 1e-9,
+        (drafter.finished_length("top") - trued_top()).abs() < 1e-9,
         "{}",
-        length(&drafter, "top")
+        drafter.finished_length("top")
     );
-    assert!((length(&drafter, "left") - 0.3).abs() < 1e-9);
+    assert!((drafter.finished_length("left") - 0.3).abs() < 1e-9);
     assert!(drafter.window.query_by_label("No faults").is_some());
 }
 
 #[test]
 fn a_panel_is_spread_by_two_clicks_and_numbers() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.chord(Modifiers::SHIFT, Key::W);
     drafter.click(drafter.part("Edge bottom of draft"));
     drafter.click(drafter.part("Edge top of draft"));
@@ -138,10 +109,14 @@ fn a_panel_is_spread_by_two_clicks_and_numbers() {
         } else {
             0.2
         };
-        assert!((length(&drafter, name) - drawn).abs() < 1e-9, "{name}");
+        assert!(
+            (drafter.finished_length(name) - drawn).abs() < 1e-9,
+            "{name}"
+        );
     }
     // The lower edge runs over three openings of 2 cm.
-    let around: f64 = stage(&drafter)
+    let around: f64 = drafter
+        .stage()
         .outline()
         .iter()
         .map(|edge| edge.curve.length())
@@ -151,7 +126,7 @@ fn a_panel_is_spread_by_two_clicks_and_numbers() {
 
 /// A panel that was split from the middle of one side to the middle of the other.
 fn halved() -> Drafter {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.key(Key::K);
     drafter.click(drafter.part("Edge left of draft"));
     drafter.click(drafter.part("Edge right of draft"));
@@ -161,7 +136,7 @@ fn halved() -> Drafter {
 
 #[test]
 fn a_panel_is_split_by_two_clicks_and_its_sides_are_panels() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     let before = drafter.pattern();
     drafter.actions = 0;
     drafter.key(Key::K);
@@ -193,7 +168,7 @@ fn a_panel_is_split_by_two_clicks_and_its_sides_are_panels() {
 
 #[test]
 fn a_panel_is_split_along_a_curve() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.key(Key::C);
     for (x, y) in [(-0.02, 0.1), (0.1, 0.2), (0.22, 0.1)] {
         drafter.click(drafter.place(x, y));
@@ -277,7 +252,7 @@ fn sides_of_a_split_are_worked_on_as_panels() {
 
 #[test]
 fn a_line_is_drawn_on_a_panel_after_a_pivot_and_inserted() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.key(Key::D);
     drafter.click(drafter.part("Edge top of draft"));
     drafter.typed("2");
@@ -337,7 +312,7 @@ fn an_edge_of_a_side_is_dragged_with_the_panel_that_was_split() {
 
 #[test]
 fn a_dart_with_two_points_is_taken_out_by_two_clicks_and_a_number() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.actions = 0;
     drafter.key(Key::O);
     drafter.click(drafter.place(0.1, 0.08));
@@ -347,7 +322,7 @@ fn a_dart_with_two_points_is_taken_out_by_two_clicks_and_a_number() {
     drafter.key(Key::Escape);
     drafter.key(Key::Escape);
     let hole = |drafter: &Drafter| {
-        let stage = stage(drafter);
+        let stage = drafter.stage();
         let own = stage.lines.iter().find(|line| line.kind == LineKind::Hole);
         own.unwrap()
             .edges
@@ -384,7 +359,7 @@ fn reaches(drafter: &Drafter, name: &str) -> [f64; 2] {
     let pattern = drafter.pattern();
     let edge = pattern.panels[0].edges().find(|edge| edge.name == name);
     let wanted = Name::Drawn(edge.unwrap().id);
-    let stage = stage(drafter);
+    let stage = drafter.stage();
     let notch = stage.notches.last().unwrap();
     let outline = stage.outline();
     let first = |edge: &StageEdge| edge.name == wanted && edge.start.is_some() && edge.from == 0.0;
@@ -448,7 +423,7 @@ fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
         ("spread", spread),
         ("pleated", pleated),
     ] {
-        let mut drafter = panel();
+        let mut drafter = Drafter::with_panel("Altered");
         alter(&mut drafter);
         drafter.key(Key::Escape);
         drafter.key(Key::Escape);
@@ -456,7 +431,7 @@ fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
         // Within the first or last centimetres of the edge, wherever operations moved it.
         let edge = pattern.panels[0].edges().find(|edge| edge.name == "top");
         let top = Name::Drawn(edge.unwrap().id);
-        let finished = stage(&drafter);
+        let finished = drafter.stage();
         let own = finished.outline().iter().filter(|edge| edge.name == top);
         let mut own: Vec<&StageEdge> = own.collect();
         own.sort_by(|a, b| a.from.total_cmp(&b.from));
@@ -466,7 +441,7 @@ fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
             for (end, place) in places.iter().enumerate() {
                 drafter.hover(drafter.place(place.x, place.y));
                 drafter.typed(text);
-                let notches = stage(&drafter).notches.len();
+                let notches = drafter.stage().notches.len();
                 assert_eq!(notches, 1, "{what} {text}: {}", drafter.status());
                 let reach = reaches(&drafter, "top")[end];
                 let is_there = (reach - wanted).abs() < 1e-9;

@@ -255,14 +255,7 @@ fn two_clicks_sew_both_sides_and_one_puts_notches_that_meet() {
 
 #[test]
 fn an_edge_that_is_clicked_while_a_number_is_typed_gives_its_length() {
-    let mut drafter = Drafter::new();
-    drafter.press("New pattern");
-    drafter.enter("Name", "Lengths");
-    drafter.key(Key::R);
-    drafter.click(drafter.place(0.0, 0.0));
-    drafter.click(drafter.place(0.2, 0.3));
-    drafter.key(Key::Escape);
-    drafter.key(Key::Escape);
+    let mut drafter = Drafter::with_panel("Lengths");
     drafter.click(drafter.part("Edge top of draft"));
     let field = drafter
         .window

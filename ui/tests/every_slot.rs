@@ -194,11 +194,6 @@ impl Table {
         self.drafter.window.state_mut().give(event);
     }
 
-    /// How many steps the history has.
-    fn steps(&self) -> usize {
-        self.drafter.window.state().session().past().len()
-    }
-
     /// How many things the tool was given.
     fn given(&self) -> usize {
         match &self.drafter.window.state().view().state {
@@ -310,11 +305,11 @@ impl Table {
 
     /// Escape takes back what is typed and nothing else.
     fn taken_back(&mut self, row: &Row) -> Result<(), String> {
-        let steps = self.steps();
+        let steps = self.drafter.steps();
         self.event(&ToolEvent::Escape);
         let is_as_before = self.given() == row.slot
             && !self.drafter.window.state().view().is_typing()
-            && self.steps() == steps;
+            && self.drafter.steps() == steps;
         match is_as_before {
             true => Ok(()),
             false => Err(format!("not taken back: {}", self.drafter.status())),

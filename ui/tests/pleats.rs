@@ -5,41 +5,7 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::{Key, Modifiers};
-use std::sync::Arc;
-use toile_pattern::{Mark, OperationKind, Stage};
-
-fn panel() -> Drafter {
-    let mut drafter = Drafter::new();
-    drafter.press("New pattern");
-    drafter.enter("Name", "Altered");
-    drafter.key(Key::R);
-    drafter.click(drafter.place(0.0, 0.0));
-    drafter.click(drafter.place(0.2, 0.3));
-    drafter.key(Key::Escape);
-    drafter.key(Key::Escape);
-    drafter
-}
-
-fn stage(drafter: &Drafter) -> Arc<Stage> {
-    let pattern = drafter.pattern();
-    let evaluation = drafter.evaluation();
-    evaluation.last_stage(&pattern.panels[0]).unwrap().clone()
-}
-
-/// Length of a drawn edge as it is after all operations [m].
-fn length(drafter: &Drafter, name: &str) -> f64 {
-    let pattern = drafter.pattern();
-    let edge = pattern.panels[0].edges().find(|edge| edge.name == name);
-    let edge = toile_pattern::Name::Drawn(edge.unwrap().id);
-    let stage = stage(drafter);
-    let own = stage.outline().iter().filter(|found| found.name == edge);
-    own.map(|found| found.curve.length()).sum()
-}
-
-/// How many steps the history has.
-fn steps(drafter: &Drafter) -> usize {
-    drafter.window.state().session().past().len()
-}
+use toile_pattern::{Mark, OperationKind};
 
 #[test]
 fn pleats_are_folded_by_two_clicks_and_numbers() {
@@ -48,7 +14,7 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
         (Modifiers::SHIFT, Key::Y, 4.0),
         (Modifiers::SHIFT, Key::J, 4.0),
     ] {
-        let mut drafter = panel();
+        let mut drafter = Drafter::with_panel("Altered");
         drafter.chord(modifiers, key);
         drafter.click(drafter.part("Edge bottom of draft"));
         drafter.click(drafter.part("Edge top of draft"));
@@ -65,9 +31,9 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
             drafter.status()
         );
         for name in ["top", "bottom"] {
-            assert!((length(&drafter, name) - 0.2).abs() < 1e-9, "{name}");
+            assert!((drafter.finished_length(name) - 0.2).abs() < 1e-9, "{name}");
         }
-        let stage = stage(&drafter);
+        let stage = drafter.stage();
         let ends = stage.outline().iter().map(|edge| edge.curve.end().x);
         let width = ends.clone().fold(f64::MIN, f64::max) - ends.fold(f64::MAX, f64::min);
         assert!((width - 0.2 - 2.0 * taken * 0.015).abs() < 1e-9, "{width}");
@@ -81,7 +47,7 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
 
 #[test]
 fn six_pleats_lie_where_their_first_and_their_spacing_say() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     drafter.actions = 0;
     drafter.key(Key::Y);
     drafter.click(drafter.part("Edge bottom of draft"));
@@ -121,8 +87,8 @@ fn six_pleats_lie_where_a_list_of_places_says() {
         "2, 4.5, 7, 10, 12, 16,5",
         "2 4,5 7 =4cm + 6cm 12 16.5",
     ] {
-        let mut drafter = panel();
-        let before = steps(&drafter);
+        let mut drafter = Drafter::with_panel("Altered");
+        let before = drafter.steps();
         drafter.actions = 0;
         drafter.key(Key::Y);
         drafter.click(drafter.part("Edge bottom of draft"));
@@ -132,7 +98,7 @@ fn six_pleats_lie_where_a_list_of_places_says() {
         drafter.type_text(list);
         let shown = drafter.window.state().view().scene.panels[0].pressed.len();
         assert_eq!(shown, 6, "{list}: {}", drafter.status());
-        assert_eq!(steps(&drafter), before);
+        assert_eq!(drafter.steps(), before);
         drafter.key(Key::Enter);
         println!(
             "six pleats at given places: {} actions",
@@ -165,12 +131,12 @@ fn six_pleats_lie_where_a_list_of_places_says() {
 
 #[test]
 fn numbers_are_seen_from_the_first_on() {
-    let mut drafter = panel();
+    let mut drafter = Drafter::with_panel("Altered");
     let width = |drafter: &Drafter| {
         let shape = &drafter.window.state().view().scene.panels[0].shape;
         shape.bounds.max.x - shape.bounds.min.x
     };
-    let before = steps(&drafter);
+    let before = drafter.steps();
     drafter.chord(Modifiers::SHIFT, Key::W);
     drafter.click(drafter.part("Edge bottom of draft"));
     drafter.click(drafter.part("Edge top of draft"));
@@ -188,7 +154,7 @@ fn numbers_are_seen_from_the_first_on() {
         "{}",
         width(&drafter)
     );
-    assert_eq!(steps(&drafter), before);
+    assert_eq!(drafter.steps(), before);
     drafter.key(Key::Enter);
     drafter.typed("5");
     assert!((width(&drafter) - 0.3).abs() < 1e-6, "{}", width(&drafter));

@@ -126,14 +126,7 @@ fn rims_are_taken_hold_of_from_both_sides() {
 
 #[test]
 fn corners_that_a_step_moved_are_seen_only_with_their_sheet() {
-    let mut drafter = Drafter::new();
-    drafter.press("New pattern");
-    drafter.enter("Name", "Pivoted");
-    drafter.key(Key::R);
-    drafter.click(drafter.place(0.0, 0.0));
-    drafter.click(drafter.place(0.2, 0.3));
-    drafter.key(Key::Escape);
-    drafter.key(Key::Escape);
+    let mut drafter = Drafter::with_panel("Pivoted");
     drafter.click(drafter.place(-0.05, -0.05));
     let points = |drafter: &Drafter| {
         let parts = drafter.window.query_all_by_role(Role::Button);

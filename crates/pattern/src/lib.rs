@@ -28,7 +28,9 @@ pub use document::*;
 pub use draft::*;
 pub use edit::{Edit, EditError, Entity, Head, SheetHead};
 pub use evaluate::{Evaluation, Node, Update, Want, Wearer};
-pub use formula::{Completion, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token};
+pub use formula::{
+    Completion, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token, is_unit,
+};
 pub use ids::*;
 pub use name::*;
 pub use number::Number;

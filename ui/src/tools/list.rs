@@ -1,12 +1,10 @@
 //! Several numbers typed into one field: places in centimetres, formulas too.
 
 use super::number;
-use toile_pattern::{Evaluation, Number, Want};
+use toile_pattern::{Evaluation, Number, Want, is_unit};
 
 /// Signs that a number goes on after or before, so that a space beside them divides nothing.
 const GOES_ON: [char; 5] = ['+', '-', '*', '/', '^'];
-/// Words that belong to the number before them.
-const UNITS: [&str; 6] = ["mm", "cm", "m", "in", "deg", "rad"];
 
 /// What was typed where one plain number or several lengths may be.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,7 +98,7 @@ fn parts(text: &str) -> Vec<String> {
 
 /// Whether a word belongs to the number before it.
 fn goes_on(before: &str, word: &str) -> bool {
-    before.ends_with(GOES_ON) || word.starts_with(GOES_ON) || UNITS.contains(&word)
+    before.ends_with(GOES_ON) || word.starts_with(GOES_ON) || is_unit(word)
 }
 
 #[cfg(test)]

@@ -8,8 +8,9 @@ use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::WgpuTestRenderer;
+use std::sync::Arc;
 use toile_geometry::Vec2;
-use toile_pattern::{CurveId, Evaluation, Pattern};
+use toile_pattern::{CurveId, Evaluation, Pattern, Stage};
 use toile_ui::{Beginning, ToileApp};
 
 /// A window with its actions counted.
@@ -38,6 +39,19 @@ impl Drafter {
             file: Some(folder.join(format!("{name}.toile.json"))),
             folder: None,
         })
+    }
+
+    /// A window with a new pattern whose one panel "draft" is a rectangle, 20 cm wide and 30 cm high.
+    pub fn with_panel(pattern: &str) -> Self {
+        let mut drafter = Self::new();
+        drafter.press("New pattern");
+        drafter.enter("Name", pattern);
+        drafter.key(Key::R);
+        drafter.click(drafter.place(0.0, 0.0));
+        drafter.click(drafter.place(0.2, 0.3));
+        drafter.key(Key::Escape);
+        drafter.key(Key::Escape);
+        drafter
     }
 
     pub fn begun(beginning: Beginning) -> Self {
@@ -78,6 +92,28 @@ impl Drafter {
     pub fn evaluation(&self) -> Evaluation {
         let project = self.window.state().session().project();
         Evaluation::new(&project.pattern, project.drafted_to())
+    }
+
+    /// The first panel as it is after all its operations.
+    pub fn stage(&self) -> Arc<Stage> {
+        let pattern = self.pattern();
+        let evaluation = self.evaluation();
+        evaluation.last_stage(&pattern.panels[0]).unwrap().clone()
+    }
+
+    /// Length of a drawn edge of the first panel as it is after all its operations [m].
+    pub fn finished_length(&self, name: &str) -> f64 {
+        let pattern = self.pattern();
+        let edge = pattern.panels[0].edges().find(|edge| edge.name == name);
+        let edge = toile_pattern::Name::Drawn(edge.unwrap().id);
+        let stage = self.stage();
+        let own = stage.outline().iter().filter(|found| found.name == edge);
+        own.map(|found| found.curve.length()).sum()
+    }
+
+    /// How many steps the history has.
+    pub fn steps(&self) -> usize {
+        self.window.state().session().past().len()
     }
 
     /// Presses a button or an entry of a menu that is open.

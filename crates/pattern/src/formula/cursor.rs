@@ -11,6 +11,24 @@ pub(super) struct Cursor<'a> {
     counted: Cell<(usize, usize)>,
 }
 
+/// A number with a unit, where the word is one.
+fn quantity(number: f64, unit: &str) -> Option<Quantity> {
+    Some(match unit {
+        "m" => Quantity::length(number),
+        "cm" => Quantity::length(number / 100.0),
+        "mm" => Quantity::length(number / 1000.0),
+        "in" => Quantity::length(number * 0.0254),
+        "deg" => Quantity::angle(number.to_radians()),
+        "rad" => Quantity::angle(number),
+        _ => return None,
+    })
+}
+
+/// Whether a word is a unit that may follow a number in a formula.
+pub fn is_unit(word: &str) -> bool {
+    quantity(1.0, word).is_some()
+}
+
 impl<'a> Cursor<'a> {
     pub fn new(text: &'a str) -> Self {
         Self {
@@ -155,26 +173,17 @@ impl<'a> Cursor<'a> {
         let before = self.at;
         self.skip_space();
         let end = word_length(self.rest());
-        let constant = match &self.rest()[..end] {
-            "" | "and" | "or" => {
-                self.at = before;
-                return Ok(Quantity::plain(number));
-            }
-            "m" => Quantity::length(number),
-            "cm" => Quantity::length(number / 100.0),
-            "mm" => Quantity::length(number / 1000.0),
-            "in" => Quantity::length(number * 0.0254),
-            "deg" => Quantity::angle(number.to_radians()),
-            "rad" => Quantity::angle(number),
-            other => {
-                let message = format!("{other:?} is not a unit");
-                return Err(
-                    self.error(message, "use mm, cm, m, in, deg or rad, or write * between")
-                );
-            }
+        let word = &self.rest()[..end];
+        if matches!(word, "" | "and" | "or") {
+            self.at = before;
+            return Ok(Quantity::plain(number));
+        }
+        let Some(quantity) = quantity(number, word) else {
+            let message = format!("{word:?} is not a unit");
+            return Err(self.error(message, "use mm, cm, m, in, deg or rad, or write * between"));
         };
         self.at += end;
-        Ok(constant)
+        Ok(quantity)
     }
 
     /// A name, plain or quoted, and whether it was quoted.

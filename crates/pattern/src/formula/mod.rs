@@ -16,6 +16,7 @@ mod written;
 
 pub use complete::Completion;
 pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
+pub use cursor::is_unit;
 pub use names::Names;
 pub(crate) use written::Kind;
 
