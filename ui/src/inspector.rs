@@ -137,7 +137,7 @@ impl ToileApp {
         for (k, entry) in entries.iter().enumerate() {
             // Of several of one name, as the cuts of pleats, each has its number.
             let is_same = |other: &&NumberEntry| other.label == entry.label;
-            let known = mark_words::label(self.base.pattern(), entry);
+            let known = mark_words::label(&self.base, entry);
             let label = match entries.iter().filter(is_same).count() {
                 1 => known,
                 _ if known != entry.label => known,

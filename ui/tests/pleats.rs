@@ -68,14 +68,16 @@ fn six_pleats_lie_where_their_first_and_their_spacing_say() {
     assert_eq!(pleats.len(), 6);
     for (k, pleat) in pleats.iter().enumerate() {
         let along = 0.025 + 0.03 * k as f64;
-        let [Mark::Along { distance, .. }, Mark::Between { share, .. }] = &pleat.ends else {
+        let [
+            Mark::Along { distance, .. },
+            Mark::Along { distance: far, .. },
+        ] = &pleat.ends
+        else {
             panic!("{:?}", pleat.ends);
         };
         assert!((distance.value().unwrap() - along).abs() < 1e-9, "{k}");
-        assert!(
-            (share.value().unwrap() - (1.0 - along / 0.2)).abs() < 1e-9,
-            "{k}"
-        );
+        // The outline runs back along the top.
+        assert!((far.value().unwrap() + along).abs() < 1e-9, "{k}");
     }
 }
 
@@ -126,6 +128,79 @@ fn six_pleats_lie_where_a_list_of_places_says() {
         for (found, wanted) in along.iter().zip(places) {
             assert!((found - wanted).abs() < 1e-9, "{list}: {along:?}");
         }
+    }
+}
+
+/// Where the lines of a pleated panel's pleats start [m].
+fn starts(drafter: &Drafter) -> Vec<f64> {
+    let stage = drafter.stage();
+    let placed = stage.lines.iter().filter(|line| {
+        let role = line.name.role();
+        line.half == 0 && role == Some(toile_pattern::Role::Placement)
+    });
+    let starts = placed.map(|line| line.edges[0].curve.start().x);
+    starts.collect()
+}
+
+#[test]
+fn places_count_from_the_end_of_the_edge_that_is_nearer_to_the_click() {
+    for (x, end) in [
+        (0.05, "A, where it meets left"),
+        (0.17, "B, where it meets right"),
+    ] {
+        let mut drafter = Drafter::with_panel("Altered");
+        drafter.key(Key::Y);
+        drafter.click(drafter.place(x, 0.0));
+        drafter.click(drafter.place(0.1, 0.3));
+        drafter.typed("1");
+        let told = format!("Places along bottom count from {end}");
+        let status = drafter.status();
+        assert!(status.contains(&told), "{told}: {status}");
+        drafter.type_text("2 5");
+        drafter.key(Key::Enter);
+        drafter.key(Key::Escape);
+        let from_left = |along: f64| if x < 0.1 { along } else { 0.2 - along };
+        let pattern = drafter.pattern();
+        let OperationKind::Pleat { pleats, .. } = &pattern.panels[0].operations[0].kind else {
+            panic!("{}", drafter.status());
+        };
+        let evaluation = drafter.evaluation();
+        for (pleat, along) in pleats.iter().zip([0.02, 0.05]) {
+            let placed = pleat.ends.each_ref().map(|mark| {
+                let Mark::Along { from, distance } = mark else {
+                    panic!("{mark:?}");
+                };
+                let toile_pattern::Name::Drawn(from) = *from else {
+                    panic!("{from:?}");
+                };
+                let along = evaluation
+                    .number(distance, toile_pattern::Want::Length)
+                    .unwrap();
+                // Along the outline: to the right at the bottom and to the left at the top.
+                let at = evaluation.point(from).unwrap();
+                at.x + if at.y < 0.1 { along } else { -along }
+            });
+            for x in placed {
+                assert!((x - from_left(along)).abs() < 1e-9, "{end}: {placed:?}");
+            }
+        }
+        // Its fields say so, without a sign, and are typed so.
+        let point = end.split(',').next().unwrap();
+        let field = format!("pleat 1 on bottom from {point}");
+        drafter.enter(&field, "3");
+        let pattern = drafter.pattern();
+        let OperationKind::Pleat { pleats, .. } = &pattern.panels[0].operations[0].kind else {
+            panic!("{}", drafter.status());
+        };
+        let Mark::Along { distance, .. } = &pleats[0].ends[0] else {
+            panic!("{:?}", pleats[0]);
+        };
+        let typed = distance.value().unwrap();
+        assert!(
+            (typed.abs() - 0.03).abs() < 1e-9 && (typed > 0.0) == (x < 0.1),
+            "{typed}"
+        );
+        assert_eq!(starts(&drafter).len(), 2);
     }
 }
 

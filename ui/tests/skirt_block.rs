@@ -112,7 +112,7 @@ fn a_skirt_block_of_two_panels_with_darts_and_fold_is_drafted_and_sewn() {
     let turns = |found: &toile_pattern::Diagnostic| {
         found.code == toile_pattern::Code::Kink
             && found.severity == toile_pattern::Severity::Note
-            && matches!(found.place, toile_pattern::Place::Seam(_))
+            && matches!(found.place, toile_pattern::Place::SeamEnd(..))
     };
     assert_eq!(findings.len(), 3, "{findings:?}");
     assert!(findings.iter().all(turns), "{findings:?}");

@@ -6,7 +6,7 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::plan;
 use toile_session::Command;
@@ -251,8 +251,8 @@ fn the_pointer_leads_along_the_seam_near_it_and_when_it_is_dragged() {
     );
 }
 
-#[test]
-fn a_kink_is_told_in_words_and_colour_on_the_canvas_and_beside_it() {
+/// The T-shirt with its front longer at the side: the hem turns across both side seams.
+fn kinked() -> Drafter {
     let mut drafter = Drafter::opened("t-shirt");
     let pattern = drafter.pattern();
     let sheet = pattern.panel_named("front").unwrap().sheet().unwrap();
@@ -271,6 +271,40 @@ fn a_kink_is_told_in_words_and_colour_on_the_canvas_and_beside_it() {
         .state_mut()
         .execute(Command::Edit { edits, label });
     drafter.window.run();
+    drafter
+}
+
+#[test]
+fn a_kink_has_its_sign_at_the_end_of_its_seam() {
+    let drafter = kinked();
+    let signs = drafter
+        .window
+        .query_all_by_role(egui::Role::Button)
+        .filter(|node| {
+            let label = node.accesskit_node().label();
+            label.is_some_and(|label| label.contains("hem turns by"))
+        });
+    let signs: Vec<egui::Rect> = signs.map(|sign| sign.rect()).collect();
+    assert_eq!(signs.len(), 2, "{}", drafter.status());
+    let state = drafter.window.state();
+    let scene = &state.view().scene;
+    let front = scene.panels.iter().find(|panel| panel.name == "front");
+    let bounds = front.unwrap().bounds();
+    for x in [bounds.min.x, bounds.max.x] {
+        // Corners of the hem: the lowest at both sides.
+        let corner = drafter.place(x, bounds.min.y);
+        let is_near = |sign: &&egui::Rect| sign.center().distance(corner) < 40.0;
+        assert_eq!(
+            signs.iter().filter(is_near).count(),
+            1,
+            "{signs:?} {corner:?}"
+        );
+    }
+}
+
+#[test]
+fn a_kink_is_told_in_words_and_colour_on_the_canvas_and_beside_it() {
+    let mut drafter = kinked();
     drafter.key(Key::W);
     let side = drafter.part("Edge side of front");
     drafter.click(side);

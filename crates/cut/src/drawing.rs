@@ -68,6 +68,17 @@ pub struct Drawing {
     pub words: Vec<Words>,
 }
 
+/// What is written on a piece, and where.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Writing<'w> {
+    /// The lines, the first one largest.
+    pub lines: &'w [&'w str],
+    /// Largest letters \[m\], where they are to be smaller than usual.
+    pub most: Option<f64>,
+    /// Lines that words do not lie on, besides those of the piece \[m\].
+    pub clear_of: &'w [[Vec2; 2]],
+}
+
 /// Size of the letters on the largest pieces \[m\], and on the smallest.
 const LETTERS: [f64; 2] = [0.022, 0.004];
 /// Arm of the cross at the end of a dart \[m\].
@@ -84,6 +95,15 @@ impl CutPiece {
     /// The piece drawn somewhere: `place` takes its points there, moved, turned, turned over or
     /// scaled. The lines given are written on it, the first one largest.
     pub fn drawing(&self, place: impl Fn(Vec2) -> Vec2, lines: &[&str]) -> Drawing {
+        let writing = Writing {
+            lines,
+            ..Writing::default()
+        };
+        self.drawing_with(place, &writing)
+    }
+
+    /// The same with more said of the words.
+    pub fn drawing_with(&self, place: impl Fn(Vec2) -> Vec2, writing: &Writing<'_>) -> Drawing {
         let placed = |points: &[Vec2]| points.iter().map(|&p| place(p)).collect::<Vec<Vec2>>();
         let mut strokes = Vec::new();
         let mut draw = |kind, name, points: Vec<Vec2>, closed| {
@@ -133,7 +153,15 @@ impl CutPiece {
             true => polygon.clone(),
             false => self.sewn().mapped(&place),
         };
-        let label = label(&inner, &inner_lines(&strokes), (lines, letters));
+        let mut clear_of = inner_lines(&strokes);
+        clear_of.extend(self.pressed.iter().map(|arrow| {
+            let half = arrow.way * (0.5 * arrow.width);
+            [arrow.at - half, arrow.at + half].map(&place)
+        }));
+        clear_of.extend(writing.clear_of);
+        let most = writing.most.unwrap_or(LETTERS[0]);
+        let letters = |spot: &Spot| letters(spot).min(most);
+        let label = label(&inner, &clear_of, (writing.lines, letters));
         let grain = self.grain_arrow(&place, &label).into_iter();
         strokes.extend(grain.map(|points| Stroke {
             kind: StrokeKind::Grain,

@@ -154,6 +154,18 @@ impl CutPiece {
                 .filter(|drill| half.keeps(drill.at))
                 .copied()
                 .collect(),
+            fold_ticks: self
+                .fold_ticks
+                .iter()
+                .filter(|tick| tick.iter().all(|&at| half.keeps(at)))
+                .copied()
+                .collect(),
+            pressed: self
+                .pressed
+                .iter()
+                .filter(|arrow| half.keeps(arrow.at))
+                .copied()
+                .collect(),
             cut,
             ..self.clone()
         }

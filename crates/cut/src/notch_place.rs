@@ -8,7 +8,7 @@ use toile_geometry::{Vec2, ring_area};
 use toile_pattern::{EdgeOrigin, Piece, PieceNotch};
 
 /// A notch this near to a corner of the seam line is at it \[m\].
-const AT_CORNER: f64 = 1e-6;
+pub(crate) const AT_CORNER: f64 = 1e-6;
 
 /// Unit vectors and width at a place of an edge.
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ struct Side {
 }
 
 /// The edges before and after a corner.
-struct Corner {
+pub(crate) struct Corner {
     before: Side,
     after: Side,
 }
@@ -107,7 +107,7 @@ fn straight_out(notch: &PieceNotch, plane: &Plane, seam: &NamedSeam) -> Stand {
 }
 
 /// The corner of a seam line at a point, if two edges meet there.
-fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
+pub(crate) fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
     for (number, (edges, names)) in seam.loops().enumerate() {
         let corners: Vec<Vec2> = edges.iter().flat_map(|e| e.curve.flatten(1e-3)).collect();
         // Outlines run counter-clockwise round the cloth and holes clockwise, or all the other way.
@@ -162,6 +162,12 @@ impl Corner {
             }],
             false => stands,
         }
+    }
+
+    /// From the corner to each cut line that meets there.
+    pub fn outwards_all(&self) -> Vec<Vec2> {
+        let stands = self.stands(self.before.edge).into_iter();
+        stands.map(|stand| stand.outwards).collect()
     }
 
     /// From the corner to a side's cut line: along the other side's seam line drawn on. At an inner

@@ -6,12 +6,14 @@ use crate::notch_place::notches_of;
 use crate::notch_room::Room;
 use crate::options::CutOptions;
 use crate::outline::cut_line;
+use crate::press::{fold_ticks, pressed};
 use crate::ring::FLATNESS;
 use crate::seams::{NamedSeam, Plane, seam_of};
 use crate::{CutError, CutRing, EdgeIndex, Finding, SeamEdge, SegmentKind};
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_pattern::{
-    CornerName, Draft, EdgeOrigin, LineName, Name, NotchId, Pattern, Piece, PieceId, Role,
+    CornerName, Draft, EdgeOrigin, LineName, Name, NotchId, Pattern, Piece, PieceId, PressArrow,
+    Role,
 };
 
 /// A notch that is less deep is told \[m\]: the allowance is then narrower than a notch is deep.
@@ -107,6 +109,10 @@ pub struct CutPiece {
     pub notches: Vec<CutNotch>,
     /// Ends of darts.
     pub drills: Vec<Drill>,
+    /// Lines at the cut line, from it inwards, where legs of darts and lines of pleats meet it \[m\].
+    pub fold_ticks: Vec<[Vec2; 2]>,
+    /// Which way its darts and pleats are pressed.
+    pub pressed: Vec<PressArrow>,
     /// Its texts.
     pub texts: Vec<PieceText>,
     /// Faults of the cut line.
@@ -180,6 +186,7 @@ impl CutPiece {
             sewn: polygon_of(&sew[..seam.names.len()]),
         };
         let notches = notches_of(piece, &plane, &seam, &room);
+        let fold_ticks = fold_ticks(piece, &plane, &seam, (&room, &notches));
         let mut findings = line.findings;
         findings.extend(notch_findings(&notches));
         Ok(Self {
@@ -193,6 +200,8 @@ impl CutPiece {
             on_fold: None,
             grain: plane.grain(piece.grain),
             drills: drills(&seam),
+            fold_ticks,
+            pressed: pressed(piece, &plane),
             texts: texts((pattern, draft), piece, size),
             findings,
             darts: seam
@@ -234,6 +243,8 @@ impl CutPiece {
             grain,
             notches: Vec::new(),
             drills: Vec::new(),
+            fold_ticks: Vec::new(),
+            pressed: Vec::new(),
             texts: vec![PieceText {
                 kind: TextKind::Name,
                 text: name.to_owned(),
@@ -253,8 +264,10 @@ impl CutPiece {
         let notches = notches.flat_map(|n| [n.point, n.inward, n.on_cut, n.along]);
         let cuts = self.notches.iter().flat_map(|n| n.cut.iter().flatten());
         let drills = self.drills.iter().map(|drill| drill.at);
-        let points = lines.flatten().chain(cuts).copied();
-        let mut points = points.chain(notches).chain(drills);
+        let ticks = self.fold_ticks.iter().flatten();
+        let arrows = self.pressed.iter().flat_map(|arrow| [arrow.at, arrow.way]);
+        let points = lines.flatten().chain(cuts).chain(ticks).copied();
+        let mut points = points.chain(notches).chain(drills).chain(arrows);
         points.all(|p| p.x.is_finite() && p.y.is_finite()) && self.grain.is_finite()
     }
 

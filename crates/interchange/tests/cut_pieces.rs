@@ -348,6 +348,65 @@ fn darts_are_folded_to_the_leg_they_are_pressed_to_on_both_halves() {
 }
 
 #[test]
+fn legs_of_darts_are_ticked_at_the_cut_line_and_arrows_say_where_they_are_pressed() {
+    let (pattern, draft) = everything();
+    let piece = cut(&pattern, &draft, &CutOptions::default());
+    let fold = piece.fold.unwrap();
+    let legs: Vec<[Vec2; 2]> = piece.sew[0]
+        .points
+        .iter()
+        .zip(piece.sew[0].points.iter().cycle().skip(1))
+        .zip(&piece.sew[0].segments)
+        .filter(|(_, segment)| matches!(segment, PieceSegment::Edge(edge) if edge.leg().is_some()))
+        .map(|((from, to), _)| [*from, *to])
+        .collect();
+    assert_eq!((legs.len(), piece.fold_ticks.len()), (4, 4));
+    for [on_cut, end] in &piece.fold_ticks {
+        let outline = piece.outer();
+        let mut edges = outline.edges();
+        assert!(edges.any(|e| toile_geometry::point_segment_distance(*on_cut, e) < 1e-6));
+        let depth = (end - on_cut).norm();
+        assert!(
+            (0.003..=toile_cut::NOTCH_DEPTH + 1e-9).contains(&depth),
+            "{depth}"
+        );
+        // One leg, drawn on, runs along it, and it leads towards that.
+        let runs_along = |[a, b]: &&[Vec2; 2]| {
+            let way = (b - a).normalize();
+            let off = |p: &Vec2| way.perp(&(p - a)).abs();
+            off(on_cut) < 1e-6 && off(end) < 1e-6
+        };
+        assert_eq!(legs.iter().filter(runs_along).count(), 1);
+    }
+    // Both halves press theirs to the same side, and the other way when they are to.
+    let toward_fold = |piece: &CutPiece| -> Vec<f64> {
+        let arrows = piece.pressed.iter();
+        let sign = |at: Vec2| (at - fold.at).dot(&fold.inward).signum();
+        let toward = arrows.map(|arrow| -arrow.way.dot(&fold.inward) * sign(arrow.at));
+        toward.collect()
+    };
+    let before = toward_fold(&piece);
+    assert_eq!(before.len(), 2);
+    assert!(before.iter().all(|toward| *toward < -0.9), "{before:?}");
+    let mut other = pattern.clone();
+    let panel = Arc::make_mut(&mut other.panels[0]);
+    for operation in &mut panel.operations {
+        if let OperationKind::Dart { pressed, .. } = &mut Arc::make_mut(operation).kind {
+            *pressed = Pressed::After;
+        }
+    }
+    let (draft, _) = other.resolve(&Measurements::adult());
+    let after = toward_fold(&cut(&other, &draft, &CutOptions::default()));
+    assert!(after.iter().all(|toward| *toward > 0.9), "{after:?}");
+    // The mirrored copy is the mirror image.
+    let how = (None, &CutOptions::default());
+    let copy = CutPiece::new((&other, &draft), 1, how).unwrap();
+    assert!(toward_fold(&copy).iter().all(|toward| *toward > 0.9));
+    let half = piece.halved(&fold);
+    assert_eq!((half.fold_ticks.len(), half.pressed.len()), (2, 1));
+}
+
+#[test]
 fn cloth_that_shrinks_is_cut_larger_along_and_across_the_grain() {
     let (pattern, draft) = everything();
     let plain = cut(&pattern, &draft, &CutOptions::default());

@@ -61,7 +61,9 @@ impl Pattern {
                 let found = all.find(|n| n.id == *notch);
                 part(*id, "notch", found.map(|n| &*n.name), notch.to_string())
             }
-            Place::Seam(id) => named("seam", self.seam(*id).map(|s| &*s.name), id.to_string()),
+            Place::Seam(id) | Place::SeamEnd(id, _) => {
+                named("seam", self.seam(*id).map(|s| &*s.name), id.to_string())
+            }
             Place::Fabric(id) => {
                 named("fabric", self.fabric(*id).map(|f| &*f.name), id.to_string())
             }

@@ -143,6 +143,8 @@ pub enum Place {
     Notch(PanelId, NotchId),
     /// A seam.
     Seam(SeamId),
+    /// An end of a seam: 0 its start, 1 its end.
+    SeamEnd(SeamId, usize),
     /// A fabric.
     Fabric(FabricId),
     /// A marker.

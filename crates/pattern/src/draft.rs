@@ -2,11 +2,11 @@
 
 use crate::stage::StageDart;
 use crate::{
-    EdgeCorner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId, Role,
-    SeamId,
+    EdgeCorner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId,
+    PressArrow, Role, SeamId,
 };
 use serde::{Deserialize, Serialize};
-use toile_geometry::{Curve, Rigid, Vec2};
+use toile_geometry::{Curve, Rigid, Vec2, Vec3};
 
 /// A pattern resolved: pieces of cloth to cut, and how they are sewn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,6 +49,8 @@ pub struct Piece {
     pub notches: Vec<PieceNotch>,
     /// Darts taken out of it, diamonds too.
     pub darts: Vec<StageDart>,
+    /// Which way its darts and pleats are pressed.
+    pub pressed: Vec<PressArrow>,
     /// Fold lines it was unfolded in: a point on each [m] and its direction.
     pub folds: Vec<[Vec2; 2]>,
     /// Direction of the warp in the piece's plane [rad], from +x counter-clockwise.
@@ -236,6 +238,49 @@ pub enum Worn {
     Placed(Rigid),
     /// Nothing is known: the program decides from the seams.
     Automatic,
+}
+
+impl Worn {
+    /// The place of a mirror image: the other side of the body.
+    #[must_use]
+    pub(crate) fn mirror_image(self) -> Self {
+        match self {
+            Self::Automatic => Self::Automatic,
+            Self::Wrapped {
+                part,
+                facing,
+                level,
+            } => Self::Wrapped {
+                part: match part {
+                    BodyPart::LeftArm => BodyPart::RightArm,
+                    BodyPart::RightArm => BodyPart::LeftArm,
+                    BodyPart::LeftLeg => BodyPart::RightLeg,
+                    BodyPart::RightLeg => BodyPart::LeftLeg,
+                    middle => middle,
+                },
+                facing: match facing {
+                    Facing::Left if is_middle(part) => Facing::Right,
+                    Facing::Right if is_middle(part) => Facing::Left,
+                    other => other,
+                },
+                level,
+            },
+            Self::Placed(rigid) => {
+                let t = rigid.translation.vector;
+                let q = rigid.rotation.into_inner();
+                let mirrored = nalgebra::Quaternion::new(q.w, q.i, -q.j, -q.k);
+                Self::Placed(Rigid::from_parts(
+                    Vec3::new(-t.x, t.y, t.z).into(),
+                    nalgebra::Unit::new_normalize(mirrored),
+                ))
+            }
+        }
+    }
+}
+
+/// Whether left and right of that part are the wearer's own. Of an arm they are above and below.
+fn is_middle(part: BodyPart) -> bool {
+    !matches!(part, BodyPart::LeftArm | BodyPart::RightArm)
 }
 
 /// Properties of a fabric, in SI units.

@@ -6,9 +6,9 @@ use crate::orientation::{
 };
 use crate::stage::StageEdge;
 use crate::{
-    BodyPart, Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeName, EdgeOrigin, Facing,
-    LineKind, Name, Number, OperationKind, Panel, PanelId, Pattern, Piece, PieceEdge, PieceId,
-    PieceLine, PieceNotch, Place, Role, Seam, SeamOrigin, Severity, Stage, Worn, WornRule,
+    Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeName, EdgeOrigin, LineKind, Name, Number,
+    OperationKind, Panel, PanelId, Pattern, Piece, PieceEdge, PieceId, PieceLine, PieceNotch,
+    Place, PressArrow, Role, Seam, SeamOrigin, Severity, Stage, Worn, WornRule, press_arrows,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Rigid, Vec3};
@@ -140,13 +140,18 @@ impl Drafter<'_> {
                 "cut it an even number of times, or not mirrored",
             );
         }
+        let pressed = press_arrows(&stage, self.evaluation.pattern(), panel);
         for copy in 0..panel.cut.quantity {
             let flipped = panel.cut.mirrored && copy % 2 == 1;
             let (stage, worn) = if flipped {
-                (&stage.mirror_image(), mirrored_worn(worn))
+                (&stage.mirror_image(), worn.mirror_image())
             } else {
                 (&*stage, worn)
             };
+            let pressed = pressed.iter().map(|arrow| match flipped {
+                true => arrow.mirror_image(),
+                false => *arrow,
+            });
             let name = self.piece_name(panel, copy, flipped);
             let id = PieceId {
                 panel: panel.id,
@@ -154,7 +159,7 @@ impl Drafter<'_> {
             };
             let pieces = &mut self.drafting.draft.pieces;
             self.tracks.insert(id, (pieces.len(), tracks(stage)));
-            pieces.push(piece(id, name, stage, (fabric, worn)));
+            pieces.push(piece(id, name, stage, (fabric, worn, pressed.collect())));
         }
     }
 
@@ -485,7 +490,12 @@ fn whole_at_ends(share: f64) -> f64 {
     }
 }
 
-fn piece(id: PieceId, name: String, stage: &Stage, (fabric, worn): (usize, Worn)) -> Piece {
+fn piece(
+    id: PieceId,
+    name: String,
+    stage: &Stage,
+    (fabric, worn, pressed): (usize, Worn, Vec<PressArrow>),
+) -> Piece {
     let edges = |edges: &[StageEdge]| edges.iter().map(piece_edge).collect();
     let inside = stage
         .lines
@@ -515,6 +525,7 @@ fn piece(id: PieceId, name: String, stage: &Stage, (fabric, worn): (usize, Worn)
             })
             .collect(),
         darts: stage.darts.clone(),
+        pressed,
         folds: stage.folds.iter().map(|fold| [fold.0, fold.1]).collect(),
         grain: stage.grain,
         fabric,
@@ -549,44 +560,4 @@ fn tracks(stage: &Stage) -> Tracks {
         });
     }
     tracks
-}
-
-/// The place of a mirror image: the other side of the body.
-fn mirrored_worn(worn: Worn) -> Worn {
-    match worn {
-        Worn::Automatic => Worn::Automatic,
-        Worn::Wrapped {
-            part,
-            facing,
-            level,
-        } => Worn::Wrapped {
-            part: match part {
-                BodyPart::LeftArm => BodyPart::RightArm,
-                BodyPart::RightArm => BodyPart::LeftArm,
-                BodyPart::LeftLeg => BodyPart::RightLeg,
-                BodyPart::RightLeg => BodyPart::LeftLeg,
-                middle => middle,
-            },
-            facing: match facing {
-                Facing::Left if is_middle(part) => Facing::Right,
-                Facing::Right if is_middle(part) => Facing::Left,
-                other => other,
-            },
-            level,
-        },
-        Worn::Placed(rigid) => {
-            let t = rigid.translation.vector;
-            let q = rigid.rotation.into_inner();
-            let mirrored = nalgebra::Quaternion::new(q.w, q.i, -q.j, -q.k);
-            Worn::Placed(Rigid::from_parts(
-                Vec3::new(-t.x, t.y, t.z).into(),
-                nalgebra::Unit::new_normalize(mirrored),
-            ))
-        }
-    }
-}
-
-/// Whether left and right of that part are the wearer's own. Of an arm they are above and below.
-fn is_middle(part: BodyPart) -> bool {
-    !matches!(part, BodyPart::LeftArm | BodyPart::RightArm)
 }

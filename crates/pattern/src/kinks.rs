@@ -51,7 +51,7 @@ impl Evaluation {
                     Diagnostic::new(
                         Severity::Note,
                         Code::Kink,
-                        Place::Seam(id),
+                        Place::SeamEnd(id, joint.end),
                         format!(
                             "seam {:?}: {} turns by {:.1} degrees where it runs on across its {}",
                             seam.name,

@@ -17,6 +17,7 @@ mod name;
 mod number;
 mod orientation;
 pub mod plan;
+mod press;
 mod size_selection;
 mod stage;
 mod suggest;
@@ -34,6 +35,7 @@ pub use formula::{
 pub use ids::*;
 pub use name::*;
 pub use number::Number;
+pub use press::{PressArrow, press_arrows};
 pub use size_selection::SizeSelection;
 pub use stage::{Stage, StageDart, StageEdge, StageLine, StageNotch};
 pub use suggest::nearest;

@@ -343,7 +343,7 @@ fn a_kink_that_is_meant_is_not_told() {
     let found = kinks(&pattern);
     assert!(!found.is_empty());
     for kink in &found {
-        assert!(matches!(kink.place, Place::Seam(_)), "{kink}");
+        assert!(matches!(kink.place, Place::SeamEnd(..)), "{kink}");
         assert!(kink.message.contains("degrees"), "{kink}");
     }
     let corners = [(0, "top"), (0, "left"), (1, "top"), (1, "right")];

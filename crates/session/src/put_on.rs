@@ -155,6 +155,7 @@ mod tests {
             internal_lines: Vec::new(),
             notches: Vec::new(),
             darts: Vec::new(),
+            pressed: Vec::new(),
             folds: Vec::new(),
             grain: 0.0,
             fabric: 0,

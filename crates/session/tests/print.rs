@@ -258,6 +258,26 @@ fn sheets_joined_by_their_marks_give_the_outlines() {
     }
 }
 
+/// Words that lie across a joint are on more than one sheet.
+#[test]
+fn the_name_of_a_piece_lies_on_one_sheet() {
+    for paper in [Paper::A4] {
+        for name in NAMES {
+            let options = PrintOptions {
+                paper,
+                ..PrintOptions::default()
+            };
+            let job = job(name, &options);
+            let read = pages(&job.pdf().unwrap());
+            for piece in &job.pieces {
+                let own = |page: &Page| page.words.iter().filter(|w| **w == piece.words[0]).count();
+                let sheets: Vec<usize> = read.iter().map(own).filter(|count| *count > 0).collect();
+                assert_eq!(sheets, [1], "{name} {paper:?} {}", piece.words[0]);
+            }
+        }
+    }
+}
+
 #[test]
 fn lines_scale_pieces_and_halves_are_as_asked() {
     let whole = PrintOptions::default();

@@ -53,13 +53,19 @@ impl ToileApp {
             let Some(item) = item_at(&found.place) else {
                 continue;
             };
-            match marks.iter_mut().find(|mark| mark.item == item) {
+            let end = match found.place {
+                Place::SeamEnd(_, end) => Some(end),
+                _ => None,
+            };
+            let is_here = |mark: &&mut FindingMark| (mark.item, mark.end) == (item, end);
+            match marks.iter_mut().find(is_here) {
                 Some(mark) => {
                     mark.severity = mark.severity.max(found.severity);
                     mark.words = format!("{}\n{found}", mark.words);
                 }
                 None => marks.push(FindingMark {
                     item,
+                    end,
                     severity: found.severity,
                     words: found.to_string(),
                 }),
@@ -115,7 +121,7 @@ fn item_at(place: &Place) -> Option<Item> {
         Place::Edge(panel, id) => Item::Edge(panel, id),
         Place::Notch(panel, id) => Item::Notch(panel, id),
         Place::Operation(panel, id) => Item::Operation(panel, id),
-        Place::Seam(id) => Item::Seam(id),
+        Place::Seam(id) | Place::SeamEnd(id, _) => Item::Seam(id),
         _ => return None,
     })
 }

@@ -10,6 +10,8 @@ use toile_pattern::Severity;
 pub struct FindingMark {
     /// The part.
     pub item: Item,
+    /// The end of it, if it is a seam and that is what is wrong: 0 its start, 1 its end.
+    pub end: Option<usize>,
     /// How bad the worst of it is.
     pub severity: Severity,
     /// All that was found, a line each.

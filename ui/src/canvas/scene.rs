@@ -3,7 +3,6 @@
 
 use super::allowance::CutLines;
 use super::panel_shape::PanelShape;
-use super::press::{PressArrow, press_arrows};
 use super::seams::{SeamDrawing, draw_seams};
 use super::walked::{WalkedLast, WalkedSeam};
 use std::collections::{BTreeSet, HashMap};
@@ -13,7 +12,7 @@ use toile_geometry::{Bounds2, Path, Vec2};
 use toile_pattern::plan::{self, EdgePart};
 use toile_pattern::{
     Curve, CurveId, CurveRule, Draft, Evaluation, Guide, Name, OperationId, OperationKind, Panel,
-    PanelId, PointId, SeamId, Sheet, SheetId, Stage,
+    PanelId, PointId, PressArrow, SeamId, Sheet, SheetId, Stage, press_arrows,
 };
 
 /// Largest distance of a drawn curve from the true one [pixels].
@@ -384,7 +383,10 @@ impl Scene {
                 .find(|step| matches!(step.kind, OperationKind::Fold { .. }))
                 .map(|step| step.id),
             fold: fold_line(stage),
-            pressed: press_arrows(stage, evaluation.pattern(), panel),
+            pressed: press_arrows(stage, evaluation.pattern(), panel)
+                .into_iter()
+                .filter(|arrow| arrow.half == 0)
+                .collect(),
             is_stale: now.is_none(),
         })
     }

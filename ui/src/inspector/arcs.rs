@@ -1,6 +1,7 @@
 //! Arcs in the inspector: shown and typed by the angle they sweep and by their radius. The document keeps the
 //! tangent of a quarter of the angle.
 
+use super::mark_words;
 use crate::app::ToileApp;
 use crate::fields::{Beside, Entered, labelled};
 use crate::tools::number;
@@ -20,7 +21,7 @@ pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
             number: entry.number.map(|n| plan::angle_of(evaluation, &n)),
             ..entry
         },
-        _ => entry,
+        _ => mark_words::shown(evaluation, entry),
     });
     seen.collect()
 }
@@ -36,7 +37,7 @@ pub fn kept(
 ) -> Result<Number, EditError> {
     match place {
         NumberAddress::Bulge(_) => plan::bulge_of(evaluation, &number),
-        _ => Ok(number),
+        _ => mark_words::kept(evaluation, place, number),
     }
 }
 

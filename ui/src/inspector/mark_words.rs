@@ -1,13 +1,14 @@
 //! Where something is on an edge, in words: so far from a corner, or from the centre.
 
-use crate::tools::number;
+use crate::tools::{corner_words, is_on_fold, number, scaled};
 use toile_pattern::plan::{MarkNumber, NumberAddress, NumberEntry, OperationNumber, SpanEnd};
 use toile_pattern::{
-    CornerName, Evaluation, Mark, Name, Operation, OperationKind, Panel, Pattern, Want,
+    EditError, Evaluation, Mark, Name, Number, Operation, OperationKind, Panel, Pattern, Want,
 };
 
 /// What a number is called beside its field.
-pub fn label(pattern: &Pattern, entry: &NumberEntry) -> String {
+pub fn label(evaluation: &Evaluation, entry: &NumberEntry) -> String {
+    let pattern = evaluation.pattern();
     let usual = || entry.label.to_owned();
     match entry.place {
         NumberAddress::Operation(panel, step, number) => {
@@ -21,6 +22,14 @@ pub fn label(pattern: &Pattern, entry: &NumberEntry) -> String {
                 _ => "cut",
             };
             match number {
+                OperationNumber::Cut(k, _, MarkNumber::Distance) => {
+                    let along = edge_along(evaluation, panel, mark_of(step, number));
+                    let from = from(pattern, panel, mark_of(step, number));
+                    match (along, from) {
+                        (Some(edge), Some(from)) => format!("{what} {} on {edge} {from}", k + 1),
+                        _ => format!("{what} {} at", k + 1),
+                    }
+                }
                 OperationNumber::Cut(k, SpanEnd::From, _) => format!("{what} {} at", k + 1),
                 OperationNumber::Cut(k, SpanEnd::To, _) => {
                     format!("{what} {}, other edge", k + 1)
@@ -47,20 +56,67 @@ pub fn label(pattern: &Pattern, entry: &NumberEntry) -> String {
     }
 }
 
+/// A number as it is shown: a distance from the end of an edge without the sign that says that it leads back.
+pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
+    let leads_back = leads_back(evaluation, &entry.place);
+    let turned = |number: &Number| scaled(evaluation, number, -1.0).ok();
+    match entry
+        .number
+        .as_ref()
+        .filter(|_| leads_back)
+        .and_then(turned)
+    {
+        Some(number) => NumberEntry {
+            number: Some(number),
+            ..entry
+        },
+        None => entry,
+    }
+}
+
+/// A number as the document keeps it at a place, given as it is shown.
+///
+/// # Errors
+/// A formula would be too long.
+pub fn kept(
+    evaluation: &Evaluation,
+    place: &NumberAddress,
+    number: Number,
+) -> Result<Number, EditError> {
+    match leads_back(evaluation, place) {
+        true => scaled(evaluation, &number, -1.0),
+        false => Ok(number),
+    }
+}
+
+/// Whether a number is a distance along an edge from its end, against it.
+fn leads_back(evaluation: &Evaluation, place: &NumberAddress) -> bool {
+    let is_back = |(_, mark): (&Panel, &Mark)| {
+        let Mark::Along { distance, .. } = mark else {
+            return false;
+        };
+        evaluation
+            .number(distance, Want::Length)
+            .is_some_and(|distance| distance < 0.0)
+    };
+    mark_at(evaluation.pattern(), place).is_some_and(is_back)
+}
+
+/// The edge that a mark lies on, counted from one of its corners.
+fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: Option<&Mark>) -> Option<String> {
+    let Some(Mark::Along { from, distance }) = mark else {
+        return None;
+    };
+    let back = evaluation.number(distance, Want::Length)? < 0.0;
+    let starts = |ends: [toile_pattern::PointId; 2]| Name::Drawn(ends[usize::from(back)]) == *from;
+    let edge = panel.edges().find(|edge| starts(edge.ends))?;
+    Some(edge.name.clone())
+}
+
 /// How far along its edge a place is that is given as a part of it.
 pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> {
     let pattern = evaluation.pattern();
-    let (panel, mark) = match entry.place {
-        NumberAddress::Operation(panel, step, number) => {
-            let panel = pattern.panel(panel)?;
-            (panel, mark_of(pattern.operation_of(panel, step)?, number)?)
-        }
-        NumberAddress::Notch(panel, notch, _) => {
-            let panel = pattern.panel(panel)?;
-            (panel, &panel.notches.iter().find(|own| own.id == notch)?.at)
-        }
-        _ => return None,
-    };
+    let (panel, mark) = mark_at(pattern, &entry.place)?;
     let Mark::Between { ends, share } = mark else {
         return None;
     };
@@ -80,8 +136,24 @@ pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> 
     let along = number::show(along, Want::Length, pattern.unit);
     Some(format!(
         "{along} from {}",
-        corner(pattern, panel, ends[from])?
+        corner_words(pattern, panel, ends[from])?
     ))
+}
+
+/// The mark that a number is of, and its panel.
+fn mark_at<'p>(pattern: &'p Pattern, place: &NumberAddress) -> Option<(&'p Panel, &'p Mark)> {
+    match *place {
+        NumberAddress::Operation(panel, step, number) => {
+            let panel = pattern.panel(panel)?;
+            Some((panel, mark_of(pattern.operation_of(panel, step)?, number)?))
+        }
+        NumberAddress::Notch(panel, notch, _) => {
+            let panel = pattern.panel(panel)?;
+            let notch = panel.notches.iter().find(|own| own.id == notch)?;
+            Some((panel, &notch.at))
+        }
+        _ => None,
+    }
 }
 
 fn mark_of(step: &Operation, number: OperationNumber) -> Option<&Mark> {
@@ -103,26 +175,9 @@ fn mark_of(step: &Operation, number: OperationNumber) -> Option<&Mark> {
 /// From which corner a distance counts.
 fn from(pattern: &Pattern, panel: &Panel, mark: Option<&Mark>) -> Option<String> {
     match mark {
-        Some(Mark::Along { from, .. }) => Some(format!("from {}", corner(pattern, panel, *from)?)),
+        Some(Mark::Along { from, .. }) => {
+            Some(format!("from {}", corner_words(pattern, panel, *from)?))
+        }
         _ => None,
     }
-}
-
-/// What a corner is called.
-fn corner(pattern: &Pattern, panel: &Panel, name: CornerName) -> Option<String> {
-    if is_on_fold(panel, name) {
-        return Some("the centre".to_owned());
-    }
-    match name {
-        Name::Drawn(id) => Some(pattern.point(id)?.1.name.clone()),
-        Name::Made { .. } => None,
-    }
-}
-
-/// Whether a corner is an end of the panel's fold, which is its centre.
-fn is_on_fold(panel: &Panel, name: CornerName) -> bool {
-    panel.operations.iter().any(|step| match &step.kind {
-        OperationKind::Fold { ends, .. } => ends.contains(&Mark::Corner(name)),
-        _ => false,
-    })
 }

@@ -1,11 +1,14 @@
 //! Tools that alter panels: darts pivoted, panels spread, pleated and split.
 
-use super::Reading;
 use super::planning::{Planning, panel_under};
 use super::refusal::refuse;
 use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
+use super::{Reading, along};
 use crate::canvas::selection::Item;
-use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};
+use toile_geometry::Vec2;
+use toile_pattern::plan::{
+    self, FinishedEdge, Joined, PivotWish, PleatWish, SplitWish, SpreadWish,
+};
 use toile_pattern::{
     Bridge, CurveId, EdgeId, EditError, Evaluation, Formula, Mark, Name, Number, PanelId,
     PleatKind, Side, Want,
@@ -190,14 +193,14 @@ const PLEAT_SLOTS: &[Slot] = &[
         },
     },
     Slot {
-        hint: "Type how many pleats; or where each lies along the first edge as it is finished: 4 8 12.5",
+        hint: "Type how many pleats; or where each lies along the first edge as it is finished, from its end nearer to the click: 4 8 12.5",
         kind: SlotKind::Numbers {
             label: "pleats",
             usual: 1.0,
         },
     },
     Slot {
-        hint: "Type where the first lies along the first edge as it is finished; Enter spreads them evenly",
+        hint: "Type where the first lies along the first edge as it is finished, from its end nearer to the click; Enter spreads them evenly",
         kind: SlotKind::Number {
             label: "first at",
             want: Want::Length,
@@ -218,7 +221,7 @@ const PLEAT_SLOTS: &[Slot] = &[
 
 fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<Plan, EditError> {
     let [
-        Answer::Edge(panel, from, _),
+        Answer::Edge(panel, from, clicked),
         Answer::Edge(on, to, _),
         Answer::Number(depth),
         places @ ..,
@@ -235,10 +238,12 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     let mut planning = Planning::new(reading);
     let id = planning.run(|evaluation| {
         let edges = (*panel, [*from, *to]);
+        let near = plan::finished_edge(evaluation, *panel, *from)?;
+        let end = along::end_near(&near, *clicked);
         let (line, lines) = match places {
             [Answer::Numbers(places)] => {
                 let (line, _) = plan::even_cuts(evaluation, *panel, edges.1, 1)?;
-                (line, cuts_at(evaluation, edges, places)?)
+                (line, cuts_at(evaluation, (edges, &near, end), places)?)
             }
             [
                 Answer::Number(count),
@@ -251,8 +256,8 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
                 match (at, apart) {
                     (Some(0.0), Some(0.0)) => (line, even),
                     _ => {
-                        let places = spaced(evaluation, edges, (count, first, spacing))?;
-                        (line, cuts_at(evaluation, edges, &places)?)
+                        let places = spaced(evaluation, &near, (count, first, spacing))?;
+                        (line, cuts_at(evaluation, (edges, &near, end), &places)?)
                     }
                 }
             }
@@ -268,7 +273,22 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
         };
         plan::pleat_panel(evaluation, *panel, wish)
     })?;
-    Ok(planning.done("Pleat panel", [Item::Operation(*panel, id)]))
+    let mut plan = planning.done("Pleat panel", [Item::Operation(*panel, id)]);
+    plan.told = counted_words(reading.evaluation, (*panel, *from), *clicked);
+    Ok(plan)
+}
+
+/// From which end of an edge places are counted: that which is nearer to where it was clicked.
+fn counted_words(
+    evaluation: &Evaluation,
+    (panel, edge): (PanelId, EdgeId),
+    clicked: Vec2,
+) -> Option<String> {
+    let finished = plan::finished_edge(evaluation, panel, edge).ok()?;
+    let end = along::end_near(&finished, clicked);
+    let words = along::end_words(evaluation, (&finished, edge), end)?;
+    let name = evaluation.pattern().edge_name(panel, Name::Drawn(edge))?;
+    Some(format!("Places along {name} count from {words}"))
 }
 
 /// A count of pleats.
@@ -288,10 +308,9 @@ fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
 /// to its end.
 fn spaced(
     evaluation: &Evaluation,
-    (panel, [from, _]): (PanelId, [EdgeId; 2]),
+    near: &FinishedEdge,
     (count, first, spacing): (u16, &Number, &Number),
 ) -> Result<Vec<Number>, EditError> {
-    let near = plan::finished_edge(evaluation, panel, from)?;
     let start = length_of(evaluation, first)?;
     let step = match length_of(evaluation, spacing)? {
         0.0 => (near.length - start) / f64::from(count),
@@ -326,22 +345,21 @@ fn length_of(evaluation: &Evaluation, number: &Number) -> Result<f64, EditError>
     value.ok_or_else(|| refuse("the distance has no value", "type a length"))
 }
 
-/// Lines from places along one edge of a panel as it is finished, each to the same share of another.
+/// Lines from places along one edge of a panel as it is finished, counted from one of its ends, each to the same
+/// share of another.
 fn cuts_at(
     evaluation: &Evaluation,
-    (panel, [from, to]): (PanelId, [EdgeId; 2]),
+    ((panel, [_, to]), near, end): ((PanelId, [EdgeId; 2]), &FinishedEdge, usize),
     places: &[Number],
 ) -> Result<Vec<[Mark; 2]>, EditError> {
-    let [near, far] = [from, to].map(|edge| plan::finished_edge(evaluation, panel, edge));
-    let (near, far) = (near?, far?);
-    let cut = |along: &Number| {
+    let far = plan::finished_edge(evaluation, panel, to)?;
+    let cut = |place: &Number| {
+        let across = along::scaled(evaluation, place, far.length / near.length)?;
         // Across a closed line edges run against each other.
-        let share = 1.0 - length_of(evaluation, along)? / near.length;
-        let end = Mark::Between {
-            ends: far.ends,
-            share: share.into(),
-        };
-        Ok([plan::mark_along(evaluation, &near, (0, along))?, end])
+        Ok([
+            along::mark_from(evaluation, near, (end, place))?,
+            along::mark_from(evaluation, &far, (1 - end, &across))?,
+        ])
     };
     places.iter().map(cut).collect()
 }

@@ -27,6 +27,7 @@ mod toward;
 pub mod typing;
 pub mod walk;
 
+pub use along::{corner_words, is_on_fold, scaled};
 pub use finished::finished_words;
 pub use planning::Planning;
 pub use select::SelectState;

@@ -92,11 +92,7 @@ fn told(
             if let (Some(pointer), Some((label, want))) = (pointer, asked) {
                 let place = (pointer.sheet, pointer.at);
                 let words = number_words(state, reading, (label, &given, want));
-                let told = state
-                    .told
-                    .as_ref()
-                    .map_or_else(String::new, |told| in_lines(told));
-                let words = joined(&[&words, &told]);
+                let words = joined(&[&words, &told_words(state)]);
                 marks.push(words_at(state, place, &words, &typed));
             }
         }
@@ -106,9 +102,10 @@ fn told(
                     let value = reading.evaluation.number(number, Want::Length)?;
                     Some(number::show(value, Want::Length, unit))
                 });
-                let words = format!("= {}", values.collect::<Vec<_>>().join(", "));
+                let words = in_lines(&format!("= {}", values.collect::<Vec<_>>().join(", ")));
+                let words = joined(&[&words, &told_words(state)]);
                 let place = (pointer.sheet, pointer.at);
-                marks.push(words_at(state, place, &in_lines(&words), &typed));
+                marks.push(words_at(state, place, &words, &typed));
             }
         }
         Answer::OnLine(panel, Item::Edge(_, edge), at, None) => {
@@ -140,6 +137,12 @@ fn told(
         _ => {}
     }
     marks
+}
+
+/// What ought to be known of what would be done now, in lines.
+fn told_words(state: &SlotState) -> String {
+    let told = state.told.as_ref();
+    told.map_or_else(String::new, |told| in_lines(told))
 }
 
 /// A number as it would be; the label of one that is typed stands before that.

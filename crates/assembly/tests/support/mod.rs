@@ -47,6 +47,7 @@ pub fn piece(number: u32, name: &str, outline: Vec<PieceEdge>, worn: Worn) -> Pi
         internal_lines: Vec::new(),
         notches: Vec::new(),
         darts: Vec::new(),
+        pressed: Vec::new(),
         folds: Vec::new(),
         grain: std::f64::consts::FRAC_PI_2,
         fabric: 0,

@@ -1,10 +1,11 @@
 //! Draws a piece on paper: its lines in the style of their kind and size, its words.
 
 use super::mark::{LineStyle, Mark, Shape};
+use super::paper::clipped;
 use super::{Lines, Paper, PrintJob, PrintPiece};
 use crate::pdf::{Align, Ink};
-use toile_cut::{CutPiece, Drawing, StrokeKind, Words};
-use toile_geometry::Vec2;
+use toile_cut::{CutPiece, Drawing, StrokeKind, Words, Writing};
+use toile_geometry::{Polygon, Vec2};
 
 pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
 const BLUE: Ink = [0.12, 0.31, 0.62];
@@ -13,8 +14,19 @@ const PURPLE: Ink = [0.55, 0.2, 0.55];
 const PROJECTED: [f64; 2] = [0.0012, 0.002];
 /// Letters beside the fold \[m\].
 const FOLD_LETTERS: f64 = 0.005;
+/// Places along it that are tried for its words, the most usual first [share of its length].
+const FOLD_PLACES: [f64; 5] = [0.5, 0.38, 0.62, 0.26, 0.74];
 /// Their size over the length of the fold at the most: the words then fit.
 const FOLD_SHARE: f64 = 0.1;
+
+/// Largest letters of a piece's words \[m\].
+const LETTERS: f64 = 0.012;
+/// Length of an arrow to where a dart or a pleat is pressed at the most \[m\], and over the width of what is folded
+/// there; the length of its head, and half the width of that over it.
+const ARROW: f64 = 0.018;
+const ARROW_SHARE: f64 = 0.9;
+const HEAD: f64 = 0.3;
+const HEAD_WIDTH: f64 = 0.5;
 
 /// Ink and dash of each size's lines, one after another: told apart in colour and in black and white.
 const SIZES: [(Ink, f64); 8] = [
@@ -68,8 +80,13 @@ fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
     )
 }
 
-/// A piece in all its sizes. Words and grain line are those of the smallest, for all.
-pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
+/// A piece in all its sizes. Words and grain line are those of the smallest, for all; words lie on none of some lines,
+/// and there are none where none are given.
+pub(crate) fn piece_marks(
+    job: &PrintJob,
+    piece: &PrintPiece,
+    clear_of: Option<&[[Vec2; 2]]>,
+) -> Vec<Mark> {
     let place = |p: Vec2| piece.pose.apply(p * job.scale);
     let smallest = piece.sizes.iter().enumerate().min_by(|a, b| {
         let area = |k: &(usize, std::sync::Arc<CutPiece>)| k.1.outer().area();
@@ -80,7 +97,15 @@ pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
     let mut marks = Vec::new();
     for (k, (layer, cut)) in piece.sizes.iter().enumerate() {
         let own = smallest == Some(k);
-        let drawing: Drawing = cut.drawing(place, if own { &words } else { &[] });
+        let writing = Writing {
+            lines: match clear_of {
+                Some(_) if own => &words,
+                _ => &[],
+            },
+            most: Some(LETTERS),
+            clear_of: clear_of.unwrap_or_default(),
+        };
+        let drawing: Drawing = cut.drawing_with(place, &writing);
         for stroke in drawing.strokes {
             let shared = stroke.kind == StrokeKind::Grain;
             if !prints(job, stroke.kind) || (shared && !own) {
@@ -89,14 +114,17 @@ pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
             let layer = (!shared).then_some(*layer);
             let style = style(job, stroke.kind, layer.unwrap_or(0));
             let on_fold = stroke.kind == StrokeKind::Fold;
-            if let ([from, to], true, true) = (&stroke.points[..], on_fold, own) {
-                marks.extend(fold_words([*from, *to], drawing.fill.as_ref()));
+            if let ([from, to], true, true, Some(lines)) =
+                (&stroke.points[..], on_fold, own, clear_of)
+            {
+                marks.extend(fold_words([*from, *to], drawing.fill.as_ref(), lines));
             }
             marks.push(Mark::line(layer, (stroke.points, stroke.closed), style));
         }
         if job.lines == Lines::Sew {
             marks.extend(seam_marks(job, cut, (*layer, &place)));
         }
+        marks.extend(press_marks(job, cut, (*layer, &place)));
         marks.extend(drawing.words.into_iter().map(words_mark));
     }
     marks
@@ -123,6 +151,45 @@ fn seam_marks(
     lines.into_iter().map(mark).collect()
 }
 
+/// How darts and pleats are folded: lines where they meet the line to cut along, and arrows to where they are pressed.
+fn press_marks(
+    job: &PrintJob,
+    cut: &CutPiece,
+    (layer, place): (usize, &dyn Fn(Vec2) -> Vec2),
+) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    if prints(job, StrokeKind::Notch) {
+        let style = style(job, StrokeKind::Notch, layer);
+        let ticks = cut.fold_ticks.iter();
+        marks.extend(ticks.map(|tick| {
+            let line = tick.map(place).to_vec();
+            Mark::line(Some(layer), (line, false), style)
+        }));
+    }
+    // Seen as well as a notch, and not cut along.
+    let cut_like = style(job, StrokeKind::Notch, layer);
+    let drawn = style(job, StrokeKind::Mark, layer);
+    let style = LineStyle {
+        ink: cut_like.ink,
+        width: drawn.width.max(0.000_3),
+        ..drawn
+    };
+    for arrow in &cut.pressed {
+        let middle = place(arrow.at);
+        let Some(way) = (place(arrow.at + arrow.way) - middle).try_normalize(0.0) else {
+            continue;
+        };
+        let length = ARROW.min(ARROW_SHARE * arrow.width * job.scale);
+        let [tail, tip] = [middle - way * (0.5 * length), middle + way * (0.5 * length)];
+        let back = tip - way * (HEAD * length);
+        let aside = Vec2::new(-way.y, way.x) * (HEAD * HEAD_WIDTH * length);
+        for line in [vec![tail, tip], vec![back + aside, tip, back - aside]] {
+            marks.push(Mark::line(Some(layer), (line, false), style));
+        }
+    }
+    marks
+}
+
 fn words_mark(words: Words) -> Mark {
     Mark {
         layer: None,
@@ -137,12 +204,16 @@ fn words_mark(words: Words) -> Mark {
     }
 }
 
-/// The words along the fold, inside the piece.
-fn fold_words([from, to]: [Vec2; 2], fill: Option<&toile_geometry::Polygon>) -> Option<Mark> {
+/// The words along the fold, inside the piece: in its middle, or beside that where they lie on none of some lines.
+fn fold_words(
+    [from, to]: [Vec2; 2],
+    fill: Option<&Polygon>,
+    clear_of: &[[Vec2; 2]],
+) -> Option<Mark> {
     let way = (to - from).try_normalize(0.0)?;
-    let middle = (from + to) * 0.5;
     let size = FOLD_LETTERS.min((to - from).norm() * FOLD_SHARE);
     let left = Vec2::new(-way.y, way.x) * size;
+    let middle = (from + to) * 0.5;
     let inside = fill.is_some_and(|fill| fill.contains(middle + left));
     // Letters stand with their feet towards the fold, read from below or from the right.
     let (way, above) = if inside { (way, left) } else { (-way, -left) };
@@ -151,15 +222,23 @@ fn fold_words([from, to]: [Vec2; 2], fill: Option<&toile_geometry::Polygon>) -> 
         true => (-way, above * 1.9),
         false => (way, above * 0.8),
     };
-    Some(Mark {
+    let words = |share: f64| Mark {
         layer: None,
         shape: Shape::Text {
             text: "fold of the cloth".to_owned(),
-            at: middle + above,
+            at: from + (to - from) * share + above,
             size,
             angle: way.y.atan2(way.x),
             align: Align::Middle,
             ink: PURPLE,
         },
-    })
+    };
+    let is_whole = |mark: &Mark| {
+        let bounds = mark.bounds();
+        clear_of
+            .iter()
+            .all(|line| clipped(line, false, &bounds).is_empty())
+    };
+    let places = FOLD_PLACES.map(words).into_iter();
+    places.clone().find(is_whole).or(places.into_iter().next())
 }

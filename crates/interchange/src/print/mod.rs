@@ -14,9 +14,10 @@ pub use paper::{Paper, Tile};
 pub use title::TitleBlock;
 
 use crate::FormatError;
+use crate::marker_strokes::Layer;
 use crate::pdf::Align;
 use mark::{LineStyle, Mark, Page, Shape};
-use paper::{clipped, crosses, tiles};
+use paper::{OVERLAP, clipped, crosses, tiles};
 use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_geometry::{Bounds2, Vec2};
@@ -84,6 +85,10 @@ const JOIN: LineStyle = LineStyle {
     width: 0.000_15,
     dash: 0.0,
 };
+/// Between lines that words do not lie on \[m\]: no words fit between.
+const ACROSS: f64 = 0.003;
+/// White between words and where sheets overlap \[m\].
+const BESIDE: f64 = 0.004;
 /// Letters of a sheet's row and column \[m\].
 const PLACE_LETTERS: f64 = 0.004;
 
@@ -153,12 +158,55 @@ impl PrintJob {
 
     /// Everything on the drawing but what depends on the sheets.
     fn marks(&self) -> Vec<Mark> {
+        let clear_of = self.between_sheets();
         let mut marks = Vec::new();
         for piece in &self.pieces {
-            marks.extend(draw::piece_marks(self, piece));
+            marks.extend(draw::piece_marks(self, piece, Some(&clear_of)));
         }
         marks.extend(title::block_marks(self));
         marks
+    }
+
+    /// Lines that words do not lie on: along every overlap of sheets, and across sheets that show no line of a piece and
+    /// are left out.
+    fn between_sheets(&self) -> Vec<[Vec2; 2]> {
+        let (Some(step), Some(window)) = (self.paper.step(), self.paper.window()) else {
+            return Vec::new();
+        };
+        let bare = self.pieces.iter();
+        let bare = bare.flat_map(|piece| draw::piece_marks(self, piece, None));
+        // Where the grain line lies depends on the words.
+        let is_grain = |mark: &Mark| match &mark.shape {
+            Shape::Line { style, .. } => style.layer == Some(Layer::Grain),
+            Shape::Text { .. } => false,
+        };
+        let mut bare: Vec<Mark> = bare.filter(|mark| !is_grain(mark)).collect();
+        bare.extend(title::block_marks(self));
+        let shown = self.tiles_of(&bare);
+        let all = tiles(self.paper, self.size, |_| true);
+        let left_out = all.iter().filter(|tile| !shown.contains(tile));
+        let mut lines = Vec::new();
+        for tile in left_out {
+            let count = (window.y / ACROSS) as usize;
+            lines.extend((1..count).map(|k| {
+                let at = tile.window.min + Vec2::new(0.0, k as f64 * ACROSS);
+                [at, at + Vec2::new(window.x, 0.0)]
+            }));
+        }
+        for axis in [0, 1] {
+            for k in 1..=(self.size[axis] / step[axis]) as usize {
+                let count = ((OVERLAP + 2.0 * BESIDE) / ACROSS).round() as usize;
+                for n in 0..=count {
+                    // Columns are counted from the left, rows from above.
+                    let at = k as f64 * step[axis] - BESIDE + n as f64 * ACROSS;
+                    lines.push(match axis {
+                        0 => [Vec2::new(at, 0.0), Vec2::new(at, self.size.y)],
+                        _ => [0.0, self.size.x].map(|x| Vec2::new(x, self.size.y - at)),
+                    });
+                }
+            }
+        }
+        lines
     }
 
     fn tiles_of(&self, marks: &[Mark]) -> Vec<Tile> {

@@ -6,6 +6,7 @@ use crate::canvas::selection::Item;
 use crate::theme::Palette;
 use egui::{Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use toile_geometry::Vec2 as Place;
+use toile_pattern::{PanelId, SeamId};
 
 impl PatternView {
     /// Draws them; says which part was clicked at its sign. While a tool is under way they are drawn alone.
@@ -16,10 +17,14 @@ impl PatternView {
         let mut taken = std::mem::take(&mut self.labels);
         for mark in &self.finding_marks {
             let part = parts.iter().find(|(_, item, _)| *item == mark.item);
-            let Some((.., at)) = part else {
+            let at = match mark.item {
+                Item::Seam(seam) => self.seam_place(seam, mark.end),
+                _ => part.map(|(.., at)| *at),
+            };
+            let Some(at) = at else {
                 continue;
             };
-            let mut place = FindingMark::place(self.screen(view, Place::zeros(), *at));
+            let mut place = FindingMark::place(self.screen(view, Place::zeros(), at));
             // Beside other labels, and signs of the same place beside each other.
             while let Some(other) = taken.iter().find(|other| other.intersects(place)) {
                 place = place.translate(Vec2::new(other.right() - place.left() + 1.0, 0.0));
@@ -32,7 +37,7 @@ impl PatternView {
             if self.is_busy() {
                 continue;
             }
-            let id = Self::id().with(("finding", mark.item));
+            let id = Self::id().with(("finding", mark.item, mark.end));
             let sign = ui.interact(place, id, Sense::click());
             sign.widget_info(|| WidgetInfo::labeled(Role::Button, true, &mark.words));
             if sign.on_hover_text(&mark.words).clicked() {
@@ -41,5 +46,23 @@ impl PatternView {
         }
         self.labels = taken;
         chosen
+    }
+
+    /// Where an end of a seam is on the table, or its first stretch: on the first of its panels that is seen [m].
+    fn seam_place(&self, id: SeamId, end: Option<usize>) -> Option<Place> {
+        let seam = self.scene.seams.iter().find(|seam| seam.id == id)?;
+        let is_seen = |panel: PanelId| self.scene.panel_scene(panel).is_some();
+        let (panel, at) = match end {
+            Some(end) => {
+                let mut sides = seam.ends.iter().flatten().map(|ends| ends[end]);
+                sides.find(|(panel, _)| is_seen(*panel))?
+            }
+            None => {
+                let mut stretches = seam.stretches.iter();
+                let stretch = stretches.find(|stretch| is_seen(stretch.panel))?;
+                (stretch.panel, crate::canvas::along(&stretch.line, 0.5)?.0)
+            }
+        };
+        Some(self.table_layout.panel(panel) + at)
     }
 }

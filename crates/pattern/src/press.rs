@@ -1,0 +1,136 @@
+//! Which way darts and pleats are pressed: where the cloth that is folded under lies. The window and paper show it by
+//! the same arrows.
+
+use crate::{
+    Name, Operation, OperationId, OperationKind, Panel, Pattern, PleatKind, Pressed, Role, Stage,
+    StageLine,
+};
+use toile_geometry::Vec2;
+
+/// How far along a dart or a pleat from the edge its arrow stands [share of it].
+const IN: f64 = 0.3;
+/// Lines that a fold and two of it make.
+const LINES: u16 = 5;
+
+/// An arrow in the plane of a panel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressArrow {
+    /// What is pressed.
+    pub by: OperationId,
+    /// Which half of a folded panel it is on.
+    pub half: u8,
+    /// Where its middle is [m].
+    pub at: Vec2,
+    /// Its direction, a unit.
+    pub way: Vec2,
+    /// How wide what is folded under lies there [m].
+    pub width: f64,
+}
+
+/// The arrows of what a panel has been given by its steps.
+pub fn press_arrows(stage: &Stage, pattern: &Pattern, panel: &Panel) -> Vec<PressArrow> {
+    let mut arrows = Vec::new();
+    for dart in &stage.darts {
+        let is_pressed = |step: &&std::sync::Arc<Operation>| {
+            matches!(
+                step.kind,
+                OperationKind::Dart { .. } | OperationKind::Pivot { .. }
+            )
+        };
+        let step = pattern.operation_of(panel, dart.by);
+        let [open, close] = dart.mouth;
+        // On a mirror image the outline comes to the leg after the point first.
+        let is_mirrored = dart.half.count_ones() % 2 == 1;
+        let across = match (dart.pressed == Pressed::Before) != is_mirrored {
+            true => open - close,
+            false => close - open,
+        };
+        let middle = (open + close) * 0.5;
+        if let (Some(step), Some(way)) = (step.filter(is_pressed), across.try_normalize(1e-12)) {
+            arrows.push(PressArrow {
+                by: step.id,
+                half: dart.half,
+                at: middle + (dart.apex - middle) * IN,
+                way,
+                width: across.norm() * (1.0 - IN),
+            });
+        }
+    }
+    let placements = stage
+        .lines
+        .iter()
+        .filter(|line| line.name.role() == Some(Role::Placement));
+    for placement in placements {
+        let Name::Made { by, index, .. } = placement.name else {
+            continue;
+        };
+        if let Some(step) = pattern.operation_of(panel, by) {
+            pleat_arrows(stage, (step, placement, index / LINES), &mut arrows);
+        }
+    }
+    arrows
+}
+
+/// The arrows of one pleat: one a fold, in the middle of what lies under.
+fn pleat_arrows(
+    stage: &Stage,
+    (step, placement, number): (&Operation, &StageLine, u16),
+    arrows: &mut Vec<PressArrow>,
+) {
+    let OperationKind::Pleat { kind, .. } = &step.kind else {
+        return;
+    };
+    let at = |line: &StageLine| {
+        let (first, last) = (line.edges.first()?, line.edges.last()?);
+        let (start, end) = (first.curve.start(), last.curve.end());
+        Some(start + (end - start) * IN)
+    };
+    let Some(middle) = at(placement) else {
+        return;
+    };
+    // Creases beside the placement, where the cloth under a fold turns back.
+    let turns = stage.lines.iter().filter_map(|line| match line.name {
+        Name::Made {
+            by,
+            role: Role::Crease,
+            index,
+        } if by == step.id
+            && line.half == placement.half
+            && index / LINES == number
+            && index % LINES % 2 == 1 =>
+        {
+            at(line)
+        }
+        _ => None,
+    });
+    for turn in turns {
+        // From where the fold is laid to, outward, lies what is under the part beside it; under a box
+        // it is inward.
+        let across = match kind {
+            PleatKind::Knife | PleatKind::Inverted => turn - middle,
+            PleatKind::Box => middle - turn,
+        };
+        if let Some(way) = across.try_normalize(1e-12) {
+            arrows.push(PressArrow {
+                by: step.id,
+                half: placement.half,
+                at: turn,
+                way,
+                width: across.norm(),
+            });
+        }
+    }
+}
+
+impl PressArrow {
+    /// The mirror image in the y axis: of the other piece of a pair.
+    #[must_use]
+    pub fn mirror_image(self) -> Self {
+        let flip = |v: Vec2| Vec2::new(-v.x, v.y);
+        Self {
+            at: flip(self.at),
+            way: flip(self.way),
+            ..self
+        }
+    }
+}
