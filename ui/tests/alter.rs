@@ -50,6 +50,30 @@ fn a_dart_is_trued_by_a_tick_that_is_on() {
     assert!((drafter.finished_length("top") - trued_top()).abs() < 1e-9);
 }
 
+/// Waist darts are pressed to the centre where a fold says where that is; a dart of the side stays as it was.
+#[test]
+fn a_new_dart_is_pressed_to_the_centre() {
+    let pressed = |is_folded: bool, edge: &str| {
+        let mut drafter = Drafter::with_panel("Altered");
+        if is_folded {
+            drafter.chord(Modifiers::SHIFT, Key::F);
+            drafter.click(drafter.part("Edge left of draft"));
+        }
+        drafter.key(Key::D);
+        drafter.click(drafter.part(&format!("Edge {edge} of draft")));
+        drafter.typed("2");
+        drafter.typed("8");
+        let scene = &drafter.window.state().view().scene;
+        let arrows = &scene.panels[0].pressed;
+        assert_eq!(arrows.len(), 1, "{}", drafter.status());
+        arrows[0].way
+    };
+    // The centre lies on the left, and the outline runs to it along the top.
+    assert!(pressed(true, "top").x < -0.9);
+    assert!(pressed(false, "top").x > 0.9);
+    assert!((pressed(true, "right") - pressed(false, "right")).norm() < 1e-9);
+}
+
 #[test]
 fn a_dart_is_pivoted_by_four_actions() {
     let mut drafter = Drafter::with_panel("Altered");

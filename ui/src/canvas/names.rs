@@ -53,16 +53,27 @@ fn crosses(rect: Rect, [from, to]: [Pos2; 2]) -> bool {
     stretch[0] <= stretch[1]
 }
 
-/// The place for a name: clear of what is taken; best where no line crosses it; nothing where all
-/// places are taken.
-fn place(at: Pos2, size: Vec2, taken: &[Rect], lines: &[Vec<Pos2>]) -> Option<Rect> {
+/// What else lies where names are: pieces of other sheets, and lines.
+#[derive(Clone, Copy, Default)]
+struct Around<'a> {
+    others: &'a [Rect],
+    lines: &'a [Vec<Pos2>],
+}
+
+/// The place for a name: clear of what is taken; best where it runs into no other piece and no line crosses it;
+/// nothing where all places are taken.
+fn place(at: Pos2, size: Vec2, taken: &[Rect], around: Around<'_>) -> Option<Rect> {
     let is_free = |rect: &Rect| !taken.iter().any(|other| other.intersects(*rect));
+    let Around { others, lines } = around;
+    let runs_into = |rect: &Rect| others.iter().any(|other| other.intersects(*rect));
     let crossed = |rect: &Rect| {
         let crosses = |line: &&Vec<Pos2>| line.windows(2).any(|w| crosses(*rect, [w[0], w[1]]));
         lines.iter().filter(crosses).count()
     };
     let places = SIDES.iter().map(|side| beside(at, size, *side));
-    places.filter(is_free).min_by_key(crossed)
+    places
+        .filter(is_free)
+        .min_by_key(|rect| (runs_into(rect), crossed(rect)))
 }
 
 impl Picture<'_> {
@@ -76,7 +87,7 @@ impl Picture<'_> {
         for shown in points.clone().filter(|shown| is_lit(&shown)) {
             let tag = self.words_on(&shown.point.name, self.palette.accent, |size, _| {
                 let usual = beside(seen(shown), size, SIDES[0]);
-                place(seen(shown), size, labels, &[]).unwrap_or(usual)
+                place(seen(shown), size, labels, Around::default()).unwrap_or(usual)
             });
             labels.push(tag);
         }
@@ -101,18 +112,35 @@ impl Picture<'_> {
             let Some(first) = named.next() else {
                 continue;
             };
-            let lines = self.lines_by(sheet);
+            let (others, lines) = (self.others_by(sheet), self.lines_by(sheet));
+            let around = Around {
+                others: &others,
+                lines: &lines,
+            };
             for shown in std::iter::once(first).chain(named) {
                 let colour = self.palette.ink_soft;
                 let name = shown.point.name.clone();
                 let name = self.painter.layout_no_wrap(name, theme::font(11.5), colour);
-                if let Some(rect) = place(seen(shown), name.size(), &taken, &lines) {
+                if let Some(rect) = place(seen(shown), name.size(), &taken, around) {
                     self.painter.galley(rect.min, name, colour);
                     taken.push(rect);
                     labels.push(rect);
                 }
             }
         }
+    }
+
+    /// The room that panels take which do not lie on a sheet.
+    fn others_by(&self, sheet: &SheetScene) -> Vec<Rect> {
+        let others = self.scene.panels.iter();
+        let others =
+            others.filter(|panel| panel.sheet != sheet.id || self.table_layout.is_apart(panel));
+        others
+            .map(|panel| {
+                let (origin, room) = (self.table_layout.panel(panel.id), self.scene.room_of(panel));
+                Rect::from_two_pos(self.seen(origin, room.min), self.seen(origin, room.max))
+            })
+            .collect()
     }
 
     /// The lines of a sheet and of the panels that lie on it.
@@ -145,15 +173,29 @@ mod tests {
     fn a_name_stands_where_no_line_and_no_name_is() {
         let at = pos2(100.0, 100.0);
         let size = vec2(40.0, 12.0);
-        let usual = place(at, size, &[], &[]).unwrap();
+        let usual = place(at, size, &[], Around::default()).unwrap();
         assert!(usual.min.x > at.x && usual.max.y < at.y);
         // A line that leaves it that way.
         let line = vec![at, pos2(200.0, 60.0)];
-        let other = place(at, size, &[], std::slice::from_ref(&line)).unwrap();
+        let lines = [line.clone()];
+        let crossed = Around {
+            lines: &lines,
+            ..Around::default()
+        };
+        let other = place(at, size, &[], crossed).unwrap();
         assert!(!crosses(other, [line[0], line[1]]) && other != usual);
+        // Rather over a line of its own piece than into the next piece.
+        let next = [Rect::from_min_max(pos2(104.0, 60.0), pos2(300.0, 200.0))];
+        let walls = [vec![pos2(90.0, 0.0), pos2(90.0, 200.0)]];
+        let between = Around {
+            others: &next,
+            lines: &walls,
+        };
+        let own = place(at, size, &[], between).unwrap();
+        assert!(!own.intersects(next[0]), "{own:?}");
         // Names are never placed over each other, whatever lines cross.
         let mut taken = Vec::new();
-        while let Some(rect) = place(at, size, &taken, std::slice::from_ref(&line)) {
+        while let Some(rect) = place(at, size, &taken, crossed) {
             assert!(taken.iter().all(|known: &Rect| !known.intersects(rect)));
             taken.push(rect);
         }

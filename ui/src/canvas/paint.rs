@@ -378,10 +378,16 @@ impl Picture<'_> {
             ([low, high], shape.middle),
             ([shape.bounds.min, shape.bounds.max], across),
         ];
-        let room = 2.0 * NUMBER_INSET as f32;
+        let inset = NUMBER_INSET as f32;
         let fits = |size: egui::Vec2, corners: [Vec2; 2]| {
             let [low, high] = corners.map(|p| self.seen(origin, p));
-            size.x + room + 16.0 < (high.x - low.x).abs() && size.y + room < (low.y - high.y).abs()
+            // No seam has its number beside a fold.
+            let beside = match panel.fold.is_some() && corners == rooms[0].0 {
+                true => inset,
+                false => 2.0 * inset,
+            };
+            let is_wide = size.x + beside + 16.0 < (high.x - low.x).abs();
+            is_wide && size.y + 2.0 * inset < (low.y - high.y).abs()
         };
         let [name, small] = CAPTION_SIZES.map(|size| layout(&panel.name, size, self.palette.ink));
         let both = vec2(
@@ -394,9 +400,11 @@ impl Picture<'_> {
         }
         choices.push((name.size(), vec![name.clone()]));
         choices.push((small.size(), vec![small]));
-        let found = choices.into_iter().find_map(|(size, lines)| {
-            let (_, at) = rooms.iter().find(|(corners, _)| fits(size, *corners))?;
-            Some((size, lines, self.seen(origin, *at)))
+        // Rather the name alone than over the fold.
+        let found = rooms.iter().find_map(|(corners, at)| {
+            let mut choices = choices.iter();
+            let (size, lines) = choices.find(|(size, _)| fits(*size, *corners))?;
+            Some((*size, lines.clone(), self.seen(origin, *at)))
         });
         let inside = found.is_some();
         let (size, lines, middle) = found.unwrap_or_else(|| {

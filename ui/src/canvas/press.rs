@@ -23,3 +23,10 @@ pub fn press_ways(arrows: &[PressArrow], step: &Operation) -> Option<(Vec2, [Vec
         false => (arrow.at, [-arrow.way, arrow.way]),
     })
 }
+
+/// How far a direction at a place leads to a fold: 1 straight to it, -1 straight away from it. Nothing on the fold.
+pub fn toward_fold((at, way): (Vec2, Vec2), [from, to]: [Vec2; 2]) -> Option<f64> {
+    let along = (to - from).try_normalize(1e-12)?;
+    let across = (from - at) - along * (from - at).dot(&along);
+    Some(across.try_normalize(1e-9)?.dot(&way))
+}

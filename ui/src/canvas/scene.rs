@@ -456,7 +456,7 @@ fn left(corners: &BTreeSet<PointId>, stage: &Stage, evaluation: &Evaluation) -> 
 }
 
 /// Both ends of the line a stage is unfolded in: those of the half that is drawn.
-fn fold_line(stage: &Stage) -> Option<[Vec2; 2]> {
+pub fn fold_line(stage: &Stage) -> Option<[Vec2; 2]> {
     let ring = stage.outline();
     let count = ring.len();
     let begins = |k: &usize| ring[*k].half == 0 && ring[(k + count - 1) % count].half != 0;

@@ -1,6 +1,6 @@
 //! To which side something is pressed, in words.
 
-use crate::canvas::press::press_ways;
+use crate::canvas::press::{press_ways, toward_fold};
 use crate::canvas::scene::PanelScene;
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind};
@@ -19,12 +19,7 @@ pub fn press_words(panel: Option<&PanelScene>, step: &Operation) -> [&'static st
 }
 
 fn words(way: Vec2, at: Vec2, fold: Option<[Vec2; 2]>) -> &'static str {
-    let to_fold = fold.and_then(|[from, to]| {
-        let along = (to - from).try_normalize(1e-12)?;
-        let across = (from - at) - along * (from - at).dot(&along);
-        across.try_normalize(1e-9)
-    });
-    match to_fold.map(|to_fold| to_fold.dot(&way)) {
+    match fold.and_then(|fold| toward_fold((at, way), fold)) {
         Some(toward) if toward > 0.5 => "to the centre",
         Some(toward) if toward < -0.5 => "to the side",
         _ if way.x.abs() >= way.y.abs() => match way.x > 0.0 {

@@ -5,6 +5,8 @@ use super::refusal::refuse;
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
 use crate::canvas::placed::{Placed, Spec};
+use crate::canvas::press::toward_fold;
+use crate::canvas::scene::fold_line;
 use crate::canvas::selection::Item;
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -13,6 +15,7 @@ use toile_pattern::{
     Name, NotchKind, Number, OperationKind, Panel, PanelId, PointId, PointRule, Pressed, SheetId,
     Want,
     plan::{self, Chain, CurveShape},
+    press_arrows,
 };
 
 /// A dart taken out of an outline.
@@ -52,16 +55,20 @@ pub static DART: SlotTool = SlotTool {
             return Err(refuse("nothing was given", "click an edge"));
         };
         let near = marked(reading, *panel, (*at, mark))?;
-        let kind = OperationKind::Dart {
+        let kind = |pressed| OperationKind::Dart {
             line: Name::Drawn(near.line),
-            mouth: near.mark,
+            mouth: near.mark.clone(),
             intake: intake.clone(),
             apex: Apex::Depth(depth.clone()),
-            pressed: Pressed::default(),
+            pressed,
             trued: true,
             keeps_length: false,
         };
-        let mut plan = operation(reading, *panel, kind, "Add dart")?;
+        let made = |pressed| operation(reading, *panel, kind(pressed), "Add dart");
+        let mut plan = made(Pressed::default())?;
+        if leads_from_fold(reading, &plan) {
+            plan = made(Pressed::After)?;
+        }
         plan.told = plan.select.single().and_then(|item| match item {
             Item::Operation(panel, dart) => {
                 let mut planning = Planning::new(reading);
@@ -73,6 +80,26 @@ pub static DART: SlotTool = SlotTool {
         Ok(plan)
     },
 };
+
+/// Whether a dart of a plan is pressed away from the fold of its panel, which is its centre.
+fn leads_from_fold(reading: &Reading<'_>, plan: &super::slots::Plan) -> bool {
+    let toward = || {
+        let Some(Item::Operation(id, dart)) = plan.select.single() else {
+            return None;
+        };
+        let mut planning = Planning::new(reading);
+        planning.make(plan.edits.clone()).ok()?;
+        let evaluation = planning.evaluation();
+        let panel = evaluation.pattern().panel(id)?;
+        let stage = evaluation.last_stage(panel)?;
+        let arrows = press_arrows(stage, evaluation.pattern(), panel);
+        let arrow = arrows
+            .iter()
+            .find(|arrow| arrow.by == dart && arrow.half == 0)?;
+        toward_fold((arrow.at, arrow.way), fold_line(stage)?)
+    };
+    toward().is_some_and(|toward| toward < -0.5)
+}
 
 /// A dart inside a panel, pointed at both ends.
 pub static FISHEYE: SlotTool = SlotTool {
