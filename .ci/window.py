@@ -16,6 +16,7 @@ did is measured first: where an input may show nothing twice as long is waited.
 """
 
 import contextlib
+import difflib
 import json
 import math
 import os
@@ -46,6 +47,8 @@ CLOTH = b"\xfa\xfd\xfe"
 WITHIN = 1e-6
 # Shortest run of it across that is taken for a panel [pixels].
 LEAST_RUN = 40
+# Lines told of where two files differ.
+MOST_DIFFERS = 30
 PICTURE = pathlib.Path(__file__).resolve().parent.parent / "out/ci/window.png"
 
 
@@ -433,8 +436,10 @@ def t_shirt(record, pace):
         count = replay(window, record, folder, pace)
         file, end = folder / "t-shirt.toile.json", record.with_suffix(".toile.json")
         wait("the T-shirt is saved", file.is_file)
-        if file.read_bytes() != end.read_bytes():
-            raise Fault(f"the T-shirt is not as the test drafted it ({end})")
+        own, other = (path.read_text(encoding="utf-8").splitlines() for path in (file, end))
+        if own != other:
+            differs = "\n".join(list(difflib.unified_diff(other, own, str(end), str(file), n=1, lineterm=""))[:MOST_DIFFERS])
+            raise Fault(f"the T-shirt is not as the test drafted it:\n{differs}")
         return f"the T-shirt in {count} inputs, {time.monotonic() - begun:.0f} s: the same file"
     return drafted
 

@@ -8,7 +8,7 @@ mod several;
 mod steps;
 
 use crate::app::ToileApp;
-use crate::canvas::selection::Item;
+use crate::canvas::selection::{Item, Selection};
 use crate::fields::{Beside, Entered, choice, labelled};
 use crate::theme::{self, Palette};
 use crate::tools::{Tool, finished_words, number};
@@ -29,6 +29,13 @@ const FRAME: f32 = 14.0;
 /// Width and height of the table below which there is no room for it [pixels].
 const LEAST_TABLE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
 
+/// In which corner of the table the inspector stands, and what it tells there.
+#[derive(Default)]
+pub(crate) struct InspectorPlace {
+    told: Selection,
+    is_left: bool,
+}
+
 /// The part of the table that the inspector may take, at its right or at its left.
 fn inspector_place(table: Rect, left: bool) -> Rect {
     let size = vec2(WIDTH + FRAME, table.height() - 2.0 * MARGIN);
@@ -41,9 +48,9 @@ fn inspector_place(table: Rect, left: bool) -> Rect {
 }
 
 impl ToileApp {
-    /// What is selected, over an upper corner of the table; where nothing is selected nothing is there. It goes to
-    /// the left corner where it would lie on what is selected on the right. While a drawing tool is under way, and until it
-    /// has made something, it is out of the way.
+    /// What is selected, over the upper right corner of the table, or over the left one where it would lie on what is
+    /// selected; where nothing is selected nothing is there. While a drawing tool is under way, and until it has made
+    /// something, it is out of the way.
     pub(crate) fn show_inspector(&mut self, ui: &mut Ui, table: Rect) {
         let items = self.view.selection.items().to_vec();
         let draws = matches!(self.view.tool, Tool::Slots(_));
@@ -54,22 +61,21 @@ impl ToileApp {
             return;
         }
         let corners = [false, true].map(|left| inspector_place(table, left));
-        // As tall as it was when it was last shown.
-        let id = egui::Id::unique("inspector");
-        let shown = ui.memory(|memory| memory.area_rect(id));
-        let height = shown.map_or(f32::INFINITY, |shown| shown.height() + MARGIN);
-        let covers = |place: &Rect| {
-            let size = vec2(place.width(), place.height().min(height));
-            let place = Rect::from_min_size(place.min, size);
+        let covers = |left: bool| {
+            let place = corners[usize::from(left)];
             self.view.selection_is_in(table, place)
         };
-        // On the right wherever it can be; while something is dragged it stays.
-        if !ui.input(|input| input.pointer.any_down()) {
-            self.inspector_is_left = covers(&corners[0]) && !covers(&corners[1]);
-        }
-        let place = corners[usize::from(self.inspector_is_left)];
+        // What is newly selected is told on the right where it can be. From then on it stays in its corner as long as
+        // it covers nothing there, so that no field moves under the hands.
+        let is_told = self.inspector.told == self.view.selection;
+        let here = is_told && self.inspector.is_left;
+        self.inspector = InspectorPlace {
+            told: self.view.selection.clone(),
+            is_left: here != (covers(here) && !covers(!here)),
+        };
+        let place = corners[usize::from(self.inspector.is_left)];
         let frame = egui::Frame::popup(ui.style());
-        let area = egui::Area::new(id)
+        let area = egui::Area::new(egui::Id::unique("inspector"))
             .order(egui::Order::Middle)
             .fixed_pos(place.min)
             .default_size(place.size())

@@ -39,6 +39,7 @@ mod words;
 use crate::canvas::selection::Selection;
 use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
+use crate::inspector::InspectorPlace;
 use crate::theme;
 use crate::tools::{Event as ToolEvent, Tool};
 use crate::views::garment::GarmentView;
@@ -97,8 +98,7 @@ pub struct ToileApp {
     pub(crate) tables_are_beside: bool,
     /// What was selected when the drawing tool in hand was taken: it is not told over the table meanwhile.
     pub(crate) selected_before: Option<Selection>,
-    /// Whether the inspector stands at the left of the table.
-    pub(crate) inspector_is_left: bool,
+    pub(crate) inspector: InspectorPlace,
     /// Why the file that was asked for is not open.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
@@ -165,7 +165,7 @@ impl ToileApp {
             panes: preferences.panes,
             tables_are_beside: false,
             selected_before: None,
-            inspector_is_left: false,
+            inspector: InspectorPlace::default(),
             refusal: None,
             closes: false,
             closes_at: 0,
