@@ -87,9 +87,6 @@ impl ToileApp {
     /// A row a measurement, a column a size.
     fn measurement_table(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
-        if pattern.sizes.is_empty() {
-            ui.label("The pattern has no sizes: formulas use the measurements of the wearer.");
-        }
         let mut names: Vec<String> = Vec::new();
         for known in CATALOGUE {
             let is_used = pattern
@@ -113,6 +110,7 @@ impl ToileApp {
                 self.add_size();
             }
             if pattern.sizes.is_empty() {
+                ui.label("The pattern has no sizes: formulas use the measurements of the wearer.");
                 return;
             }
             let label = ui.label("New measurement").id;
@@ -183,7 +181,9 @@ impl ToileApp {
             .auto_shrink([false, false])
             .show(ui, |ui| {
                 Grid::new("sizes").show(ui, |ui| {
-                    named(ui, width, RichText::new("Measurement").strong());
+                    if !pattern.sizes.is_empty() {
+                        named(ui, width, RichText::new("Measurement").strong());
+                    }
                     for size in &pattern.sizes {
                         ui.scope(|ui| {
                             ui.set_width(VALUE);

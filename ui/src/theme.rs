@@ -181,6 +181,8 @@ pub fn apply(context: &egui::Context) {
             style.spacing.button_padding = vec2(8.0, 4.0);
             style.spacing.interact_size = vec2(40.0, 26.0);
             style.spacing.menu_margin = Margin::same(6);
+            // A list scrolls only where it is longer than most windows are high.
+            style.spacing.combo_height = 480.0;
             style.interaction.resize_grab_radius_side = GRAB;
             // What goes on beyond a rim is seen to, though the pointer is elsewhere.
             style.spacing.scroll.dormant_handle_opacity = 0.6;

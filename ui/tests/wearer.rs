@@ -202,6 +202,68 @@ fn a_typed_girth_leaves_the_wearer_as_tall_as_before() {
 }
 
 #[test]
+fn a_typed_girth_moves_nothing_that_does_not_go_with_it() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.key(Key::F3);
+    drafter.press("Woman");
+    drafter.press("the wearer");
+    let before = project(&drafter).body_measurements();
+    drafter.enter("Find measurement", "waist");
+    for (typed, waist) in [("80.5", 0.805), ("85.5", 0.855)] {
+        drafter.enter("Waist girth", typed);
+        let after = project(&drafter);
+        measures(&after, "waist", waist);
+        let after = after.body_measurements();
+        for name in ["waist_line", "hips_line", "arm_length", "head_l", "hips"] {
+            let [now, usual] = [&after, &before].map(|table| table.get(name).unwrap());
+            // The hips grow with the waist; a body's own waist changes nothing.
+            let most = match (typed, name) {
+                ("80.5", _) => 1e-12,
+                (_, "hips") => 0.05,
+                _ => 0.006,
+            };
+            assert!((now - usual).abs() <= most, "{name}: {usual} {now}");
+        }
+    }
+}
+
+#[test]
+fn the_wearer_is_seen_where_the_tables_stand_in_a_narrow_column() {
+    let size = egui::vec2(1920.0, 1080.0);
+    let beginning = Beginning {
+        file: Some(shipped("t-shirt")),
+        folder: None,
+    };
+    let mut drafter = Drafter::of_size(size, beginning, None);
+    drafter.key(Key::F3);
+    let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
+    for name in ["Wearer", "Woman", "Dress form", "Find measurement"] {
+        let at = drafter.window.get_by_label(name).rect();
+        assert!(window.contains_rect(at), "{name}: {at:?}");
+    }
+    drafter.press("Man");
+    assert_eq!(project(&drafter).body, BodyChoice::Sample(Figure::Man));
+}
+
+#[test]
+fn sizes_are_added_one_after_the_other_in_the_same_place() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "skirt");
+    drafter.key(Key::F8);
+    let heads = |drafter: &Drafter| drafter.window.query_all_by_label("Measurement").count();
+    assert_eq!(heads(&drafter), 0);
+    let place = drafter.window.get_by_label("Add size").rect();
+    for sizes in 1..=3 {
+        drafter.press("Add size");
+        assert_eq!(drafter.pattern().sizes.len(), sizes);
+        let now = drafter.window.get_by_label("Add size").rect();
+        assert_eq!(now, place, "{sizes} sizes");
+    }
+    assert_eq!(heads(&drafter), 1);
+}
+
+#[test]
 fn a_measurement_nobody_has_is_refused_in_its_field() {
     let mut drafter = Drafter::opened("t-shirt");
     drafter.key(Key::F3);

@@ -116,7 +116,7 @@ impl Measurements {
     /// in proportion to the girths asked for.
     pub(crate) fn completed_child(&self, age: u8) -> Self {
         let stature = self.child_stature(age);
-        let adult = Self::new().completed(crate::Build::Either);
+        let adult = Self::of_survey(crate::Build::Either);
         let usual_adult = Self::adult();
         let adult_stature = adult.get("height").unwrap_or(1.7);
         let known = |name: &str| row(name).map(|values| at_stature(values, stature));

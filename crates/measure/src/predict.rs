@@ -135,17 +135,50 @@ impl Measurements {
         }
     }
 
-    /// This table with what is missing predicted and marked so: the mean of adults of that build
-    /// who have the values given (ANSUR II, 2012); what no survey took, in proportion to what it
-    /// goes with, from the average body. A child is completed from the average child of its stature.
+    /// This table with what is missing predicted and marked so: the average body of that build,
+    /// moved as the survey's adults differ who have the values given instead of the average body's
+    /// (ANSUR II, 2012). So the average body's own values give the average body, and any other
+    /// value moves the rest by the regression's slope alone. A table with a measurement that the
+    /// average body is without cannot be set beside it: the survey alone predicts the rest. A child
+    /// is completed from the average child of its stature.
     pub fn completed(&self, build: Build) -> Self {
         if let Build::Child(age) = build {
             return self.completed_child(age);
         }
         let statistics = Statistics::of(build);
-        let average = Self::average(build);
+        let sample = Self::average(build);
+        let mut result = self.regressed(&statistics, &sample);
+        let average = sample.regressed(&statistics, &sample);
+        // The average body, known by the very measurements that this table has.
+        let mut alike = Self::new();
+        for (name, _) in self.iter() {
+            let Some(usual) = average.get(name) else {
+                return result;
+            };
+            let _ = alike.set(name, usual, Origin::Asked);
+        }
+        let alike = alike.regressed(&statistics, &sample);
         let scale = self.scale(&statistics);
-        let seen = self.observations(&statistics, &average, scale);
+        for (name, usual) in average.iter().filter(|(name, _)| !self.contains(name)) {
+            if let (Some(value), Some(predicted)) = (result.get(name), alike.get(name)) {
+                let moved = value + scale * (usual.value - predicted);
+                let _ = result.set(name, moved, Origin::Predicted);
+            }
+        }
+        result
+    }
+
+    /// The mean of a build's adults in the survey, with what no survey took from the average body.
+    pub(crate) fn of_survey(build: Build) -> Self {
+        Self::new().regressed(&Statistics::of(build), &Self::average(build))
+    }
+
+    /// This table with what is missing predicted from the survey alone: the mean of its adults who
+    /// have the values given; what no survey took, in proportion to what it goes with, from the
+    /// average body.
+    fn regressed(&self, statistics: &Statistics, average: &Self) -> Self {
+        let scale = self.scale(statistics);
+        let seen = self.observations(statistics, average, scale);
         let predicted = statistics.given(&seen);
         let mut result = self.clone();
         for (name, value) in NAMES.iter().zip(predicted) {
@@ -154,7 +187,7 @@ impl Measurements {
             let value = scale * value.clamp(0.45 * mean, 2.2 * mean);
             result.fill(name, value);
         }
-        result.proportions(&average, &statistics);
+        result.proportions(average, statistics);
         result
     }
 
@@ -326,14 +359,90 @@ mod tests {
     }
 
     #[test]
-    fn nothing_asked_gives_the_mean_of_the_survey() {
+    fn the_survey_alone_gives_its_mean() {
         for (build, survey) in [(Build::Woman, &WOMEN), (Build::Man, &MEN)] {
-            let full = Measurements::new().completed(build);
+            let full = Measurements::of_survey(build);
             for (k, name) in NAMES.iter().enumerate() {
                 let measured = full.measured(name).unwrap();
                 assert_eq!(measured.origin, Origin::Predicted);
                 assert!((measured.value - f64::from(survey.mean[k]) * 1e-4).abs() < 1e-12);
             }
+        }
+    }
+
+    /// The average body of a build with all its measurements.
+    fn average(build: Build) -> Measurements {
+        Measurements::average(build).completed(build)
+    }
+
+    const BUILDS: [Build; 3] = [Build::Woman, Build::Man, Build::Either];
+
+    #[test]
+    fn the_average_body_s_own_values_give_the_average_body() {
+        for build in BUILDS {
+            let average = average(build);
+            let all: Vec<(&str, f64)> = average.iter().map(|(name, m)| (name, m.value)).collect();
+            let few = ["height", "waist", "inside_leg", "waist_line"];
+            let few = few.map(|name| (name, average.get(name).unwrap()));
+            let one = all.iter().map(std::slice::from_ref);
+            for rows in one.chain([&[][..], &few, &all[..9], &all[7..], &all]) {
+                let full = asked(rows).completed(build);
+                assert_eq!(full.len(), average.len());
+                for (name, usual) in &all {
+                    let value = full.get(name).unwrap();
+                    assert!(
+                        (value - usual).abs() < 1e-12,
+                        "{rows:?}: {name} {value} {usual}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_girth_moves_the_others_by_the_slope_of_the_regression() {
+        for build in BUILDS {
+            let (average, statistics) = (average(build), Statistics::of(build));
+            for girth in ["bust", "hips", "neck", "wrist"] {
+                let usual = average.get(girth).unwrap();
+                let [one, two] = [0.01, 0.02].map(|more| asked(&[(girth, usual + more)]));
+                let [one, two] = [one, two].map(|table| table.completed(build));
+                let of = place(girth).unwrap();
+                for (name, start) in average.iter().filter(|(name, _)| *name != girth) {
+                    let [one, two] = [&one, &two].map(|t| t.get(name).unwrap() - start.value);
+                    assert!(
+                        (two - 2.0 * one).abs() < 1e-12,
+                        "{girth} {name}: {one} {two}"
+                    );
+                    if let Some(k) = place(name) {
+                        let slope = statistics.correlation[k][of] * statistics.deviation[k]
+                            / statistics.deviation[of]
+                            / (1.0 + 1e-4);
+                        assert!((one - 0.01 * slope).abs() < 1e-12, "{girth} {name}: {one}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_table_that_the_average_body_is_not_known_by_is_predicted_by_the_survey_alone() {
+        let table = asked(&[("height", 1.7), ("waist", 0.7), ("hps_to_waist_back", 0.43)]);
+        for build in BUILDS {
+            let alone = table.regressed(&Statistics::of(build), &Measurements::average(build));
+            assert!(!average(build).contains("hps_to_waist_back"));
+            assert_eq!(table.completed(build), alone);
+        }
+    }
+
+    #[test]
+    fn a_girth_beside_the_own_height_leaves_the_lengths_of_the_trunk() {
+        let average = average(Build::Woman);
+        let height = average.get("height").unwrap();
+        let full = asked(&[("height", height), ("waist", 0.7)]).completed(Build::Woman);
+        for name in ["waist_line", "hips_line", "arm_length", "inside_leg"] {
+            let [now, usual] = [&full, &average].map(|table| table.get(name).unwrap());
+            assert!((now - usual).abs() < 0.012, "{name}: {usual} {now}");
         }
     }
 

@@ -14,6 +14,8 @@ use toile_session::{BodyChoice, Command, Figure};
 
 /// Width of the choice of a wearer [pixels].
 const CHOICE: f32 = 420.0;
+/// Least width of the measurements beside it [pixels].
+const MEASUREMENTS: f32 = 400.0;
 /// The measurement that stays when another one is typed.
 const HEIGHT: &str = "height";
 /// Width of a measurement's value [pixels].
@@ -75,8 +77,22 @@ fn figure_words(figure: Figure) -> String {
 }
 
 impl ToileApp {
-    /// Who wears it on the left, their measurements on the right.
+    /// Who wears it on the left, their measurements on the right; below each other where the table is
+    /// too narrow for that.
     pub(super) fn wearer_table(&mut self, ui: &mut Ui) {
+        if ui.available_width() < CHOICE + MEASUREMENTS {
+            let all = ScrollArea::both()
+                .id_salt("wearer")
+                .auto_shrink([false, false]);
+            all.show(ui, |ui| {
+                self.figure_choice(ui);
+                ui.separator();
+                self.worn_size_choice(ui);
+                let known = self.wearer_search(ui);
+                self.wearer_rows(ui, &known);
+            });
+            return;
+        }
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
                 ui.set_width(CHOICE);
@@ -88,7 +104,11 @@ impl ToileApp {
             ui.separator();
             ui.vertical(|ui| {
                 self.worn_size_choice(ui);
-                self.wearer_measurements(ui);
+                let known = self.wearer_search(ui);
+                let area = ScrollArea::vertical()
+                    .id_salt("wearer's measurements")
+                    .auto_shrink([false, false]);
+                area.show(ui, |ui| self.wearer_rows(ui, &known));
             });
         });
     }
@@ -229,31 +249,30 @@ impl ToileApp {
         }
     }
 
-    fn wearer_measurements(&mut self, ui: &mut Ui) {
-        let known = self.known_wearer();
-        ui.horizontal(|ui| {
+    /// The search over the measurements, and all of them.
+    fn wearer_search(&mut self, ui: &mut Ui) -> Known {
+        ui.horizontal_wrapped(|ui| {
             let label = ui.label("Find measurement").id;
             let search = &mut self.tables.wearer.search;
             line_field(ui, label, search, ("waist, knee, back\u{2026}", 180.0));
             let words = "Type what was measured; what is left empty is estimated from it";
             ui.label(RichText::new(words).color(Palette::of(ui.ctx()).ink_soft));
         });
-        let rows = found_rows(&known, &self.tables.wearer.search);
-        let area = ScrollArea::vertical()
-            .id_salt("wearer's measurements")
-            .auto_shrink([false, false]);
-        area.show(ui, |ui| {
-            if rows.is_empty() {
-                ui.label("No measurement has this in its name or meaning.");
+        self.known_wearer()
+    }
+
+    /// The measurements that were found, a row each.
+    fn wearer_rows(&mut self, ui: &mut Ui, known: &Known) {
+        let rows = found_rows(known, &self.tables.wearer.search);
+        if rows.is_empty() {
+            ui.label("No measurement has this in its name or meaning.");
+        }
+        let grid = Grid::new("wearer's measurements").striped(true);
+        grid.show(ui, |ui| {
+            for row in &rows {
+                self.wearer_row(ui, row, known);
+                ui.end_row();
             }
-            Grid::new("wearer's measurements")
-                .striped(true)
-                .show(ui, |ui| {
-                    for row in &rows {
-                        self.wearer_row(ui, row, &known);
-                        ui.end_row();
-                    }
-                });
         });
     }
 
