@@ -274,6 +274,12 @@ fn the_name_of_a_piece_lies_on_one_sheet() {
                 let sheets: Vec<usize> = read.iter().map(own).filter(|count| *count > 0).collect();
                 assert_eq!(sheets, [1], "{name} {paper:?} {}", piece.words[0]);
             }
+            // Each has its grain line, by name.
+            let grain = read.iter().flat_map(|page| &page.words);
+            assert!(
+                grain.filter(|w| *w == "grain").count() >= job.pieces.len(),
+                "{name}"
+            );
         }
     }
 }

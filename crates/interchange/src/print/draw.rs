@@ -12,12 +12,13 @@ const BLUE: Ink = [0.12, 0.31, 0.62];
 const PURPLE: Ink = [0.55, 0.2, 0.55];
 /// Least width of a line that a projector shows, and of one to cut along \[m\].
 const PROJECTED: [f64; 2] = [0.0012, 0.002];
-/// Letters beside the fold \[m\].
+/// Letters beside the fold, and beside the grain line \[m\].
 const FOLD_LETTERS: f64 = 0.005;
-/// Places along it that are tried for its words, the most usual first [share of its length].
-const FOLD_PLACES: [f64; 5] = [0.5, 0.38, 0.62, 0.26, 0.74];
-/// Their size over the length of the fold at the most: the words then fit.
-const FOLD_SHARE: f64 = 0.1;
+const GRAIN_LETTERS: f64 = 0.0035;
+/// Places along a line that are tried for its words, the most usual first [share of its length].
+const ALONG_PLACES: [f64; 5] = [0.5, 0.38, 0.62, 0.26, 0.74];
+/// Their size over the length of the line at the most: the words then fit.
+const ALONG_SHARE: f64 = 0.1;
 
 /// Largest letters of a piece's words \[m\].
 const LETTERS: f64 = 0.012;
@@ -113,11 +114,16 @@ pub(crate) fn piece_marks(
             }
             let layer = (!shared).then_some(*layer);
             let style = style(job, stroke.kind, layer.unwrap_or(0));
-            let on_fold = stroke.kind == StrokeKind::Fold;
-            if let ([from, to], true, true, Some(lines)) =
-                (&stroke.points[..], on_fold, own, clear_of)
+            let told = match stroke.kind {
+                StrokeKind::Fold => Some(("fold of the cloth", FOLD_LETTERS, PURPLE)),
+                StrokeKind::Grain => Some(("grain", GRAIN_LETTERS, BLUE)),
+                _ => None,
+            };
+            if let ([from, to], Some(told), true, Some(lines)) =
+                (&stroke.points[..], told, own, clear_of)
             {
-                marks.extend(fold_words([*from, *to], drawing.fill.as_ref(), lines));
+                let fill = drawing.fill.as_ref();
+                marks.extend(words_along([*from, *to], told, (fill, lines)));
             }
             marks.push(Mark::line(layer, (stroke.points, stroke.closed), style));
         }
@@ -204,14 +210,15 @@ fn words_mark(words: Words) -> Mark {
     }
 }
 
-/// The words along the fold, inside the piece: in its middle, or beside that where they lie on none of some lines.
-fn fold_words(
+/// Words along the fold or the grain line, inside the piece: in its middle, or beside that where they lie on none of
+/// some lines.
+fn words_along(
     [from, to]: [Vec2; 2],
-    fill: Option<&Polygon>,
-    clear_of: &[[Vec2; 2]],
+    (text, letters, ink): (&str, f64, Ink),
+    (fill, clear_of): (Option<&Polygon>, &[[Vec2; 2]]),
 ) -> Option<Mark> {
     let way = (to - from).try_normalize(0.0)?;
-    let size = FOLD_LETTERS.min((to - from).norm() * FOLD_SHARE);
+    let size = letters.min((to - from).norm() * ALONG_SHARE);
     let left = Vec2::new(-way.y, way.x) * size;
     let middle = (from + to) * 0.5;
     let inside = fill.is_some_and(|fill| fill.contains(middle + left));
@@ -225,12 +232,12 @@ fn fold_words(
     let words = |share: f64| Mark {
         layer: None,
         shape: Shape::Text {
-            text: "fold of the cloth".to_owned(),
+            text: text.to_owned(),
             at: from + (to - from) * share + above,
             size,
             angle: way.y.atan2(way.x),
             align: Align::Middle,
-            ink: PURPLE,
+            ink,
         },
     };
     let is_whole = |mark: &Mark| {
@@ -239,6 +246,6 @@ fn fold_words(
             .iter()
             .all(|line| clipped(line, false, &bounds).is_empty())
     };
-    let places = FOLD_PLACES.map(words).into_iter();
+    let places = ALONG_PLACES.map(words).into_iter();
     places.clone().find(is_whole).or(places.into_iter().next())
 }
