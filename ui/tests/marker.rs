@@ -361,3 +361,35 @@ fn what_a_search_has_is_seen_while_it_goes_on() {
     assert_eq!(marker(&window).placements.len(), 32);
     assert_eq!(window.state().marker_view().state.waiting, 0);
 }
+
+/// A marker of a size says that the garment is made for somebody else, and a button orders the wearer's.
+#[test]
+fn a_marker_of_a_size_beside_a_garment_of_a_wearer_is_mended_by_a_button() {
+    let mut window = window();
+    press(&mut window, Key::F10);
+    let medium = marker(&window).order[0].size;
+    assert!(medium.is_some());
+    assert!(window.query_by_label("The wearer\u{2019}s").is_none());
+    execute(
+        &mut window,
+        Command::SetBody {
+            figure: Some(toile_session::Figure::Woman),
+            measurements: None,
+        },
+    );
+    window.run_ok();
+    let said = "is of size M, and the garment is made for";
+    assert!(window.query_by_label_contains(said).is_some());
+    window.get_by_label("Order the wearer\u{2019}s").click();
+    window.run_ok();
+    let ordered = marker(&window).order.clone();
+    assert_eq!((ordered.len(), ordered[0].size), (1, None));
+    assert!(window.query_by_label_contains(said).is_none());
+    assert!(window.query_by_label("The wearer\u{2019}s").is_some());
+
+    // A new one is the wearer's from the start.
+    window.get_by_label("New marker").click();
+    window.run_ok();
+    let markers = &window.state().session().project().pattern.markers;
+    assert_eq!(markers[1].order[0].size, None);
+}

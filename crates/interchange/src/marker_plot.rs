@@ -9,7 +9,7 @@ use toile_geometry::Vec2;
 
 /// A marker as DXF of release 12, in millimetres: layers CUT, SEW, NOTCH, GRAIN, LINE, DRILL, TEXT for
 /// the pieces and FABRIC, MARGIN, FOLD, PRINT, FLAW for the cloth. The lower corner of the fabric's
-/// start is the origin.
+/// start is the origin. The title stands over the fabric.
 ///
 /// # Errors
 /// A coordinate is not finite.
@@ -25,6 +25,8 @@ pub fn write_marker_dxf(drawing: &MarkerDrawing) -> Result<String, FormatError> 
         let place = (words.at, words.size, words.angle);
         dxf.text(Layer::Text.name(), &words.text, place);
     }
+    let above = Vec2::new(0.5 * drawing.length, drawing.strip.width + TITLE);
+    dxf.text(Layer::Text.name(), &drawing.title, (above, TITLE, 0.0));
     Ok(dxf.finish())
 }
 
@@ -51,6 +53,8 @@ pub fn write_marker_hpgl(drawing: &MarkerDrawing) -> Result<String, FormatError>
     Ok(hpgl.finish())
 }
 
+/// Height of the letters of a title, and how far it stands over the fabric \[m\].
+const TITLE: f64 = 0.02;
 /// White round the fabric \[m\].
 const BORDER: f64 = 0.02;
 

@@ -124,7 +124,9 @@ fn a_dxf_read_back_is_the_marker() {
     let counts = counts.map(|layer| polylines[layer].len());
     assert_eq!(counts, [2, 2, 2, 2, 4, 1, 3]);
     let texts: Vec<&str> = words.iter().map(|w| w.1.as_str()).collect();
-    assert_eq!(texts, ["front", "R\\U+00FCcken", "face down"]);
+    let (title, on_pieces) = texts.split_last().unwrap();
+    assert_eq!(on_pieces, ["front", "R\\U+00FCcken", "face down"]);
+    assert_eq!(*title, "Hemd, K\\U+00F6per");
     assert!(words.iter().all(|w| w.0 == "TEXT"));
 }
 

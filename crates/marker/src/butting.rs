@@ -1,5 +1,5 @@
-//! Where pieces that are let go by hand come to lie: against their neighbours and the edges of the fabric, with
-//! the gap kept exactly, or where they were.
+//! Where pieces that are let go by hand come to lie: against their neighbours, the edges of the fabric and its
+//! flaws, with the distance to each kept exactly, or where they were.
 
 use crate::DocumentMarker;
 use toile_geometry::{Bounds2, Polygon, PreparedPolygon, Vec2, closest_on_segment};
@@ -20,18 +20,27 @@ const LEAST_SINE: f64 = 0.2;
 pub enum LetGo {
     /// Moved so far they lie apart from all others, and against what was near [m].
     Apart(Vec2),
-    /// They lie over that piece, deeper than they are moved by themselves.
-    Over(OrderedPiece),
+    /// They lie over that, deeper than they are moved by themselves.
+    Over(Obstacle),
+}
+
+/// What a piece may not lie over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Obstacle {
+    /// Another piece.
+    Piece(OrderedPiece),
+    /// A flaw of the fabric.
+    Flaw,
 }
 
 /// Something that a piece keeps away from.
 enum Neighbour {
-    /// Another piece.
-    Piece {
+    /// Another piece, or a flaw of the fabric.
+    Outline {
         own: usize,
         outline: PreparedPolygon,
         gap: f64,
-        piece: OrderedPiece,
+        is: Obstacle,
     },
     /// An edge of the usable fabric: the direction to it, and how far it is along that [m].
     Edge { own: usize, toward: Vec2, at: f64 },
@@ -65,11 +74,22 @@ impl DocumentMarker {
             for (piece, other, stays) in laid.iter().filter(|(p, ..)| !is_held(p)) {
                 let gap = strip.gap_between(item, other);
                 if bounds.distance(&stays.bounds()) <= gap + MOVES * reach {
-                    neighbours.push(Neighbour::Piece {
+                    neighbours.push(Neighbour::Outline {
                         own,
                         outline: PreparedPolygon::new(stays),
                         gap,
-                        piece: *piece,
+                        is: Obstacle::Piece(*piece),
+                    });
+                }
+            }
+            for flaw in strip.flaws.iter().filter(|_| !item.over_flaws) {
+                let gap = flaw.clearance;
+                if bounds.distance(&flaw.outline.bounds()) <= gap + MOVES * reach {
+                    neighbours.push(Neighbour::Outline {
+                        own,
+                        outline: PreparedPolygon::new(&flaw.outline),
+                        gap,
+                        is: Obstacle::Flaw,
                     });
                 }
             }
@@ -102,7 +122,7 @@ impl Surroundings {
     fn leave_out_edges(&mut self, reach: f64) {
         let held = &self.held;
         self.neighbours.retain(|neighbour| match neighbour {
-            Neighbour::Piece { .. } => true,
+            Neighbour::Outline { .. } => true,
             Neighbour::Edge { own, toward, at } => {
                 to_edge(&held[*own], (*toward, *at), Vec2::zeros()).length > -reach
             }
@@ -113,7 +133,7 @@ impl Surroundings {
     fn clearance(&self, neighbour: &Neighbour, way: Vec2) -> Clearance {
         match neighbour {
             Neighbour::Edge { own, toward, at } => to_edge(&self.held[*own], (*toward, *at), way),
-            Neighbour::Piece {
+            Neighbour::Outline {
                 own, outline, gap, ..
             } => {
                 let held = PreparedPolygon::new(&self.held[*own].translated(way));
@@ -152,7 +172,7 @@ impl Surroundings {
     fn let_go(&self, reach: f64) -> LetGo {
         let way = match self.freed(reach) {
             Ok(way) => way,
-            Err(piece) => return LetGo::Over(piece),
+            Err(obstacle) => return LetGo::Over(obstacle),
         };
         let nearest = self.nearest(way, |_| true);
         let Some((first, near)) = nearest.filter(|(_, near)| near.length <= reach) else {
@@ -204,8 +224,8 @@ impl Surroundings {
         None
     }
 
-    /// The way out of everything that it lies over or too near to; else a piece that it lies over.
-    fn freed(&self, reach: f64) -> Result<Vec2, OrderedPiece> {
+    /// The way out of everything that it lies over or too near to; else something that it lies over.
+    fn freed(&self, reach: f64) -> Result<Vec2, Obstacle> {
         let mut way = Vec2::zeros();
         let mut over = None;
         for _ in 0..STEPS {
@@ -215,8 +235,8 @@ impl Surroundings {
             if near.length >= -EXACT {
                 return Ok(way);
             }
-            if let Neighbour::Piece { piece, .. } = &self.neighbours[k] {
-                over.get_or_insert(*piece);
+            if let Neighbour::Outline { is, .. } = &self.neighbours[k] {
+                over.get_or_insert(*is);
             }
             way += near.toward * near.length;
             if way.norm() > reach {
@@ -318,11 +338,11 @@ mod tests {
         Surroundings {
             held: vec![held],
             neighbours: others
-                .map(|(k, other)| Neighbour::Piece {
+                .map(|(k, other)| Neighbour::Outline {
                     own: 0,
                     outline: PreparedPolygon::new(other),
                     gap: GAP,
-                    piece: piece(k),
+                    is: Obstacle::Piece(piece(k)),
                 })
                 .collect(),
         }

@@ -24,7 +24,7 @@ mod search;
 mod starting_marker;
 mod summary;
 
-pub use butting::LetGo;
+pub use butting::{LetGo, Obstacle};
 pub use document_marker::{
     DocumentMarker, Found, LaidPiece, MarkerState, PieceOutside, PieceOverlap, Start, WaitingPiece,
 };

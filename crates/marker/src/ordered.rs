@@ -12,7 +12,7 @@ use toile_pattern::{
     SizeId,
 };
 
-/// A pattern drafted to the sizes of an order; nothing stands for a pattern without sizes.
+/// A pattern drafted to the sizes of an order; nothing stands for the wearer's.
 pub type SizeDrafts = [(Option<SizeId>, Arc<Draft>)];
 
 /// The pieces that a marker of a document cuts, as they are cut and as its fabric lies. It stays the
@@ -21,6 +21,8 @@ pub struct MarkerPieces {
     cloth: MarkerCloth,
     fabric: Fabric,
     order: Vec<OrderedSize>,
+    /// What tells the wearer's pieces from those of sizes.
+    whose: String,
     pub(crate) job: FabricJob,
     pub(crate) options: NestOptions,
     /// Which piece of the order each copy of each item is.
@@ -31,7 +33,8 @@ pub struct MarkerPieces {
 
 impl MarkerPieces {
     /// The pieces of a marker of a pattern on what its garment is cut from, by the drafts to the sizes of the
-    /// order. Sizes that are gone are passed over.
+    /// order; where sizes are cut with them, pieces of the wearer's carry the words that say whose they are. Sizes that
+    /// are gone are passed over.
     ///
     /// # Errors
     /// The fabric is gone, a size was not drafted, nothing is cut from the fabric, a piece has no cut
@@ -39,7 +42,7 @@ impl MarkerPieces {
     pub fn new(
         (pattern, garment): (&Pattern, &GarmentCloth),
         marker: &Marker,
-        drafts: &SizeDrafts,
+        (drafts, whose): (&SizeDrafts, &str),
     ) -> Result<Self, MarkerError> {
         let id = marker.cloth.fabric;
         let of_panels = pattern.fabric(id);
@@ -67,7 +70,7 @@ impl MarkerPieces {
                 pattern,
                 draft,
                 count: *quantity,
-                label: name.map(|size| &*size.name).filter(|_| several),
+                label: Some(name.map_or(whose, |size| &size.name)).filter(|_| several),
             });
         }
         let to_cut = pieces_to_cut(&garments, &options, Some(&of_panels.name))?;
@@ -84,6 +87,7 @@ impl MarkerPieces {
             cloth: marker.cloth.clone(),
             fabric,
             order: marker.order.clone(),
+            whose: whose.to_owned(),
             index: pairs.collect(),
             job,
             options,
@@ -95,6 +99,7 @@ impl MarkerPieces {
     pub fn is_same(&self, other: &Self) -> bool {
         self.cloth == other.cloth
             && self.order == other.order
+            && self.whose == other.whose
             && self.job.items == other.job.items
             && self.job.pieces == other.job.pieces
             && self.strip() == other.strip()
@@ -112,9 +117,14 @@ impl MarkerPieces {
 
     /// Whether a marker of a pattern cuts the same pieces from fabric that lies alike, as long as the drafts are
     /// the same.
-    pub fn serve(&self, (pattern, garment): (&Pattern, &GarmentCloth), marker: &Marker) -> bool {
+    pub fn serve(
+        &self,
+        (pattern, garment): (&Pattern, &GarmentCloth),
+        (marker, whose): (&Marker, &str),
+    ) -> bool {
         self.cloth == marker.cloth
             && self.order == marker.order
+            && self.whose == whose
             && pattern.marker_fabric(marker, garment).as_ref() == Some(&self.fabric)
     }
 }

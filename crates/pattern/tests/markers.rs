@@ -202,9 +202,7 @@ fn locked_pieces_stay_and_what_is_not_there_is_named() {
     let off = evaluated(&after(open.pattern(), &off));
     let missing = plan::flip_pieces(&off, (id, &[back]), 0.5).unwrap_err();
     assert!(
-        missing
-            .to_string()
-            .contains("\"back\", copy 1, garment 1 does not lie"),
+        missing.to_string().contains("piece \"back\" does not lie"),
         "{missing}"
     );
     let twice = [placed(back, [0.0; 2]), placed(back, [1.0; 2])];

@@ -124,7 +124,7 @@ impl Session {
                     hint: "lay the pieces out or drape the garment first",
                 });
             }
-            let name = self.garment_name();
+            let name = self.marker_title();
             let usual = ExportFormat::ALL.into_iter();
             return Ok(Subject {
                 formats: usual.filter(|format| format.is_usual()).collect(),
@@ -144,7 +144,8 @@ impl Session {
                     let marker = self.project.pattern.marker_named(name);
                     let kept = marker.and_then(|marker| self.kept_by(marker));
                     events.extend(Event::warnings(kept.as_slice()));
-                    let (name, finished) = stored(self, name)?;
+                    let (name, finished, apart) = stored(self, name)?;
+                    events.extend(Event::warnings(apart.as_slice()));
                     let faults = finished.faults();
                     events.push(Event::Nested(finished.summary()));
                     events.extend(Event::warnings(&faults));
@@ -153,7 +154,7 @@ impl Session {
                 None => {
                     events.extend(self.nest(&mut part)?);
                     let markers = self.derived.finished_markers(&self.project, &mut part)?;
-                    (self.garment_name(), markers)
+                    (self.marker_title(), markers)
                 }
             };
             subject.markers = Some(markers);
@@ -175,6 +176,12 @@ impl Session {
     /// The names of all garments worn.
     fn garment_name(&mut self) -> String {
         worn_name(&self.derived.parts(&self.project))
+    }
+
+    /// The title of a marker laid of what the garment is made of.
+    fn marker_title(&mut self) -> String {
+        let name = self.garment_name();
+        self.project.titled(&name)
     }
 
     /// The pieces on paper.

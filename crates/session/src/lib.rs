@@ -81,7 +81,7 @@ pub use journal::{journal_lines, read_journal};
 pub use journal_files::open_journal;
 pub use live::{LiveFrame, LiveRun};
 pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
-pub use markers::{FoundMarker, MarkerSearch, kept_words};
+pub use markers::{FoundMarker, MarkerSearch, kept_words, other_sizes_words};
 pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
     Opened, PatternFormat, SAMPLE, SAMPLES, open_mannequin, open_marker, open_measurements,
@@ -116,8 +116,8 @@ pub use toile_interchange::{
 };
 pub use toile_marker::{
     DocumentMarker, Found, GivenFlaw, LaidPiece, LetGo, MarkerError, MarkerFormat, MarkerState,
-    MarkerSummary, NestOptions, PieceOutside, PieceOverlap, SearchProgress, SearchWatcher, Start,
-    WaitingPiece,
+    MarkerSummary, NestOptions, Obstacle, PieceOutside, PieceOverlap, SearchProgress,
+    SearchWatcher, Start, WaitingPiece,
 };
 pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
 pub use toile_pattern::{Severity, SizeSelection, Spread};

@@ -68,14 +68,19 @@ impl MarkerCache {
         let named = named.filter(|size| sizes.contains(&Some(size.id)));
         let named: Vec<Arc<Size>> = named.cloned().collect();
         let garment = project.garment_cloth();
+        let whose = project.whose();
         if let Some(kept) = self.pieces.get(&marker.id)
-            && kept.pieces.serve((pattern, &garment), marker)
+            && kept.pieces.serve((pattern, &garment), (marker, &whose))
             && all_same(kept.drafts.iter(), drafts.iter().map(|(_, draft)| draft))
             && all_same(kept.sizes.iter(), named.iter())
         {
             return Ok(kept.pieces.clone());
         }
-        let pieces = Arc::new(MarkerPieces::new((pattern, &garment), marker, &drafts)?);
+        let pieces = Arc::new(MarkerPieces::new(
+            (pattern, &garment),
+            marker,
+            (&drafts, &whose),
+        )?);
         let kept = CachedPieces {
             drafts: drafts.into_iter().map(|(_, draft)| draft).collect(),
             sizes: named,
@@ -96,7 +101,8 @@ impl MarkerCache {
             let found = self.draft(project, one.size).evaluation.check();
             let sizes = &project.pattern.sizes;
             let size = sizes.iter().find(|size| Some(size.id) == one.size);
-            project.refuse_faults_in(size.map(|size| &*size.name), &found)?;
+            let name = size.map(|size| &*size.name);
+            project.refuse_faults_in(name.or(project.size_name()), &found)?;
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Markers of the document as they lie; searches on a snapshot, taken over as one edit.
 
-use crate::{Command, Event, Session, SessionError, Shown, Silent};
+use crate::{Command, Event, Project, Session, SessionError, Shown, Silent};
 use std::sync::Arc;
 use toile_marker::{DocumentMarker, Found, MarkerPieces, SearchWatcher, Start};
 use toile_nesting::Search;
@@ -120,6 +120,28 @@ impl Session {
                 hint: there_are(names().collect()),
             })
     }
+}
+
+/// What is said of a marker that cuts sizes alone while the garment is made for a wearer who is none of them, in words
+/// that go on from its name.
+pub fn other_sizes_words(project: &Project, marker: &Marker) -> Option<String> {
+    let pattern = &project.pattern;
+    let is_of_size = pattern.sizes.is_empty() || project.size_name().is_some();
+    if is_of_size || marker.order.iter().any(|ordered| ordered.size.is_none()) {
+        return None;
+    }
+    let is_ordered = |id| marker.quantity(Some(id)) > 0;
+    let sizes = pattern.sizes.iter().filter(|size| is_ordered(size.id));
+    let names: Vec<&str> = sizes.map(|size| &*size.name).collect();
+    let sizes = match names[..] {
+        [] => return None,
+        [only] => format!("size {only}"),
+        _ => format!("sizes {}", names.join(", ")),
+    };
+    Some(format!(
+        "is of {sizes}, and the garment is {}",
+        project.whose()
+    ))
 }
 
 /// What a marker keeps, in words that go on from its name.

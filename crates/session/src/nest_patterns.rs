@@ -79,7 +79,7 @@ pub(crate) fn drafts_of(
             let name = own_name.get_or_insert_with(|| another(&project.pattern.name, &known));
             names.push(match (size, several || count > 1) {
                 (Some(size), true) => format!("{name} {count} x {size}"),
-                _ => name.clone(),
+                _ => project.titled(name),
             });
             known.push(name.clone());
             drafts.push(Drafted {

@@ -179,6 +179,37 @@ impl Project {
         ])
     }
 
+    /// Whose pieces are cut where the pattern is drafted as for the garment, in words to write on a piece.
+    pub fn whose(&self) -> String {
+        match self.size_name() {
+            Some(size) => size.to_owned(),
+            None => match &self.body {
+                BodyChoice::Sample(_) => format!("made for the figure {}", self.body.short_name()),
+                body => format!("made for {}", body.short_name()),
+            },
+        }
+    }
+
+    /// The size that the garment is of, or whom it is made to measure for with their girths, in words for a title;
+    /// nothing where it is as drawn.
+    pub(crate) fn made_words(&self) -> Option<String> {
+        if let Some(size) = self.size_name() {
+            return Some(format!("size {size}"));
+        }
+        if let Some([wearer, girths]) = self.made_for() {
+            return Some(format!("made to measure for {wearer} ({girths})"));
+        }
+        (!self.pattern.sizes.is_empty()).then(|| self.whose())
+    }
+
+    /// A name with [`Project::made_words`], for a title.
+    pub(crate) fn titled(&self, name: &str) -> String {
+        match self.made_words() {
+            Some(words) => format!("{name}, {words}"),
+            None => name.to_owned(),
+        }
+    }
+
     /// Refuses a size the pattern does not have, or one worn with it that has a table of sizes.
     pub(crate) fn check_size(&self) -> Result<(), SessionError> {
         let Some(name) = &self.size else {

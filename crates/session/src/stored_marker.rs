@@ -1,7 +1,7 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
 use crate::input::is_pipe;
-use crate::markers::there_are;
+use crate::markers::{other_sizes_words, there_are};
 use crate::output::File;
 use crate::watched_search::watched;
 use crate::{
@@ -79,30 +79,38 @@ pub fn nest_marker(
     Ok((summary, paths))
 }
 
-/// A marker of a session's pattern as it lies, and what its files are called.
+/// A marker of a session's pattern as it lies, what its files are called, and what is said where it is of other sizes
+/// than the garment.
 pub(crate) fn stored(
     session: &mut Session,
     name: &str,
-) -> Result<(String, FinishedMarker), SessionError> {
+) -> Result<(String, FinishedMarker, Option<String>), SessionError> {
     let laid = session.marker(marker_named(&session.project().pattern, name)?)?;
     let project = session.project();
     let pattern = &project.pattern;
     let marker = laid.marker();
-    let mut name = format!("{}, {}", pattern.name, marker.name);
-    let sizes = marker.order.iter().filter_map(|ordered| {
-        let size = pattern
-            .sizes
-            .iter()
-            .find(|size| Some(size.id) == ordered.size)?;
-        Some(format!("{} x {}", ordered.quantity, size.name))
-    });
-    let sizes: Vec<String> = sizes.collect();
-    if !sizes.is_empty() {
-        name = format!("{name}, {}", sizes.join(", "));
-    } else if let Some([wearer, girths]) = project.made_for() {
-        name = format!("{name}, made to measure for {wearer} ({girths})");
-    }
-    Ok((name, laid.finished()))
+    let name = format!("{}, {}", pattern.name, marker.name);
+    let name = match &marker.order[..] {
+        [only] if only.size.is_none() && only.quantity == 1 => project.titled(&name),
+        order => {
+            let sizes = order.iter().filter_map(|ordered| {
+                let size = pattern.sizes.iter();
+                let mut size = size.filter(|size| Some(size.id) == ordered.size);
+                let whose = match ordered.size {
+                    Some(_) => Some(size.next()?.name.clone()),
+                    None => project.made_words(),
+                };
+                Some(match whose {
+                    Some(whose) => format!(", {} x {whose}", ordered.quantity),
+                    None => String::new(),
+                })
+            });
+            name + &sizes.collect::<String>()
+        }
+    };
+    let apart = other_sizes_words(project, marker);
+    let apart = apart.map(|words| format!("marker {:?} {words}", marker.name));
+    Ok((name, laid.finished(), apart))
 }
 
 fn marker_named(pattern: &Pattern, name: &str) -> Result<MarkerId, SessionError> {
@@ -120,11 +128,12 @@ fn written(
     marker: &str,
     formats: &[MarkerFormat],
 ) -> Result<(MarkerSummary, Vec<File>), SessionError> {
-    let (name, finished) = stored(session, marker)?;
+    let (name, finished, apart) = stored(session, marker)?;
     let finished_markers = [finished];
     let mut files = Vec::new();
     let lost = marker_files((&name, formats), &finished_markers, &mut files)?;
     let mut summary = finished_markers[0].summary();
+    summary.notes.extend(apart);
     summary.notes.extend(finished_markers[0].faults());
     summary.notes.extend(lost.into_iter().flatten());
     Ok((summary, files))

@@ -1,9 +1,13 @@
-//! Markers of the document on what the garment is cut from.
+//! Markers of the document on what the garment is cut from, for whom it is made, and beside flaws of the cloth.
 #![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
-use toile_pattern::{Edit, MarkerCloth, MarkerId, PiecePlacement, plan};
-use toile_session::{Command, Event, SAMPLE, Search, SearchWatcher, Session, Silent, Start};
+use toile_geometry::Vec2;
+use toile_pattern::{Edit, Flaw, MarkerCloth, MarkerId, OrderedSize, PiecePlacement, plan};
+use toile_session::{
+    Command, Event, LetGo, Obstacle, SAMPLE, Search, SearchWatcher, Session, Silent, Start,
+    other_sizes_words,
+};
 
 fn edit(session: &mut Session, edits: Vec<Edit>) {
     let label = "Edit marker".to_owned();
@@ -12,13 +16,19 @@ fn edit(session: &mut Session, edits: Vec<Edit>) {
         .unwrap();
 }
 
-/// A shirt with a marker, laid.
-fn laid() -> (Session, MarkerId) {
+/// A session with the shirt.
+fn opened() -> Session {
     let mut session = Session::new();
     let path = SAMPLE.into();
     session
         .execute(Command::OpenPattern { path }, &mut Silent)
         .unwrap();
+    session
+}
+
+/// A shirt with a marker, laid.
+fn laid() -> (Session, MarkerId) {
+    let mut session = opened();
     let fabric = session.project().pattern.panels[0].fabric;
     let (edits, id) = plan::add_marker(&session.evaluation(), Some("shirts"), fabric).unwrap();
     edit(&mut session, edits);
@@ -117,4 +127,109 @@ fn a_marker_lies_on_what_the_garment_is_cut_from_and_what_it_keeps_is_told() {
     run(&mut session, wide(None));
     run(&mut session, Command::SetFabric { fabric: None });
     assert_eq!(lies_on(&mut session), (own.fabric, own.strip.width));
+}
+
+/// A garment that is made for a wearer is laid so, in the pieces, the title and the words; a marker of sizes says that
+/// the garment is other.
+#[test]
+fn a_marker_of_a_garment_made_for_a_wearer_is_the_wearers() {
+    let mut session = opened();
+    let folder = tempfile::tempdir().unwrap();
+    let fabric = session.project().pattern.panels[0].fabric;
+    let (edits, of_size) = plan::add_marker(&session.evaluation(), None, fabric).unwrap();
+    edit(&mut session, edits);
+    let body = folder.path().join("anna.measurements.json");
+    let text = r#"{ "toile": 1, "kind": "measurements", "unit": "cm",
+        "measurements": { "height": 180, "bust": 121, "waist": 101, "hips": 123 } }"#;
+    std::fs::write(&body, text).unwrap();
+    let set = Command::SetBody {
+        figure: None,
+        measurements: Some(body),
+    };
+    session.execute(set, &mut Silent).unwrap();
+    let (edits, own) = plan::add_marker(&session.evaluation(), Some("own"), fabric).unwrap();
+    edit(&mut session, edits);
+    let marker = |session: &Session, id| session.project().pattern.marker(id).unwrap().clone();
+    let ordered = marker(&session, own).order.clone();
+    assert_eq!((ordered.len(), ordered[0].size), (1, None));
+    let widest = |session: &mut Session, id, name: Option<&str>| {
+        let laid = session.marker(id).unwrap();
+        let waiting = laid.waiting();
+        let named = waiting.filter(|piece| name.is_none_or(|name| piece.name == name));
+        let sizes = named.map(|piece| piece.cut.polygon().bounds().size().x);
+        sizes.fold(0.0, f64::max)
+    };
+    let of_wearer = widest(&mut session, own, None);
+    assert!(of_wearer > widest(&mut session, of_size, None) + 0.02);
+
+    let project = session.project();
+    let words = other_sizes_words(project, &marker(&session, of_size)).unwrap();
+    assert_eq!(words, "is of size M, and the garment is made for anna");
+    assert_eq!(other_sizes_words(project, &marker(&session, own)), None);
+
+    // Beside pieces of a size those of the wearer say whose they are.
+    let mut order = ordered;
+    let medium = session.project().pattern.size_named("M").unwrap().id;
+    order.push(OrderedSize {
+        size: Some(medium),
+        quantity: 1,
+    });
+    let edits = plan::set_marker_order(&session.evaluation(), own, order).unwrap();
+    edit(&mut session, edits);
+    assert_eq!(
+        widest(&mut session, own, Some("front made for anna")),
+        of_wearer
+    );
+    assert!(widest(&mut session, own, Some("front M")) > 0.1);
+}
+
+/// A piece that is let go on a flaw goes off it, or back; beside one it keeps the flaw's distance.
+#[test]
+fn a_piece_that_is_let_go_lies_on_no_flaw() {
+    let mut session = opened();
+    let fabric = session.project().pattern.panels[0].fabric;
+    let (edits, id) = plan::add_marker(&session.evaluation(), None, fabric).unwrap();
+    edit(&mut session, edits);
+    let piece = session.marker(id).unwrap().waiting().next().unwrap().piece;
+    let at = |at: [f64; 2]| PiecePlacement {
+        piece,
+        at,
+        turn: 0.0,
+        flipped: false,
+        locked: false,
+    };
+    let edits = plan::place_pieces(&session.evaluation(), id, &[at([0.0; 2])]).unwrap();
+    edit(&mut session, edits);
+    let laid = session.marker(id).unwrap();
+    let front = laid.laid().next().unwrap();
+    let shape = front.pose.lay(&front.cut.polygon()).bounds();
+    let clearance = 0.004;
+    let flaw = Flaw {
+        at: [1.5, 0.1],
+        size: [0.3, 0.5],
+        clearance,
+    };
+    let cloth = MarkerCloth {
+        flaws: vec![flaw],
+        ..session.project().pattern.marker(id).unwrap().cloth.clone()
+    };
+    let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();
+    edit(&mut session, edits);
+    let reach = 0.03;
+    let mut let_go = |right: f64| {
+        // So far the right end of the piece reaches.
+        let placed = at([right - shape.max.x, 0.35 - shape.centre().y]);
+        let edits = plan::place_pieces(&session.evaluation(), id, &[placed]).unwrap();
+        edit(&mut session, edits);
+        session.marker(id).unwrap().let_go(&[piece], reach)
+    };
+    for right in [1.49, 1.51] {
+        let LetGo::Apart(way) = let_go(right) else {
+            panic!("{right}");
+        };
+        let kept = 1.5 - (right + way.x);
+        assert!((kept - clearance).abs() < 1e-9, "{kept}");
+    }
+    assert_eq!(let_go(1.4), LetGo::Apart(Vec2::zeros()));
+    assert_eq!(let_go(1.65), LetGo::Over(Obstacle::Flaw));
 }

@@ -1,27 +1,29 @@
 //! What a marker is laid on: fabric, width, plies, price, and what of it does not follow the garment.
 
 use super::ToileApp;
-use egui::{ComboBox, DragValue, Ui};
+use egui::{Color32, ComboBox, DragValue, Id, TextStyle, Ui};
 use toile_pattern::plan;
-use toile_pattern::{FabricId, Marker, MarkerCloth, MarkerId, MarkerKeeps};
-use toile_session::{Shown, kept_words};
+use toile_pattern::{FabricId, Marker, MarkerCloth, MarkerId, MarkerKeeps, OrderedSize};
+use toile_session::{Shown, kept_words, other_sizes_words};
 
 /// Widths that differ by less are the same [m].
 const SAME_WIDTH: f64 = 1e-9;
+/// Room for a field beside its label [pixels].
+const FIELD_ROOM: f32 = 84.0;
 
 impl ToileApp {
     pub(super) fn cloth_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let mut cloth = marker.cloth.clone();
         self.fabric_choice(ui, marker, &mut cloth);
         self.width_field(ui, marker, &mut cloth);
-        let label = ui.label("Plies").id;
+        let label = kept_label(ui, "Plies");
         let field = DragValue::new(&mut cloth.plies)
             .range(1..=500)
             .speed(0.05)
             .update_while_editing(false);
         ui.add(field).labelled_by(label);
         let mut price = cloth.price_per_metre.unwrap_or(0.0);
-        let label = ui.label("Price per m").id;
+        let label = kept_label(ui, "Price per m");
         let field = DragValue::new(&mut price)
             .range(0.0..=10_000.0)
             .speed(0.1)
@@ -52,7 +54,7 @@ impl ToileApp {
         following.cloth.keeps_fabric = false;
         let own = pattern.fabric(cloth.fabric).map(|own| own.name.clone());
         let others = self.fabrics_cut(marker.cloth.fabric);
-        let label = ui.label("Lies on").id;
+        let label = kept_label(ui, "Lies on");
         ComboBox::from_id_salt("marker fabric")
             .selected_text(name(marker))
             .show_ui(ui, |ui| {
@@ -97,7 +99,7 @@ impl ToileApp {
         let followed = width_of(None);
         let mut width = width_of(cloth.width) / metres;
         let before = width;
-        let label = ui.label("Width").id;
+        let label = kept_label(ui, "Width");
         let field = DragValue::new(&mut width)
             .range(0.01 / metres..=20.0 / metres)
             .suffix(format!(" {}", unit.sign()))
@@ -109,8 +111,8 @@ impl ToileApp {
         }
     }
 
-    /// Where the marker on show does not follow what the garment is cut from: the button that mends it, and
-    /// what it keeps.
+    /// Where the marker on show does not follow what the garment is cut from, or whom it is made for: the button that
+    /// mends it, and what it keeps.
     pub(super) fn mend_button(&mut self, ui: &mut Ui) -> Option<String> {
         let pattern = self.base.pattern().clone();
         let marker = pattern.marker(self.marker_id()?)?.clone();
@@ -131,7 +133,17 @@ impl ToileApp {
                 let words = kept_words(&pattern, &keeps);
                 (button, format!("The marker {words}"))
             }
-            None if self.has_pieces_to_lay(&marker) => return None,
+            None if self.has_pieces_to_lay(&marker) => {
+                let words = other_sizes_words(self.session.project(), &marker)?;
+                if ui.button("Order the wearer\u{2019}s").clicked() {
+                    let order = vec![OrderedSize {
+                        size: None,
+                        quantity: 1,
+                    }];
+                    self.set_order(marker.id, order);
+                }
+                return Some(format!("The marker {words}"));
+            }
             None => {
                 let (id, name) = self.fabrics_cut(cloth.fabric).into_iter().next()?;
                 cloth.fabric = id;
@@ -173,4 +185,16 @@ impl ToileApp {
         };
         Some(words)
     }
+}
+
+/// A label that begins a new line where its field would have no room beside it.
+pub(super) fn kept_label(ui: &mut Ui, words: &str) -> Id {
+    let font = TextStyle::Body.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout_no_wrap(words.to_owned(), font, Color32::PLACEHOLDER);
+    if ui.available_size_before_wrap().x < galley.size().x + FIELD_ROOM {
+        ui.end_row();
+    }
+    ui.label(words).id
 }

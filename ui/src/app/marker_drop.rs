@@ -6,7 +6,7 @@ use crate::views::marker::LetGoAs;
 use toile_geometry::Vec2;
 use toile_pattern::plan;
 use toile_pattern::{Edit, EditError, MarkerId, OrderedPiece, PiecePlacement};
-use toile_session::LetGo;
+use toile_session::{LetGo, Obstacle};
 
 impl ToileApp {
     /// Ends a drag of pieces that were moved by a way [m]: one step of the history, or none.
@@ -70,10 +70,13 @@ impl ToileApp {
                 }
                 self.commit(label);
             }
-            LetGo::Over(other) => {
+            LetGo::Over(obstacle) => {
                 self.session.cancel();
                 self.refresh();
-                let words = self.base.pattern().piece_words(other);
+                let words = match obstacle {
+                    Obstacle::Piece(other) => self.base.pattern().piece_words(other),
+                    Obstacle::Flaw => "a flaw of the fabric".to_owned(),
+                };
                 self.notice = Notice::warning(format!(
                     "It went back, as it lay over {words}: hold Alt to leave it there"
                 ));

@@ -3,6 +3,7 @@
 
 use super::ToileApp;
 use super::job::Job;
+use super::marker_cloth::kept_label;
 use super::notice::Notice;
 use crate::fields::Entered;
 use crate::theme::Palette;
@@ -10,6 +11,7 @@ use crate::tools::number;
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::{ComboBox, DragValue, RichText, Ui};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 use toile_pattern::plan;
 use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, SizeId, Want};
 use toile_session::{
@@ -20,12 +22,36 @@ use toile_session::{
 const NAME_WIDTH: f32 = 110.0;
 /// Seconds a search may take.
 const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];
+/// Part of its time that a search which ended early took at most.
+const EARLY: f64 = 0.8;
 
 /// A search that goes on.
 pub struct Searching {
     job: Job<FoundMarker>,
     /// The marker as the search has it, where that is new.
     newest: Arc<Mutex<Option<DocumentMarker>>>,
+    /// When it began, and the seconds it may take.
+    began: Instant,
+    seconds: f64,
+    /// Whether it was stopped by hand.
+    is_stopped: bool,
+}
+
+impl Searching {
+    /// Why it ended, where that was clearly before its time.
+    fn ended_early(&self) -> Option<String> {
+        let took = self.began.elapsed().as_secs_f64();
+        if took > EARLY * self.seconds {
+            return None;
+        }
+        Some(match self.is_stopped {
+            true => format!("stopped after {took:.0} s: the best so far"),
+            false => format!(
+                "ended after {took:.0} of {:.0} s: no shorter marker is possible, or nothing was left to try",
+                self.seconds
+            ),
+        })
+    }
 }
 
 /// How a search is asked for.
@@ -156,28 +182,32 @@ impl ToileApp {
         self.cloth_fields(ui, &marker);
     }
 
-    /// How many garments of each size.
+    /// How many garments of the wearer, where that is none of the sizes, and of each size.
     fn order_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let pattern = self.base.pattern().clone();
-        let sizes: Vec<(Option<SizeId>, &str)> = match pattern.sizes.is_empty() {
-            true => vec![(None, "Garments")],
-            false => pattern
-                .sizes
-                .iter()
-                .map(|size| (Some(size.id), &*size.name))
-                .collect(),
+        let project = self.session.project();
+        let is_for_wearer = project.size_name().is_none() || marker.quantity(None) > 0;
+        let wearers = match pattern.sizes.is_empty() {
+            true => Some((None, "Garments", "Garments on the marker".to_owned())),
+            false => {
+                let words = format!("Garments as in the window: {}", project.whose());
+                is_for_wearer.then_some((None, "The wearer\u{2019}s", words))
+            }
         };
-        for (size, name) in sizes {
+        let mut rows: Vec<(Option<SizeId>, &str, String)> = wearers.into_iter().collect();
+        for size in &pattern.sizes {
+            let words = "Garments of this size on the marker".to_owned();
+            rows.push((Some(size.id), &size.name, words));
+        }
+        for (size, name, meaning) in rows {
             let before = marker.quantity(size);
             let mut quantity = before;
-            let label = ui.label(name).id;
+            let label = kept_label(ui, name);
             let field = DragValue::new(&mut quantity)
                 .range(0..=toile_pattern::MOST_GARMENTS)
                 .speed(0.05)
                 .update_while_editing(false);
-            ui.add(field)
-                .on_hover_text("Garments of this size on the marker")
-                .labelled_by(label);
+            ui.add(field).on_hover_text(meaning).labelled_by(label);
             if quantity != before {
                 let mut order = marker.order.clone();
                 order.retain(|ordered| ordered.size != size);
@@ -189,11 +219,16 @@ impl ToileApp {
                     all.position(|known| Some(known.id) == ordered.size)
                 };
                 order.sort_by_key(place);
-                let planned = plan::set_marker_order(&self.base, marker.id, order);
-                self.edit(planned, "Set order");
-                self.marker_view.fit();
+                self.set_order(marker.id, order);
             }
         }
+    }
+
+    pub(super) fn set_order(&mut self, id: MarkerId, order: Vec<OrderedSize>) {
+        let planned = plan::set_marker_order(&self.base, id, order);
+        self.edit(planned, "Set order");
+        self.marker_view.fit();
+        self.follow_marker();
     }
 
     fn search_bar(&mut self, ui: &mut Ui) {
@@ -394,6 +429,9 @@ impl ToileApp {
         let told = Arc::clone(&newest);
         self.searching = Some(Searching {
             newest,
+            began: Instant::now(),
+            seconds: self.search_choice.seconds,
+            is_stopped: false,
             job: Job::start(move |follower| {
                 let stop = follower.stop_flag().ok_or(SessionError::Cancelled)?;
                 let laid = search.laid();
@@ -437,7 +475,8 @@ impl ToileApp {
 
     /// Ends the search with the best marker so far.
     pub(crate) fn stop_search(&mut self) {
-        if let Some(searching) = &self.searching {
+        if let Some(searching) = &mut self.searching {
+            searching.is_stopped = true;
             searching.job.cancel();
         }
     }
@@ -456,6 +495,7 @@ impl ToileApp {
             }
             return;
         };
+        let early = searching.ended_early();
         self.searching = None;
         self.follow_marker();
         match result.map(|found| self.session.adopt_marker(found)) {
@@ -464,7 +504,8 @@ impl ToileApp {
                 self.follow_marker();
                 self.marker_view.keep_in_view();
                 let (words, _) = self.marker_words();
-                self.notice = Notice::news(words);
+                let early = early.map_or_else(String::new, |early| format!("; {early}"));
+                self.notice = Notice::news(format!("{words}{early}"));
             }
             Ok(Ok(None)) => {
                 self.notice = Notice::warning(

@@ -51,6 +51,8 @@ pub enum Viewed {
 pub struct FabricTable {
     /// The fabric on show; nothing is the one that the garment, or its first panel, is cut from.
     viewed: Option<Viewed>,
+    /// The fabric that the list was last scrolled to.
+    scrolled_to: Option<Viewed>,
     /// A colour that is being picked.
     colour: Option<(FabricId, [u8; 3])>,
 }
@@ -187,10 +189,17 @@ impl ToileApp {
     fn fabric_list(&mut self, ui: &mut Ui, viewed: Option<Viewed>) {
         let pattern = self.base.pattern().clone();
         let mut clicked = None;
+        let is_new = viewed != self.tables.fabric.scrolled_to;
+        self.tables.fabric.scrolled_to = viewed;
         let mut row = |ui: &mut Ui, one: Viewed, (name, colour): (&str, [f64; 3])| {
             ui.horizontal(|ui| {
                 swatch(ui, colour);
-                if ui.selectable_label(viewed == Some(one), name).clicked() {
+                let is_viewed = viewed == Some(one);
+                let label = ui.selectable_label(is_viewed, name);
+                if is_viewed && is_new {
+                    label.scroll_to_me(Some(Align::Center));
+                }
+                if label.clicked() {
                     clicked = Some(one);
                 }
             });
@@ -219,17 +228,26 @@ impl ToileApp {
         }
     }
 
+    /// The fabric that the whole garment is cut from, where one was chosen.
+    fn fabric_of_garment(&self) -> Option<Viewed> {
+        let pattern = self.base.pattern();
+        match self.session.project().fabric.as_ref()? {
+            FabricChoice::File { .. } => Some(Viewed::File),
+            FabricChoice::Named(name) => {
+                match pattern.fabrics.iter().find(|own| own.name == *name) {
+                    Some(own) => Some(Viewed::Own(own.id)),
+                    None => LibraryFabric::named(name).map(|library| Viewed::Library(library.name)),
+                }
+            }
+        }
+    }
+
     /// The fabric on show, if it is still there.
     fn viewed_fabric(&self) -> Option<Viewed> {
         let pattern = self.base.pattern();
-        let own = |name: &str| pattern.fabrics.iter().find(|own| own.name == name);
         let is_there = |viewed: &Viewed| self.fabric_on_show(*viewed).is_some();
-        let chosen = match &self.session.project().fabric {
-            Some(FabricChoice::File { .. }) => Some(Viewed::File),
-            Some(FabricChoice::Named(name)) => match own(name) {
-                Some(own) => Some(Viewed::Own(own.id)),
-                None => LibraryFabric::named(name).map(|library| Viewed::Library(library.name)),
-            },
+        let chosen = match self.session.project().fabric {
+            Some(_) => self.fabric_of_garment(),
             None => pattern
                 .panels
                 .first()
@@ -489,10 +507,11 @@ impl ToileApp {
             let words = format!("The whole garment is cut from {} now", choice.name());
             ui.label(RichText::new(words).color(Palette::of(ui.ctx()).ink_soft));
         }
+        let is_whole = self.fabric_of_garment() == Some(viewed);
         let mut wished = None;
         ui.horizontal_wrapped(|ui| {
             for panel in &pattern.panels {
-                let is_cut = viewed == Viewed::Own(panel.fabric);
+                let is_cut = is_whole || viewed == Viewed::Own(panel.fabric);
                 let mut ticked = is_cut;
                 let tick = egui::Checkbox::new(&mut ticked, &panel.name);
                 ui.add_enabled(!is_cut, tick);

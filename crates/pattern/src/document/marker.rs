@@ -141,10 +141,10 @@ pub struct Flaw {
     pub clearance: f64,
 }
 
-/// Garments of one size.
+/// Garments of one size, or of the wearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct OrderedSize {
-    /// The size; nothing for a pattern without sizes.
+    /// The size; nothing is the wearer's: as the pattern is drafted for the garment.
     pub size: Option<SizeId>,
     /// How many garments, 1 to [`MOST_GARMENTS`].
     pub quantity: u32,
@@ -157,7 +157,7 @@ pub struct OrderedPiece {
     pub panel: PanelId,
     /// Number of the copy, from 0; of a mirrored pair the odd ones are mirror images.
     pub copy: u32,
-    /// The size; nothing for a pattern without sizes.
+    /// The size; nothing is the wearer's.
     pub size: Option<SizeId>,
     /// The garment, from 0 within its size.
     pub garment: u32,
@@ -428,16 +428,26 @@ impl Pattern {
         })
     }
 
-    /// A piece of an order in words: panel, copy, size, garment.
+    /// A piece of an order in words: panel, and of copy, size and garment what tells it from others.
     pub fn piece_words(&self, piece: OrderedPiece) -> String {
         let panel = self.panel(piece.panel);
-        let panel = panel.map_or_else(|| piece.panel.to_string(), |p| format!("{:?}", p.name));
-        let size = piece.size.map(|id| {
+        let name = panel.map_or_else(|| piece.panel.to_string(), |p| format!("{:?}", p.name));
+        let mut words = format!("piece {name}");
+        if piece.copy > 0 || panel.is_some_and(|panel| panel.cut.quantity > 1) {
+            words += &format!(", copy {}", piece.copy + 1);
+        }
+        if let Some(id) = piece.size {
             let found = self.sizes.iter().find(|size| size.id == id);
-            found.map_or_else(|| id.to_string(), |size| format!("size {:?}", size.name))
-        });
-        let size = size.map_or_else(String::new, |size| format!(", {size}"));
-        let (copy, garment) = (piece.copy + 1, piece.garment + 1);
-        format!("piece {panel}, copy {copy}{size}, garment {garment}")
+            let size = found.map_or_else(|| id.to_string(), |size| format!("size {:?}", size.name));
+            words += &format!(", {size}");
+        }
+        let garments = self
+            .markers
+            .iter()
+            .map(|marker| marker.quantity(piece.size));
+        if piece.garment > 0 || garments.max().is_some_and(|most| most > 1) {
+            words += &format!(", garment {}", piece.garment + 1);
+        }
+        words
     }
 }

@@ -11,7 +11,8 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// The edits that add a marker of a fabric for one garment of the base size; and the marker.
+/// The edits that add a marker of a fabric for one garment, of the size that the pattern is drafted to or to the
+/// wearer's measurements; and the marker.
 /// Without a name it is called "marker", the second "marker 2".
 ///
 /// # Errors
@@ -40,7 +41,7 @@ pub fn add_marker(
         name,
         cloth: MarkerCloth::of(fabric),
         order: vec![OrderedSize {
-            size: pattern.base().map(|size| size.id),
+            size: evaluation.wearer().size,
             quantity: 1,
         }],
         placements: Vec::new(),
