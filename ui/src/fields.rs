@@ -214,8 +214,9 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
         let place = ui.scope(|ui| {
             ui.set_width(LABEL);
             ui.set_min_height(height);
-            // On the line of what is written in the field.
-            ui.add_space(ui.spacing().button_padding.y);
+            // Its first line is on the line of what is written in the field, in larger letters.
+            let line = ui.text_style_height(&TextStyle::Small);
+            ui.add_space((0.5 * (height - line)).max(0.0).ceil());
             let words = RichText::new(capitalised(name)).small().color(soft);
             let label = ui.add(egui::Label::new(words).wrap());
             // What messages call it, it is called by those who hear the window too.
