@@ -38,6 +38,36 @@ pub struct ClosestPoint {
     pub weights: [f64; 3],
 }
 
+impl ClosestPoint {
+    /// What is closest to a point: a triangle with its corners and the weights of its closest point,
+    /// and the pseudo-normal there.
+    pub(crate) fn of(
+        point: Vec3,
+        (triangle, corners, weights): (u32, [Vec3; 3], [f64; 3]),
+        pseudo_normal: Vec3,
+    ) -> Self {
+        let on_surface = weighted(corners, weights);
+        let offset = point - on_surface;
+        let distance = offset.norm();
+        let side = if offset.dot(&pseudo_normal) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        Self {
+            point: on_surface,
+            signed_distance: side * distance,
+            normal: if distance > 1e-9 {
+                offset * (side / distance)
+            } else {
+                pseudo_normal
+            },
+            triangle,
+            weights,
+        }
+    }
+}
+
 fn vector(p: Vec3) -> Vector {
     Vector::new(p.x, p.y, p.z)
 }
@@ -131,25 +161,7 @@ impl SurfaceTree {
             Feature::Edge(k) => self.edge_normals[t][k],
             Feature::Face => self.face_normals[t],
         };
-        let on_surface = weighted(corners, weights);
-        let offset = point - on_surface;
-        let distance = offset.norm();
-        let side = if offset.dot(&pseudo_normal) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
-        ClosestPoint {
-            point: on_surface,
-            signed_distance: side * distance,
-            normal: if distance > 1e-9 {
-                offset * (side / distance)
-            } else {
-                pseudo_normal
-            },
-            triangle,
-            weights,
-        }
+        ClosestPoint::of(point, (triangle, corners, weights), pseudo_normal)
     }
 
     /// Whether a point lies inside the closed surface.
@@ -215,7 +227,7 @@ impl SurfaceTree {
     }
 }
 
-fn weighted(corners: [Vec3; 3], weights: [f64; 3]) -> Vec3 {
+pub(crate) fn weighted(corners: [Vec3; 3], weights: [f64; 3]) -> Vec3 {
     corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
 }
 
