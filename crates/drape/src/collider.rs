@@ -1,10 +1,10 @@
 //! Solid surfaces that cloth collides with, and vertices with a prescribed motion.
 
 use crate::contact_settings::FIELD_REACH;
-use crate::{Motion, Pose};
+use crate::{Motion, Pose, SharedTrack};
 use nalgebra::Matrix3;
 use std::sync::Arc;
-use toile_geometry::{ClosestPoint, DistanceField, SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{ClosestPoint, DistanceField, MovingSurface, SurfaceTree, TriangleMesh, Vec3};
 
 /// A solid surface: the exact mesh for counts of crossings, a smooth distance field for forces.
 #[derive(Clone)]
@@ -15,8 +15,8 @@ pub struct Collider {
     pub field: Arc<DistanceField>,
     /// Its motion; none at rest.
     pub motion: Option<Arc<Motion>>,
-    /// Corners of its bounding box in its own frame [m].
-    corners: [Vec3; 8],
+    /// The way of its vertices before that motion, where they move one by one.
+    pub track: Option<SharedTrack>,
 }
 
 /// Cell of a collider's distance field [m]: a third of the radius of the sharpest crease that holds cloth.
@@ -27,10 +27,10 @@ impl Collider {
     pub fn new(surface: Arc<SurfaceTree>) -> Self {
         let field = Arc::new(DistanceField::new(surface.clone(), FIELD_CELL, FIELD_REACH));
         Self {
-            corners: box_corners(&surface.mesh().positions),
             surface,
             field,
             motion: None,
+            track: None,
         }
     }
 
@@ -47,6 +47,7 @@ impl Collider {
         Arc::ptr_eq(&self.surface, &other.surface)
             && Arc::ptr_eq(&self.field, &other.field)
             && self.motion == other.motion
+            && self.track == other.track
     }
 
     /// Its pose at a time [s]; none without a motion.
@@ -54,44 +55,95 @@ impl Collider {
         self.motion.as_ref().map(|motion| motion.pose(time))
     }
 
-    /// Smooth signed distance [m] and its gradient at a point [m], under a pose of the surface.
-    pub fn distance(&self, pose: Option<&Pose>, point: Vec3) -> Option<(f64, Vec3)> {
-        match pose {
-            None => self.field.distance(point),
-            Some(pose) => {
-                let (distance, slope) = self.field.distance(pose.undo(point))?;
-                Some((distance, pose.rotation * slope))
-            }
-        }
+    /// Whether any of it moves at any time.
+    pub fn is_moving(&self) -> bool {
+        self.motion.is_some() || self.track.is_some()
     }
 
-    /// Hessian of the smooth distance [1/m] at a point [m], under a pose of the surface.
-    pub fn curvature(&self, pose: Option<&Pose>, point: Vec3) -> Option<Matrix3<f64>> {
-        match pose {
-            None => self.field.curvature(point),
+    /// Places of its vertices at a time [s] [m].
+    pub fn positions(&self, time: f64) -> Vec<Vec3> {
+        let mut positions = match &self.track {
+            Some(track) => track.positions(time),
+            None => self.surface.mesh().positions.clone(),
+        };
+        if let Some(pose) = self.pose(time) {
+            positions.iter_mut().for_each(|p| *p = pose.apply(*p));
+        }
+        positions
+    }
+
+    /// The surface at a time [s].
+    pub fn at(&self, time: f64) -> PlacedSolid<'_> {
+        PlacedSolid {
+            solid: self,
+            pose: self.pose(time),
+            tracked: self.track.as_ref().map(|_| {
+                let positions = self.positions(time);
+                let mut surface = MovingSurface::new(self.surface.mesh());
+                surface.set_step(&positions, &positions);
+                surface
+            }),
+        }
+    }
+}
+
+/// A solid at one time.
+pub struct PlacedSolid<'a> {
+    solid: &'a Collider,
+    pose: Option<Pose>,
+    /// Its surface where its vertices move one by one.
+    tracked: Option<MovingSurface>,
+}
+
+impl PlacedSolid<'_> {
+    /// Whether it lies where it was loaded.
+    pub fn is_at_rest(&self) -> bool {
+        self.pose.is_none() && self.tracked.is_none()
+    }
+
+    fn to_own(&self, point: Vec3) -> Vec3 {
+        self.pose.as_ref().map_or(point, |pose| pose.undo(point))
+    }
+
+    /// Signed distance [m] of a point [m] and its gradient: smooth, but exact where vertices move one by one; none far
+    /// away.
+    pub fn distance(&self, point: Vec3) -> Option<(f64, Vec3)> {
+        if let Some(surface) = &self.tracked {
+            let closest = surface.closest_point(point, 1.0, FIELD_REACH, None)?;
+            return Some((closest.signed_distance, closest.normal));
+        }
+        let (distance, slope) = self.solid.field.distance(self.to_own(point))?;
+        let slope = self
+            .pose
+            .as_ref()
+            .map_or(slope, |pose| pose.rotation * slope);
+        Some((distance, slope))
+    }
+
+    /// Hessian of the smooth distance [1/m] at a point [m]; none where the distance is exact.
+    pub fn curvature(&self, point: Vec3) -> Option<Matrix3<f64>> {
+        if self.tracked.is_some() {
+            return None;
+        }
+        let own = self.solid.field.curvature(self.to_own(point))?;
+        Some(match &self.pose {
+            None => own,
             Some(pose) => {
-                let own = self.field.curvature(pose.undo(point))?;
                 let rotation = pose.rotation.matrix();
-                Some(rotation * own * rotation.transpose())
+                rotation * own * rotation.transpose()
             }
-        }
+        })
     }
 
-    /// Bound of the displacement of any point of the surface between two poses [m]: the displacement is affine in the
-    /// point, so its norm is largest at a corner of the bounding box.
-    pub fn travel(&self, from: &Pose, to: &Pose) -> f64 {
-        let displacement = |&corner: &Vec3| (to.apply(corner) - from.apply(corner)).norm();
-        self.corners.iter().map(displacement).fold(0.0, f64::max)
-    }
-
-    /// Pairs of a triangle of `cloth` and one of the surface at a time [s] that intersect, by exact predicates on
-    /// corners rounded to the frame of the solid; the triangle of the cloth comes first.
-    pub fn crossings(&self, time: f64, cloth: &TriangleMesh) -> Vec<[u32; 2]> {
-        match self.pose(time) {
-            None => self.surface.intersections_with(cloth),
-            Some(pose) => {
+    /// Pairs of a triangle of `cloth` and one of the surface that intersect, by exact predicates; of a solid that moves
+    /// rigidly on corners rounded to its frame. The triangle of the cloth comes first.
+    pub fn crossings(&self, cloth: &TriangleMesh) -> Vec<[u32; 2]> {
+        match (&self.tracked, &self.pose) {
+            (Some(surface), _) => surface.intersections_with(cloth),
+            (None, None) => self.solid.surface.intersections_with(cloth),
+            (None, Some(pose)) => {
                 let positions = cloth.positions.iter().map(|&p| pose.undo(p));
-                self.surface.intersections_with(&TriangleMesh {
+                self.solid.surface.intersections_with(&TriangleMesh {
                     positions: positions.collect(),
                     triangles: cloth.triangles.clone(),
                 })
@@ -99,29 +151,20 @@ impl Collider {
         }
     }
 
-    /// Exact signed distance of a point from the surface [m], under a pose of the surface.
-    pub fn exact_distance(&self, pose: Option<&Pose>, point: Vec3) -> f64 {
-        let closest = self.closest_point(pose, point);
+    /// Exact signed distance of a point from the surface [m].
+    pub fn exact_distance(&self, point: Vec3) -> f64 {
+        let closest = self.closest_point(point);
         closest.map_or(f64::INFINITY, |c| c.signed_distance)
     }
 
-    /// The closest point of the surface, in the frame of the solid, to a point [m] under a pose of the surface; none to
-    /// a point that is not finite.
-    pub(crate) fn closest_point(&self, pose: Option<&Pose>, point: Vec3) -> Option<ClosestPoint> {
-        let point = pose.map_or(point, |pose| pose.undo(point));
-        self.surface.closest_point(point, f64::INFINITY)
+    /// The closest point of the surface to a point [m], in the frame of a solid that moves rigidly; none to a point that
+    /// is not finite.
+    pub(crate) fn closest_point(&self, point: Vec3) -> Option<ClosestPoint> {
+        match &self.tracked {
+            Some(surface) => surface.closest_point(point, 1.0, f64::INFINITY, None),
+            None => (self.solid.surface).closest_point(self.to_own(point), f64::INFINITY),
+        }
     }
-}
-
-fn box_corners(positions: &[Vec3]) -> [Vec3; 8] {
-    let mut low = Vec3::repeat(f64::INFINITY);
-    let mut high = Vec3::repeat(f64::NEG_INFINITY);
-    for position in positions {
-        low = low.inf(position);
-        high = high.sup(position);
-    }
-    let of = |axis: usize, k: usize| [low, high][k >> axis & 1][axis];
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|k| Vec3::new(of(0, k), of(1, k), of(2, k)))
 }
 
 /// A vertex with a prescribed motion; it is no unknown.

@@ -4,7 +4,7 @@ use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::memory::Memory as StateMemory;
-use crate::{Collider, ContactSample, Model, PairPolicies, Pose, SolidFriction, State};
+use crate::{Collider, ContactSample, Model, PairPolicies, PlacedSolid, SolidFriction, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -134,8 +134,9 @@ impl Contacts {
         }
         self.clearances.resize(state.samples.len(), unknown);
         let step_start = self.step_start.as_deref();
-        let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
-        if poses.iter().any(Option::is_some) {
+        let solids = model.colliders.iter().map(|solid| solid.at(state.time));
+        let solids: Vec<PlacedSolid> = solids.collect();
+        if !solids.iter().all(PlacedSolid::is_at_rest) {
             // Clearances are valid for solids at rest only.
             self.clearances.fill(unknown);
         }
@@ -150,7 +151,7 @@ impl Contacts {
                     let scene = Surfaces {
                         model,
                         state,
-                        poses: &poses,
+                        solids: &solids,
                         step_start,
                     };
                     find(&scene, positions, at, clearance, &mut contacts);
@@ -230,11 +231,11 @@ fn is_buried(model: &Model, state: &State, contact: &Contact, position: Vec3) ->
     depth > offset || (depth > 0.0 && remembered())
 }
 
-/// The solids, with their poses, that samples are measured against.
+/// The solids at the present time, that samples are measured against.
 struct Surfaces<'a> {
     model: &'a Model,
     state: &'a State,
-    poses: &'a [Option<Pose>],
+    solids: &'a [PlacedSolid<'a>],
     /// As in [`Contacts`].
     step_start: Option<&'a [Vec3]>,
 }
@@ -250,7 +251,7 @@ fn find(
     let Surfaces {
         model,
         state,
-        poses,
+        solids,
         step_start,
     } = scene;
     let sample = &state.samples[at];
@@ -264,11 +265,11 @@ fn find(
     }
     let mut nearest = FIELD_REACH;
     let object = model.policies.object_of_sample(&sample.vertices);
-    for (solid, (collider, pose)) in model.colliders.iter().zip(*poses).enumerate() {
+    for (solid, placed) in solids.iter().enumerate() {
         if model.policies.ignores_solid(object, solid) {
             continue;
         }
-        let Some((distance, slope)) = collider.distance(pose.as_ref(), position) else {
+        let Some((distance, slope)) = placed.distance(position) else {
             continue;
         };
         // The smooth distance may exceed the exact one by a fraction of a millimetre.
@@ -277,9 +278,9 @@ fn find(
             continue;
         }
         let depth = offset - distance;
-        let [hollow, bulge] = Some(collider)
+        let [hollow, bulge] = Some(placed)
             .filter(|_| depth > 0.0)
-            .and_then(|collider| collider.curvature(pose.as_ref(), position))
+            .and_then(|placed| placed.curvature(position))
             .map_or([Matrix3::zeros(); 2], split_by_sign);
         let law = law_of(model, sample);
         let memory = SolidFriction::find(&state.solid_friction, at as u32, solid as u32);

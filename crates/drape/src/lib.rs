@@ -58,13 +58,14 @@ mod submodel;
 mod support;
 mod system;
 mod topology;
+mod track;
 mod verdict;
 mod world;
 mod xpbd;
 
 pub use carry::Carry;
 pub use cloth::Cloth;
-pub use collider::{Collider, PrescribedVertex};
+pub use collider::{Collider, PlacedSolid, PrescribedVertex};
 pub use contact_sample::ContactSample;
 pub use contact_settings::{ContactSettings, MOST_OFFSET};
 pub use contacts::{Contact, Contacts};
@@ -103,6 +104,7 @@ pub use support::{Support, supports};
 pub use system::{System, SystemBuilder};
 pub use toile_sparse::PcgLimits;
 pub use topology::Topology;
+pub use track::{SharedTrack, Track};
 pub use verdict::{Aspect, Finding, Verdict};
 pub use world::{
     AttachmentEnd, AttachmentId, Edited, Kind, Layers, MeshVertex, Object, ObjectAttachment,

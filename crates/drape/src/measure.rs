@@ -144,13 +144,13 @@ fn measure_solids(
     let edges = mesh.topology().edges;
     let mut on_body = Vec::new();
     for (number, collider) in system.colliders.iter().enumerate() {
-        let pairs = collider.crossings(state.time, mesh);
+        let solid = collider.at(state.time);
+        let pairs = solid.crossings(mesh);
         let pair_meets = |pair: &[u32; 2]| meets(&mesh.triangles[pair[0] as usize], number);
         on_body.extend(pairs.into_iter().filter(pair_meets));
-        let pose = collider.pose(state.time);
         let nearest = |(v, &p): (usize, &Vec3)| {
             let is_met = meets(&[v as u32], number);
-            (is_met.then(|| collider.closest_point(pose.as_ref(), p))).flatten()
+            (is_met.then(|| solid.closest_point(p))).flatten()
         };
         let closest: Vec<Option<ClosestPoint>> =
             (mesh.positions.par_iter().enumerate().map(nearest)).collect();

@@ -1,7 +1,9 @@
 //! The scene: the description of a simulation, independent of file formats.
 
 use crate::environment::check_number;
-use crate::{Air, Cloth, Damping, DrapeError, Environment, Material, MethodSettings, Motion};
+use crate::{
+    Air, Cloth, Damping, DrapeError, Environment, Material, MethodSettings, Motion, SharedTrack,
+};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A simulation: objects, elastics, grips, environment, duration and method.
@@ -58,10 +60,12 @@ impl Default for Scene {
 pub enum ObjectKind {
     /// A solid at rest.
     Static,
-    /// A solid on a prescribed motion. Only `xpbd` supports it.
+    /// A solid on a prescribed motion, of all of it or of each vertex. Only `xpbd` supports it.
     Animated {
-        /// The motion.
-        motion: Motion,
+        /// Its motion as a whole.
+        motion: Option<Motion>,
+        /// The way of its vertices before that motion.
+        track: Option<SharedTrack>,
     },
     /// The simulation: it is cloth.
     Deformable {
@@ -70,6 +74,24 @@ pub enum ObjectKind {
         /// Vertices that do not move.
         pins: Vec<u32>,
     },
+}
+
+impl ObjectKind {
+    /// A solid that moves as a whole.
+    pub fn moving(motion: Motion) -> Self {
+        Self::Animated {
+            motion: Some(motion),
+            track: None,
+        }
+    }
+
+    /// A solid whose vertices move one by one.
+    pub fn tracked(track: SharedTrack) -> Self {
+        Self::Animated {
+            motion: None,
+            track: Some(track),
+        }
+    }
 }
 
 /// An object, with its transform applied.
@@ -305,7 +327,11 @@ impl Scene {
         };
         let mut moved: Vec<(String, &Motion)> = Vec::new();
         for object in &self.objects {
-            if let ObjectKind::Animated { motion } = &object.kind {
+            if let ObjectKind::Animated {
+                motion: Some(motion),
+                ..
+            } = &object.kind
+            {
                 moved.push((format!("motion of \"{}\"", object.name), motion));
             }
         }

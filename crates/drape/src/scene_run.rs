@@ -316,7 +316,7 @@ impl SceneRun {
         let mesh = system.mesh(&state.positions);
         let mut found: Vec<u32> = Vec::new();
         for (number, collider) in system.colliders.iter().enumerate() {
-            let pose = collider.pose(state.time);
+            let solid = collider.at(state.time);
             let meets = |&t: &u32| {
                 let object = system
                     .policies
@@ -326,9 +326,9 @@ impl SceneRun {
             let clear = |&v: &u32| {
                 let position = state.positions[v as usize];
                 let clearance = 0.5 * system.contact.offset;
-                collider.exact_distance(pose.as_ref(), position) > clearance
+                solid.exact_distance(position) > clearance
             };
-            let pairs = collider.crossings(state.time, &mesh);
+            let pairs = solid.crossings(&mesh);
             let crossing = pairs.iter().map(|pair| pair[0]).filter(meets);
             found.extend(crossing.filter(|&t| mesh.triangles[t as usize].iter().all(clear)));
         }

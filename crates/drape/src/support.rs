@@ -1,7 +1,7 @@
 //! What carries the cloth: for each part of it that hangs together, its distance from the solids and the share of its
 //! weight that nothing carries.
 
-use crate::{State, System, Workspace};
+use crate::{PlacedSolid, State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -44,12 +44,11 @@ pub fn supports(system: &System, state: &State, workspace: &mut Workspace) -> Ve
     let net = workspace.net_force(system, state);
     let gravity = system.control.gravity;
     let down = gravity.try_normalize(0.0);
+    let solids = system.colliders.iter().map(|solid| solid.at(state.time));
+    let solids: Vec<PlacedSolid> = solids.collect();
     let distance = |v: &u32| {
         let point = state.positions[*v as usize];
-        let each = system.colliders.iter().map(|collider| {
-            let pose = collider.pose(state.time);
-            collider.exact_distance(pose.as_ref(), point)
-        });
+        let each = solids.iter().map(|solid| solid.exact_distance(point));
         each.fold(f64::INFINITY, f64::min)
     };
     let part = |vertices: Vec<u32>| {

@@ -98,7 +98,7 @@ fn a_board_that_comes_up_throws_by_its_own_speed_too() {
         };
         let mut still = scene(vec![
             bouncing("cloth", 0.1, e),
-            board(ObjectKind::Animated { motion }),
+            board(ObjectKind::moving(motion)),
         ]);
         still.gravity = Vec3::zeros();
         still.duration = 0.15;

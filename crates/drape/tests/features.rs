@@ -114,7 +114,7 @@ fn cases(feature: Feature) -> Vec<[Scene; 2]> {
     let near = || with(two(), |s| s.contact.cloth_offset = 5e-4);
     match feature {
         Feature::MovingObjects => {
-            let moving = plate(ObjectKind::Animated { motion: way });
+            let moving = plate(ObjectKind::moving(way));
             vec![[inside(), with(inside(), |s| s.objects[1] = moving.clone())]]
         }
         Feature::Grips => {

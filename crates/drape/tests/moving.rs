@@ -55,7 +55,7 @@ fn carried(way: Vec3, friction: f64) -> Scene {
         method: MethodKind::Xpbd.into(),
         objects: vec![
             object("sheet", kind, sheet),
-            object("plate", ObjectKind::Animated { motion }, plate),
+            object("plate", ObjectKind::moving(motion), plate),
         ],
         ..Scene::default()
     }
@@ -182,9 +182,7 @@ fn motions_that_cannot_be_followed_are_refused() {
     let said = refused(&|scene| scene.method = MethodKind::ImplicitEuler.into());
     assert!(said.contains("xpbd") && said.contains("plate"), "{said}");
     let said = refused(&|scene| {
-        scene.objects[1].kind = ObjectKind::Animated {
-            motion: Motion::default(),
-        };
+        scene.objects[1].kind = ObjectKind::moving(Motion::default());
     });
     assert!(said.contains("no key"), "{said}");
     for (object, vertices, word) in [

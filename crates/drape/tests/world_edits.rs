@@ -109,7 +109,7 @@ fn beside_a_moving_block() -> SceneRun {
     let block = solids::block(Vec3::new(0.5, 0.0, -0.1), Vec3::new(0.6, 0.1, 0.1));
     let motion = sideways();
     let moving = SceneObject {
-        kind: ObjectKind::Animated { motion },
+        kind: ObjectKind::moving(motion),
         ..object("block", block, vec![])
     };
     let mesh = sheet([4, 4], [0.1; 2], |u, v| Vec3::new(u, 0.3 - v, 0.0));

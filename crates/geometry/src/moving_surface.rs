@@ -147,6 +147,11 @@ impl MovingSurface {
         Some(self.closest_on(triangle, point, time))
     }
 
+    /// A distance that no point of the surface comes nearer than at any time of the step, at most `reach` \[m\].
+    pub fn clearance(&self, point: Vec3, reach: f64) -> f64 {
+        self.tree.clearance(point, reach)
+    }
+
     /// The closest point of one triangle at a time of the step.
     pub fn closest_on(&self, triangle: u32, point: Vec3, time: f64) -> ClosestPoint {
         let corners = self.corners(triangle, time);
@@ -302,8 +307,10 @@ mod tests {
                 prop_assert_eq!(found.signed_distance < 0.0, other.signed_distance < 0.0);
                 let likely = Some((k * 13 % now.triangles.len()) as u32);
                 prop_assert_eq!(surface.closest_point(point, time, f64::INFINITY, likely), Some(found));
-                // It is within reach only if it is.
                 let distance = found.signed_distance.abs();
+                prop_assert!(surface.clearance(point, 9.0) <= distance);
+                prop_assert_eq!(surface.clearance(point, 1e-3), surface.clearance(point, 9.0).min(1e-3));
+                // It is within reach only if it is.
                 prop_assert!(surface.closest_point(point, time, 0.99 * distance, likely).is_none());
                 prop_assert!(surface.closest_point(point, time, 1.01 * distance, None).is_some());
             }

@@ -165,6 +165,32 @@ impl SweptTree {
         (best.1 != u32::MAX).then_some(best.1)
     }
 
+    /// Distance of a point from the nearest box of a leaf, at most `reach` \[m\].
+    pub fn clearance(&self, point: Vec3, reach: f64) -> f64 {
+        let mut least = reach * reach;
+        let mut waiting = [(0_u32, 0.0_f64); WAITING];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 && least > 0.0 {
+            count -= 1;
+            let (at, bound) = waiting[count];
+            if bound >= least {
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            if node.count > 0 {
+                least = node.distance2(point);
+                continue;
+            }
+            let children = [at + 1, node.next];
+            let children = children.map(|at| (at, self.nodes[at as usize].distance2(point)));
+            let nearer = usize::from(children[1].1 < children[0].1);
+            // The nearer one is looked at first.
+            waiting[count..count + 2].copy_from_slice(&[children[1 - nearer], children[nearer]]);
+            count += 2;
+        }
+        least.sqrt()
+    }
+
     /// Triangles of leaves whose boxes meet a box \[m\].
     pub fn near_box(&self, [low, high]: [Vec3; 2], mut found: impl FnMut(u32)) {
         let meets = |node: &Node| {

@@ -204,9 +204,7 @@ impl<'a> Builder<'a> {
             }
         } else {
             match &object.motion {
-                Some(motion) => ObjectKind::Animated {
-                    motion: motion.motion(),
-                },
+                Some(motion) => ObjectKind::moving(motion.motion()),
                 None => ObjectKind::Static,
             }
         };

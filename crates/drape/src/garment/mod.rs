@@ -543,7 +543,7 @@ fn body_crossings(system: &System, state: &State) -> Vec<u32> {
     let mesh = system.mesh(&state.positions);
     let mut crossing: Vec<u32> = Vec::new();
     for collider in system.colliders.iter() {
-        let pairs = collider.crossings(state.time, &mesh);
+        let pairs = collider.at(state.time).crossings(&mesh);
         crossing.extend(pairs.iter().map(|pair| pair[0]));
     }
     crossing.sort_unstable();

@@ -6,7 +6,7 @@ use super::GarmentRun;
 use crate::laws::membrane::Curvature;
 use crate::step::{StepSettings, step_in_time};
 use crate::world::{MeetingPoint, Simulation, WorldEdit};
-use crate::{DrapeError, LinearSolver, NewtonSettings, PcgLimits};
+use crate::{DrapeError, LinearSolver, NewtonSettings, PcgLimits, PlacedSolid};
 
 /// Share of the vertices of a sewn garment inside the body above which it is tight: the shipped patterns have less than
 /// a fifth of it.
@@ -28,12 +28,11 @@ impl GarmentRun {
             return false;
         }
         let Simulation { system, state, .. } = &self.simulation;
+        let solids = system.colliders.iter().map(|solid| solid.at(state.time));
+        let solids: Vec<PlacedSolid> = solids.collect();
         let inside = state.positions.iter().filter(|&&p| {
-            system.colliders.iter().any(|collider| {
-                let pose = collider.pose(state.time);
-                let found = collider.distance(pose.as_ref(), p);
-                found.is_some_and(|(distance, _)| distance < 0.0)
-            })
+            let found = solids.iter().map(|solid| solid.distance(p));
+            found.flatten().any(|(distance, _)| distance < 0.0)
         });
         inside.count() as f64 > SUNK * state.positions.len() as f64
     }

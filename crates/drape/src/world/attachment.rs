@@ -151,13 +151,17 @@ impl World {
                     );
                 }
                 AttachmentEnd::Point(_) => {}
-                AttachmentEnd::Vertex(vertex) => self.check_vertex(vertex)?,
+                AttachmentEnd::Vertex(vertex) => {
+                    self.check_vertex(vertex)?;
+                    self.existing(vertex.object)?.check_frame()?;
+                }
                 AttachmentEnd::Frame { object, point } => {
                     let solid = self.existing(object)?;
                     if solid.kind == Kind::Deformable {
                         let remedy = "name one of its vertices";
                         return Err(solid.refuse("cloth has no frame to be attached to", remedy));
                     }
+                    solid.check_frame()?;
                     if !point.iter().all(|x| x.is_finite()) {
                         return Err(solid.refuse("the point is not finite", "give numbers in m"));
                     }

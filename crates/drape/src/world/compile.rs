@@ -107,10 +107,10 @@ impl World {
     fn solids(&self, cache: &mut Solids) -> Vec<Collider> {
         let mut solids = Vec::new();
         for (id, object) in self.objects() {
-            let motion = match object.kind {
+            let (motion, track) = match object.kind {
                 Kind::Deformable => continue,
-                Kind::Static => None,
-                Kind::Animated => object.motion.clone(),
+                Kind::Static => (None, None),
+                Kind::Animated => (object.motion.clone(), object.track.clone()),
             };
             cache.retain(|other, (mesh, _)| *other != id || Arc::ptr_eq(mesh, &object.mesh));
             let (_, collider) = cache.entry(id).or_insert_with(|| {
@@ -119,6 +119,7 @@ impl World {
             });
             let mut collider = collider.clone();
             collider.motion = motion;
+            collider.track = track;
             solids.push(collider);
         }
         solids

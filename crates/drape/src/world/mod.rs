@@ -80,10 +80,12 @@ impl World {
                 vertices: grip.vertices.clone(),
                 motion: Arc::new(grip.motion.clone()),
             });
-            world.insert(Object {
+            let object = Object {
                 grips: grips.collect(),
                 ..Object::of_scene(object)?
-            });
+            };
+            object.check()?;
+            world.insert(object);
         }
         for pair in &scene.ignored {
             let [a, b] = pair.map(SceneObject::id);
@@ -97,11 +99,13 @@ impl World {
                     vertex,
                 }),
             });
-            world.attach(ObjectAttachment {
+            let attachment = ObjectAttachment {
                 ends,
                 stiffness: elastic.stiffness,
                 merge_within: elastic.merge_within,
-            });
+            };
+            world.check_attachment(&attachment)?;
+            world.attach(attachment);
         }
         Ok(world)
     }

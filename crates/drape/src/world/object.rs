@@ -1,10 +1,10 @@
 //! Objects of a world: surfaces with their kind, cloth, material and motion.
 
 use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
-use crate::{Cloth, DrapeError, Material, Motion};
+use crate::{Cloth, DrapeError, Material, Motion, SharedTrack};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use toile_geometry::TriangleMesh;
+use toile_geometry::{TriangleMesh, Vec3};
 
 /// The number of an object, in order of creation; never reused in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -82,8 +82,10 @@ pub struct Object {
     pub cloth: Option<Arc<Cloth>>,
     /// Its material until it has a cloth.
     pub material: Option<Material>,
-    /// Its motion while it is animated.
+    /// Its motion as a whole while it is animated.
     pub motion: Option<Arc<Motion>>,
+    /// The way of its vertices before that motion while it is animated.
+    pub track: Option<SharedTrack>,
     /// Vertices at rest while it is deformable.
     pub pins: Vec<u32>,
     /// Vertices with a prescribed motion while it is deformable.
@@ -102,6 +104,7 @@ impl Object {
             cloth: None,
             material: None,
             motion: None,
+            track: None,
             pins: Vec::new(),
             grips: Vec::new(),
             layers: Layers::One(0),
@@ -129,9 +132,10 @@ impl Object {
         };
         match &object.kind {
             ObjectKind::Static => {}
-            ObjectKind::Animated { motion } => {
+            ObjectKind::Animated { motion, track } => {
                 own.kind = Kind::Animated;
-                own.motion = Some(Arc::new(motion.clone()));
+                own.motion = motion.clone().map(Arc::new);
+                own.track = track.clone();
             }
             ObjectKind::Deformable { material, pins } => {
                 own.kind = Kind::Deformable;
@@ -195,9 +199,13 @@ impl Object {
             return Err(self.refuse(&what, "give keys with rising times and finite numbers"));
         }
         match (self.kind, &self.cloth) {
-            (Kind::Animated, _) if self.motion.is_none() => {
-                Err(self.refuse("it has no motion", "give it one, or let it stand"))
-            }
+            (Kind::Animated, _) => match &self.track {
+                Some(track) => self.check_track(track),
+                None if self.motion.is_none() => {
+                    Err(self.refuse("it has no motion", "give it one, or let it stand"))
+                }
+                None => Ok(()),
+            },
             (Kind::Deformable, Some(cloth)) => {
                 if cloth.triangles != self.mesh.triangles || cloth.positions.len() != count {
                     let remedy = "give cloth and surface the same triangles";
@@ -224,6 +232,45 @@ impl Object {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Refuses what is to be attached to it where its vertices move one by one, so that it has no frame.
+    pub(super) fn check_frame(&self) -> Result<(), DrapeError> {
+        if self.kind == Kind::Animated && self.track.is_some() {
+            let remedy = "attach it to a point in space, or to a solid that moves as a whole";
+            return Err(self.refuse("nothing can be attached to a surface that bends", remedy));
+        }
+        Ok(())
+    }
+
+    /// Refuses a track of another surface, or one that begins at no number.
+    fn check_track(&self, track: &SharedTrack) -> Result<(), DrapeError> {
+        let (positions, count) = (track.positions(0.0), self.vertex_count());
+        if positions.len() != count {
+            let what = format!("its track has {} vertices, not {count}", positions.len());
+            return Err(self.refuse(&what, "give it the track of its own surface"));
+        }
+        let finite = |p: &Vec3| p.iter().all(|x| x.is_finite());
+        match positions.iter().position(|p| !finite(p)) {
+            Some(v) => {
+                let what = format!("its track has no number for vertex {v}");
+                Err(self.refuse(&what, "give finite numbers in m"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Places of its vertices at a time [s] while it is animated [m].
+    pub(super) fn animated_positions(&self, time: f64) -> Vec<Vec3> {
+        let mut positions = match &self.track {
+            Some(track) => track.positions(time),
+            None => self.mesh.positions.clone(),
+        };
+        if let Some(motion) = &self.motion {
+            let pose = motion.pose(time);
+            positions.iter_mut().for_each(|p| *p = pose.apply(*p));
+        }
+        positions
     }
 
     /// An error about this object.

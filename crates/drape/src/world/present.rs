@@ -24,13 +24,7 @@ impl Present<'_> {
                 let position = |&v: &u32| self.state.positions[v as usize];
                 moved(mesh, own.iter().map(position).collect())
             }
-            (None, Kind::Animated) => {
-                let pose = object.motion.as_ref()?.pose(self.state.time);
-                moved(
-                    mesh,
-                    mesh.positions.iter().map(|&p| pose.apply(p)).collect(),
-                )
-            }
+            (None, Kind::Animated) => moved(mesh, object.animated_positions(self.state.time)),
             _ => TriangleMesh::clone(mesh),
         })
     }

@@ -1,7 +1,7 @@
 //! Contact of cloth with cloth in substeps: detected once in a few substeps, with fixed contact planes in between.
 
 use super::contact::{ContactConstraint, ContactStencil};
-use super::{Xpbd, XpbdReport, middle};
+use super::{Xpbd, XpbdReport, middle, parts};
 use crate::collision::{
     Ahead, ClothContact, ContactDetector, ContactFrictionState, ContactSet, FeaturePair,
     ImpactStats, Motions, Reach,
@@ -75,11 +75,12 @@ impl ClothContacts {
         }
     }
 
-    /// Detects the contacts and sets the time for which they are valid: at least a few substeps of `substep` [s].
-    fn detect(&mut self, system: &System, state: &mut State, substep: f64) {
+    /// Detects the contacts and sets the time for which they are valid: at least a few substeps of `substep` [s]. Solids
+    /// move at `surface_speed` [m/s] at most.
+    fn detect(&mut self, system: &System, state: &mut State, substep: f64, surface_speed: f64) {
         let offset = system.contact.cloth_offset;
         let min_time = f64::from(MIN_SUBSTEPS) * substep;
-        let speed = largest_speed(system, state, min_time);
+        let speed = largest_speed(system, state, min_time).max(surface_speed);
         let travel_time = (MAX_TRAVEL / speed).min(MAX_INTERVAL);
         let longest = travel_time.max(min_time);
         let fall = 0.5 * system.control.gravity.norm() * longest * longest;
@@ -153,22 +154,16 @@ impl ClothContacts {
     }
 }
 
-/// The largest speed of a vertex, of a prescribed vertex or of a solid [m/s]; those of prescribed motions are means
-/// over the next `min_time` [s] and over the longest interval between detections.
+/// The largest speed of a vertex or of a prescribed vertex [m/s]; those of prescribed motions are means over the next
+/// `min_time` [s] and over the longest interval between detections.
 fn largest_speed(system: &System, state: &State, min_time: f64) -> f64 {
     let of_cloth = state.velocities.iter().map(Vec3::norm);
     let spans = [min_time, MAX_INTERVAL].into_iter();
     let prescribed = spans.flat_map(|span| {
-        let times = [state.time, state.time + span];
-        let of_bodies = system.colliders.iter().filter_map(move |collider| {
-            let [from, to] = times.map(|time| collider.pose(time));
-            Some(collider.travel(&from?, &to?) / span)
-        });
-        let of_grips = system.prescribed.led.iter().map(move |grip| {
-            let to = grip.motion.pose(times[1]).apply(grip.home);
+        system.prescribed.led.iter().map(move |grip| {
+            let to = grip.motion.pose(state.time + span).apply(grip.home);
             (to - state.positions[grip.vertex as usize]).norm() / span
-        });
-        of_bodies.chain(of_grips)
+        })
     });
     of_cloth.chain(prescribed).fold(0.0, f64::max)
 }
@@ -235,14 +230,32 @@ impl Xpbd {
             cloth.invalidate();
         }
         let origin = middle(&state.positions);
-        self.invalidate_surfaces();
+        let mut report = XpbdReport::default();
+        let mut pieces = 1;
+        for part in parts(system, state.time, substeps) {
+            self.place_solids(system, state.time, &part);
+            report = self.advance_part(system, state, cloth, (origin, &part))?;
+            pieces = pieces.max(report.pieces);
+        }
+        report.pieces = pieces;
+        Ok(report)
+    }
+
+    /// Advances by substeps in which solids move straight on, with coordinates relative to `origin` [m].
+    fn advance_part(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        cloth: &mut ClothContacts,
+        (origin, substeps): (Vec3, &Substeps),
+    ) -> Result<XpbdReport, DrapeError> {
         let mut remaining = substeps.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
         while remaining > 0 {
             let min_time = f64::from(cloth.min_substeps()) * substeps.substep;
             if cloth.valid_for.is_none_or(|time| time < min_time) {
-                cloth.detect(system, state, substeps.substep);
+                cloth.detect(system, state, substeps.substep, self.moving.speed());
                 self.set_cloth_contacts(&cloth.contacts);
             }
             let valid_for = cloth.valid_for.map_or(0.0, |time| time / substeps.substep);
@@ -426,7 +439,7 @@ mod tests {
         let system = builder.build();
         let mut state = State::at_rest(&system, mesh.positions);
         let mut cloth = ClothContacts::default();
-        cloth.detect(&system, &mut state, 1.0 / 2400.0);
+        cloth.detect(&system, &mut state, 1.0 / 2400.0, 0.0);
         let contacts = &cloth.contacts.contacts;
         let needless = needless(contacts);
         let of_vertex = contacts.iter().zip(&needless).filter(|(contact, _)| {

@@ -7,10 +7,12 @@
 //! point does not creep, whatever moves it between its constraint and the end of the substep. Contacts of cloth with
 //! cloth are stencils of the same form with other weights.
 
+use super::carried_plane::{CarriedMotion, CarriedPlane};
+use super::moving_solids::MovingSolids;
 use crate::lanes::Point;
 use crate::laws::contact::HARDER;
-use crate::{ContactSample, Pose, SolidFriction, State, System};
-use toile_geometry::Vec3;
+use crate::{ContactSample, SolidFriction, State, System};
+use toile_geometry::{MovingSurface, Vec3};
 
 /// The contact of a point with the tangent plane of a surface, and its multipliers.
 #[derive(Clone, Copy, Debug)]
@@ -125,12 +127,32 @@ impl ContactConstraint {
         }
     }
 
-    /// Accounts for surfaces that move by up to `travel` [m] in a substep: a plane of a near surface becomes
-    /// invalid, and the distance within which no surface is met becomes shorter.
-    pub fn expect_motion(&mut self, travel: f32) {
-        if self.sample != NO_SAMPLE {
-            self.radius2 = radius2_after_motion(self.radius2, travel, self.normal != [0.0; 3]);
+    /// Moves the plane of a near surface that moves to the end of the coming substep, and turns the slip with it. The
+    /// distance to a far one is valid for the whole step.
+    pub fn carry(&mut self, solid: &Solid, carried: &CarriedPlane) {
+        if self.sample == NO_SAMPLE || self.normal == [0.0; 3] {
+            return;
         }
+        let Some(surface) = solid.moving.surface(self.solid) else {
+            return;
+        };
+        let motion = carried.at(surface, solid.shares);
+        self.set_plane(&motion, solid.origin);
+        for k in 0..3 {
+            self.queried_at[k] += self.surface_displacement[k];
+        }
+        if self.slip != [0.0; 3] {
+            let slip = motion.rotation * Vec3::from(self.slip.map(f64::from));
+            self.slip = [slip.x as f32, slip.y as f32, slip.z as f32];
+        }
+    }
+
+    /// Sets the plane to that of a moving surface, and the displacement of the surface in the substep.
+    fn set_plane(&mut self, motion: &CarriedMotion, origin: Vec3) {
+        let (n, moved) = (motion.normal, motion.displacement);
+        self.normal = [n.x as f32, n.y as f32, n.z as f32];
+        self.level = (n.dot(&(motion.point - origin)) + f64::from(self.offset)) as f32;
+        self.surface_displacement = [moved.x as f32, moved.y as f32, moved.z as f32];
     }
 
     /// Whether the surface has to be queried again for a point.
@@ -144,25 +166,24 @@ impl ContactConstraint {
 
     /// Queries the surface at a point and sets its tangent plane.
     #[inline(never)]
-    pub fn query_surface(&mut self, solid: &Solid, point: [f32; 3]) {
+    pub fn query_surface(
+        &mut self,
+        solid: &Solid,
+        point: [f32; 3],
+        carried: Option<&mut CarriedPlane>,
+    ) {
         let position = solid.origin + Vec3::from(point.map(f64::from));
-        let offset = f64::from(self.offset);
-        let reach = crate::contact_settings::FIELD_REACH;
-        let collider = &solid.system.colliders[self.solid as usize];
-        let poses = solid.poses_of(self.solid);
-        let found = collider.distance(poses.map(|[_, to]| to), position);
-        let surface_displacement = poses.map_or(Vec3::zeros(), |[from, to]| {
-            let own = to.undo(position);
-            to.apply(own) - from.apply(own)
-        });
-        self.surface_displacement = [
-            surface_displacement.x as f32,
-            surface_displacement.y as f32,
-            surface_displacement.z as f32,
-        ];
         self.queried_at = point;
         self.normal = [0.0; 3];
         self.level = -1.0;
+        self.surface_displacement = [0.0; 3];
+        if let (Some(surface), Some(carried)) = (solid.moving.surface(self.solid), carried) {
+            return self.query_moving_surface(surface, solid, position, carried);
+        }
+        let offset = f64::from(self.offset);
+        let reach = crate::contact_settings::FIELD_REACH;
+        let collider = &solid.system.colliders[self.solid as usize];
+        let found = collider.field.distance(position);
         let (distance, slope) = found.unwrap_or((reach, Vec3::zeros()));
         // The smooth distance may exceed the exact one by a fraction of a millimetre.
         let gap = 0.9 * distance - offset;
@@ -180,6 +201,36 @@ impl ContactConstraint {
         self.normal = [n.x as f32, n.y as f32, n.z as f32];
         let here = Vec3::from(point.map(f64::from));
         self.level = (n.dot(&here) + offset - distance) as f32;
+    }
+
+    /// Queries a moving surface at a position [m] and the end of the substep, exactly.
+    fn query_moving_surface(
+        &mut self,
+        surface: &MovingSurface,
+        solid: &Solid,
+        position: Vec3,
+        carried: &mut CarriedPlane,
+    ) {
+        let offset = f64::from(self.offset);
+        let reach = crate::contact_settings::FIELD_REACH;
+        let clearance = surface.clearance(position, reach);
+        let gap = clearance - offset;
+        if clearance > REACH_IN_OFFSETS * offset && gap > 0.0 {
+            // The surface stays that far away until the step ends.
+            self.radius2 = (gap * gap) as f32;
+            return;
+        }
+        let [_, now] = solid.shares;
+        let closest = surface.closest_point(position, now, f64::INFINITY, carried.triangle());
+        let Some(closest) = closest else {
+            self.radius2 = f32::INFINITY;
+            return;
+        };
+        *carried = CarriedPlane::new(surface, &closest, now);
+        self.set_plane(&carried.at(surface, solid.shares), solid.origin);
+        let gap = closest.signed_distance - offset;
+        let radius = (0.5 * gap).max(PLANE_REACH * offset).max(1e-5);
+        self.radius2 = (radius * radius) as f32;
     }
 
     /// Solves the contact for a point of inverse mass `weight` [1/kg] at `point`, whose position at the start of
@@ -265,18 +316,6 @@ impl ContactConstraint {
         Vec3::from(self.slip.map(f64::from)) * step.softness(self.tangential_compliance, weight)
     }
 
-    /// Turns the slip with a solid that turns in the coming substep.
-    pub fn turn(&mut self, solid: &Solid) {
-        if self.sample != NO_SAMPLE
-            && self.slip != [0.0; 3]
-            && let Some([from, to]) = solid.poses_of(self.solid)
-        {
-            let slip = Vec3::from(self.slip.map(f64::from));
-            let slip = to.rotation * (from.rotation.inverse() * slip);
-            self.slip = [slip.x as f32, slip.y as f32, slip.z as f32];
-        }
-    }
-
     /// Takes the slip of a sample, of inverse mass `weight` [1/kg], from a state.
     pub fn recall(&mut self, state: &State, weight: f32, step: &ContactStep) {
         self.slip = [0.0; 3];
@@ -312,17 +351,6 @@ impl ContactConstraint {
     }
 }
 
-/// Square of the distance within which a plane is still valid [m2] after surfaces moved by up to `travel` [m];
-/// negative where it is invalid.
-pub fn radius2_after_motion(radius2: f32, travel: f32, near: bool) -> f32 {
-    let radius = radius2.max(0.0).sqrt() - travel;
-    if near || radius <= 0.0 {
-        -1.0
-    } else {
-        radius * radius
-    }
-}
-
 /// The solids in a substep.
 #[derive(Clone, Copy)]
 pub struct Solid<'a> {
@@ -330,19 +358,16 @@ pub struct Solid<'a> {
     pub system: &'a System,
     /// Origin of the points' coordinates [m].
     pub origin: Vec3,
-    /// Poses of each moving collider at the start and the end of the substep; empty where none moves.
-    pub poses: &'a [Option<[Pose; 2]>],
+    /// The surfaces of those that move.
+    pub moving: &'a MovingSolids,
+    /// Start and end of the substep, as shares of the step that the surfaces are given for.
+    pub shares: [f64; 2],
 }
 
 impl Solid<'_> {
     /// Whether there are any solids.
     pub fn has_surfaces(&self) -> bool {
         !self.system.colliders.is_empty()
-    }
-
-    /// The poses of a moving solid at the start and the end of the substep.
-    fn poses_of(&self, solid: u32) -> Option<&[Pose; 2]> {
-        self.poses.get(solid as usize).and_then(Option::as_ref)
     }
 }
 

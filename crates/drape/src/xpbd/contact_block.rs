@@ -1,8 +1,7 @@
 //! Contacts of sixteen vertices with a solid, solved side by side in vector registers.
 
-use super::contact::{
-    ContactConstraint, ContactStep, NO_SAMPLE, Solid, TANGENTIAL_SOFTNESS, radius2_after_motion,
-};
+use super::carried_plane::CarriedPlane;
+use super::contact::{ContactConstraint, ContactStep, NO_SAMPLE, Solid, TANGENTIAL_SOFTNESS};
 use crate::State;
 use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
 use pulp::Simd;
@@ -23,6 +22,8 @@ pub struct ContactBlock {
     surface_displacement: [Row; 3],
     sample: [u32; LANES],
     solid: u32,
+    /// The planes of a solid that moves.
+    carried: Option<Box<[CarriedPlane; LANES]>>,
 }
 
 impl ContactBlock {
@@ -43,6 +44,7 @@ impl ContactBlock {
             surface_displacement: [zero; 3],
             sample: [NO_SAMPLE; LANES],
             solid: 0,
+            carried: None,
         };
         for lane in 0..LANES {
             block.set(lane, &ContactConstraint::none());
@@ -116,14 +118,20 @@ impl ContactBlock {
         }
     }
 
-    /// [`ContactConstraint::expect_motion`] for all lanes.
-    pub fn expect_motion(&mut self, travel: f32) {
+    /// [`ContactConstraint::carry`] for all lanes.
+    pub fn carry(&mut self, solid: &Solid) {
+        let Some(carried) = self.carried.take() else {
+            return;
+        };
+        let is_near = |block: &Self, lane: usize| block.normal.iter().any(|row| row.0[lane] != 0.0);
         for lane in 0..LANES {
-            if self.sample[lane] != NO_SAMPLE {
-                let near = self.normal.iter().any(|row| row.0[lane] != 0.0);
-                self.radius2.0[lane] = radius2_after_motion(self.radius2.0[lane], travel, near);
+            if self.sample[lane] != NO_SAMPLE && is_near(self, lane) {
+                let mut contact = self.get(lane);
+                contact.carry(solid, &carried[lane]);
+                self.set(lane, &contact);
             }
         }
+        self.carried = Some(carried);
     }
 
     /// Sets the multipliers to zero.
@@ -183,18 +191,6 @@ impl ContactBlock {
         }
     }
 
-    /// [`ContactConstraint::turn`] for all lanes.
-    pub fn turn(&mut self, solid: &Solid) {
-        let moves = |slip: &[Row; 3]| slip.iter().any(|row| row.0.iter().any(|&x| x != 0.0));
-        if moves(&self.slip) {
-            for lane in 0..LANES {
-                let mut contact = self.get(lane);
-                contact.turn(solid);
-                self.set(lane, &contact);
-            }
-        }
-    }
-
     /// Whether the surface has to be queried again for one of the points of a lane group.
     #[inline(always)]
     pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> bool {
@@ -217,14 +213,20 @@ impl ContactBlock {
         points: &[Point; LANES],
         lanes: std::ops::Range<usize>,
     ) {
+        let mut carried = self.carried.take();
+        if carried.is_none() && solid.moving.surface(self.solid).is_some() {
+            carried = Some(Box::default());
+        }
         for lane in lanes {
             let [x, y, z, _] = points[lane];
             let mut contact = self.get(lane);
             if contact.is_stale([x, y, z]) {
-                contact.query_surface(solid, [x, y, z]);
+                let plane = carried.as_mut().map(|carried| &mut carried[lane]);
+                contact.query_surface(solid, [x, y, z], plane);
                 self.set(lane, &contact);
             }
         }
+        self.carried = carried;
     }
 }
 

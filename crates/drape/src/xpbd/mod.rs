@@ -24,12 +24,14 @@
 mod attachment_constraint;
 mod bending;
 mod bounce;
+mod carried_plane;
 mod cloth;
 mod contact;
 mod contact_block;
 mod domains;
 mod friction;
 mod membrane;
+mod moving_solids;
 mod particles;
 mod region;
 mod run;
@@ -45,6 +47,7 @@ use bounce::BounceStep;
 pub(crate) use cloth::{ClothContacts, Substeps};
 use contact::{ContactConstraint, ContactStep, Solid};
 use membrane::{LawRow, inverse_mass};
+use moving_solids::MovingSolids;
 use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
 use run::Run;
@@ -117,6 +120,8 @@ pub struct Xpbd {
     domain_starts: Vec<usize>,
     contact_starts: Vec<usize>,
     cut_starts: Vec<usize>,
+    /// Surfaces of the solids that move, in the present step.
+    moving: MovingSolids,
     /// Number of times that constraints were built.
     builds: usize,
 }
@@ -206,6 +211,7 @@ impl Xpbd {
             contact_starts: partition.contact_starts(),
             cut_starts: partition.cut_starts(),
             partition,
+            moving: MovingSolids::default(),
             builds: 1,
         }
     }
@@ -250,8 +256,22 @@ impl Xpbd {
             drag,
         };
         let origin = middle(&state.positions);
+        let mut report = XpbdReport::default();
+        let mut pieces = 1;
+        for part in parts(system, state.time, &substeps) {
+            self.place_solids(system, state.time, &part);
+            report = self.advance_about(system, state, origin, &part)?;
+            pieces = pieces.max(report.pieces);
+        }
+        report.pieces = pieces;
+        Ok(report)
+    }
+
+    /// Gives the moving solids their places for some substeps from a time [s] on; every surface is queried again.
+    fn place_solids(&mut self, system: &System, time: f64, substeps: &Substeps) {
+        let end = time + substeps.substep * f64::from(substeps.count);
+        self.moving.set_step(&system.colliders, [time, end]);
         self.invalidate_surfaces();
-        self.advance_about(system, state, origin, &substeps)
     }
 
     /// [`Xpbd::advance`] with coordinates relative to `origin` [m], to which the contact planes refer too.
@@ -437,11 +457,12 @@ impl Xpbd {
                 solid: Solid {
                     system,
                     origin,
-                    poses: &[],
+                    moving: &self.moving,
+                    shares: [0.0, 1.0],
                 },
                 laws: &self.laws,
                 contact: ContactStep::new(kappa as f32, h as f32),
-                first_with_travel: None,
+                is_first: false,
                 iterated: self.settings.iterations > 1,
                 has_bending: self.filter.is_none(),
             },
@@ -495,6 +516,21 @@ impl Xpbd {
             }
         }
     }
+}
+
+/// Substeps from a time [s] on, divided so that moving solids move straight in each part; one part where all are at
+/// rest.
+fn parts(system: &System, time: f64, substeps: &Substeps) -> impl Iterator<Item = Substeps> {
+    let Substeps { substep, count, .. } = *substeps;
+    let end = time + substep * f64::from(count);
+    let offset = system.contact.offset;
+    let parts = MovingSolids::parts(&system.colliders, [time, end], offset, count);
+    let until = move |part: u32| part * count / parts.max(1);
+    let substeps = *substeps;
+    (0..parts).map(move |part| Substeps {
+        count: until(part + 1) - until(part),
+        ..substeps
+    })
 }
 
 /// Middle of the bounding box of some positions, rounded to an eighth of a metre.

@@ -2,6 +2,7 @@
 
 use super::attachment_constraint::{AttachmentConstraint, AttachmentEnd, solve_attachments};
 use super::bending::{self, BendingBatch, Stencil};
+use super::carried_plane::CarriedPlane;
 use super::contact::{ContactConstraint, ContactStencil, ContactStep, Solid, solve_stencils};
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::vertex_partition::{Partition, VertexPartition, batches};
@@ -24,6 +25,8 @@ pub struct Region {
     frames: Vec<[u32; 2]>,
     /// Contacts of points within triangles with surfaces.
     pub contacts: Vec<ContactStencil>,
+    /// Their planes on solids that move; empty where none does.
+    carried: Vec<CarriedPlane>,
     /// Contacts of cloth with cloth.
     pub cloth: Vec<ContactStencil>,
     /// Whether the stencils have begun a substep whose end their slips do not yet contain.
@@ -306,9 +309,8 @@ pub struct SweepStep<'a> {
     pub laws: &'a [LawRow],
     /// (1 + drag h) / h^2 [1/s2], and the parameters of contacts.
     pub contact: ContactStep,
-    /// In the first sweep of a substep, which sets the multipliers to zero: the largest displacement of a surface in
-    /// the substep [m].
-    pub first_with_travel: Option<f32>,
+    /// Whether it is the first sweep of a substep, which sets the multipliers to zero.
+    pub is_first: bool,
     /// Whether multipliers are accumulated over several iterations.
     pub iterated: bool,
     /// Whether bending is constraints.
@@ -372,27 +374,29 @@ impl Region {
         }
     }
 
-    /// Accounts for surfaces that move by up to `travel` [m] in the coming substep.
-    fn expect_motion(&mut self, travel: f32, solid: &Solid) {
-        for contact in &mut self.contacts {
-            contact.constraint.turn(solid);
-            contact.constraint.expect_motion(travel);
+    /// Moves the planes of surfaces that move to the end of the coming substep.
+    fn carry(&mut self, solid: &Solid) {
+        self.carried
+            .resize(self.contacts.len(), CarriedPlane::default());
+        for (contact, carried) in self.contacts.iter_mut().zip(&self.carried) {
+            contact.constraint.carry(solid, carried);
         }
     }
 
     /// Solves every constraint once.
     pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
-        if let Some(travel) = step.first_with_travel {
+        if step.is_first {
             self.end_substep(starts, &step.contact);
             self.clear(starts);
-            if travel > 0.0 {
-                self.expect_motion(travel, &step.solid);
+            if step.solid.moving.any() {
+                self.carry(&step.solid);
             }
         }
-        for contact in &mut self.contacts {
+        for (k, contact) in self.contacts.iter_mut().enumerate() {
             let point = contact.point(points);
             if contact.constraint.is_stale(point) {
-                contact.constraint.query_surface(&step.solid, point);
+                let carried = self.carried.get_mut(k);
+                (contact.constraint).query_surface(&step.solid, point, carried);
             }
         }
         pulp::Arch::new().dispatch(Sweep {

@@ -10,7 +10,6 @@ use super::particles::{
 };
 use super::region::{Regions, SweepStep};
 use crate::ContactSample;
-use crate::Pose;
 
 /// Parameters of substeps of one size.
 pub struct Run<'a> {
@@ -43,18 +42,22 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// Advances by `count` substeps.
     pub fn substeps(&self, regions: &mut Regions, particles: &mut Particles, count: u32) {
-        let mut poses = Vec::new();
         self.extrapolate(particles);
         for number in 0..count {
-            let travel = self.place_surfaces(number, &mut poses);
-            let Solid { system, origin, .. } = self.sweep.solid;
+            let Solid {
+                system,
+                origin,
+                moving,
+                ..
+            } = self.sweep.solid;
+            let step = f64::from(self.motion.step);
+            let times = [number, number + 1].map(|k| self.time + step * f64::from(k));
             if !system.control.frames.is_empty() {
-                let end = self.time + f64::from(self.motion.step) * f64::from(number + 1);
-                regions.move_frames(system, origin, end);
+                regions.move_frames(system, origin, times[1]);
             }
             let sweep = SweepStep {
                 solid: Solid {
-                    poses: &poses,
+                    shares: times.map(|time| moving.share(time)),
                     ..self.sweep.solid
                 },
                 ..self.sweep
@@ -62,16 +65,13 @@ impl Run<'_> {
             if sweep.solid.has_surfaces() {
                 for contact in &mut particles.contacts {
                     contact.clear();
-                    if travel > 0.0 {
-                        contact.turn(&sweep.solid);
-                        contact.expect_motion(travel);
-                    }
+                    contact.carry(&sweep.solid);
                 }
             }
             self.filter_bending(particles);
             for iteration in 0..self.iterations {
                 let sweep = SweepStep {
-                    first_with_travel: (iteration == 0).then_some(travel),
+                    is_first: iteration == 0,
                     ..sweep
                 };
                 self.domains(regions, particles, &sweep, iteration == 0);
@@ -104,28 +104,6 @@ impl Run<'_> {
             ..
         } = particles;
         self.motion.extrapolate(start, velocity, ahead);
-    }
-
-    /// Computes the poses of moving solids before and after a substep; returns the largest displacement of a
-    /// surface [m].
-    fn place_surfaces(&self, number: u32, poses: &mut Vec<Option<[Pose; 2]>>) -> f32 {
-        let colliders = &self.sweep.solid.system.colliders;
-        poses.clear();
-        if colliders.iter().all(|collider| collider.motion.is_none()) {
-            return 0.0;
-        }
-        let step = f64::from(self.motion.step);
-        let times = [0, 1].map(|k| self.time + step * f64::from(number + k));
-        let mut travel = 0.0f64;
-        for collider in colliders.iter() {
-            let [from, to] = times.map(|time| collider.pose(time));
-            let both = from.zip(to).map(|(from, to)| [from, to]);
-            if let Some([from, to]) = &both {
-                travel = travel.max(collider.travel(from, to));
-            }
-            poses.push(both);
-        }
-        travel as f32
     }
 
     /// Computes the displacements of the bending filter, stage by stage.

@@ -85,7 +85,7 @@ fn solid(name: &str, mesh: TriangleMesh, keys: Vec<MotionKey>) -> SceneObject {
         kind: if motion.keys.is_empty() {
             ObjectKind::Static
         } else {
-            ObjectKind::Animated { motion }
+            ObjectKind::moving(motion)
         },
         mesh,
         cloth: None,

@@ -1,0 +1,43 @@
+//! Surfaces whose vertices move by a rule of time: the skin of a figure, recorded frames.
+
+use std::fmt;
+use std::sync::Arc;
+use toile_geometry::Vec3;
+
+/// Places of the vertices of a surface over time.
+pub trait Track: Send + Sync {
+    /// Places of the vertices at a time [s], as many at every time [m].
+    fn positions(&self, time: f64) -> Vec<Vec3>;
+
+    /// A digest of all that the places depend on: two tracks of one digest are the same.
+    fn digest(&self) -> u64;
+}
+
+/// A track that several scenes, worlds and runs have.
+#[derive(Clone)]
+pub struct SharedTrack(Arc<dyn Track>);
+
+impl SharedTrack {
+    /// Shares a track.
+    pub fn new(track: impl Track + 'static) -> Self {
+        Self(Arc::new(track))
+    }
+
+    /// [`Track::positions`].
+    pub fn positions(&self, time: f64) -> Vec<Vec3> {
+        self.0.positions(time)
+    }
+}
+
+impl PartialEq for SharedTrack {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.0.digest() == other.0.digest()
+    }
+}
+
+impl fmt::Debug for SharedTrack {
+    /// Its digest, by which it enters the digest of a scene.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "track {:016x}", self.0.digest())
+    }
+}
