@@ -8,7 +8,8 @@ mod several;
 mod steps;
 
 use crate::app::ToileApp;
-use crate::canvas::selection::{Item, Selection};
+use crate::app::panes::InspectorPlace;
+use crate::canvas::selection::Item;
 use crate::fields::{Beside, Entered, choice, labelled};
 use crate::theme::{self, Palette};
 use crate::tools::{Tool, finished_words, number};
@@ -28,13 +29,6 @@ const MARGIN: f32 = 10.0;
 const FRAME: f32 = 14.0;
 /// Width and height of the table below which there is no room for it [pixels].
 const LEAST_TABLE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
-
-/// In which corner of the table the inspector stands, and what it tells there.
-#[derive(Default)]
-pub(crate) struct InspectorPlace {
-    told: Selection,
-    is_left: bool,
-}
 
 /// The part of the table that the inspector may take, at its right or at its left.
 fn inspector_place(table: Rect, left: bool) -> Rect {

@@ -154,10 +154,6 @@ impl CutPiece {
             false => self.sewn().mapped(&place),
         };
         let mut clear_of = inner_lines(&strokes);
-        clear_of.extend(self.pressed.iter().map(|arrow| {
-            let half = arrow.way * (0.5 * arrow.width);
-            [arrow.at - half, arrow.at + half].map(&place)
-        }));
         clear_of.extend(writing.clear_of);
         let most = writing.most.unwrap_or(LETTERS[0]);
         let letters = |spot: &Spot| letters(spot).min(most);

@@ -157,7 +157,7 @@ impl CutPiece {
             fold_ticks: self
                 .fold_ticks
                 .iter()
-                .filter(|tick| tick.iter().all(|&at| half.keeps(at)))
+                .filter(|tick| tick.ends.iter().all(|&at| half.keeps(at)))
                 .copied()
                 .collect(),
             pressed: self

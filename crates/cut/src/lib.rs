@@ -50,6 +50,7 @@ pub use piece::{
     CutPiece, Drill, HalfPlane, InsideLine, PieceError, PieceRing, PieceSegment, PieceText,
     TextKind,
 };
+pub use press::FoldTick;
 pub use ring::FLATNESS;
 pub use seam_line::{CutError, Dart, EdgeIndex, SeamEdge, SeamLine};
 pub use words::{concerns_cutter, cut_diagnostics};

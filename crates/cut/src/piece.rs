@@ -6,7 +6,7 @@ use crate::notch_place::notches_of;
 use crate::notch_room::Room;
 use crate::options::CutOptions;
 use crate::outline::cut_line;
-use crate::press::{fold_ticks, pressed};
+use crate::press::{FoldTick, fold_ticks, pressed};
 use crate::ring::FLATNESS;
 use crate::seams::{NamedSeam, Plane, seam_of};
 use crate::{CutError, CutRing, EdgeIndex, Finding, SeamEdge, SegmentKind};
@@ -109,8 +109,8 @@ pub struct CutPiece {
     pub notches: Vec<CutNotch>,
     /// Ends of darts.
     pub drills: Vec<Drill>,
-    /// Lines at the cut line, from it inwards, where legs of darts and lines of pleats meet it \[m\].
-    pub fold_ticks: Vec<[Vec2; 2]>,
+    /// Lines at the cut line where legs of darts and lines of pleats meet it.
+    pub fold_ticks: Vec<FoldTick>,
     /// Which way its darts and pleats are pressed.
     pub pressed: Vec<PressArrow>,
     /// Its texts.
@@ -264,7 +264,7 @@ impl CutPiece {
         let notches = notches.flat_map(|n| [n.point, n.inward, n.on_cut, n.along]);
         let cuts = self.notches.iter().flat_map(|n| n.cut.iter().flatten());
         let drills = self.drills.iter().map(|drill| drill.at);
-        let ticks = self.fold_ticks.iter().flatten();
+        let ticks = self.fold_ticks.iter().flat_map(|tick| &tick.ends);
         let arrows = self.pressed.iter().flat_map(|arrow| [arrow.at, arrow.way]);
         let points = lines.flatten().chain(cuts).chain(ticks).copied();
         let mut points = points.chain(notches).chain(drills).chain(arrows);

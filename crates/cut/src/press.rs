@@ -22,6 +22,16 @@ pub(crate) fn pressed(piece: &Piece, plane: &Plane) -> Vec<PressArrow> {
     piece.pressed.iter().filter_map(arrow).collect()
 }
 
+/// A short line where a leg of a dart or a line of a pleat ends at the cut line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoldTick {
+    /// From the cut line inwards [m].
+    pub ends: [Vec2; 2],
+    /// Whether it lies in the allowance, where it may be cut as a notch is; without an allowance it leads into the
+    /// cloth and is drawn alone.
+    pub in_allowance: bool,
+}
+
 /// Lines into the allowance where the legs of darts and the lines of pleats, drawn on, meet the cut line, as deep as
 /// notches; where there is no allowance, along them into the cloth. None where a notch is.
 pub(crate) fn fold_ticks(
@@ -29,17 +39,17 @@ pub(crate) fn fold_ticks(
     plane: &Plane,
     seam: &NamedSeam,
     (room, notches): (&Room, &[CutNotch]),
-) -> Vec<[Vec2; 2]> {
-    let mut ticks: Vec<[Vec2; 2]> = Vec::new();
+) -> Vec<FoldTick> {
+    let mut ticks: Vec<FoldTick> = Vec::new();
     for [end, inner] in folded_ends(piece, plane, seam) {
-        for [from, to] in ticks_at([end, inner], seam, room) {
-            let is_here = |at: Vec2| (at - from).norm() < AT_CORNER;
+        for tick in ticks_at([end, inner], seam, room) {
+            let is_here = |at: Vec2| (at - tick.ends[0]).norm() < AT_CORNER;
             let is_notched = notches.iter().any(|notch| match notch.cut.is_empty() {
                 true => is_here(notch.point),
                 false => is_here(notch.on_cut),
             });
-            if !is_notched && !ticks.iter().any(|tick| is_here(tick[0])) {
-                ticks.push([from, to]);
+            if !is_notched && !ticks.iter().any(|known| is_here(known.ends[0])) {
+                ticks.push(tick);
             }
         }
     }
@@ -65,18 +75,28 @@ fn folded_ends(piece: &Piece, plane: &Plane, seam: &NamedSeam) -> Vec<[Vec2; 2]>
 }
 
 /// The lines at one end: one for each cut line that meets there.
-fn ticks_at([end, inner]: [Vec2; 2], seam: &NamedSeam, room: &Room) -> Vec<[Vec2; 2]> {
+fn ticks_at([end, inner]: [Vec2; 2], seam: &NamedSeam, room: &Room) -> Vec<FoldTick> {
     let outwards = corner_at(seam, end).map_or_else(Vec::new, |corner| corner.outwards_all());
-    let cut = outwards.into_iter().filter_map(|outwards| {
-        let way = outwards.try_normalize(1e-9)?;
+    let ways: Vec<(Vec2, Vec2)> = outwards
+        .into_iter()
+        .filter_map(|outwards| Some((outwards, outwards.try_normalize(1e-9)?)))
+        .collect();
+    if ways.is_empty() {
+        let way = (inner - end).try_normalize(1e-9);
+        let tick = way.map(|way| FoldTick {
+            ends: [end, end + way * NOTCH_DEPTH.min((inner - end).norm())],
+            in_allowance: false,
+        });
+        return tick.into_iter().collect();
+    }
+    let in_allowance = |(outwards, way): (Vec2, Vec2)| {
         let at = room.cut_line(end, outwards)?;
         let axes = [Vec2::new(way.y, -way.x), -way];
         let (depth, _) = room.cut(NotchKind::Slit, (end, at), axes)?;
-        Some([at, at - way * depth])
-    });
-    let mut found: Vec<[Vec2; 2]> = cut.collect();
-    if let (true, Some(way)) = (found.is_empty(), (inner - end).try_normalize(1e-9)) {
-        found.push([end, end + way * NOTCH_DEPTH.min((inner - end).norm())]);
-    }
-    found
+        Some(FoldTick {
+            ends: [at, at - way * depth],
+            in_allowance: true,
+        })
+    };
+    ways.into_iter().filter_map(in_allowance).collect()
 }

@@ -6,6 +6,7 @@ use crate::marker_strokes::{Layer, Strokes, fill_of};
 use crate::pdf::{Align, PdfPage, PdfSheets, PdfText, fitted, wrapped};
 use crate::{FormatError, MarkerDrawing};
 use toile_geometry::Vec2;
+use toile_lettering::width;
 
 /// A marker as DXF of release 12, in millimetres: layers CUT, SEW, NOTCH, GRAIN, LINE, DRILL, TEXT for
 /// the pieces and FABRIC, MARGIN, FOLD, PRINT, FLAW for the cloth. The lower corner of the fabric's
@@ -25,8 +26,10 @@ pub fn write_marker_dxf(drawing: &MarkerDrawing) -> Result<String, FormatError> 
         let place = (words.at, words.size, words.angle);
         dxf.text(Layer::Text.name(), &words.text, place);
     }
+    // Its letters are smaller where it would be longer than the fabric.
+    let size = TITLE.min(drawing.length.max(TITLE) / width(&drawing.title).max(1.0));
     let above = Vec2::new(0.5 * drawing.length, drawing.strip.width + TITLE);
-    dxf.text(Layer::Text.name(), &drawing.title, (above, TITLE, 0.0));
+    dxf.text(Layer::Text.name(), &drawing.title, (above, size, 0.0));
     Ok(dxf.finish())
 }
 

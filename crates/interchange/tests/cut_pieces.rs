@@ -361,7 +361,9 @@ fn legs_of_darts_are_ticked_at_the_cut_line_and_arrows_say_where_they_are_presse
         .map(|((from, to), _)| [*from, *to])
         .collect();
     assert_eq!((legs.len(), piece.fold_ticks.len()), (4, 4));
-    for [on_cut, end] in &piece.fold_ticks {
+    for tick in &piece.fold_ticks {
+        assert!(tick.in_allowance);
+        let [on_cut, end] = &tick.ends;
         let outline = piece.outer();
         let mut edges = outline.edges();
         assert!(edges.any(|e| toile_geometry::point_segment_distance(*on_cut, e) < 1e-6));

@@ -130,6 +130,26 @@ fn a_dxf_read_back_is_the_marker() {
     assert!(words.iter().all(|w| w.0 == "TEXT"));
 }
 
+#[test]
+fn the_title_of_a_dxf_is_no_longer_than_the_fabric() {
+    let mut drawing = drawing();
+    drawing.title = "Shirt, own, made to measure for anna (bust 121 cm, waist 101 cm)".into();
+    for (length, expected) in [
+        (7.0, 20.0),
+        (0.4, 400.0 / toile_lettering::width(&drawing.title)),
+    ] {
+        drawing.length = length;
+        let text = write_marker_dxf(&drawing).unwrap();
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let at = lines
+            .iter()
+            .position(|line| *line == drawing.title)
+            .unwrap();
+        let height: f64 = lines[at - 2].parse().unwrap();
+        assert!((height - expected).abs() < 1e-3, "{height} {expected}");
+    }
+}
+
 /// The lines drawn with a pen [m].
 fn read_hpgl(text: &str, pen: &str) -> Vec<Vec<Vec2>> {
     let (mut lines, mut now, mut unit) = (Vec::new(), "", 0.0);

@@ -21,8 +21,8 @@ pub struct MarkerPieces {
     cloth: MarkerCloth,
     fabric: Fabric,
     order: Vec<OrderedSize>,
-    /// What tells the wearer's pieces from those of sizes.
-    whose: String,
+    /// What tells the wearer's pieces from those of sizes, where both are cut.
+    whose: Option<String>,
     pub(crate) job: FabricJob,
     pub(crate) options: NestOptions,
     /// Which piece of the order each copy of each item is.
@@ -87,7 +87,7 @@ impl MarkerPieces {
             cloth: marker.cloth.clone(),
             fabric,
             order: marker.order.clone(),
-            whose: whose.to_owned(),
+            whose: told(&marker.order, whose).map(str::to_owned),
             index: pairs.collect(),
             job,
             options,
@@ -124,9 +124,15 @@ impl MarkerPieces {
     ) -> bool {
         self.cloth == marker.cloth
             && self.order == marker.order
-            && self.whose == whose
+            && self.whose.as_deref() == told(&marker.order, whose)
             && pattern.marker_fabric(marker, garment).as_ref() == Some(&self.fabric)
     }
+}
+
+/// Whose the wearer's pieces are, where an order cuts sizes beside them.
+fn told<'a>(order: &[OrderedSize], whose: &'a str) -> Option<&'a str> {
+    let is_mixed = order.len() > 1 && order.iter().any(|one| one.size.is_none());
+    is_mixed.then_some(whose)
 }
 
 /// The sizes of an order that are there, and how many garments of each.

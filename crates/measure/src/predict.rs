@@ -124,6 +124,14 @@ fn place(name: &str) -> Option<usize> {
 /// predicted as an adult of the nearest size, scaled.
 const SPAN: [f64; 2] = [0.8, 1.25];
 
+/// Measurements that others are predicted from, although the average bodies are without them.
+const FURTHER_OBSERVATIONS: [&str; 4] = [
+    "waist_height",
+    "outside_leg",
+    "hps_to_waist_back",
+    "waist_to_crotch",
+];
+
 impl Measurements {
     /// The average of a build.
     pub fn average(build: Build) -> Self {
@@ -138,8 +146,8 @@ impl Measurements {
     /// This table with what is missing predicted and marked so: the average body of that build,
     /// moved as the survey's adults differ who have the values given instead of the average body's
     /// (ANSUR II, 2012). So the average body's own values give the average body, and any other
-    /// value moves the rest by the regression's slope alone. A table with a measurement that the
-    /// average body is without cannot be set beside it: the survey alone predicts the rest. A child
+    /// value moves the rest by the regression's slope alone. A table with one of
+    /// [`FURTHER_OBSERVATIONS`] cannot be set beside it: the survey alone predicts the rest. A child
     /// is completed from the average child of its stature.
     pub fn completed(&self, build: Build) -> Self {
         if let Build::Child(age) = build {
@@ -152,10 +160,14 @@ impl Measurements {
         // The average body, known by the very measurements that this table has.
         let mut alike = Self::new();
         for (name, _) in self.iter() {
-            let Some(usual) = average.get(name) else {
-                return result;
-            };
-            let _ = alike.set(name, usual, Origin::Asked);
+            match average.get(name) {
+                Some(usual) => {
+                    let _ = alike.set(name, usual, Origin::Asked);
+                }
+                None if FURTHER_OBSERVATIONS.contains(&name) => return result,
+                // Nothing is predicted from a name of one's own.
+                None => {}
+            }
         }
         let alike = alike.regressed(&statistics, &sample);
         let scale = self.scale(&statistics);
@@ -463,6 +475,16 @@ mod tests {
             "{rise} {expected}"
         );
         assert!(tall.get("waist_line").unwrap() > mean.get("waist_line").unwrap());
+    }
+
+    #[test]
+    fn a_name_of_ones_own_changes_no_prediction() {
+        let known = [("height", 1.66), ("waist", 0.7)];
+        let usual = asked(&known).completed(Build::Woman);
+        let own = asked(&[known[0], known[1], ("pocket", 0.15)]).completed(Build::Woman);
+        for (name, measured) in usual.iter() {
+            assert_eq!(own.get(name), Some(measured.value), "{name}");
+        }
     }
 
     #[test]

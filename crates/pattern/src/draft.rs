@@ -2,8 +2,8 @@
 
 use crate::stage::StageDart;
 use crate::{
-    EdgeCorner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId,
-    PressArrow, Role, SeamId,
+    EdgeCorner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId, Role,
+    SeamId,
 };
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Curve, Rigid, Vec2, Vec3};
@@ -362,6 +362,34 @@ impl Rheology {
             Some("its relaxation time is not above 0")
         } else {
             None
+        }
+    }
+}
+
+/// Which way a dart or a pleat is pressed: an arrow in the plane of its panel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressArrow {
+    /// What is pressed.
+    pub by: OperationId,
+    /// Which half of a folded panel it is on.
+    pub half: u8,
+    /// Where its middle is [m].
+    pub at: Vec2,
+    /// Its direction, a unit.
+    pub way: Vec2,
+    /// How wide what is folded under lies there [m].
+    pub width: f64,
+}
+
+impl PressArrow {
+    /// The mirror image in the y axis: of the other piece of a pair.
+    #[must_use]
+    pub fn mirror_image(self) -> Self {
+        let flip = |v: Vec2| Vec2::new(-v.x, v.y);
+        Self {
+            at: flip(self.at),
+            way: flip(self.way),
+            ..self
         }
     }
 }

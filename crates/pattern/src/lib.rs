@@ -35,7 +35,7 @@ pub use formula::{
 pub use ids::*;
 pub use name::*;
 pub use number::Number;
-pub use press::{PressArrow, press_arrows};
+pub use press::press_arrows;
 pub use size_selection::SizeSelection;
 pub use stage::{Stage, StageDart, StageEdge, StageLine, StageNotch};
 pub use suggest::nearest;

@@ -2,30 +2,14 @@
 //! the same arrows.
 
 use crate::{
-    Name, Operation, OperationId, OperationKind, Panel, Pattern, PleatKind, Pressed, Role, Stage,
+    Name, Operation, OperationKind, Panel, Pattern, PleatKind, PressArrow, Pressed, Role, Stage,
     StageLine,
 };
-use toile_geometry::Vec2;
 
 /// How far along a dart or a pleat from the edge its arrow stands [share of it].
 const IN: f64 = 0.3;
 /// Lines that a fold and two of it make.
 const LINES: u16 = 5;
-
-/// An arrow in the plane of a panel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PressArrow {
-    /// What is pressed.
-    pub by: OperationId,
-    /// Which half of a folded panel it is on.
-    pub half: u8,
-    /// Where its middle is [m].
-    pub at: Vec2,
-    /// Its direction, a unit.
-    pub way: Vec2,
-    /// How wide what is folded under lies there [m].
-    pub width: f64,
-}
 
 /// The arrows of what a panel has been given by its steps.
 pub fn press_arrows(stage: &Stage, pattern: &Pattern, panel: &Panel) -> Vec<PressArrow> {
@@ -118,19 +102,6 @@ fn pleat_arrows(
                 way,
                 width: across.norm(),
             });
-        }
-    }
-}
-
-impl PressArrow {
-    /// The mirror image in the y axis: of the other piece of a pair.
-    #[must_use]
-    pub fn mirror_image(self) -> Self {
-        let flip = |v: Vec2| Vec2::new(-v.x, v.y);
-        Self {
-            at: flip(self.at),
-            way: flip(self.way),
-            ..self
         }
     }
 }

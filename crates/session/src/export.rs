@@ -144,8 +144,8 @@ impl Session {
                     let marker = self.project.pattern.marker_named(name);
                     let kept = marker.and_then(|marker| self.kept_by(marker));
                     events.extend(Event::warnings(kept.as_slice()));
-                    let (name, finished, apart) = stored(self, name)?;
-                    events.extend(Event::warnings(apart.as_slice()));
+                    let (name, finished, other_sizes) = stored(self, name)?;
+                    events.extend(Event::warnings(other_sizes.as_slice()));
                     let faults = finished.faults();
                     events.push(Event::Nested(finished.summary()));
                     events.extend(Event::warnings(&faults));
@@ -318,6 +318,7 @@ impl Session {
     }
 }
 
+/// A name for a picture, with the size.
 fn picture_title(project: &Project, name: &str) -> String {
     match project.size_name() {
         Some(size) => format!("{name}, size {size}"),

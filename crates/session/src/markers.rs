@@ -122,13 +122,20 @@ impl Session {
     }
 }
 
-/// What is said of a marker that cuts sizes alone while the garment is made for a wearer who is none of them, in words
-/// that go on from its name.
+/// What is said of a marker that cuts sizes alone while the garment is made for a wearer who is none of them, and of one
+/// that cuts the wearer's while the garment is drafted to a size, in words that go on from its name.
 pub fn other_sizes_words(project: &Project, marker: &Marker) -> Option<String> {
     let pattern = &project.pattern;
-    let is_of_size = pattern.sizes.is_empty() || project.size_name().is_some();
-    if is_of_size || marker.order.iter().any(|ordered| ordered.size.is_none()) {
-        return None;
+    let cuts_wearers = marker.order.iter().any(|ordered| ordered.size.is_none());
+    match project.size_name() {
+        _ if pattern.sizes.is_empty() => return None,
+        Some(size) if cuts_wearers => {
+            return Some(format!(
+                "cuts the wearer's, and the garment is drafted to size {size}"
+            ));
+        }
+        None if !cuts_wearers => {}
+        _ => return None,
     }
     let is_ordered = |id| marker.quantity(Some(id)) > 0;
     let sizes = pattern.sizes.iter().filter(|size| is_ordered(size.id));

@@ -191,7 +191,7 @@ impl Project {
     }
 
     /// The size that the garment is of, or whom it is made to measure for with their girths, in words for a title;
-    /// nothing where it is as drawn.
+    /// nothing where neither is asked for.
     pub(crate) fn made_words(&self) -> Option<String> {
         if let Some(size) = self.size_name() {
             return Some(format!("size {size}"));

@@ -108,9 +108,9 @@ pub(crate) fn stored(
             name + &sizes.collect::<String>()
         }
     };
-    let apart = other_sizes_words(project, marker);
-    let apart = apart.map(|words| format!("marker {:?} {words}", marker.name));
-    Ok((name, laid.finished(), apart))
+    let other_sizes = other_sizes_words(project, marker);
+    let other_sizes = other_sizes.map(|words| format!("marker {:?} {words}", marker.name));
+    Ok((name, laid.finished(), other_sizes))
 }
 
 fn marker_named(pattern: &Pattern, name: &str) -> Result<MarkerId, SessionError> {
@@ -128,12 +128,12 @@ fn written(
     marker: &str,
     formats: &[MarkerFormat],
 ) -> Result<(MarkerSummary, Vec<File>), SessionError> {
-    let (name, finished, apart) = stored(session, marker)?;
+    let (name, finished, other_sizes) = stored(session, marker)?;
     let finished_markers = [finished];
     let mut files = Vec::new();
     let lost = marker_files((&name, formats), &finished_markers, &mut files)?;
     let mut summary = finished_markers[0].summary();
-    summary.notes.extend(apart);
+    summary.notes.extend(other_sizes);
     summary.notes.extend(finished_markers[0].faults());
     summary.notes.extend(lost.into_iter().flatten());
     Ok((summary, files))

@@ -233,3 +233,17 @@ fn a_piece_that_is_let_go_lies_on_no_flaw() {
     assert_eq!(let_go(1.4), LetGo::Apart(Vec2::zeros()));
     assert_eq!(let_go(1.65), LetGo::Over(Obstacle::Flaw));
 }
+
+/// A search goes on for a marker of one size while the garment is looked at in another, and its result is taken over.
+#[test]
+fn a_search_outlives_a_change_of_the_size_on_show() {
+    let (mut session, id) = laid();
+    let ordered = session.project().pattern.marker(id).unwrap().order[0].size;
+    assert!(ordered.is_some());
+    let found = searched(&mut session, id);
+    let size = Command::SetSize {
+        size: Some("S".to_owned()),
+    };
+    session.execute(size, &mut Silent).unwrap();
+    assert!(session.adopt_marker(found).unwrap().is_some());
+}

@@ -261,7 +261,7 @@ fn sheets_joined_by_their_marks_give_the_outlines() {
 /// Words that lie across a joint are on more than one sheet.
 #[test]
 fn the_name_of_a_piece_lies_on_one_sheet() {
-    for paper in [Paper::A4] {
+    for paper in [Paper::A4, Paper::Letter] {
         for name in NAMES {
             let options = PrintOptions {
                 paper,

@@ -70,6 +70,7 @@ impl ToileApp {
         match own {
             true => {
                 self.execute(Command::SavePattern { path });
+                self.keep_drape_view();
             }
             false => self.ask_save(),
         }
@@ -88,6 +89,7 @@ impl ToileApp {
         }
         self.dialog = None;
         self.execute(Command::SavePattern { path });
+        self.keep_drape_view();
     }
 
     /// The file it came from, if that is in the native format; else one beside it.

@@ -1,7 +1,7 @@
 //! What a marker is laid on: fabric, width, plies, price, and what of it does not follow the garment.
 
 use super::ToileApp;
-use egui::{Color32, ComboBox, DragValue, Id, TextStyle, Ui};
+use egui::{Color32, ComboBox, DragValue, Id, Label, TextStyle, Ui, vec2};
 use toile_pattern::plan;
 use toile_pattern::{FabricId, Marker, MarkerCloth, MarkerId, MarkerKeeps, OrderedSize};
 use toile_session::{Shown, kept_words, other_sizes_words};
@@ -135,13 +135,7 @@ impl ToileApp {
             }
             None if self.has_pieces_to_lay(&marker) => {
                 let words = other_sizes_words(self.session.project(), &marker)?;
-                if ui.button("Order the wearer\u{2019}s").clicked() {
-                    let order = vec![OrderedSize {
-                        size: None,
-                        quantity: 1,
-                    }];
-                    self.set_order(marker.id, order);
-                }
+                self.order_button(ui, &marker);
                 return Some(format!("The marker {words}"));
             }
             None => {
@@ -154,6 +148,31 @@ impl ToileApp {
             self.set_marker_cloth(marker.id, cloth);
         }
         Some(words)
+    }
+
+    /// Orders a garment as the one on show is made: in place of the only one of an order, else beside the others.
+    fn order_button(&mut self, ui: &mut Ui, marker: &Marker) {
+        let project = self.session.project();
+        let of_size = project.size.as_deref();
+        let of_size = of_size.and_then(|name| project.pattern.size_named(name));
+        let size = of_size.map(|size| size.id);
+        let is_one = matches!(marker.order[..], [OrderedSize { quantity: 1, .. }]);
+        let whose = match of_size {
+            Some(size) => format!("size {}", size.name),
+            None => "the wearer\u{2019}s".to_owned(),
+        };
+        let words = match is_one {
+            true => format!("Order {whose}"),
+            false => format!("Order {whose} too"),
+        };
+        if marker.quantity(size) == 0 && ui.button(words).clicked() {
+            let mut order = marker.order.clone();
+            if is_one {
+                order.clear();
+            }
+            order.insert(0, OrderedSize { size, quantity: 1 });
+            self.set_order(marker.id, order);
+        }
     }
 
     /// Whether any panel is cut from the fabric of a marker.
@@ -196,5 +215,7 @@ pub(super) fn kept_label(ui: &mut Ui, words: &str) -> Id {
     if ui.available_size_before_wrap().x < galley.size().x + FIELD_ROOM {
         ui.end_row();
     }
-    ui.label(words).id
+    // As high as the field, so that the two stand in one line where they begin a row.
+    let size = vec2(galley.size().x, ui.spacing().interact_size.y);
+    ui.add_sized(size, Label::new(words)).id
 }

@@ -45,9 +45,9 @@ impl Searching {
             return None;
         }
         Some(match self.is_stopped {
-            true => format!("stopped after {took:.0} s: the best so far"),
+            true => format!("stopped after {took:.1} s: the best so far"),
             false => format!(
-                "ended after {took:.0} of {:.0} s: no shorter marker is possible, or nothing was left to try",
+                "ended after {took:.1} of {:.0} s: no shorter marker is possible, or nothing was left to try",
                 self.seconds
             ),
         })

@@ -1,5 +1,6 @@
 //! Which panes of the window and which overlays of the pattern are visible.
 
+use crate::canvas::selection::Selection;
 use crate::tables::FabricTable;
 use crate::tables::WearerTable;
 use serde::{Deserialize, Serialize};
@@ -91,4 +92,13 @@ pub enum Tab {
     WornWith,
     History,
     Pattern,
+}
+
+/// In which corner of the table the inspector stands, and what it tells there.
+#[derive(Default)]
+pub(crate) struct InspectorPlace {
+    /// What was selected when it got there.
+    pub told: Selection,
+    /// Whether it is the left corner.
+    pub is_left: bool,
 }

@@ -17,8 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use toile_geometry::{Bounds2, Vec2};
-use toile_pattern::Evaluation;
-use toile_session::{SessionError, open_pattern};
+use toile_session::{Command, Session, SessionError, Silent};
 
 /// Size of a card, its name included [pixels].
 pub const CARD: egui::Vec2 = vec2(148.0, 150.0);
@@ -55,9 +54,12 @@ struct Pieces {
 
 impl Pieces {
     fn of_file(path: &Path) -> Result<Self, SessionError> {
-        let pattern = Arc::new(open_pattern(path)?.pattern);
-        let base = pattern.base_measurements().cloned().unwrap_or_default();
-        let evaluation = Evaluation::new(&pattern, &base);
+        // Drafted as it is when it is opened: one without sizes to the average body.
+        let mut session = Session::new();
+        let path = path.to_owned();
+        session.execute(Command::OpenPattern { path }, &mut Silent)?;
+        let pattern = session.project().pattern.clone();
+        let evaluation = session.evaluation();
         let draft = Arc::new(evaluation.draft().0);
         let mut scene = Scene::default();
         scene.update(&evaluation, &draft, OCTAVE);

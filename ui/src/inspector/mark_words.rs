@@ -97,7 +97,8 @@ fn leads_back(evaluation: &Evaluation, place: &NumberAddress) -> bool {
         };
         evaluation
             .number(distance, Want::Length)
-            .is_some_and(|distance| distance < 0.0)
+            // Of a distance of nothing the sign tells it, too.
+            .is_some_and(f64::is_sign_negative)
     };
     mark_at(evaluation.pattern(), place).is_some_and(is_back)
 }
@@ -107,7 +108,9 @@ fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: Option<&Mark>) -> Op
     let Some(Mark::Along { from, distance }) = mark else {
         return None;
     };
-    let back = evaluation.number(distance, Want::Length)? < 0.0;
+    let back = evaluation
+        .number(distance, Want::Length)?
+        .is_sign_negative();
     let starts = |ends: [toile_pattern::PointId; 2]| Name::Drawn(ends[usize::from(back)]) == *from;
     let edge = panel.edges().find(|edge| starts(edge.ends))?;
     Some(edge.name.clone())

@@ -353,8 +353,10 @@ fn cuts_at(
     places: &[Number],
 ) -> Result<Vec<[Mark; 2]>, EditError> {
     let far = plan::finished_edge(evaluation, panel, to)?;
+    // As many digits as are to be read in a formula: edges of equal length differ by rounding.
+    let ratio = (far.length / near.length * 1e10).round() / 1e10;
     let cut = |place: &Number| {
-        let across = along::scaled(evaluation, place, far.length / near.length)?;
+        let across = along::scaled(evaluation, place, ratio)?;
         // Across a closed line edges run against each other.
         Ok([
             along::mark_from(evaluation, near, (end, place))?,

@@ -68,6 +68,8 @@ pub struct MarkerView {
     pub(super) drag: Option<(Vec2, Vec<OrderedPiece>)>,
     wants_fit: bool,
     wants_all_seen: bool,
+    /// The size of the view and the camera when all of it was shown last.
+    fitted: Option<(egui::Vec2, TableCamera)>,
     pub(super) seen: Rect,
     pub(super) names: Vec<PieceName>,
 }
@@ -87,6 +89,7 @@ impl Default for MarkerView {
             drag: None,
             wants_fit: true,
             wants_all_seen: false,
+            fitted: None,
             seen: Rect::NOTHING,
             names: Vec::new(),
         }
@@ -232,8 +235,12 @@ impl MarkerView {
         let all = pieces.fold(self.cloth, |all, bounds| all.union(&bounds));
         let is_seen = |at: Vec2| view.contains(self.screen(view, at));
         let hides = self.wants_all_seen && !(is_seen(all.min) && is_seen(all.max));
-        if self.wants_fit || hides {
+        // A view of another size shows all of it again where nobody has moved it since.
+        let fitted = self.fitted.filter(|(_, camera)| *camera == self.camera);
+        let is_resized = fitted.is_some_and(|(size, _)| size != view.size());
+        if self.wants_fit || hides || is_resized {
             self.camera.fit(view, &all);
+            self.fitted = Some((view.size(), self.camera));
         }
         self.wants_fit = false;
         self.wants_all_seen = false;

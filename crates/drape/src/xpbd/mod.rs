@@ -37,10 +37,9 @@ mod region;
 mod run;
 mod several_solids;
 mod vertex_partition;
+mod xpbd_method;
 
-use crate::collision::Tally;
 use crate::lanes::LANES;
-use crate::method::{Method, MethodSettings, StepReport};
 use crate::{ContactSample, DrapeError, Model, State, System};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
@@ -54,6 +53,7 @@ use run::Run;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 use vertex_partition::VertexPartition;
+pub(crate) use xpbd_method::XpbdMethod;
 
 /// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -555,68 +555,4 @@ struct SubstepSize {
     drag: f64,
     /// Time at the start of the first [s].
     time: f64,
-}
-
-/// XPBD as a method in time.
-pub(crate) struct XpbdMethod {
-    settings: XpbdSettings,
-    substeps: u32,
-    solver: Option<Xpbd>,
-    cloth: ClothContacts,
-}
-
-/// Substeps of a step where the settings give none.
-const SUBSTEPS: u32 = 20;
-
-impl XpbdMethod {
-    /// From settings: substeps and iterations.
-    pub(crate) fn new(settings: &MethodSettings) -> Self {
-        let default = XpbdSettings::default();
-        let iterations = settings.iterations.map(|n| n.clamp(1, 1_000_000) as u32);
-        Self {
-            settings: XpbdSettings {
-                iterations: iterations.unwrap_or(default.iterations),
-                ..default
-            },
-            substeps: settings.substeps.unwrap_or(SUBSTEPS).max(1),
-            solver: None,
-            cloth: ClothContacts::default(),
-        }
-    }
-}
-
-impl Method for XpbdMethod {
-    fn follows_frames(&self) -> bool {
-        true
-    }
-
-    fn cloth_tally(&self) -> Option<Tally> {
-        Some(self.cloth.contacts.tally)
-    }
-
-    fn advance(
-        &mut self,
-        system: &System,
-        state: &mut State,
-        step: f64,
-    ) -> Result<StepReport, DrapeError> {
-        let settings = self.settings;
-        let solver = (self.solver).get_or_insert_with(|| Xpbd::with_settings(system, settings));
-        let substep = step / f64::from(self.substeps);
-        let substeps = Substeps {
-            substep,
-            count: self.substeps,
-            drag: system.control.air_drag,
-        };
-        // A step must depend on the state alone, not on contacts detected before it.
-        self.cloth.invalidate();
-        let report =
-            solver.advance_with_cloth_contact(system, state, &mut self.cloth, &substeps)?;
-        let iterations = self.substeps * self.settings.iterations * report.pieces;
-        Ok(StepReport {
-            pieces: report.pieces,
-            iterations: iterations as usize,
-            linear_iterations: 0,
-        })
-    }
 }

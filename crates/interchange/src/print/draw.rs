@@ -98,13 +98,19 @@ pub(crate) fn piece_marks(
     let mut marks = Vec::new();
     for (k, (layer, cut)) in piece.sizes.iter().enumerate() {
         let own = smallest == Some(k);
+        let arrows = cut.pressed.iter().map(|arrow| {
+            let half = arrow.way * (0.5 * arrow.width);
+            [arrow.at - half, arrow.at + half].map(place)
+        });
+        let between = clear_of.unwrap_or_default().iter().copied();
+        let clear_of_all: Vec<[Vec2; 2]> = between.chain(arrows).collect();
         let writing = Writing {
             lines: match clear_of {
                 Some(_) if own => &words,
                 _ => &[],
             },
             most: Some(LETTERS),
-            clear_of: clear_of.unwrap_or_default(),
+            clear_of: &clear_of_all,
         };
         let drawing: Drawing = cut.drawing_with(place, &writing);
         for stroke in drawing.strokes {
@@ -164,13 +170,19 @@ fn press_marks(
     (layer, place): (usize, &dyn Fn(Vec2) -> Vec2),
 ) -> Vec<Mark> {
     let mut marks = Vec::new();
-    if prints(job, StrokeKind::Notch) {
-        let style = style(job, StrokeKind::Notch, layer);
-        let ticks = cut.fold_ticks.iter();
-        marks.extend(ticks.map(|tick| {
-            let line = tick.map(place).to_vec();
-            Mark::line(Some(layer), (line, false), style)
-        }));
+    for tick in &cut.fold_ticks {
+        let kind = match tick.in_allowance {
+            true => StrokeKind::Notch,
+            false => StrokeKind::Mark,
+        };
+        if prints(job, kind) {
+            let line = tick.ends.map(place).to_vec();
+            marks.push(Mark::line(
+                Some(layer),
+                (line, false),
+                style(job, kind, layer),
+            ));
+        }
     }
     // Seen as well as a notch, and not cut along.
     let cut_like = style(job, StrokeKind::Notch, layer);

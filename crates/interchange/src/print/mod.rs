@@ -85,8 +85,8 @@ const JOIN: LineStyle = LineStyle {
     width: 0.000_15,
     dash: 0.0,
 };
-/// Between lines that words do not lie on \[m\]: no words fit between.
-const ACROSS: f64 = 0.003;
+/// Between lines that words do not lie on \[m\]: less than the smallest letters are high.
+const ACROSS: f64 = 0.001;
 /// White between words and where sheets overlap \[m\].
 const BESIDE: f64 = 0.004;
 /// Letters of a sheet's row and column \[m\].

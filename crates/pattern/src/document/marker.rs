@@ -440,6 +440,8 @@ impl Pattern {
             let found = self.sizes.iter().find(|size| size.id == id);
             let size = found.map_or_else(|| id.to_string(), |size| format!("size {:?}", size.name));
             words += &format!(", {size}");
+        } else if !self.sizes.is_empty() {
+            words += ", the wearer's";
         }
         let garments = self
             .markers
