@@ -14,6 +14,8 @@ use toile_pattern::Evaluation;
 
 /// How many names are proposed at once.
 const PROPOSED: usize = 8;
+/// Share of a field that its text has beside its value.
+const TEXT_SHARE: f32 = 0.5;
 /// Room that words under a field need above the lower rim of the window, and their least width [pixels].
 const UNDER: f32 = 64.0;
 const LEAST_UNDER: f32 = 270.0;
@@ -69,6 +71,29 @@ fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Besi
     response
 }
 
+/// The value of a text in the room that a field has left beside it, shortened where it is longer: the text has half of
+/// the field.
+fn value_beside(ui: &Ui, value: &str, text: &str) -> String {
+    let padding = 4.0 * ui.spacing().button_padding.x;
+    let whole = ui.available_width() - padding;
+    let room = whole - line_of(ui, text).size().x.min(TEXT_SHARE * whole);
+    let font = TextStyle::Small.resolve(ui.style());
+    let width = |words: String| {
+        let galley = ui
+            .painter()
+            .layout_no_wrap(words, font.clone(), Color32::PLACEHOLDER);
+        galley.size().x
+    };
+    if width(value.to_owned()) <= room {
+        return value.to_owned();
+    }
+    let ends = value.char_indices().map(|(at, _)| at).rev();
+    let mut shorter = ends.map(|at| format!("{}\u{2026}", value[..at].trim_end()));
+    shorter
+        .find(|words| width(words.clone()) <= room)
+        .unwrap_or_default()
+}
+
 fn in_one_line(
     ui: &mut Ui,
     id: egui::Id,
@@ -77,14 +102,18 @@ fn in_one_line(
 ) -> Response {
     let soft = Palette::of(ui.ctx()).ink_soft;
     let grey = |words: &str| RichText::new(words).small().color(soft);
+    let value = match is_typed_into {
+        true => String::new(),
+        false => value_beside(ui, &beside.value, text),
+    };
     let mut field = TextEdit::singleline(text)
         .id(id)
         .desired_width(f32::INFINITY);
     if !beside.hint.is_empty() {
         field = field.hint_text(grey(&beside.hint));
     }
-    if !beside.value.is_empty() && !is_typed_into {
-        field = field.suffix(grey(&beside.value));
+    if !value.is_empty() {
+        field = field.suffix(grey(&value));
     }
     let shown = field.show(ui);
     let response = shown.response.response;
@@ -211,7 +240,7 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
     let soft = Palette::of(ui.ctx()).ink_soft;
     ui.horizontal_top(|ui| {
         let height = ui.spacing().interact_size.y;
-        let place = ui.scope(|ui| {
+        let place = ui.vertical(|ui| {
             ui.set_width(LABEL);
             ui.set_min_height(height);
             // Its first line is on the line of what is written in the field, in larger letters.
