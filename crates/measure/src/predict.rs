@@ -147,7 +147,7 @@ impl Measurements {
     /// moved as the survey's adults differ who have the values given instead of the average body's
     /// (ANSUR II, 2012). So the average body's own values give the average body, and any other
     /// value moves the rest by the regression's slope alone. A table with one of
-    /// [`FURTHER_OBSERVATIONS`] cannot be set beside it: the survey alone predicts the rest. A child
+    /// `FURTHER_OBSERVATIONS` cannot be set beside it: the survey alone predicts the rest. A child
     /// is completed from the average child of its stature.
     pub fn completed(&self, build: Build) -> Self {
         if let Build::Child(age) = build {
