@@ -37,6 +37,15 @@ fn a_dart_is_trued_by_a_tick_that_is_on() {
     drafter.tick("Keep the finished length");
     assert!((drafter.finished_length("top") - 0.18).abs() < 1e-9);
     assert!(told(&drafter, "No faults"));
+    // Closed, half of the edge is 9 cm of the chord; the legs end on that, square to it.
+    let reach = 0.1_f64.hypot(0.15);
+    let turned = (0.09 / reach).asin();
+    let mouth = 2.0 * reach * turned.cos() * ((0.1_f64 / 0.15).atan() - turned).sin();
+    let kept = format!(
+        "top finished: 18 cm, kept; the mouth is {:.2} cm wide",
+        100.0 * mouth
+    );
+    assert!(told(&drafter, &kept), "{}", drafter.status());
     drafter.tick("Keep the finished length");
     assert!(told(&drafter, "No faults"));
     drafter.tick("True the edge");

@@ -187,6 +187,8 @@ fn places_count_from_the_end_of_the_edge_that_is_nearer_to_the_click() {
         // Its fields say so, without a sign, and are typed so.
         let point = end.split(',').next().unwrap();
         let field = format!("pleat 1 on bottom from {point}");
+        // A distance of nothing keeps the end that it counts from.
+        drafter.enter(&field, "0");
         drafter.enter(&field, "3");
         let pattern = drafter.pattern();
         let OperationKind::Pleat { pleats, .. } = &pattern.panels[0].operations[0].kind else {

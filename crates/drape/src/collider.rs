@@ -1,9 +1,10 @@
 //! Solid surfaces that cloth collides with, and vertices with a prescribed motion.
 
 use crate::contact_settings::FIELD_REACH;
+use crate::track::animated_positions;
 use crate::{Motion, Pose, SharedTrack};
 use nalgebra::Matrix3;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use toile_geometry::{ClosestPoint, DistanceField, MovingSurface, SurfaceTree, TriangleMesh, Vec3};
 
 /// A solid surface: the exact mesh for counts of crossings, a smooth distance field for forces.
@@ -17,6 +18,8 @@ pub struct Collider {
     pub motion: Option<Arc<Motion>>,
     /// The way of its vertices before that motion, where they move one by one.
     pub track: Option<SharedTrack>,
+    /// Its surface as one that moves, where that was asked for.
+    moving: Arc<OnceLock<MovingSurface>>,
 }
 
 /// Cell of a collider's distance field [m]: a third of the radius of the sharpest crease that holds cloth.
@@ -31,6 +34,7 @@ impl Collider {
             field,
             motion: None,
             track: None,
+            moving: Arc::default(),
         }
     }
 
@@ -62,14 +66,14 @@ impl Collider {
 
     /// Places of its vertices at a time [s] [m].
     pub fn positions(&self, time: f64) -> Vec<Vec3> {
-        let mut positions = match &self.track {
-            Some(track) => track.positions(time),
-            None => self.surface.mesh().positions.clone(),
-        };
-        if let Some(pose) = self.pose(time) {
-            positions.iter_mut().for_each(|p| *p = pose.apply(*p));
-        }
-        positions
+        let loaded = &self.surface.mesh().positions;
+        animated_positions(loaded, self.track.as_ref(), self.motion.as_deref(), time)
+    }
+
+    /// Its surface as one that moves; the tree over it is built once.
+    pub(crate) fn moving_surface(&self) -> MovingSurface {
+        let build = || MovingSurface::new(self.surface.mesh());
+        self.moving.get_or_init(build).clone()
     }
 
     /// The surface at a time [s].
@@ -79,7 +83,7 @@ impl Collider {
             pose: self.pose(time),
             tracked: self.track.as_ref().map(|_| {
                 let positions = self.positions(time);
-                let mut surface = MovingSurface::new(self.surface.mesh());
+                let mut surface = self.moving_surface();
                 surface.set_step(&positions, &positions);
                 surface
             }),

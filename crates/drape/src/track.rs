@@ -1,5 +1,6 @@
 //! Surfaces whose vertices move by a rule of time: the skin of a figure, recorded frames.
 
+use crate::Motion;
 use std::fmt;
 use std::sync::Arc;
 use toile_geometry::Vec3;
@@ -27,6 +28,22 @@ impl SharedTrack {
     pub fn positions(&self, time: f64) -> Vec<Vec3> {
         self.0.positions(time)
     }
+}
+
+/// Places of the vertices of an animated surface at a time [s]: those of its track, or as it was loaded, moved as a
+/// whole [m].
+pub(crate) fn animated_positions(
+    loaded: &[Vec3],
+    track: Option<&SharedTrack>,
+    motion: Option<&Motion>,
+    time: f64,
+) -> Vec<Vec3> {
+    let mut positions = track.map_or_else(|| loaded.to_vec(), |track| track.positions(time));
+    if let Some(motion) = motion {
+        let pose = motion.pose(time);
+        positions.iter_mut().for_each(|p| *p = pose.apply(*p));
+    }
+    positions
 }
 
 impl PartialEq for SharedTrack {

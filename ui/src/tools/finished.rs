@@ -29,7 +29,7 @@ pub fn finished_words(
                 }
             )
         });
-    // Its mouth is narrower for it, so the length untrued is that of no dart that is asked for.
+    // The mouth was narrowed to keep the length; what it were untrued with such a mouth says nothing.
     if keeps {
         let [length, mouth] = [found.length, found.mouth].map(length);
         return Some(format!(

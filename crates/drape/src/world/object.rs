@@ -1,6 +1,7 @@
 //! Objects of a world: surfaces with their kind, cloth, material and motion.
 
 use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
+use crate::track::animated_positions;
 use crate::{Cloth, DrapeError, Material, Motion, SharedTrack};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -262,15 +263,8 @@ impl Object {
 
     /// Places of its vertices at a time [s] while it is animated [m].
     pub(super) fn animated_positions(&self, time: f64) -> Vec<Vec3> {
-        let mut positions = match &self.track {
-            Some(track) => track.positions(time),
-            None => self.mesh.positions.clone(),
-        };
-        if let Some(motion) = &self.motion {
-            let pose = motion.pose(time);
-            positions.iter_mut().for_each(|p| *p = pose.apply(*p));
-        }
-        positions
+        let loaded = &self.mesh.positions;
+        animated_positions(loaded, self.track.as_ref(), self.motion.as_deref(), time)
     }
 
     /// An error about this object.

@@ -1,7 +1,7 @@
 //! Contact of cloth with cloth in substeps: detected once in a few substeps, with fixed contact planes in between.
 
 use super::contact::{ContactConstraint, ContactStencil};
-use super::{Xpbd, XpbdReport, middle, parts};
+use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{
     Ahead, ClothContact, ContactDetector, ContactFrictionState, ContactSet, FeaturePair,
     ImpactStats, Motions, Reach,
@@ -232,8 +232,8 @@ impl Xpbd {
         let origin = middle(&state.positions);
         let mut report = XpbdReport::default();
         let mut pieces = 1;
-        for part in parts(system, state.time, substeps) {
-            self.place_solids(system, state.time, &part);
+        for part in self.parts(system, state.time, substeps) {
+            self.place_solids(state.time, &part);
             report = self.advance_part(system, state, cloth, (origin, &part))?;
             pieces = pieces.max(report.pieces);
         }

@@ -258,8 +258,8 @@ impl Xpbd {
         let origin = middle(&state.positions);
         let mut report = XpbdReport::default();
         let mut pieces = 1;
-        for part in parts(system, state.time, &substeps) {
-            self.place_solids(system, state.time, &part);
+        for part in self.parts(system, state.time, &substeps) {
+            self.place_solids(state.time, &part);
             report = self.advance_about(system, state, origin, &part)?;
             pieces = pieces.max(report.pieces);
         }
@@ -268,10 +268,30 @@ impl Xpbd {
     }
 
     /// Gives the moving solids their places for some substeps from a time [s] on; every surface is queried again.
-    fn place_solids(&mut self, system: &System, time: f64, substeps: &Substeps) {
+    fn place_solids(&mut self, time: f64, substeps: &Substeps) {
         let end = time + substeps.substep * f64::from(substeps.count);
-        self.moving.set_step(&system.colliders, [time, end]);
+        self.moving.set_step([time, end]);
         self.invalidate_surfaces();
+    }
+
+    /// Substeps from a time [s] on, divided so that moving solids move straight in each part; one part where all are at
+    /// rest.
+    fn parts(
+        &mut self,
+        system: &System,
+        time: f64,
+        substeps: &Substeps,
+    ) -> impl Iterator<Item = Substeps> + use<> {
+        let substeps = *substeps;
+        let Substeps { substep, count, .. } = substeps;
+        let times = [time, time + substep * f64::from(count)];
+        let limits = (system.contact.offset, count);
+        let parts = self.moving.parts(&system.colliders, times, limits);
+        let until = move |part: u32| part * count / parts;
+        (0..parts).map(move |part| Substeps {
+            count: until(part + 1) - until(part),
+            ..substeps
+        })
     }
 
     /// [`Xpbd::advance`] with coordinates relative to `origin` [m], to which the contact planes refer too.
@@ -516,21 +536,6 @@ impl Xpbd {
             }
         }
     }
-}
-
-/// Substeps from a time [s] on, divided so that moving solids move straight in each part; one part where all are at
-/// rest.
-fn parts(system: &System, time: f64, substeps: &Substeps) -> impl Iterator<Item = Substeps> {
-    let Substeps { substep, count, .. } = *substeps;
-    let end = time + substep * f64::from(count);
-    let offset = system.contact.offset;
-    let parts = MovingSolids::parts(&system.colliders, [time, end], offset, count);
-    let until = move |part: u32| part * count / parts.max(1);
-    let substeps = *substeps;
-    (0..parts).map(move |part| Substeps {
-        count: until(part + 1) - until(part),
-        ..substeps
-    })
 }
 
 /// Middle of the bounding box of some positions, rounded to an eighth of a metre.
