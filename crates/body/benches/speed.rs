@@ -9,7 +9,7 @@ mod common;
 use common::freesewing::freesewing;
 use std::hint::black_box;
 use std::time::Instant;
-use toile_body::{EllipsoidTree, Figure, Mannequin, Motion, template_skin};
+use toile_body::{Clip, EllipsoidTree, Figure, Mannequin, template_skin};
 use toile_geometry::{SurfaceTree, Vec3};
 use toile_measure::{Measurements, Origin};
 
@@ -73,7 +73,7 @@ fn measure() {
         });
     }
     let body = Mannequin::new(&sized(0), Figure::Woman).unwrap();
-    let walk = Motion::walk(body.skeleton());
+    let walk = Clip::walk(body.skeleton());
     timed("skinning made", 1, |_| {
         black_box(body.shares(0));
     });

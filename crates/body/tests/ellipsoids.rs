@@ -3,7 +3,7 @@
 
 use nalgebra::UnitQuaternion;
 use toile_body::{
-    EllipsoidTree, Figure, Joint, Mannequin, Motion, Part, Pose, Primitive, VISIBLE_RATIO, adjacent,
+    Clip, EllipsoidTree, Figure, Joint, Mannequin, Part, Pose, Primitive, VISIBLE_RATIO, adjacent,
 };
 use toile_geometry::{Ellipsoid, Vec3};
 
@@ -30,7 +30,7 @@ fn inside_and_nearest_agree_with_one_by_one() {
     let body = woman();
     let mut tree = EllipsoidTree::new(&body, 1.1);
     assert_eq!(tree.len(), body.primitives().len());
-    let run = Motion::run(body.skeleton());
+    let run = Clip::run(body.skeleton());
     for time in [0.0, 0.21] {
         let pose = run.pose_for(body.skeleton(), time);
         tree.pose(&pose);

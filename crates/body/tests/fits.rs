@@ -132,7 +132,7 @@ fn published_bodies_within_two_millimetres() {
         assert!(body.skin().volume() > 0.97 * mesh.mesh().volume());
         assert!(body.skin().volume() < 1.03 * mesh.mesh().volume());
         // It moves as any of our bodies does.
-        let walk = toile_body::Motion::walk(body.skeleton());
+        let walk = toile_body::Clip::walk(body.skeleton());
         let posed = body.posed_skin(&walk.pose_for(body.skeleton(), 0.3));
         let change = posed.volume() / body.skin().volume();
         assert!((0.95..1.05).contains(&change), "{name}: {change}");

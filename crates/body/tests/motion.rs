@@ -3,7 +3,7 @@
 
 use nalgebra::UnitQuaternion;
 use std::sync::LazyLock;
-use toile_body::{Figure, Joint, Mannequin, Motion, Pose};
+use toile_body::{Clip, Figure, Joint, Mannequin, Pose};
 use toile_geometry::{SurfaceTree, Vec3};
 use toile_measure::{Measurements, Origin};
 
@@ -96,8 +96,8 @@ fn poses_are_blended_the_short_way_round() {
     let (a, b) = (Pose::rest(), Pose::rest().with(Joint::LKnee, turn(1.0)));
     let middle = a.blended(&b, 0.25).rotation(Joint::LKnee);
     assert!(middle.angle_to(&turn(0.25)) < 1e-12);
-    let walk = Motion::walk(WOMAN.skeleton());
-    let run = Motion::run(WOMAN.skeleton());
+    let walk = Clip::walk(WOMAN.skeleton());
+    let run = Clip::run(WOMAN.skeleton());
     let [once, again] = [0.3, 0.3 + 2.0 * walk.duration()].map(|time| walk.at(time));
     for joint in Joint::ALL {
         assert!(once.rotation(joint).angle_to(&again.rotation(joint)) < 1e-9);
@@ -126,7 +126,7 @@ fn walk_and_run_are_clean_away_from_creases() {
     let mut pairs: std::collections::BTreeMap<String, usize> = Default::default();
     for body in sizes() {
         let volume = body.skin().volume();
-        for motion in [Motion::walk(body.skeleton()), Motion::run(body.skeleton())] {
+        for motion in [Clip::walk(body.skeleton()), Clip::run(body.skeleton())] {
             let step = if std::env::var("TOILE_ALL").is_ok() {
                 1
             } else {
@@ -202,7 +202,7 @@ fn linear_blending_against_slerp_on_our_own_gaits() {
         let far = Joint::ALL.map(|joint| (a.centre(joint) - b.centre(joint)).norm());
         far.into_iter().fold(0.0, f64::max)
     };
-    let [walk, run] = [Motion::walk(skeleton), Motion::run(skeleton)];
+    let [walk, run] = [Clip::walk(skeleton), Clip::run(skeleton)];
     // Every fourth frame kept, the others blended from them.
     let mut frames = [0.0_f64; 2];
     let mut gaits = 0.0_f64;

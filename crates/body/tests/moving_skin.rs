@@ -5,7 +5,7 @@ use nalgebra::UnitQuaternion;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
-use toile_body::{Figure, Joint, Mannequin, Motion, Pose};
+use toile_body::{Clip, Figure, Joint, Mannequin, Pose};
 use toile_geometry::{MovingSurface, SurfaceTree, TriangleMesh, Vec3, closest_point_on_triangle};
 use toile_measure::Measurements;
 
@@ -29,7 +29,7 @@ impl Numbers {
 }
 
 /// A moment of a gait with every joint turned a little further.
-fn pose(gaits: &[Motion; 2], body: &Mannequin, numbers: &mut Numbers) -> [Pose; 2] {
+fn pose(gaits: &[Clip; 2], body: &Mannequin, numbers: &mut Numbers) -> [Pose; 2] {
     let gait = &gaits[usize::from(numbers.next() < 0.5)];
     let time = numbers.next() * gait.duration();
     let turns: Vec<Vec3> = Joint::ALL.iter().map(|_| numbers.vector() * 0.1).collect();
@@ -66,7 +66,7 @@ fn the_closest_point_of_the_posed_skin_is_that_of_brute_force() {
         (Figure::Man, Measurements::adult_man()),
     ] {
         let body = Mannequin::new(&table, figure).unwrap();
-        let gaits = [Motion::walk(body.skeleton()), Motion::run(body.skeleton())];
+        let gaits = [Clip::walk(body.skeleton()), Clip::run(body.skeleton())];
         let at_rest = MovingSurface::new(body.skin());
         assert!(at_rest.is_closed());
         let sides: Vec<usize> = (0..count)
@@ -82,7 +82,7 @@ fn the_closest_point_of_the_posed_skin_is_that_of_brute_force() {
 /// Asks about places round the skin in a pose; how many sides were told where the skin does not cross itself.
 fn asked_in_a_pose(
     body: &Mannequin,
-    gaits: &[Motion; 2],
+    gaits: &[Clip; 2],
     mut surface: MovingSurface,
     seed: u64,
 ) -> usize {

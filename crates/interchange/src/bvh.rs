@@ -2,7 +2,7 @@
 
 use crate::FormatError;
 use nalgebra::UnitQuaternion;
-use toile_body::{Joint, Motion, Pose, Skeleton};
+use toile_body::{Clip, Joint, Pose, Skeleton};
 use toile_geometry::Vec3;
 
 /// One channel of a joint.
@@ -98,7 +98,7 @@ const MOST: [usize; 2] = [1000, 200_000];
 ///
 /// # Errors
 /// The fault, its place and a remedy; a file with none of hips, knees and shoulders.
-pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> {
+pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
     let mut words = Words::new(text);
     words.expect("HIERARCHY")?;
     let bones = hierarchy(&mut words)?;
@@ -133,7 +133,7 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> 
         }
         poses.push(carrier.pose(&bones, &local, shift));
     }
-    Ok(Motion {
+    Ok(Clip {
         step,
         poses,
         is_loop: false,

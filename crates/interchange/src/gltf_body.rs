@@ -3,7 +3,7 @@
 use crate::FormatError;
 use crate::gltf::container;
 use serde_json::{Value, json};
-use toile_body::{Joint, Mannequin, Motion};
+use toile_body::{Clip, Joint, Mannequin};
 use toile_geometry::Vec3;
 
 /// Joints a vertex goes with at the most: what every viewer knows. The largest shares are kept.
@@ -72,7 +72,7 @@ fn single(p: Vec3) -> [f32; 3] {
 /// More than 4 GiB.
 pub fn write_body_glb(
     body: &Mannequin,
-    clip: Option<(&str, &Motion)>,
+    clip: Option<(&str, &Clip)>,
 ) -> Result<Vec<u8>, FormatError> {
     let mut binary = Binary::default();
     let attributes = attributes(body, &mut binary);
@@ -172,7 +172,7 @@ fn attributes(body: &Mannequin, binary: &mut Binary) -> Value {
 }
 
 /// The turns of all joints and the root's way over time; a loop ends with its first pose.
-fn animation(body: &Mannequin, name: &str, motion: &Motion, binary: &mut Binary) -> Value {
+fn animation(body: &Mannequin, name: &str, motion: &Clip, binary: &mut Binary) -> Value {
     let skeleton = body.skeleton();
     let count = motion.poses.len() + usize::from(motion.is_loop);
     let pose = |k: usize| &motion.poses[k % motion.poses.len()];
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn a_walking_body_reads_back_with_skeleton_weights_and_clip() {
         let body = Mannequin::new(&Figure::Woman.average(), Figure::Woman).unwrap();
-        let walk = Motion::walk(body.skeleton());
+        let walk = Clip::walk(body.skeleton());
         let glb = write_body_glb(&body, Some(("walk", &walk))).unwrap();
         let file = gltf::Gltf::from_slice(&glb).unwrap();
         let blob = file.blob.clone().unwrap();

@@ -6,7 +6,7 @@ use crate::bvh::{Bone, Carrier};
 use crate::x3d_nodes::{Node, Scene, read_scene};
 use nalgebra::UnitQuaternion;
 use std::collections::BTreeMap;
-use toile_body::{Joint, Motion, Skeleton};
+use toile_body::{Clip, Joint, Skeleton};
 use toile_geometry::Vec3;
 
 /// Poses a second that a motion is taken at.
@@ -43,9 +43,9 @@ impl Turns {
 ///
 /// # Errors
 /// What is wrong, in which line or node, and the remedy; a file that turns no joint.
-pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Motion, Vec<String>), FormatError> {
+pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Clip, Vec<String>), FormatError> {
     let scene = read_scene(text)?;
-    let clip = Clip::of(&scene)?;
+    let clip = Animation::of(&scene)?;
     let (length, is_loop) = clip.cycle()?;
     let bones = bones(&joint_nodes(&scene)?, skeleton);
     let carrier = Carrier::new(&bones, skeleton)?;
@@ -69,7 +69,7 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Motion, Vec<String>)
             carrier.pose(&bones, &local, rest + moved)
         })
         .collect();
-    let motion = Motion {
+    let motion = Clip {
         step: match is_loop {
             true => length / count as f64,
             false => length / (count - 1) as f64,
@@ -81,14 +81,14 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Motion, Vec<String>)
 }
 
 /// The rotations and translations of joints in one clip.
-struct Clip<'a> {
+struct Animation<'a> {
     clock: Option<&'a Node>,
     turns: BTreeMap<Joint, Turns>,
     moves: Option<Vec<(f64, Vec3)>>,
     notes: Vec<String>,
 }
 
-impl<'a> Clip<'a> {
+impl<'a> Animation<'a> {
     /// The first clip of a scene.
     fn of(scene: &'a Scene) -> Result<Self, FormatError> {
         let joint_routes: Vec<JointRoute<'_>> = joint_routes(scene)?;

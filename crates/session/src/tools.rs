@@ -9,7 +9,7 @@ use crate::{FabricChoice, PanelOrigin, PatternFormat, Project, SessionError};
 use std::path::Path;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
-    AskedStance, BodyError, Conflict, Description, Deviation, Figure, Fit, Mannequin, Motion,
+    AskedStance, BodyError, Clip, Conflict, Description, Deviation, Figure, Fit, Mannequin,
     ProportionBox, Scaling, Scan, ScanLandmarks, Skeleton,
 };
 use toile_geometry::{Bounds2, Vec2, Vec3};
@@ -189,10 +189,10 @@ pub struct Moment {
 }
 
 /// A gait of our own, by name.
-fn gait(name: &str, skeleton: &Skeleton) -> Option<Motion> {
+fn gait(name: &str, skeleton: &Skeleton) -> Option<Clip> {
     match name {
-        "walk" => Some(Motion::walk(skeleton)),
-        "run" => Some(Motion::run(skeleton)),
+        "walk" => Some(Clip::walk(skeleton)),
+        "run" => Some(Clip::run(skeleton)),
         _ => None,
     }
 }
@@ -208,7 +208,7 @@ impl Moment {
     }
 
     /// The whole motion, for a mannequin, and what of its file was left out.
-    fn motion_for(&self, mannequin: &Mannequin) -> Result<(Motion, Vec<String>), SessionError> {
+    fn motion_for(&self, mannequin: &Mannequin) -> Result<(Clip, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
         let (own, blend) = (gait(&self.motion, skeleton), &self.blend);
         let second = blend

@@ -1,91 +1,17 @@
-//! Poses over time: frames, loops, blending, walk and run.
+//! Our own clips: walk and run by the waves of their joint angles, and two standing poses.
 
-use crate::{Joint, Pose, Skeleton};
+use crate::{Clip, Joint, Pose, Skeleton};
 use nalgebra::UnitQuaternion;
 use std::f64::consts::TAU;
 use toile_geometry::Vec3;
 
-/// Poses at even steps of time. Distances of the root are in leg lengths (hip to floor), so that a
-/// motion fits every size.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
-    /// Time from one pose to the next [s].
-    pub step: f64,
-    /// The poses; the root's place is over the leg length [1].
-    pub poses: Vec<Pose>,
-    /// Whether the first pose follows the last one.
-    pub is_loop: bool,
-}
-
-impl Motion {
-    /// Length [s]: of a loop with the way back to the first pose.
-    pub fn duration(&self) -> f64 {
-        let gaps = match self.is_loop {
-            true => self.poses.len(),
-            false => self.poses.len().saturating_sub(1),
-        };
-        self.step * gaps as f64
-    }
-
-    /// The pose at a time [s], slerped between frames: held before the start and after the end,
-    /// but for a loop. The root's place is over the leg length.
-    pub fn at(&self, time: f64) -> Pose {
-        let count = self.poses.len();
-        if count == 0 || !time.is_finite() || self.step <= 0.0 {
-            return self.poses.first().cloned().unwrap_or_default();
-        }
-        let frame = time / self.step;
-        let (low, share) = match self.is_loop {
-            true => (
-                frame.floor().rem_euclid(count as f64),
-                frame - frame.floor(),
-            ),
-            false => {
-                let held = frame.clamp(0.0, (count - 1) as f64);
-                (held.floor(), held - held.floor())
-            }
-        };
-        let low = (low as usize).min(count - 1);
-        let high = match self.is_loop {
-            true => (low + 1) % count,
-            false => (low + 1).min(count - 1),
-        };
-        self.poses[low].blended(&self.poses[high], share)
-    }
-
-    /// The pose at a time [s] for a skeleton: the root's place in metres.
-    pub fn pose_for(&self, skeleton: &Skeleton, time: f64) -> Pose {
-        let mut pose = self.at(time);
-        pose.shift *= skeleton.leg_length();
-        pose
-    }
-
-    /// A loop between two others, at the same share of their way round: 0 is this one. Matched
-    /// phases are needed, as [`Motion::walk`] and [`Motion::run`] have them; durations go along.
-    pub fn between(&self, other: &Self, share: f64) -> Self {
-        let share = share.clamp(0.0, 1.0);
-        let count = self.poses.len().max(other.poses.len()).max(1);
-        let duration = self.duration() + (other.duration() - self.duration()) * share;
-        let poses = (0..count)
-            .map(|k| {
-                let phase = k as f64 / count as f64;
-                let [a, b] = [self, other].map(|m| m.at(phase * m.duration()));
-                a.blended(&b, share)
-            })
-            .collect();
-        Self {
-            step: duration / count as f64,
-            poses,
-            is_loop: self.is_loop && other.is_loop,
-        }
-    }
-
+impl Clip {
     /// A walk of our own: one stride of 1.1 s, on the spot; the left heel strikes at phase 0.
     pub fn walk(skeleton: &Skeleton) -> Self {
         Self::cycle(skeleton, &WALK)
     }
 
-    /// A run of our own: one stride of 0.72 s, on the spot, the phase as of [`Motion::walk`].
+    /// A run of our own: one stride of 0.72 s, on the spot, the phase as of [`Clip::walk`].
     pub fn run(skeleton: &Skeleton) -> Self {
         Self::cycle(skeleton, &RUN)
     }
@@ -99,38 +25,6 @@ impl Motion {
                 .collect(),
             is_loop: true,
         }
-    }
-}
-
-impl Pose {
-    /// The pose between this one (0) and another (1) as linear blending has it: each joint's
-    /// rotation vector evenly mixed, as frames and animations are in Rudomin et al. (2002). It
-    /// neither turns evenly nor the short way; for comparison with [`Pose::blended`] alone.
-    #[must_use]
-    pub fn blended_linearly(&self, other: &Self, share: f64) -> Self {
-        let mut pose = Self::rest();
-        for joint in Joint::ALL {
-            let [a, b] = [self, other].map(|pose| pose.rotation(joint).scaled_axis());
-            pose.set(joint, UnitQuaternion::new(a + (b - a) * share));
-        }
-        pose.shift = self.shift + (other.shift - self.shift) * share;
-        pose
-    }
-
-    /// The pose between this one (0) and another (1): each joint the short way round
-    /// (Shoemake 1985), the root's place evenly.
-    #[must_use]
-    pub fn blended(&self, other: &Self, share: f64) -> Self {
-        let mut pose = Self::rest();
-        for joint in Joint::ALL {
-            let (a, b) = (self.rotation(joint), other.rotation(joint));
-            let turn = a
-                .try_slerp(&b, share, 1e-12)
-                .unwrap_or(if share < 0.5 { a } else { b });
-            pose.set(joint, turn);
-        }
-        pose.shift = self.shift + (other.shift - self.shift) * share;
-        pose
     }
 }
 
