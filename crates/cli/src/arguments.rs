@@ -8,7 +8,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Command, Export, ExportFormat, OtherGarment, PanelOrigin, PatternFormat, Quality, SizeSelection,
+    Command, Export, ExportFormat, OtherGarment, PanelOrigin, PatternFormat, PictureTime, Quality,
+    SizeSelection,
 };
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
@@ -179,6 +180,19 @@ pub struct Run {
     /// as in 30s or 10min.
     #[arg(long, value_name = "TIME")]
     pub give_up: Option<Duration>,
+    /// Paint pictures, picture-WHEN.png, from four sides, all with one camera that takes in whatever moves: first, last,
+    /// a time as in 0.5s, or frames for each frame saved (picture-00000.png and so on). Alone: first,last.
+    #[arg(
+        long,
+        value_name = "WHEN",
+        num_args = 0..=1,
+        value_delimiter = ',',
+        default_missing_value = "first,last"
+    )]
+    pub picture: Vec<PictureTime>,
+    /// The object that the camera of the pictures follows. Default: it stands, and takes in all that moves.
+    #[arg(long, value_name = "OBJECT", requires = "picture")]
+    pub picture_of: Option<String>,
 }
 
 /// How finely to mesh and drape.

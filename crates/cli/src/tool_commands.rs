@@ -10,9 +10,9 @@ use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
     AskedStance, BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, PersonFile,
-    Project, RunOptions, SizeChoice, convert as convert_file, edit_body, figure_named, fit_mesh,
-    make_body, measure_mesh, mesh_panels, open_body_edits, open_mannequin, open_measurements,
-    run_scene, stretch_body,
+    PictureOptions, Project, RunOptions, SizeChoice, convert as convert_file, edit_body,
+    figure_named, fit_mesh, make_body, measure_mesh, mesh_panels, open_body_edits, open_mannequin,
+    open_measurements, run_scene, stretch_body,
 };
 
 /// A pattern in another format.
@@ -327,6 +327,10 @@ pub fn run(run: &Run, output: &Output) -> Result<Made, Failure> {
         checkpoint_step: run.checkpoint,
         resume: run.resume,
         give_up: run.give_up.map(Duration::as_seconds),
+        pictures: PictureOptions {
+            times: run.picture.clone(),
+            of: run.picture_of.clone(),
+        },
     };
     let outcome = run_scene(&run.scene, &run.out, &options, &mut Bar::new())
         .map_err(|error| Failure::from(error).about(&run.scene))?;

@@ -81,6 +81,17 @@ pub(crate) struct Seen {
     pub weight: f64,
 }
 
+/// The corners of a box given by its smallest and largest coordinates \[m\].
+pub(crate) fn box_corners(bounds: [Vec3; 2]) -> [Vec3; 8] {
+    std::array::from_fn(|corner| {
+        Vec3::new(
+            bounds[corner & 1].x,
+            bounds[corner >> 1 & 1].y,
+            bounds[corner >> 2].z,
+        )
+    })
+}
+
 impl Camera {
     /// A camera that looks from an eye to a target, with a window round the middle: half its
     /// width and half its height, in the unit of [`Camera::window`]. A view straight up or down
@@ -115,12 +126,7 @@ impl Camera {
         };
         let mut camera = Self::around(middle, distance, view.turn(), rise, projection);
         let mut half = [0.0_f64; 2];
-        for corner in 0..8 {
-            let p = Vec3::new(
-                bounds[corner & 1].x,
-                bounds[corner >> 1 & 1].y,
-                bounds[corner >> 2].z,
-            );
+        for p in box_corners(bounds) {
             let [x, y] = camera.tangent(p).unwrap_or_default();
             half = [half[0].max(x.abs()), half[1].max(y.abs())];
         }
@@ -196,12 +202,7 @@ mod tests {
             for projection in [Projection::Orthographic, Projection::Perspective] {
                 let camera = Camera::fit_to(BOX, view, 0.5, projection);
                 let mut rows = [f64::INFINITY, f64::NEG_INFINITY];
-                for corner in 0..8 {
-                    let p = Vec3::new(
-                        BOX[corner & 1].x,
-                        BOX[corner >> 1 & 1].y,
-                        BOX[corner >> 2].z,
-                    );
+                for p in box_corners(BOX) {
                     let seen = camera.see(p, [500, 1000]);
                     assert!((0.0..500.0).contains(&seen.x) && (0.0..1000.0).contains(&seen.y));
                     rows = [rows[0].min(seen.y), rows[1].max(seen.y)];

@@ -33,7 +33,8 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    pub(crate) fn new(scene: &'a Scene) -> Result<Self, PictureError> {
+    /// Makes a scene ready; the ground lies under a box [m], else under the scene.
+    pub(crate) fn new(scene: &'a Scene, room: Option<[Vec3; 2]>) -> Result<Self, PictureError> {
         scene.check()?;
         let mut all = Self {
             scene,
@@ -65,8 +66,8 @@ impl<'a> Prepared<'a> {
             all.line.push(linear_from_srgb(surface.lines.colour));
         }
         all.ambient = ambient(&all.positions, &all.normals, &all.triangles);
-        all.floor = scene
-            .bounds()
+        all.floor = room
+            .or_else(|| scene.bounds())
             .map(|bounds| Floor::under(bounds, &all.positions, &all.triangles));
         Ok(all)
     }

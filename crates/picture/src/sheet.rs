@@ -2,7 +2,7 @@
 //! legend.
 
 use crate::backdrop::Backdrop;
-use crate::camera::{Camera, Projection, View};
+use crate::camera::{Camera, Projection, View, box_corners};
 use crate::image::Image;
 use crate::legend::Legend;
 use crate::prepare::Prepared;
@@ -25,6 +25,9 @@ pub struct Sheet {
     pub warning: String,
     /// Views from left to right, all at one scale.
     pub views: Vec<View>,
+    /// A box \[m\] that the views show, whatever the scene fills of it, so that pictures of one motion have one camera.
+    /// Without it they show what the scene holds.
+    pub room: Option<[Vec3; 2]>,
     /// The background.
     pub backdrop: Backdrop,
 }
@@ -39,6 +42,7 @@ impl Sheet {
             title: title.into(),
             warning: String::new(),
             views: vec![View::Front, View::ThreeQuarter, View::Side, View::Back],
+            room: None,
             backdrop: Backdrop::default(),
         }
     }
@@ -75,7 +79,12 @@ pub fn render(
     [width, height]: [usize; 2],
     backdrop: &Backdrop,
 ) -> Result<Image, PictureError> {
-    raster::render(&Prepared::new(scene)?, camera, [width, height], backdrop)
+    raster::render(
+        &Prepared::new(scene, None)?,
+        camera,
+        [width, height],
+        backdrop,
+    )
 }
 
 /// Draws a scene as in a look-book: lit, from all sides of the sheet, with captions.
@@ -136,7 +145,7 @@ fn write_title(image: &mut Image, sheet: &Sheet) {
 /// All views and their captions; `margins` are kept free above and below \[pixel\].
 fn views(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Image, PictureError> {
     let mut image = Image::new(sheet.width, sheet.height, sheet.backdrop.top)?;
-    let prepared = Prepared::new(scene)?;
+    let prepared = Prepared::new(scene, sheet.room)?;
     let panes = panes(scene, sheet, margins)?;
     let letters = sheet.letters();
     let style = TextStyle {
@@ -199,6 +208,35 @@ struct Layout {
     scale: f64,
 }
 
+/// What the views show.
+struct Subject {
+    /// Corners of triangles or of a box \[m\].
+    points: Vec<Vec3>,
+    /// Smallest and largest coordinates of the points \[m\].
+    bounds: [Vec3; 2],
+    /// Lowest and highest place that must be seen \[m\].
+    heights: [f64; 2],
+}
+
+impl Subject {
+    /// The box of a sheet, or else the scene.
+    fn new(scene: &Scene, sheet: &Sheet) -> Result<Self, PictureError> {
+        let Some(bounds) = sheet.room else {
+            return Ok(Self {
+                points: scene.surfaces.iter().flat_map(|s| s.corners()).collect(),
+                bounds: scene.bounds().ok_or(PictureError::Empty)?,
+                heights: framed_heights(scene)?,
+            });
+        };
+        let [low, high] = bounds;
+        Ok(Self {
+            points: box_corners(bounds).to_vec(),
+            bounds,
+            heights: [low.y, high.y.max(low.y + 1e-3)],
+        })
+    }
+}
+
 /// Pixels left free of figures between the views.
 fn gap(sheet: &Sheet) -> f64 {
     0.03 * sheet.height as f64
@@ -214,12 +252,12 @@ fn room(sheet: &Sheet, margins: [f64; 2]) -> [f64; 2] {
 impl Layout {
     /// Shows what lies between two heights \[m\].
     fn new(
-        scene: &Scene,
+        subject: &Subject,
         sheet: &Sheet,
         [across, down]: [f64; 2],
         [low, high]: [f64; 2],
     ) -> Result<Self, PictureError> {
-        let bounds = scene.bounds().ok_or(PictureError::Empty)?;
+        let bounds = subject.bounds;
         let mut middle = 0.5 * (bounds[0] + bounds[1]);
         middle.y = 0.5 * (low + high);
         let distance = 3.5 * (high - low).max(0.3 * (bounds[1] - bounds[0]).norm());
@@ -233,7 +271,7 @@ impl Layout {
         let cameras: Vec<(View, Camera)> = sheet.views.iter().map(place).collect();
         let extents: Vec<[f64; 4]> = cameras
             .iter()
-            .map(|(_, camera)| extent(scene, camera, [low, high]))
+            .map(|(_, camera)| extent(&subject.points, camera, [low, high]))
             .collect();
         let bottom = extents.iter().map(|e| e[2]).fold(f64::INFINITY, f64::min);
         let top = extents
@@ -259,11 +297,11 @@ impl Layout {
 /// that makes what is framed much smaller.
 fn panes(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Vec<Pane>, PictureError> {
     let room = room(sheet, margins);
-    let [low, high] = framed_heights(scene)?;
-    let bounds = scene.bounds().ok_or(PictureError::Empty)?;
-    let (lowest, highest) = (bounds[0].y, bounds[1].y);
-    let close = Layout::new(scene, sheet, room, [low, high])?;
-    let whole = Layout::new(scene, sheet, room, [lowest, highest])?;
+    let subject = Subject::new(scene, sheet)?;
+    let [low, high] = subject.heights;
+    let (lowest, highest) = (subject.bounds[0].y, subject.bounds[1].y.max(high));
+    let close = Layout::new(&subject, sheet, room, [low, high])?;
+    let whole = Layout::new(&subject, sheet, room, [lowest, highest])?;
     let layout = if whole.scale / whole.distance >= 0.85 * close.scale / close.distance {
         whole
     } else {
@@ -272,7 +310,7 @@ fn panes(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Vec<Pane>, P
         let left_over = (0.95 * room[1] / close.scale - (top - bottom)) * close.distance;
         let down = left_over.clamp(0.0, (low - lowest).max(0.0));
         let up = (left_over - down).clamp(0.0, (highest - high).max(0.0));
-        Layout::new(scene, sheet, room, [low - down, high + up])?
+        Layout::new(&subject, sheet, room, [low - down, high + up])?
     };
     Ok(place_panes(&layout, sheet, margins))
 }
@@ -340,7 +378,7 @@ fn framed_heights(scene: &Scene) -> Result<[f64; 2], PictureError> {
 }
 
 /// Left, right, bottom and top of what a camera sees between two heights \[tangent\].
-fn extent(scene: &Scene, camera: &Camera, [low, high]: [f64; 2]) -> [f64; 4] {
+fn extent(points: &[Vec3], camera: &Camera, [low, high]: [f64; 2]) -> [f64; 4] {
     let mut extent = [
         f64::INFINITY,
         f64::NEG_INFINITY,
@@ -355,7 +393,7 @@ fn extent(scene: &Scene, camera: &Camera, [low, high]: [f64; 2]) -> [f64; 4] {
             extent[3] = extent[3].max(y);
         }
     };
-    for p in scene.surfaces.iter().flat_map(|s| s.corners()) {
+    for &p in points {
         if (low..=high).contains(&p.y) {
             add(p);
         }

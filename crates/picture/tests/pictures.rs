@@ -281,6 +281,35 @@ fn a_fit_picture_carries_its_legend() {
 }
 
 #[test]
+fn pictures_of_one_room_have_one_camera() {
+    let mut sheet = Sheet::chart("");
+    (sheet.width, sheet.height) = (900, 400);
+    // Leftmost and topmost black pixel of a ball at rest, beside a sheet that moves.
+    let ball_in = |height: f64, sheet: &Sheet| {
+        let ball = cloth(sphere(Vec3::zeros(), 0.2, 40), [0.0; 3]);
+        let moving = square(0.0)
+            .positions
+            .iter()
+            .map(|p| 0.2 * p + height * Vec3::y())
+            .collect();
+        let moving = TriangleMesh {
+            positions: moving,
+            ..square(0.0)
+        };
+        let image = drape_picture(&scene([ball, cloth(moving, GREEN)]), sheet).unwrap();
+        let is_black = |p: [u8; 4]| p[..3].iter().all(|&c| c < 60);
+        let black = (0..900 * 400).map(|k| [k % 900, k / 900]);
+        let black: Vec<_> = black
+            .filter(|&[x, y]| is_black(image.pixel(x, y).unwrap()))
+            .collect();
+        [0, 1].map(|axis| black.iter().map(|at| at[axis]).min().unwrap())
+    };
+    assert_ne!(ball_in(0.6, &sheet), ball_in(1.2, &sheet));
+    sheet.room = Some([Vec3::new(-0.3, -0.3, -0.3), Vec3::new(0.3, 1.4, 0.3)]);
+    assert_eq!(ball_in(0.6, &sheet), ball_in(1.2, &sheet));
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_in_words() {
     let sheet = Sheet::studio("");
     let empty = drape_picture(&Scene::default(), &sheet).unwrap_err();

@@ -4,14 +4,14 @@ use crate::SessionError;
 use crate::drape::Drape;
 use toile_geometry::TriangleMesh;
 use toile_picture::{
-    Backdrop, Camera, ColourMap, ColourScale, Edges, Finish, Legend, Lines, Paint, Projection,
+    Backdrop, Camera, ColourMap, ColourScale, Edges, Finish, Legend, Lines, Paint, Projection, Rgb,
     Scene, Sheet, Surface, View, drape_picture, fit_picture, render,
 };
 
 /// Stretch at the end of the colours [%].
 const MOST_STRETCH: f64 = 10.0;
 /// Colour of a mannequin.
-const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
+pub(crate) const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
 
 fn body(skin: &TriangleMesh) -> Surface {
     Surface {
@@ -26,14 +26,24 @@ fn garment(drape: &Drape, paint: Paint, line: [f64; 3]) -> Surface {
         normals: Vec::new(),
         paint,
         finish: Finish::Cloth,
-        lines: Lines {
-            edges: Edges::Pairs(drape.seam_edges()),
-            colour: line,
-            width: 1.2,
-            opacity: 0.55,
-        },
+        lines: seam_lines(drape.seam_edges(), line),
         framed: true,
     }
+}
+
+/// Lines along seams.
+pub(crate) fn seam_lines(pairs: Vec<[u32; 2]>, colour: Rgb) -> Lines {
+    Lines {
+        edges: Edges::Pairs(pairs),
+        colour,
+        width: 1.2,
+        opacity: 0.55,
+    }
+}
+
+/// The colour of lines on cloth of a colour.
+pub(crate) fn darker(colour: Rgb) -> Rgb {
+    colour.map(|c| 0.35 * c)
 }
 
 /// The garment in its colours on the mannequin.
@@ -45,7 +55,7 @@ fn worn(drape: &Drape, skin: &TriangleMesh) -> Scene {
     let colours: Vec<[f64; 3]> = drape.origin.iter().map(|&t| colours[t as usize]).collect();
     let mean: [f64; 3] =
         [0, 1, 2].map(|k| colours.iter().map(|c| c[k]).sum::<f64>() / colours.len().max(1) as f64);
-    let line = mean.map(|c| 0.35 * c);
+    let line = darker(mean);
     Scene {
         surfaces: vec![
             garment(drape, Paint::PerTriangle(colours), line),

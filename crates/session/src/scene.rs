@@ -6,6 +6,7 @@ use crate::output::{cannot, file_name};
 use crate::pace::Pace;
 use crate::scene_builder::Builder;
 use crate::scene_checkpoint::{CheckpointTimes, RunOptions, SavedRun};
+use crate::scene_pictures::SceneAlbum;
 use crate::timing::Timing;
 use crate::watcher::report_progress;
 use crate::{SessionError, Watcher, verdict};
@@ -79,9 +80,19 @@ pub fn run_scene(
     timing.add("simulate", start);
     let start = Instant::now();
     let mut files = state_files(&course.begun.run, (&course.names, ""))?;
-    let Begun { run, crossings, .. } = &mut course.begun;
+    let Begun {
+        run,
+        crossings,
+        album,
+        ..
+    } = &mut course.begun;
     let (report, verdict) = report(run, builder.notes, crossings, given_up);
     timing.add("measure", start);
+    let start = Instant::now();
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = name.trim_end_matches(".scene");
+    files.extend(album.paint(run, &verdict, name)?);
+    timing.add("paint", start);
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
     files.push(("timing.json".to_owned(), timing.to_json().into_bytes()));
@@ -97,6 +108,7 @@ pub fn run_scene(
 struct Begun {
     run: SceneRun,
     crossings: Crossings,
+    album: SceneAlbum,
     /// Frames written.
     frames: usize,
 }
@@ -104,21 +116,26 @@ struct Begun {
 impl Begun {
     /// A run at its start, or where its checkpoint in a folder was saved.
     fn new(scene: &Scene, folder: &Path, options: &RunOptions) -> Result<Self, SessionError> {
+        let album =
+            |run: &SceneRun| SceneAlbum::new(&options.pictures, run, scene.frame_step.is_some());
         if !options.resume {
             let run = SceneRun::new(scene)?;
-            let crossings = Crossings::new(&run);
             return Ok(Self {
+                crossings: Crossings::new(&run),
+                album: album(&run)?,
                 run,
-                crossings,
                 frames: 0,
             });
         }
         let saved = SavedRun::read(folder)?;
         let run = SceneRun::resume(scene, saved.run)?;
+        let mut album = album(&SceneRun::new(scene)?)?;
+        album.resume(&run, saved.ways)?;
         let crossings = Crossings::resumed(&run, saved.crossings);
         Ok(Self {
             run,
             crossings,
+            album,
             frames: saved.frames,
         })
     }
@@ -136,6 +153,7 @@ impl Begun {
         SavedRun {
             frames: self.frames,
             crossings: self.crossings.counts(),
+            ways: self.album.ways().clone(),
             run,
         }
     }
@@ -169,8 +187,14 @@ impl Course<'_> {
         while !self.begun.run.finished() {
             self.write_frame()?;
             self.begun.run.advance()?;
-            let Begun { run, crossings, .. } = &mut self.begun;
+            let Begun {
+                run,
+                crossings,
+                album,
+                ..
+            } = &mut self.begun;
             crossings.follow(run);
+            album.follow(run);
             if let Some(checkpoint) = self.checkpoints.due(run, self.scene)? {
                 self.begun.saved(checkpoint).write(self.folder)?;
             }
@@ -216,7 +240,9 @@ impl Course<'_> {
 
     /// Writes the frame that is due.
     fn write_frame(&mut self) -> Result<(), SessionError> {
-        let Begun { run, frames, .. } = &mut self.begun;
+        let Begun {
+            run, frames, album, ..
+        } = &mut self.begun;
         let Some(step) = self.scene.frame_step else {
             return Ok(());
         };
@@ -224,6 +250,7 @@ impl Course<'_> {
             return Ok(());
         }
         let files = state_files(run, (&self.names, &format!("frame-{:05}-", *frames)))?;
+        album.frame(run, *frames);
         *frames += 1;
         self.write(&files)
     }

@@ -1,6 +1,7 @@
 //! The checkpoint file from which an interrupted run of a scene is resumed.
 
-use crate::SessionError;
+use crate::scene_pictures::Ways;
+use crate::{PictureOptions, SessionError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use toile_drape::{DrapeError, Scene, SceneCheckpoint, SceneRun};
@@ -9,7 +10,7 @@ use toile_interchange::{
 };
 
 /// How a scene is run beside what its file says.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunOptions {
     /// Simulated time between two checkpoints [s]; none saves none.
     pub checkpoint_step: Option<f64>,
@@ -17,6 +18,8 @@ pub struct RunOptions {
     pub resume: bool,
     /// Processor time of a simulated second beyond which the run is ended with a checkpoint [s]; none never ends it.
     pub give_up: Option<f64>,
+    /// The pictures painted.
+    pub pictures: PictureOptions,
 }
 
 /// Its file in the folder of the results.
@@ -30,6 +33,9 @@ pub(crate) struct SavedRun {
     pub frames: usize,
     /// Crossings of cloth with cloth counted before the first step, most at one count, and at the last.
     pub crossings: [usize; 3],
+    /// Where objects have been, if pictures are painted.
+    #[serde(default, skip_serializing_if = "Ways::is_empty")]
+    pub ways: Ways,
     /// The run.
     pub run: SceneCheckpoint,
 }
