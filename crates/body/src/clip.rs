@@ -2,6 +2,7 @@
 
 use crate::{Joint, Pose, Skeleton};
 use nalgebra::UnitQuaternion;
+use toile_geometry::Vec3;
 
 /// Poses at even steps of time. Distances of the root are in leg lengths (hip to floor), so that a
 /// motion fits every size.
@@ -13,6 +14,9 @@ pub struct Clip {
     pub poses: Vec<Pose>,
     /// Whether the first pose follows the last one.
     pub is_loop: bool,
+    /// How far a loop on the spot goes over the ground in one round, over the leg length [1]: the standing foot then
+    /// stands still. Zero where the poses themselves move the root.
+    pub advance: Vec3,
 }
 
 impl Clip {
@@ -51,6 +55,14 @@ impl Clip {
         self.poses[low].blended(&self.poses[high], share)
     }
 
+    /// How far the figure has gone over the ground since the start of a loop at a time [s], over the leg length [1].
+    pub fn travelled(&self, time: f64) -> Vec3 {
+        match self.duration() {
+            duration if duration > 0.0 => self.advance * (time / duration),
+            _ => Vec3::zeros(),
+        }
+    }
+
     /// The pose at a time [s] for a skeleton: the root's place in metres.
     pub fn pose_for(&self, skeleton: &Skeleton, time: f64) -> Pose {
         let mut pose = self.at(time);
@@ -75,6 +87,7 @@ impl Clip {
             step: duration / count as f64,
             poses,
             is_loop: self.is_loop && other.is_loop,
+            advance: self.advance + (other.advance - self.advance) * share,
         }
     }
 }

@@ -137,6 +137,7 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
         step,
         poses,
         is_loop: false,
+        advance: Vec3::zeros(),
     })
 }
 

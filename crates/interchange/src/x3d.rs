@@ -76,6 +76,7 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Clip, Vec<String>), 
         },
         poses,
         is_loop,
+        advance: Vec3::zeros(),
     };
     Ok((motion, clip.notes))
 }

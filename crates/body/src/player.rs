@@ -1,0 +1,322 @@
+//! The player of clips: one that is shown, another faded in, at a rate; nothing it shows jumps.
+
+use crate::curve::smooth_step;
+use crate::{Clip, Joint, Pose};
+use serde::{Deserialize, Serialize};
+use toile_geometry::Vec3;
+
+/// What a player is told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum PlayCommand {
+    /// The clock goes on.
+    Start,
+    /// The clock comes to rest; the figure keeps its pose.
+    Stop,
+    /// Another clip is faded in within a time [s]. While a fade lasts the last of such commands waits.
+    Change {
+        /// The number of the clip.
+        clip: usize,
+        /// Length of the fade [s].
+        fade: f64,
+    },
+    /// How fast the clock goes, from 0 to [`MOST_RATE`].
+    Rate(f64),
+}
+
+/// Largest rate of a player.
+pub const MOST_RATE: f64 = 2.0;
+/// Longest fade [s].
+pub const MOST_FADE: f64 = 60.0;
+/// Fastest turn of a joint that a player shows [rad/s]; where a clip or a fade is faster its clock goes slower. Runners'
+/// knees turn at 20 rad/s (Novacheck 1998).
+pub const FASTEST_TURN: f64 = 25.0;
+/// Time in which the clock comes to its rate [s].
+const CLOCK_START: f64 = 0.2;
+/// Shortest fade [s]: a shorter one is lengthened to it.
+const SHORTEST_FADE: f64 = 0.1;
+/// Halvings in the search for the longest step of the clock that is not too fast.
+const HALVINGS: usize = 12;
+
+/// Why a player does not do as it is told.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlayError {
+    /// There is no such clip.
+    #[error("clip {asked} is not there: there are {count}, counted from 0")]
+    NoClip {
+        /// Its number.
+        asked: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A rate or a fade that is out of range or no number.
+    #[error("a {what} of {value} is out of range: give 0 to {most}")]
+    OutOfRange {
+        /// What is out of range.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// The largest possible.
+        most: f64,
+    },
+}
+
+/// A clip that is shown, and where in it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Shown {
+    clip: usize,
+    /// Rounds gone, or the share of a clip that is no loop.
+    phase: f64,
+}
+
+/// A fade to another clip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fade {
+    to: Shown,
+    /// Its length and how much of it is over [s].
+    length: f64,
+    gone: f64,
+}
+
+/// Where a player is: plain data to save it and to go on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Playback {
+    shown: Shown,
+    fade: Option<Fade>,
+    /// Clip and fade that wait for the end of the present fade.
+    waiting: Option<(usize, f64)>,
+    /// The rate asked for, whether the clock goes, and its present rate.
+    asked: f64,
+    goes: bool,
+    rate: f64,
+    /// Way over the ground so far, over the leg length.
+    travelled: Vec3,
+}
+
+impl Playback {
+    /// At the start of a clip, the clock at rest.
+    fn new(clip: usize) -> Self {
+        Self {
+            shown: Shown { clip, phase: 0.0 },
+            fade: None,
+            waiting: None,
+            asked: 1.0,
+            goes: false,
+            rate: 0.0,
+            travelled: Vec3::zeros(),
+        }
+    }
+
+    /// Rounds of the clip that is shown, or faded in, so far.
+    pub fn rounds(&self) -> f64 {
+        self.fade.map_or(self.shown, |fade| fade.to).phase
+    }
+
+    /// The clip that is shown, or faded in.
+    pub fn clip(&self) -> usize {
+        self.fade.map_or(self.shown, |fade| fade.to).clip
+    }
+
+    /// Way over the ground so far, over the leg length [1].
+    pub fn travelled(&self) -> Vec3 {
+        self.travelled
+    }
+
+    /// Rate of the clock now.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+}
+
+/// A player of some clips.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Player {
+    clips: Vec<Clip>,
+    playback: Playback,
+}
+
+impl Player {
+    /// A player at the start of a clip, its clock at rest.
+    ///
+    /// # Errors
+    /// A clip that is not there.
+    pub fn new(clips: Vec<Clip>, first: usize) -> Result<Self, PlayError> {
+        let player = Self {
+            clips,
+            playback: Playback::new(first),
+        };
+        player.check_clip(first)?;
+        Ok(player)
+    }
+
+    /// A player of the same clips where a saved one was.
+    ///
+    /// # Errors
+    /// A clip that is not there, numbers out of range.
+    pub fn resumed(clips: Vec<Clip>, playback: Playback) -> Result<Self, PlayError> {
+        let fade = playback.fade.map(|fade| fade.to.clip);
+        let player = Self { clips, playback };
+        let waiting = player.playback.waiting.map(|(clip, _)| clip);
+        for clip in [Some(player.playback.shown.clip), fade, waiting] {
+            clip.map_or(Ok(()), |clip| player.check_clip(clip))?;
+        }
+        within("rate", player.playback.rate, MOST_RATE)?;
+        within("rate", player.playback.asked, MOST_RATE)?;
+        if let Some(fade) = player.playback.fade {
+            within("fade", fade.length, MOST_FADE)?;
+        }
+        Ok(player)
+    }
+
+    /// Where it is.
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    fn check_clip(&self, asked: usize) -> Result<(), PlayError> {
+        match self.clips.len() {
+            count if asked < count => Ok(()),
+            count => Err(PlayError::NoClip { asked, count }),
+        }
+    }
+
+    /// Does what it is told from the next step on.
+    ///
+    /// # Errors
+    /// A clip that is not there, a rate or a fade out of range; nothing is changed then.
+    pub fn tell(&mut self, command: PlayCommand) -> Result<(), PlayError> {
+        match command {
+            PlayCommand::Start => self.playback.goes = true,
+            PlayCommand::Stop => self.playback.goes = false,
+            PlayCommand::Rate(rate) => self.playback.asked = within("rate", rate, MOST_RATE)?,
+            PlayCommand::Change { clip, fade } => {
+                self.check_clip(clip)?;
+                let fade = within("fade", fade, MOST_FADE)?;
+                match self.playback.fade {
+                    Some(_) => self.playback.waiting = Some((clip, fade)),
+                    None => self.begin_fade(clip, fade),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins to fade to a clip: of two loops at the same phase, else from its start.
+    fn begin_fade(&mut self, clip: usize, length: f64) {
+        let Playback { shown, .. } = self.playback;
+        let both_loop = [shown.clip, clip].iter().all(|&c| self.clips[c].is_loop);
+        let phase = if both_loop { shown.phase } else { 0.0 };
+        self.playback.fade = Some(Fade {
+            to: Shown { clip, phase },
+            length: length.max(SHORTEST_FADE),
+            gone: 0.0,
+        });
+    }
+
+    /// Goes on by a time [s], in which no joint turns faster than [`FASTEST_TURN`]: where it would, the clocks of clip and
+    /// fade go slower.
+    pub fn advance(&mut self, time: f64) {
+        let from = self.pose();
+        let most = FASTEST_TURN * time;
+        let whole = self.later(time, 1.0);
+        let too_fast = |playback: &Playback| {
+            let to = self.pose_of(playback);
+            let turns = Joint::ALL.map(|j| from.rotation(j).angle_to(&to.rotation(j)));
+            turns.into_iter().fold(0.0, f64::max) > most
+        };
+        self.playback = match too_fast(&whole) {
+            false => whole,
+            true => {
+                let (mut slow, mut fast) = (0.0, 1.0);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (slow + fast);
+                    match too_fast(&self.later(time, middle)) {
+                        true => fast = middle,
+                        false => slow = middle,
+                    }
+                }
+                self.later(time, slow)
+            }
+        };
+        if self.playback.fade.is_none()
+            && let Some((clip, fade)) = self.playback.waiting.take()
+        {
+            self.begin_fade(clip, fade);
+        }
+    }
+
+    /// Where it is after a time [s] in which the clocks of clip and fade go on by a share of it.
+    fn later(&self, time: f64, share: f64) -> Playback {
+        let mut next = self.playback.clone();
+        let aim = if next.goes { next.asked } else { 0.0 };
+        let most = MOST_RATE / CLOCK_START * time;
+        next.rate += (aim - next.rate).clamp(-most, most);
+        let clock = next.rate * time * share;
+        let Some(mut fade) = next.fade else {
+            let clip = &self.clips[next.shown.clip];
+            next.travelled += clip.travelled(clock);
+            next.shown.phase = moved(clip, next.shown.phase, clock / clip.duration());
+            return next;
+        };
+        let [old, new] = [next.shown.clip, fade.to.clip].map(|clip| &self.clips[clip]);
+        let mixed = fade.share();
+        fade.gone += time * share;
+        next.travelled += old.travelled(clock) * (1.0 - mixed) + new.travelled(clock) * mixed;
+        // Two loops go round together, so that their feet stay in step.
+        let [mut per_old, mut per_new] = [old, new].map(|clip| clock / clip.duration());
+        if old.is_loop && new.is_loop {
+            let round = old.duration() + (new.duration() - old.duration()) * mixed;
+            (per_old, per_new) = (clock / round, clock / round);
+        }
+        next.shown.phase = moved(old, next.shown.phase, per_old);
+        fade.to.phase = moved(new, fade.to.phase, per_new);
+        next.fade = Some(fade);
+        if fade.gone >= fade.length {
+            next.shown = fade.to;
+            next.fade = None;
+        }
+        next
+    }
+
+    /// The pose now, without the way over the ground: the root's place is over the leg length.
+    pub fn pose(&self) -> Pose {
+        self.pose_of(&self.playback)
+    }
+
+    fn pose_of(&self, playback: &Playback) -> Pose {
+        let of = |shown: Shown| {
+            let clip = &self.clips[shown.clip];
+            clip.at(shown.phase * clip.duration())
+        };
+        match &playback.fade {
+            None => of(playback.shown),
+            Some(fade) => of(playback.shown).blended(&of(fade.to), fade.share()),
+        }
+    }
+}
+
+impl Fade {
+    /// How much of the new clip is shown, 0..=1.
+    fn share(&self) -> f64 {
+        smooth_step(self.gone / self.length)
+    }
+}
+
+/// The phase of a clip after some rounds more; one that is no loop ends at its last pose.
+fn moved(clip: &Clip, phase: f64, rounds: f64) -> f64 {
+    match (clip.is_loop, rounds.is_finite()) {
+        (_, false) => phase,
+        (true, true) => phase + rounds,
+        (false, true) => (phase + rounds).min(1.0),
+    }
+}
+
+fn within(what: &'static str, value: f64, most: f64) -> Result<f64, PlayError> {
+    match (0.0..=most).contains(&value) {
+        true => Ok(value),
+        false => Err(PlayError::OutOfRange { what, value, most }),
+    }
+}
