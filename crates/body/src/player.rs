@@ -31,7 +31,7 @@ pub const MOST_FADE: f64 = 60.0;
 /// Fastest turn of a joint that a player shows [rad/s]; where a clip or a fade is faster its clock goes slower. Runners'
 /// knees turn at 20 rad/s (Novacheck 1998).
 pub const FASTEST_TURN: f64 = 25.0;
-/// Time in which the clock comes to its rate [s].
+/// Time in which the clock comes from rest to a rate of 1 [s].
 const CLOCK_START: f64 = 0.2;
 /// Shortest fade [s]: a shorter one is lengthened to it.
 const SHORTEST_FADE: f64 = 0.1;
@@ -123,6 +123,11 @@ impl Playback {
     /// Way over the ground so far, over the leg length [1].
     pub fn travelled(&self) -> Vec3 {
         self.travelled
+    }
+
+    /// Time of the clip that still goes by if the clock is stopped now [s].
+    pub fn coming_to_rest(&self) -> f64 {
+        0.5 * CLOCK_START * self.rate * self.rate
     }
 
     /// Rate of the clock now.
@@ -252,7 +257,7 @@ impl Player {
     fn later(&self, time: f64, share: f64) -> Playback {
         let mut next = self.playback.clone();
         let aim = if next.goes { next.asked } else { 0.0 };
-        let most = MOST_RATE / CLOCK_START * time;
+        let most = time / CLOCK_START;
         next.rate += (aim - next.rate).clamp(-most, most);
         let clock = next.rate * time * share;
         let Some(mut fade) = next.fade else {

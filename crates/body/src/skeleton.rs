@@ -38,6 +38,11 @@ impl Pose {
         Self::default()
     }
 
+    /// Whether it is the rest pose.
+    pub fn is_rest(&self) -> bool {
+        *self == Self::rest()
+    }
+
     /// The same pose with one joint turned so.
     #[must_use]
     pub fn with(mut self, joint: Joint, rotation: UnitQuaternion<f64>) -> Self {

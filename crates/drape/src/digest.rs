@@ -2,11 +2,13 @@
 
 use toile_geometry::{Vec2, Vec3};
 
-/// FNV-1a over the bits of numbers.
-pub(crate) struct Digest(u64);
+/// FNV-1a over the bits of numbers (Fowler, Noll and Vo 1991).
+#[derive(Clone, Debug)]
+pub struct Digest(u64);
 
 impl Digest {
     /// The digest of no data.
+    #[allow(clippy::new_without_default)]
     pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }

@@ -70,6 +70,7 @@ pub use contact_sample::ContactSample;
 pub use contact_settings::{ContactSettings, MOST_OFFSET};
 pub use contacts::{Contact, Contacts};
 pub use control::{Attachment, Attachments, Control, FrameAttachment};
+pub use digest::Digest;
 pub use elastic::{Elastic, ElasticCouplings, ElasticEnd};
 pub use environment::{Damping, Environment};
 pub use equilibrium::{Equilibrium, Prediction};

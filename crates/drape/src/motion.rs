@@ -60,6 +60,11 @@ impl Motion {
         }
     }
 
+    /// The translation at a time [s], [m].
+    pub fn translation(&self, time: f64) -> Vec3 {
+        self.at(time).0
+    }
+
     /// Translation [m] and rotation vector [rad] at a time.
     fn at(&self, time: f64) -> (Vec3, Vec3) {
         let next = self.keys.partition_point(|key| key.time <= time);

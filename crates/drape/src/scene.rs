@@ -15,7 +15,9 @@ pub struct Scene {
     pub air: Air,
     /// Rayleigh damping.
     pub damping: Damping,
-    /// Simulated time [s].
+    /// Time simulated before time 0, in which figures go into their clips [s].
+    pub lead_in: f64,
+    /// Time simulated from 0 on [s].
     pub duration: f64,
     /// Step in time [s].
     pub step: f64,
@@ -42,6 +44,7 @@ impl Default for Scene {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             air: Air::default(),
             damping: Damping::default(),
+            lead_in: 0.0,
             duration: 1.0,
             step: 1.0 / 120.0,
             frame_step: None,
@@ -168,12 +171,13 @@ impl Scene {
             })
         };
         for (field, value, least) in [
+            ("lead_in", self.lead_in, 0.0),
             ("duration", self.duration, 0.0),
             ("step", self.step, f64::MIN_POSITIVE),
         ] {
             check_number(field, value, least)?;
         }
-        if self.duration / self.step > MOST_STEPS {
+        if (self.lead_in + self.duration) / self.step > MOST_STEPS {
             return refuse(
                 "step".to_owned(),
                 format!("{} s takes more than 1e7 steps", self.step),

@@ -17,12 +17,21 @@ use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 /// Duration, step and method of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeSettings {
-    /// Simulated time [s].
+    /// Time simulated before time 0 [s].
+    pub lead_in: f64,
+    /// Time simulated from 0 on [s].
     pub duration: f64,
     /// Step in time [s].
     pub step: f64,
     /// The method.
     pub method: MethodSettings,
+}
+
+impl TimeSettings {
+    /// All simulated time [s].
+    pub fn whole(&self) -> f64 {
+        self.lead_in + self.duration
+    }
 }
 
 /// The run of a scene.
@@ -93,11 +102,14 @@ impl SceneRun {
         let world = World::of_scene(scene)?;
         world.check_features(scene.method.kind)?;
         let settings = TimeSettings {
+            lead_in: scene.lead_in,
             duration: scene.duration,
             step: scene.step,
             method: scene.method,
         };
-        let run = Self::of_simulation(Simulation::new(world)?, settings)?;
+        let mut simulation = Simulation::new(world)?;
+        simulation.state.time = -scene.lead_in;
+        let run = Self::of_simulation(simulation, settings)?;
         Ok(Self {
             is_edited: false,
             ..run
@@ -229,11 +241,8 @@ impl SceneRun {
 
     /// Whether the duration is over or equilibrium is reached.
     pub fn finished(&self) -> bool {
-        let TimeSettings {
-            duration,
-            step,
-            method,
-        } = self.settings;
+        let TimeSettings { step, method, .. } = self.settings;
+        let duration = self.settings.whole();
         if method.kind.is_equilibrium() {
             return self.method.finished();
         }
@@ -242,7 +251,8 @@ impl SceneRun {
 
     /// Share of the run that is done, 0..=1.
     pub fn share(&self) -> f64 {
-        let TimeSettings { duration, step, .. } = self.settings;
+        let step = self.settings.step;
+        let duration = self.settings.whole();
         match self.method.residual() {
             Some(residual) => ((1.0 / residual.max(1e-3)).log10() / 3.0).clamp(0.0, 1.0),
             None if duration > 0.0 => (self.steps as f64 * step / duration).min(1.0),

@@ -166,3 +166,49 @@ fn a_track_that_does_not_fit_is_refused() {
     let said = SceneRun::new(&scene).err().unwrap().to_string();
     assert!(said.contains("nothing can be attached"), "{said}");
 }
+
+/// A flat pyramid with its tip at a height, beside the vertices of the sheet over it.
+fn spire(tip: f64) -> TriangleMesh {
+    let foot = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let mut positions: Vec<Vec3> = foot
+        .iter()
+        .map(|[x, z]| Vec3::new(0.15 * x, tip - 0.06, 0.15 * z))
+        .collect();
+    positions.push(Vec3::new(0.0, tip, 0.0));
+    positions
+        .iter_mut()
+        .for_each(|p| *p += Vec3::new(0.007, 0.0, 0.013));
+    TriangleMesh {
+        positions,
+        triangles: vec![
+            [0, 4, 1],
+            [1, 4, 2],
+            [2, 4, 3],
+            [3, 4, 0],
+            [0, 1, 2],
+            [0, 2, 3],
+        ],
+    }
+}
+
+#[test]
+fn a_tip_that_rises_under_the_middle_of_a_face_lifts_it() {
+    let at = |time: f64| 0.094 + 0.5 * time;
+    let kind = tracked(move |time| spire(at(time)).positions);
+    let mut scene = over(spire(at(0.0)), kind, [0.2, 0.1]);
+    scene.duration = 0.3;
+    let mut run = SceneRun::new(&scene).unwrap();
+    while !run.finished() {
+        run.advance().unwrap();
+        let measures = run.measure();
+        let time = run.state.time;
+        assert_eq!(measures.body_intersections, 0, "at {time:.3} s");
+    }
+    // It is carried by the tip, and not thrown off.
+    let highest = run.state.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+    let tip = at(run.state.time);
+    assert!(
+        (tip - 0.01..tip + 0.02).contains(&highest),
+        "{highest} {tip}"
+    );
+}

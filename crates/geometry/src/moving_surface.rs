@@ -160,6 +160,18 @@ impl MovingSurface {
         ClosestPoint::of(point, (triangle, corners, weights), normal)
     }
 
+    /// A vertex at a time of the step as a place of one of its triangles, with its pseudo-normal; none on no triangle.
+    pub fn at_vertex(&self, vertex: u32, time: f64) -> Option<ClosestPoint> {
+        let &triangle = self.connectivity.around(vertex).first()?;
+        let corners = self.connectivity.triangles[triangle as usize];
+        let k = corners.iter().position(|&v| v == vertex)?;
+        let normal = self.pseudo_normal(triangle, Feature::Corner(k), time);
+        let mut weights = [0.0; 3];
+        weights[k] = 1.0;
+        let here = (triangle, self.corners(triangle, time), weights);
+        Some(ClosestPoint::of(self.vertex(vertex, time), here, normal))
+    }
+
     /// Unit pseudo-normal of a feature of a triangle at a time of the step; zero where the triangles that meet there
     /// have no area.
     fn pseudo_normal(&self, triangle: u32, feature: Feature, time: f64) -> Vec3 {

@@ -22,18 +22,18 @@ pub struct SceneFile {
     /// Damping of everything alike.
     #[serde(default)]
     pub damping: DampingFile,
-    /// Simulated time [s].
-    #[serde(default = "one")]
-    pub duration: f64,
+    /// Simulated time [s]; 1 s where it is left out, or until the figures of the scene have stood still for 1 s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration: Option<f64>,
     /// Step in time [s].
     #[serde(default = "usual_step")]
     pub step: f64,
     /// Time between saved frames [s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_step: Option<f64>,
-    /// How the motion is computed.
-    #[serde(default)]
-    pub method: MethodFile,
+    /// How the motion is computed; by `xpbd` where a body moves, else by implicit Euler where it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<MethodFile>,
     /// How cloth meets surfaces.
     #[serde(default)]
     pub collision: CollisionFile,
@@ -212,9 +212,16 @@ pub struct ObjectFile {
     /// An OBJ file, relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<String>,
-    /// A pattern file: its garment, sewn on the scene's body.
+    /// A pattern file: its garment, sewn on the body of `on`, else on the scene's first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
+    /// The body that wears the garment, by its name: it is sewn and draped to rest on it before the scene begins, with all
+    /// that the body wears.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// `preview`, `fit` or `final`: how fine a garment that is worn is meshed, and how near to rest it is draped.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quality: Option<String>,
     /// `woman`, `man`, `mean`, or a file of measurements: a mannequin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
@@ -320,7 +327,15 @@ impl SceneFile {
     /// # Errors
     /// An unknown name (the message lists those that are known), settings out of range.
     pub fn method(&self) -> Result<MethodSettings, FormatError> {
-        let file = &self.method;
+        let moves = |object: &ObjectFile| object.body.is_some() && object.motion.is_some();
+        let usual = MethodFile {
+            name: match self.objects.iter().any(moves) {
+                true => MethodKind::Xpbd.name().to_owned(),
+                false => MethodKind::default().name().to_owned(),
+            },
+            ..MethodFile::default()
+        };
+        let file = self.method.as_ref().unwrap_or(&usual);
         let found = MethodKind::ALL.iter().find(|(name, _)| *name == file.name);
         let Some(&(_, kind)) = found else {
             let known: Vec<_> = MethodKind::ALL.iter().map(|(name, _)| *name).collect();
@@ -392,7 +407,9 @@ impl SceneFile {
         add(String::new(), &self.unknown);
         add("air".to_owned(), &self.air.unknown);
         add("damping".to_owned(), &self.damping.unknown);
-        add("method".to_owned(), &self.method.unknown);
+        if let Some(method) = &self.method {
+            add("method".to_owned(), &method.unknown);
+        }
         add("collision".to_owned(), &self.collision.unknown);
         for (k, object) in self.objects.iter().enumerate() {
             add(format!("objects[{k}]"), &object.unknown);

@@ -9,14 +9,31 @@ use toile_geometry::Vec3;
 /// Fields that are not known here, by their names.
 pub(crate) type Unknown = BTreeMap<String, Value>;
 
-/// A rigid motion as written: straight from key to key, still before the first and after the last.
+/// A motion as written: of a solid by keys, straight from key to key, still before the first and after the last; of a
+/// body by a clip, with keys that turn it about itself.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct MotionFile {
     /// The place it turns about, in the scene [m].
     #[serde(default)]
     pub pivot: [f64; 3],
     /// Where it is when.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub keys: Vec<KeyFile>,
+    /// The clip of a body: `walk`, `run`, `stand`, `astride`, or a file (BVH, X3D, VRML).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clip: Option<String>,
+    /// Rounds of a loop after which the figure stands still.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strides: Option<f64>,
+    /// How fast the clip is played, 0 to 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<f64>,
+    /// Whether the figure goes over the ground; else it stays on the spot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub travel: Option<bool>,
+    /// Whether it goes from the pose it was dressed in to the start of the clip before time 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lead_in: Option<bool>,
     #[serde(flatten)]
     unknown: Unknown,
 }
@@ -48,7 +65,20 @@ pub struct GripFile {
 }
 
 impl MotionFile {
-    /// The motion.
+    /// Fields of a body's clip that are given.
+    pub fn clip_fields(&self) -> Vec<&'static str> {
+        let given = [
+            ("clip", self.clip.is_some()),
+            ("strides", self.strides.is_some()),
+            ("rate", self.rate.is_some()),
+            ("travel", self.travel.is_some()),
+            ("lead_in", self.lead_in.is_some()),
+        ];
+        let given = given.into_iter().filter(|(_, given)| *given);
+        given.map(|(field, _)| field).collect()
+    }
+
+    /// The motion by its keys alone.
     pub fn motion(&self) -> Motion {
         let keys = self.keys.iter().map(|key| MotionKey {
             time: key.time,
@@ -98,6 +128,9 @@ mod tests {
             .flat_map(|(place, fields)| fields.keys().map(move |key| format!("{place}.{key}")))
             .collect();
         assert_eq!(named, [".motion.speed", ".motion.keys[1].ease"]);
-        assert!(serde_json::from_str::<MotionFile>("{}").is_err());
+        let walk = r#"{ "clip": "walk", "strides": 8, "travel": false }"#;
+        let walk: MotionFile = serde_json::from_str(walk).expect("readable");
+        assert_eq!(walk.clip_fields(), ["clip", "strides", "travel"]);
+        assert!(walk.motion().defect().is_some(), "it has no key");
     }
 }

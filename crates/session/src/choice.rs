@@ -151,6 +151,12 @@ impl Quality {
         }
     }
 
+    /// The quality of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [Self::Preview, Self::Fit, Self::Final];
+        all.into_iter().find(|quality| quality.name() == name)
+    }
+
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {

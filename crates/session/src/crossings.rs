@@ -32,7 +32,7 @@ impl Crossings {
     /// Goes on from the counts of a run that was saved: before its first step, most at one count, at the last.
     pub fn resumed(run: &SceneRun, [start, most, end]: [usize; 3]) -> Self {
         let settings = run.settings();
-        let steps = (settings.duration / settings.step / COUNTS).ceil().max(1.0);
+        let steps = (settings.whole() / settings.step / COUNTS).ceil().max(1.0);
         Self {
             start,
             most,

@@ -116,7 +116,7 @@ impl Pace {
         }
         let now = self.moment(run);
         let mut words = format!("{:.2} of {:.2} s", now.time, settings.duration);
-        let recent = now.time - SPAN.min(RECENT * settings.duration);
+        let recent = now.time - SPAN.min(RECENT * settings.whole());
         let then = self.past.iter().rev().find(|then| then.time <= recent);
         let Some(then) = then.or(self.past.front()) else {
             return words;

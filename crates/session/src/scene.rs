@@ -1,6 +1,7 @@
 //! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
 
 use crate::crossings::{Crossings, Tangles};
+use crate::frame_counts::FrameCounts;
 use crate::open::read_input;
 use crate::output::{cannot, file_name};
 use crate::pace::Pace;
@@ -69,6 +70,7 @@ pub fn run_scene(
     let names = state_names(begun.run.world()).map_err(wrong)?;
     let mut course = Course {
         scene: &scene,
+        counted: &builder.counted,
         folder,
         checkpoints: CheckpointTimes::new(options, &begun.run, &scene)?,
         pace: Pace::new(options, &begun.run)?,
@@ -84,9 +86,9 @@ pub fn run_scene(
         run,
         crossings,
         album,
-        ..
+        frames,
     } = &mut course.begun;
-    let (report, verdict) = report(run, builder.notes, crossings, given_up);
+    let (report, verdict) = report(run, builder.notes, (crossings, frames), given_up);
     timing.add("measure", start);
     let start = Instant::now();
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -109,8 +111,8 @@ struct Begun {
     run: SceneRun,
     crossings: Crossings,
     album: SceneAlbum,
-    /// Frames written.
-    frames: usize,
+    /// Frames written, and what they showed.
+    frames: FrameCounts,
 }
 
 impl Begun {
@@ -124,7 +126,7 @@ impl Begun {
                 crossings: Crossings::new(&run),
                 album: album(&run)?,
                 run,
-                frames: 0,
+                frames: FrameCounts::default(),
             });
         }
         let saved = SavedRun::read(folder)?;
@@ -170,6 +172,8 @@ struct Kept {
 struct Course<'a> {
     scene: &'a Scene,
     folder: &'a Path,
+    /// Whether the stretch of each triangle of cloth counts.
+    counted: &'a [bool],
     /// The surfaces that move, with the names of their files.
     names: Vec<(Vec<ObjectId>, String)>,
     begun: Begun,
@@ -246,12 +250,13 @@ impl Course<'_> {
         let Some(step) = self.scene.frame_step else {
             return Ok(());
         };
-        if run.state.time + 1e-9 < *frames as f64 * step {
+        let number = frames.frames();
+        if run.state.time + 1e-9 < number as f64 * step {
             return Ok(());
         }
-        let files = state_files(run, (&self.names, &format!("frame-{:05}-", *frames)))?;
-        album.frame(run, *frames);
-        *frames += 1;
+        let files = state_files(run, (&self.names, &format!("frame-{number:05}-")))?;
+        album.frame(run, number);
+        frames.add(run, self.counted);
         self.write(&files)
     }
 
@@ -342,7 +347,7 @@ fn state_files(
 fn report(
     run: &mut SceneRun,
     notes: Vec<String>,
-    crossings: &Crossings,
+    (crossings, frames): (&Crossings, &FrameCounts),
     given_up: Option<Finding>,
 ) -> (serde_json::Value, Verdict) {
     let measures = run.measure();
@@ -381,6 +386,7 @@ fn report(
         "edges_through_body": measures.edges_through_body,
         "self_intersections": measures.self_intersections,
         "crossings": crossings,
+        "frames": (frames.frames() > 0).then_some(frames),
         "layers": layers,
         "tangles": run.cloth_tally().map(|tally| Tangles::of(&tally)),
         "verdict": verdict,

@@ -3,53 +3,61 @@
 use crate::bodies::body_of;
 use crate::choice::figure_named;
 use crate::derived::Derived;
+use crate::dressed_figure::HungGarment;
 use crate::fabrics::open_fabric;
 use crate::input::is_input;
 use crate::mesh_file::{open_mesh, stance_error};
+use crate::scene_place::ScenePlace;
 use crate::watcher::report_progress;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
 use std::collections::BTreeMap;
 use std::path::Path;
-use toile_body::{AskedStance, Stance};
+use std::sync::Arc;
+use toile_body::{AskedStance, Mannequin, Stance};
 use toile_drape::{
     Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
     Stage,
 };
 use toile_geometry::{TriangleMesh, Vec3};
-use toile_interchange::{EndFile, FormatError, MaterialFile, ObjectFile, SceneFile};
+use toile_interchange::{EndFile, MaterialFile, ObjectFile, SceneFile};
 /// Turns a scene file into a scene.
 pub(crate) struct Builder<'a> {
     /// The scene file.
-    path: &'a Path,
-    /// The folder that other files are named from.
-    base: &'a Path,
+    pub(crate) place: ScenePlace<'a>,
     /// What it says.
-    file: &'a SceneFile,
+    pub(crate) file: &'a SceneFile,
     /// What is worth telling.
     pub notes: Vec<String>,
     /// How its mesh files stand.
     stance: Stance,
     /// The mesh files read, as they are.
     meshes: BTreeMap<String, TriangleMesh>,
+    /// Bodies that wear garments, by the index of their object.
+    pub(crate) figures: BTreeMap<usize, Arc<Mannequin>>,
+    /// Garments that are worn, by the index of their object.
+    pub(crate) garments: BTreeMap<usize, HungGarment>,
+    /// Whether the strain of each triangle of all cloths counts, as it does away from gathers.
+    pub counted: Vec<bool>,
+    /// The longest way of a figure into its clip, before time 0 [s].
+    pub(crate) lead_in: f64,
+    /// When the last figure has come to rest [s].
+    pub(crate) ends: Option<f64>,
 }
 
 impl<'a> Builder<'a> {
     /// A builder of what a scene file says.
     pub fn new(path: &'a Path, file: &'a SceneFile, notes: Vec<String>) -> Self {
         Self {
-            path,
-            base: path.parent().unwrap_or(Path::new(".")),
+            place: ScenePlace(path),
             file,
             notes,
             stance: Stance::default(),
             meshes: BTreeMap::new(),
-        }
-    }
-
-    fn wrong(&self, place: String, what: String, hint: &str) -> SessionError {
-        SessionError::Format {
-            path: self.path.to_owned(),
-            error: FormatError::new(place, what, hint),
+            figures: BTreeMap::new(),
+            garments: BTreeMap::new(),
+            counted: Vec::new(),
+            lead_in: 0.0,
+            ends: None,
         }
     }
 
@@ -59,12 +67,10 @@ impl<'a> Builder<'a> {
     /// A file it names cannot be read, or what it says does not fit together.
     pub fn scene(&mut self, watcher: &mut dyn Watcher) -> Result<Scene, SessionError> {
         let file = self.file;
-        let path = self.path;
-        let wrong = |error| SessionError::Format {
-            path: path.to_owned(),
-            error,
-        };
+        let place_of_file = self.place;
+        let wrong = |error| place_of_file.error(error);
         self.stance = self.stance_of_meshes()?;
+        self.dress(watcher)?;
         let mut objects = Vec::new();
         for (index, object) in file.objects.iter().enumerate() {
             objects.push(self.object(index, object, watcher)?);
@@ -96,11 +102,12 @@ impl<'a> Builder<'a> {
             gravity: Vec3::from(file.gravity),
             air: file.air.air(),
             damping: file.damping.damping(),
-            duration: file.duration,
+            lead_in: self.lead_in,
+            duration: self.duration(),
             step: file.step,
             frame_step: file.frame_step,
             method: file.method().map_err(wrong)?,
-            contact: file.contact(),
+            contact: self.contact(),
             objects,
             elastics,
             grips,
@@ -118,7 +125,8 @@ impl<'a> Builder<'a> {
         let found = objects.iter().position(|object| object.name == name);
         found.ok_or_else(|| {
             let what = format!("there is no object \"{name}\"");
-            self.wrong(place.to_owned(), what, "name an object of the scene")
+            self.place
+                .wrong(place.to_owned(), what, "name an object of the scene")
         })
     }
 
@@ -140,6 +148,43 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Whether an object is cloth; refused where its kind is none, or is not that of one with its motion.
+    fn is_deformable(&self, place: &str, object: &ObjectFile) -> Result<bool, SessionError> {
+        let wrong = |what: String, remedy: &str| {
+            let place = place.to_owned();
+            Err(self.place.wrong(place, what, remedy))
+        };
+        for (g, grip) in object.grips.iter().enumerate() {
+            if let Some(field) = grip.motion.clip_fields().first() {
+                let what = format!("grips[{g}] has a {field}, which only the motion of a body has");
+                return wrong(what, "lead its vertices by keys");
+            }
+        }
+        match (object.kind.as_str(), &object.motion) {
+            ("static", None) => Ok(false),
+            ("animated", Some(motion)) => match motion.clip_fields().first() {
+                Some(field) if object.body.is_none() => {
+                    let what = format!("its motion has a {field}, and it is no body");
+                    wrong(what, "move it by keys")
+                }
+                _ => Ok(false),
+            },
+            ("deformable", None) => Ok(true),
+            ("animated", None) => {
+                let what = "it is animated but has no motion".to_owned();
+                wrong(what, "give it a motion, or write static")
+            }
+            ("static" | "deformable", Some(_)) => {
+                let what = format!("it is {} but has a motion", object.kind);
+                wrong(what, "write animated; vertices of cloth are led by grips")
+            }
+            (other, _) => {
+                let what = format!("kind \"{other}\" cannot be simulated here");
+                wrong(what, "write static, animated or deformable")
+            }
+        }
+    }
+
     fn object(
         &mut self,
         index: usize,
@@ -147,44 +192,47 @@ impl<'a> Builder<'a> {
         watcher: &mut dyn Watcher,
     ) -> Result<SceneObject, SessionError> {
         let place = format!("objects[{index}]");
-        let deformable = match (object.kind.as_str(), &object.motion) {
-            ("static", None) | ("animated", Some(_)) => false,
-            ("deformable", None) => true,
-            ("animated", None) => {
-                let what = "it is animated but has no motion".to_owned();
-                return Err(self.wrong(place, what, "give it a motion, or write static"));
-            }
-            ("static" | "deformable", Some(_)) => {
-                let what = format!("it is {} but has a motion", object.kind);
-                let hint = "write animated; vertices of cloth are led by grips";
-                return Err(self.wrong(place, what, hint));
-            }
-            (other, _) => {
-                let what = format!("kind \"{other}\" cannot be simulated here");
-                return Err(self.wrong(place, what, "write static, animated or deformable"));
-            }
-        };
+        let deformable = self.is_deformable(&place, object)?;
         let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
             (Some(mesh), None, None) => (self.mesh(mesh)?, None),
-            (None, None, Some(body)) if !deformable => (self.skin(body)?, None),
+            (None, None, Some(body)) if !deformable => {
+                let body = self.mannequin(index, body)?;
+                (body.skin().clone(), None)
+            }
             (None, Some(pattern), None) if deformable => {
-                let cloth = self.garment(pattern, watcher)?;
+                let cloth = match self.garments.remove(&index) {
+                    Some(worn) => {
+                        self.counted.extend(worn.counted);
+                        worn.cloth
+                    }
+                    None => self.garment(pattern, watcher)?,
+                };
                 (cloth.mesh(), Some(cloth))
             }
             _ => {
-                let what = "it needs one of mesh, pattern (deformable) or body (static)".to_owned();
-                return Err(self.wrong(place, what, "name one file"));
+                let what = "it needs one of mesh, pattern (deformable) or body (static, animated)"
+                    .to_owned();
+                return Err(self.place.wrong(place, what, "name one file"));
             }
         };
+        if deformable && object.on.is_none() {
+            let all = self.counted.len() + mesh.triangles.len();
+            self.counted.resize(all, true);
+        }
+        let wearer = object.on.as_ref().and_then(|on| {
+            let wearer = self.file.objects.iter().find(|other| other.name == *on);
+            wearer.map(|wearer| &wearer.transform)
+        });
+        let transform = wearer.unwrap_or(&object.transform);
         for p in mesh
             .positions
             .iter_mut()
             .chain(cloth.iter_mut().flat_map(|c| &mut c.positions))
         {
-            *p = object.transform.apply(*p);
+            *p = transform.apply(*p);
         }
         for corner in cloth.iter_mut().flat_map(|c| c.rest.iter_mut().flatten()) {
-            *corner *= object.transform.scale;
+            *corner *= transform.scale;
         }
         let kind = if deformable {
             let mut materials = match &cloth {
@@ -203,9 +251,13 @@ impl<'a> Builder<'a> {
                 pins: object.pins.clone(),
             }
         } else {
-            match &object.motion {
-                Some(motion) => ObjectKind::moving(motion.motion()),
-                None => ObjectKind::Static,
+            match (&object.motion, &object.body) {
+                (Some(motion), Some(body)) => {
+                    let body = self.mannequin(index, body)?;
+                    self.figure_kind(index, body, motion)?
+                }
+                (Some(motion), None) => ObjectKind::moving(motion.motion()),
+                (None, _) => ObjectKind::Static,
             }
         };
         Ok(SceneObject {
@@ -225,12 +277,9 @@ impl<'a> Builder<'a> {
         place: &str,
         materials: &mut [Material],
     ) -> Result<(), SessionError> {
-        let path = self.path;
-        let wrong = |error| SessionError::Format {
-            path: path.to_owned(),
-            error,
-        };
-        let fabric_file = file.fabric.as_ref().map(|name| self.base.join(name));
+        let place_of_file = self.place;
+        let wrong = |error| place_of_file.error(error);
+        let fabric_file = file.fabric.as_ref().map(|name| self.place.beside(name));
         let base = match (fabric_file.filter(|path| is_input(path)), &file.fabric) {
             (Some(path), _) => {
                 let fabric = open_fabric(&path)?;
@@ -262,7 +311,7 @@ impl<'a> Builder<'a> {
         let mesh = match self.meshes.remove(name) {
             Some(mesh) => mesh,
             None => {
-                let mut opened = open_mesh(&self.base.join(name))?;
+                let mut opened = open_mesh(&self.place.beside(name))?;
                 self.notes.append(&mut opened.notes);
                 opened.mesh
             }
@@ -273,7 +322,7 @@ impl<'a> Builder<'a> {
     /// How the scene's mesh files stand: as the scene says, else as a person among its bodies is seen to. They
     /// come of one program, so that all are turned as the first person is.
     fn stance_of_meshes(&mut self) -> Result<Stance, SessionError> {
-        let path = self.path;
+        let path = self.place.0;
         let asked = self
             .file
             .meshes
@@ -294,7 +343,7 @@ impl<'a> Builder<'a> {
             let Some(name) = object.mesh.as_ref().filter(|_| !is_turned) else {
                 continue;
             };
-            let at = self.base.join(name);
+            let at = self.place.beside(name);
             let seen = Stance::seen(self.opened(name)?, &asked);
             let Some(stance) = seen.map_err(|error| stance_error(&at, &error, hint))? else {
                 continue;
@@ -311,14 +360,18 @@ impl<'a> Builder<'a> {
         }
         Stance::of(&TriangleMesh::default(), &asked)
             .map(Stance::facing_anywhere)
-            .map_err(|error| stance_error(self.path, &error, hint))
+            .map_err(|error| stance_error(self.place.0, &error, hint))
     }
 
-    fn skin(&mut self, body: &str) -> Result<TriangleMesh, SessionError> {
+    /// The body of an object, as it stands when it is dressed.
+    fn mannequin(&mut self, index: usize, body: &str) -> Result<Arc<Mannequin>, SessionError> {
+        if let Some(dressed) = self.figures.get(&index) {
+            return Ok(dressed.clone());
+        }
         let body = match figure_named(body) {
             Some(figure) => BodyChoice::Sample(figure),
             None => {
-                let (body, notes) = body_of(None, &self.base.join(body))?;
+                let (body, notes) = body_of(None, &self.place.beside(body))?;
                 self.notes.extend(notes);
                 body
             }
@@ -328,18 +381,19 @@ impl<'a> Builder<'a> {
             ..Project::default()
         };
         let mannequin = Derived::default().mannequin(&project)?;
-        Ok(mannequin.skin().clone())
+        self.figures.insert(index, mannequin.clone());
+        Ok(mannequin)
     }
 
     /// A pattern's garment, sewn round the scene's first body, or the one its pattern is for.
     fn garment(&self, pattern: &str, watcher: &mut dyn Watcher) -> Result<Cloth, SessionError> {
         let mut session = Session::new();
         let mut commands = vec![Command::OpenPattern {
-            path: self.base.join(pattern),
+            path: self.place.beside(pattern),
         }];
         if let Some(body) = self.file.objects.iter().find_map(|o| o.body.as_ref()) {
             let figure = figure_named(body);
-            let measurements = figure.is_none().then(|| self.base.join(body));
+            let measurements = figure.is_none().then(|| self.place.beside(body));
             commands.push(Command::SetBody {
                 figure,
                 measurements,

@@ -1,5 +1,6 @@
 //! The checkpoint file from which an interrupted run of a scene is resumed.
 
+use crate::frame_counts::FrameCounts;
 use crate::scene_pictures::Ways;
 use crate::{PictureOptions, SessionError};
 use serde::{Deserialize, Serialize};
@@ -29,8 +30,8 @@ const NAME: &str = "checkpoint.json";
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SavedRun {
-    /// Frames written.
-    pub frames: usize,
+    /// Frames written, and what they showed.
+    pub frames: FrameCounts,
     /// Crossings of cloth with cloth counted before the first step, most at one count, and at the last.
     pub crossings: [usize; 3],
     /// Where objects have been, if pictures are painted.

@@ -1,6 +1,7 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
 use crate::derived::Derived;
+use crate::drape::Drape;
 use crate::fitting::{document_text, files_to_try_on};
 use crate::history::{History, HistoryStep};
 use crate::input::is_pipe;
@@ -142,6 +143,11 @@ impl Session {
             revision: self.revision,
             ..job
         })
+    }
+
+    /// The drape of the present project, if it was made.
+    pub(crate) fn present_drape(&self) -> Option<Arc<Drape>> {
+        self.derived.drape.clone()
     }
 
     /// The drape of the present project in a few numbers, if it was made.

@@ -133,7 +133,7 @@ pub(crate) fn job(
 
 /// Distance kept between cloth and cloth, in one layer and between two [m]: half of the distance kept from the
 /// body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside it.
-const CLOTH_OFFSET: f64 = 2e-3;
+pub(crate) const CLOTH_OFFSET: f64 = 2e-3;
 
 pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
     let garment = &outfit.garment;

@@ -1,5 +1,6 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
 
+use crate::clips::{open_clip, own_clip};
 use crate::fitting::document_text;
 use crate::mesh_file::{OpenedMesh, open_person};
 use crate::open::read_input;
@@ -10,12 +11,12 @@ use std::path::Path;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
     AskedStance, BodyError, Clip, Conflict, Description, Deviation, Figure, Fit, Mannequin,
-    ProportionBox, Scaling, Scan, ScanLandmarks, Skeleton,
+    ProportionBox, Scaling, Scan, ScanLandmarks,
 };
 use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
-    ExpectedKind, FormatError, ObjGroup, ObjMesh, read_bvh, read_x3d, write_atomically,
-    write_body_glb, write_garmentcode, write_mannequin, write_measurements, write_obj,
+    ExpectedKind, FormatError, ObjGroup, ObjMesh, write_atomically, write_body_glb,
+    write_garmentcode, write_mannequin, write_measurements, write_obj,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
@@ -188,15 +189,6 @@ pub struct Moment {
     pub time: f64,
 }
 
-/// A gait of our own, by name.
-fn gait(name: &str, skeleton: &Skeleton) -> Option<Clip> {
-    match name {
-        "walk" => Some(Clip::walk(skeleton)),
-        "run" => Some(Clip::run(skeleton)),
-        _ => None,
-    }
-}
-
 impl Moment {
     /// What the motion is called: the gait, or the file's name without folders and ending.
     fn name(&self) -> String {
@@ -210,13 +202,13 @@ impl Moment {
     /// The whole motion, for a mannequin, and what of its file was left out.
     fn motion_for(&self, mannequin: &Mannequin) -> Result<(Clip, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
-        let (own, blend) = (gait(&self.motion, skeleton), &self.blend);
+        let (own, blend) = (own_clip(&self.motion, skeleton), &self.blend);
         let second = blend
             .as_ref()
-            .map(|(name, share)| (gait(name, skeleton), share));
+            .map(|(name, share)| (own_clip(name, skeleton).filter(|clip| clip.is_loop), share));
         match (own, second) {
             (Some(own), None) => return Ok((own, Vec::new())),
-            (Some(own), Some((Some(other), &share))) => {
+            (Some(own), Some((Some(other), &share))) if own.is_loop => {
                 return Ok((own.between(&other, share), Vec::new()));
             }
             (_, Some(_)) => {
@@ -226,17 +218,7 @@ impl Moment {
             }
             (None, None) => {}
         }
-        let path = Path::new(&self.motion);
-        let ending = path.extension().map(|end| end.to_ascii_lowercase());
-        let text = read_input(path, ExpectedKind::Motion)?;
-        let read = match ending.as_ref().and_then(|end| end.to_str()) {
-            Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d(&text, skeleton),
-            _ => read_bvh(&text, skeleton).map(|motion| (motion, Vec::new())),
-        };
-        read.map_err(|error| SessionError::Format {
-            path: path.to_owned(),
-            error,
-        })
+        open_clip(Path::new(&self.motion), skeleton)
     }
 }
 

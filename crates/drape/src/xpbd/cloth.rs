@@ -232,9 +232,13 @@ impl Xpbd {
         let origin = middle(&state.positions);
         let mut report = XpbdReport::default();
         let mut pieces = 1;
-        for part in self.parts(system, state.time, substeps) {
-            self.place_solids(state.time, &part);
-            report = self.advance_part(system, state, cloth, (origin, &part))?;
+        let parts: Vec<Substeps> = self.parts(system, state.time, substeps).collect();
+        for (number, part) in parts.iter().enumerate() {
+            self.place_solids(state.time, part);
+            if number == 0 {
+                self.meet_solids(system, state, (part, parts.len() as u32));
+            }
+            report = self.advance_part(system, state, cloth, (origin, part))?;
             pieces = pieces.max(report.pieces);
         }
         report.pieces = pieces;
@@ -305,11 +309,11 @@ impl Xpbd {
         let constraints =
             constraints.filter(|&(_, number)| needless.get(number as usize) != Some(&true));
         let constraints: Vec<(&ClothContact, u32)> = constraints.collect();
-        self.regions.set_cloth_contacts(
+        self.regions.replace(
             &self.partition,
             &constraints,
             |(contact, _)| slots(contact),
-            stencil,
+            (stencil, |region| &mut region.cloth),
         );
     }
 

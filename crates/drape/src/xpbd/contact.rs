@@ -130,7 +130,7 @@ impl ContactConstraint {
     /// Moves the plane of a near surface that moves to the end of the coming substep, and turns the slip with it. The
     /// distance to a far one is valid for the whole step.
     pub fn carry(&mut self, solid: &Solid, carried: &CarriedPlane) {
-        if self.sample == NO_SAMPLE || self.normal == [0.0; 3] {
+        if self.normal == [0.0; 3] {
             return;
         }
         let Some(surface) = solid.moving.surface(self.solid) else {
@@ -455,7 +455,11 @@ impl ContactStencil {
 }
 
 /// Solves contact stencils one after the other; `points` are the vertices.
-pub fn solve_stencils(stencils: &mut [ContactStencil], points: &mut [Point], step: &ContactStep) {
+pub fn solve_stencils<'a>(
+    stencils: impl Iterator<Item = &'a mut ContactStencil>,
+    points: &mut [Point],
+    step: &ContactStep,
+) {
     for stencil in stencils {
         let weight = stencil.weight(points);
         let (point, start) = (stencil.point(points), stencil.begun_at);

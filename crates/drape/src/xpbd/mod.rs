@@ -36,6 +36,7 @@ mod particles;
 mod region;
 mod run;
 mod several_solids;
+mod skin_contacts;
 mod vertex_partition;
 mod xpbd_method;
 
@@ -50,6 +51,7 @@ use moving_solids::MovingSolids;
 use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
 use run::Run;
+use skin_contacts::{SkinSearch, StepStart};
 use std::sync::Arc;
 use toile_geometry::Vec3;
 use vertex_partition::VertexPartition;
@@ -122,6 +124,8 @@ pub struct Xpbd {
     cut_starts: Vec<usize>,
     /// Surfaces of the solids that move, in the present step.
     moving: MovingSolids,
+    /// The search for their vertices near the cloth.
+    skin: SkinSearch,
     /// Number of times that constraints were built.
     builds: usize,
 }
@@ -212,6 +216,7 @@ impl Xpbd {
             cut_starts: partition.cut_starts(),
             partition,
             moving: MovingSolids::default(),
+            skin: SkinSearch::default(),
             builds: 1,
         }
     }
@@ -258,20 +263,36 @@ impl Xpbd {
         let origin = middle(&state.positions);
         let mut report = XpbdReport::default();
         let mut pieces = 1;
-        for part in self.parts(system, state.time, &substeps) {
-            self.place_solids(state.time, &part);
-            report = self.advance_about(system, state, origin, &part)?;
+        let parts: Vec<Substeps> = self.parts(system, state.time, &substeps).collect();
+        for (number, part) in parts.iter().enumerate() {
+            self.place_solids(state.time, part);
+            if number == 0 {
+                self.meet_solids(system, state, (part, parts.len() as u32));
+            }
+            report = self.advance_about(system, state, origin, part)?;
             pieces = pieces.max(report.pieces);
         }
         report.pieces = pieces;
         Ok(report)
     }
 
-    /// Gives the moving solids their places for some substeps from a time [s] on; every surface is queried again.
+    /// Gives the moving solids their places for some substeps from a state on; every surface is queried again.
     fn place_solids(&mut self, time: f64, substeps: &Substeps) {
         let end = time + substeps.substep * f64::from(substeps.count);
         self.moving.set_step([time, end]);
         self.invalidate_surfaces();
+    }
+
+    /// Looks for vertices of moving solids near faces of the cloth, once the solids are placed for the first of some parts
+    /// of a step.
+    fn meet_solids(&mut self, system: &System, state: &State, (first, parts): (&Substeps, u32)) {
+        let start = StepStart {
+            positions: &state.positions,
+            velocities: &state.velocities,
+            part: first.substep * f64::from(first.count),
+            parts,
+        };
+        self.set_skin_contacts(system, &start);
     }
 
     /// Substeps from a time [s] on, divided so that moving solids move straight in each part; one part where all are at

@@ -5,6 +5,7 @@ use super::bending::{self, BendingBatch, Stencil};
 use super::carried_plane::CarriedPlane;
 use super::contact::{ContactConstraint, ContactStencil, ContactStep, Solid, solve_stencils};
 use super::membrane::{self, LawRow, MembraneBatch};
+use super::skin_contacts::SkinContact;
 use super::vertex_partition::{Partition, VertexPartition, batches};
 use crate::lanes::{LANES, Point, Row};
 use crate::{ContactSample, Model, System};
@@ -27,11 +28,16 @@ pub struct Region {
     pub contacts: Vec<ContactStencil>,
     /// Their planes on solids that move; empty where none does.
     carried: Vec<CarriedPlane>,
+    /// Contacts of faces with vertices of solids that move.
+    pub skin: Vec<SkinContact>,
     /// Contacts of cloth with cloth.
     pub cloth: Vec<ContactStencil>,
     /// Whether the stencils have begun a substep whose end their slips do not yet contain.
     has_begun: bool,
 }
+
+/// One of the lists of contacts of a region.
+pub type ContactList<C> = fn(&mut Region) -> &mut Vec<C>;
 
 /// The regions of a model.
 #[derive(Clone, Debug, Default)]
@@ -220,14 +226,14 @@ impl Regions {
         }
     }
 
-    /// Replaces the contacts of cloth with cloth: `stencil` makes each one from an element of `all` and the first
+    /// Replaces the contacts in a list of every region: `contact` makes each one from an element of `all` and the first
     /// slot of its partition, from which the indices of its vertices count.
-    pub fn set_cloth_contacts<T: Sync>(
+    pub fn replace<T: Sync, C: Send>(
         &mut self,
         numbering: &VertexPartition,
         all: &[T],
         slots: impl Fn(&T) -> [u32; 4] + Sync,
-        stencil: impl Fn(&T, u32) -> ContactStencil + Sync,
+        (contact, list): (impl Fn(&T, u32) -> C + Sync, ContactList<C>),
     ) {
         let partition = |one: &T| numbering.partition_of_slots(slots(one));
         let partitions: Vec<Partition> = all.par_iter().with_min_len(512).map(partition).collect();
@@ -238,10 +244,9 @@ impl Regions {
         for (partition, members) in numbering.partitions().zip(&members) {
             let start = numbering.start(partition) as u32;
             let members = members.par_iter().with_min_len(256);
-            let contacts = &mut self.at(partition).cloth;
             members
-                .map(|one| stencil(one, start))
-                .collect_into_vec(contacts);
+                .map(|one| contact(one, start))
+                .collect_into_vec(list(self.at(partition)));
             self.at(partition).has_begun = false;
         }
     }
@@ -372,6 +377,10 @@ impl Region {
             contact.constraint.lambda_normal = 0.0;
             contact.constraint.lambda_tangent = [0.0; 3];
         }
+        for SkinContact { stencil, .. } in &mut self.skin {
+            stencil.begun_at = stencil.point(starts);
+            stencil.constraint.lambda_normal = 0.0;
+        }
     }
 
     /// Moves the planes of surfaces that move to the end of the coming substep.
@@ -380,6 +389,9 @@ impl Region {
             .resize(self.contacts.len(), CarriedPlane::default());
         for (contact, carried) in self.contacts.iter_mut().zip(&self.carried) {
             contact.constraint.carry(solid, carried);
+        }
+        for SkinContact { stencil, carried } in &mut self.skin {
+            stencil.constraint.carry(solid, carried);
         }
     }
 
@@ -406,8 +418,10 @@ impl Region {
         });
         solve_attachments(&mut self.elastics, points, step.contact.kappa);
         solve_attachments(&mut self.attachments, points, step.contact.kappa);
-        solve_stencils(&mut self.contacts, points, &step.contact);
-        solve_stencils(&mut self.cloth, points, &step.contact);
+        solve_stencils(self.contacts.iter_mut(), points, &step.contact);
+        let skin = self.skin.iter_mut().map(|contact| &mut contact.stencil);
+        solve_stencils(skin, points, &step.contact);
+        solve_stencils(self.cloth.iter_mut(), points, &step.contact);
     }
 }
 

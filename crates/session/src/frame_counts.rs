@@ -1,0 +1,49 @@
+//! What saved frames of cloth on a moving solid showed: crossings with solids and with itself, and stretch.
+
+use serde::{Deserialize, Serialize};
+use toile_drape::{Measures, SceneRun, Workspace, measure};
+
+/// Counts over the saved frames of a run, all exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FrameCounts {
+    /// Frames looked at.
+    frames: usize,
+    /// Those in which a triangle of cloth crosses one of a solid, and the most pairs in one of them.
+    crossing_solids: usize,
+    most_solid_pairs: usize,
+    /// Those in which cloth crosses cloth, and the most pairs in one of them.
+    crossing_cloth: usize,
+    most_cloth_pairs: usize,
+    /// Largest stretch of warp and of weft that a hundredth of the cloth exceeds in a frame.
+    stretch_p99: [f64; 2],
+}
+
+impl FrameCounts {
+    /// Frames so far.
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Counts a frame; `counted` marks the triangles whose stretch counts, while none is lost to merging.
+    pub fn add(&mut self, run: &SceneRun, counted: &[bool]) {
+        let counted = match counted.len() == run.system.topology.triangles.len() {
+            true => counted,
+            false => &[],
+        };
+        let Measures {
+            body_intersections,
+            self_intersections,
+            strain_p99,
+            ..
+        } = measure(&run.system, &run.state, &mut Workspace::default(), counted);
+        self.frames += 1;
+        self.crossing_solids += usize::from(body_intersections > 0);
+        self.most_solid_pairs = self.most_solid_pairs.max(body_intersections);
+        self.crossing_cloth += usize::from(self_intersections > 0);
+        self.most_cloth_pairs = self.most_cloth_pairs.max(self_intersections);
+        for (most, now) in self.stretch_p99.iter_mut().zip(strain_p99) {
+            *most = most.max(now);
+        }
+    }
+}

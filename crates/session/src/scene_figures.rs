@@ -1,0 +1,221 @@
+//! Figures of a scene: what they wear, and how they move.
+
+use crate::clips::{open_clip, own_clip};
+use crate::dressed_figure::DressedFigure;
+use crate::figure_track::{Course, FigureMotion, FigureTrack};
+use crate::scene_builder::Builder;
+use crate::setup::CLOTH_OFFSET;
+use crate::{SessionError, Watcher};
+use std::sync::Arc;
+use toile_body::{Clip, Mannequin, PlayError};
+use toile_drape::{ContactSettings, ObjectKind, SharedTrack};
+use toile_interchange::{MotionFile, ObjectFile};
+
+/// How long figures stand still at the end of a scene that says no duration [s].
+const STANDS_STILL: f64 = 1.0;
+/// Longest course of a figure that is posed before its scene begins [s].
+const LONGEST_COURSE: f64 = 600.0;
+/// Rounds of a loop at the most: more are surely a mistake.
+const MOST_STRIDES: f64 = 1000.0;
+
+impl Builder<'_> {
+    /// Dresses every body that wears something.
+    ///
+    /// # Errors
+    /// Garments that cannot be sewn, and those on what is no body of the scene.
+    pub(crate) fn dress(&mut self, watcher: &mut dyn Watcher) -> Result<(), SessionError> {
+        let file = self.file;
+        for (index, object) in file.objects.iter().enumerate() {
+            self.check_worn(index, object)?;
+        }
+        for (index, object) in file.objects.iter().enumerate() {
+            let dressed = DressedFigure::of(self.place, file, object, watcher)?;
+            let Some(dressed) = dressed else { continue };
+            self.figures.insert(index, dressed.body);
+            self.garments.extend(dressed.garments);
+            self.notes.extend(dressed.notes);
+        }
+        Ok(())
+    }
+
+    /// Refuses a garment on what is no body, and what only a garment that is worn can have.
+    fn check_worn(&self, index: usize, object: &ObjectFile) -> Result<(), SessionError> {
+        let place = |field: &str| format!("objects[{index}].{field}");
+        let Some(on) = &object.on else {
+            if object.quality.is_some() {
+                let what = "only a garment that is worn is made in a quality".to_owned();
+                let remedy = "say who wears it, as in \"on\": \"woman\", or leave it out";
+                return Err(self.place.wrong(place("quality"), what, remedy));
+            }
+            return Ok(());
+        };
+        let wearer = self.file.objects.iter().find(|other| other.name == *on);
+        let refused = match wearer {
+            None => Some(format!("there is no object \"{on}\"")),
+            Some(wearer) if wearer.body.is_none() => Some(format!("\"{on}\" is no body")),
+            Some(_) => None,
+        };
+        if let Some(what) = refused {
+            let remedy = "name an object of the scene that has a body";
+            return Err(self.place.wrong(place("on"), what, remedy));
+        }
+        if object.pattern.is_none() || object.kind != "deformable" {
+            let what = "only the garment of a pattern is worn".to_owned();
+            let remedy = "give a deformable object with a pattern, or leave \"on\" out";
+            return Err(self.place.wrong(place("on"), what, remedy));
+        }
+        let usual = toile_interchange::TransformFile::default();
+        let moved = &object.transform;
+        let is_placed = moved.translation != usual.translation
+            || moved.rotation != usual.rotation
+            || moved.scale != usual.scale;
+        if is_placed {
+            let what = "a garment that is worn is where its wearer is".to_owned();
+            let remedy = "give the transform to the wearer";
+            return Err(self.place.wrong(place("transform"), what, remedy));
+        }
+        Ok(())
+    }
+
+    /// Contact as the file says; where garments are worn cloth keeps off cloth unless it says otherwise.
+    pub(crate) fn contact(&self) -> ContactSettings {
+        let mut contact = self.file.contact();
+        let worn = self.file.objects.iter().any(|object| object.on.is_some());
+        if self.file.collision.cloth_offset.is_none() && worn {
+            contact.cloth_offset = CLOTH_OFFSET;
+        }
+        contact
+    }
+
+    /// The simulated time from 0 on [s].
+    pub(crate) fn duration(&self) -> f64 {
+        let usual = self.ends.map_or(1.0, |ends| ends + STANDS_STILL);
+        self.file.duration.unwrap_or(usual)
+    }
+
+    /// How a body moves that has a clip.
+    ///
+    /// # Errors
+    /// A clip that cannot be read, numbers out of range, a body that is scaled.
+    pub(crate) fn figure_kind(
+        &mut self,
+        index: usize,
+        body: Arc<Mannequin>,
+        motion: &MotionFile,
+    ) -> Result<ObjectKind, SessionError> {
+        let place = |field: &str| format!("objects[{index}].motion.{field}");
+        let clip = self.clip(index, &body, motion)?;
+        let asked = self.figure_motion(index, motion, &clip)?;
+        let stands = motion.lead_in == Some(false);
+        if stands && clip.poses.first().is_some_and(|first| !first.is_rest()) {
+            let what =
+                "the clip does not begin in the pose in which the figure is dressed".to_owned();
+            let remedy = "leave it out: the figure then goes into the clip before time 0";
+            return Err(self.place.wrong(place("lead_in"), what, remedy));
+        }
+        let round = clip.duration() / asked.rate.max(1e-3);
+        let own = match clip.is_loop {
+            true => asked.strides.map(|strides| strides * round + 0.5),
+            false => Some(round + 0.5),
+        };
+        let ends = own.map(|own| own + STANDS_STILL);
+        let posed = self.file.duration.or(ends).unwrap_or(1.0);
+        if !(posed.is_finite() && posed <= LONGEST_COURSE) {
+            let what = format!(
+                "the figure would move for {posed:.0} s; {LONGEST_COURSE:.0} s are posed at most"
+            );
+            return Err(self
+                .place
+                .wrong(place("clip"), what, "give a shorter duration"));
+        }
+        let course = FigureTrack::course(body, clip, &asked, (posed.max(0.0), self.file.step));
+        let out_of_range = |error: PlayError| {
+            self.place
+                .wrong(place("rate"), error.to_string(), "correct it")
+        };
+        let Course {
+            track,
+            lead_in,
+            ends,
+            notes,
+        } = course.map_err(out_of_range)?;
+        let name = &self.file.objects[index].name;
+        self.notes
+            .extend(notes.iter().map(|note| format!("{name}: {note}")));
+        self.lead_in = self.lead_in.max(lead_in);
+        if let Some(ends) = ends {
+            self.ends = Some(self.ends.map_or(ends, |other| other.max(ends)));
+        }
+        Ok(ObjectKind::tracked(SharedTrack::new(track)))
+    }
+
+    /// The clip that a motion names: one of our own, or a file beside the scene.
+    fn clip(
+        &mut self,
+        index: usize,
+        body: &Mannequin,
+        motion: &MotionFile,
+    ) -> Result<Clip, SessionError> {
+        let place = || format!("objects[{index}].motion.clip");
+        let Some(name) = &motion.clip else {
+            let what = "a body that moves needs a clip".to_owned();
+            let remedy = "write walk, run, stand, astride, or a BVH, X3D or VRML file";
+            return Err(self.place.wrong(place(), what, remedy));
+        };
+        let clip = match own_clip(name, body.skeleton()) {
+            Some(own) => own,
+            None => {
+                let (clip, notes) = open_clip(&self.place.beside(name), body.skeleton())?;
+                self.notes.extend(notes);
+                clip
+            }
+        };
+        match clip.poses.is_empty() {
+            false => Ok(clip),
+            true => {
+                let what = format!("the clip \"{name}\" has no pose");
+                Err(self
+                    .place
+                    .wrong(place(), what, "give one with a pose at least"))
+            }
+        }
+    }
+
+    fn figure_motion(
+        &self,
+        index: usize,
+        motion: &MotionFile,
+        clip: &Clip,
+    ) -> Result<FigureMotion, SessionError> {
+        let place = |field: &str| format!("objects[{index}].motion.{field}");
+        if let Some(strides) = motion.strides {
+            if !clip.is_loop {
+                let what = "the clip is no loop that has strides".to_owned();
+                return Err(self.place.wrong(place("strides"), what, "leave it out"));
+            }
+            if !(0.0..=MOST_STRIDES).contains(&strides) {
+                let what = format!("{strides} strides are out of range");
+                let remedy = "give a number from 0 to 1000";
+                return Err(self.place.wrong(place("strides"), what, remedy));
+            }
+        }
+        let heading = match motion.keys.is_empty() {
+            true => None,
+            false => Some(motion.motion()),
+        };
+        if let Some(what) = heading.as_ref().and_then(|heading| heading.defect()) {
+            let remedy = "give keys with rising times and finite numbers";
+            return Err(self.place.wrong(place("keys"), what, remedy));
+        }
+        if motion.pivot != [0.0; 3] {
+            let what = "a figure turns about itself".to_owned();
+            return Err(self.place.wrong(place("pivot"), what, "leave it out"));
+        }
+        Ok(FigureMotion {
+            strides: motion.strides,
+            rate: motion.rate.unwrap_or(1.0),
+            travel: motion.travel.unwrap_or(true),
+            heading,
+        })
+    }
+}
