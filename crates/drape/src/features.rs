@@ -125,8 +125,9 @@ impl MethodKind {
             ),
             // Equilibrium methods have no time over which strain could relax.
             Feature::KeptStrain => !self.is_equilibrium() && self != Self::Xpbd,
-            Feature::Viscosity | Feature::TriangleDrag => self != Self::Xpbd,
             Feature::MassDrag
+            | Feature::TriangleDrag
+            | Feature::Viscosity
             | Feature::Hardening
             | Feature::StrainLimit
             | Feature::TensionField => true,

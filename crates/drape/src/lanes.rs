@@ -199,6 +199,21 @@ pub fn dot<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> S::f32s 
     simd.mul_add_e_f32s(a[2], b[2], sum)
 }
 
+/// a x b.
+#[inline(always)]
+pub fn cross<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> Triple<S::f32s> {
+    let [x, y, z] = [
+        simd.mul_f32s(a[1], b[2]),
+        simd.mul_f32s(a[2], b[0]),
+        simd.mul_f32s(a[0], b[1]),
+    ];
+    [
+        simd.negate_mul_add_e_f32s(a[2], b[1], x),
+        simd.negate_mul_add_e_f32s(a[0], b[2], y),
+        simd.negate_mul_add_e_f32s(a[1], b[0], z),
+    ]
+}
+
 /// a s + b t.
 #[inline(always)]
 pub fn blend<S: Simd>(

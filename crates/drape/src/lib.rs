@@ -111,4 +111,4 @@ pub use world::{
     AttachmentEnd, AttachmentId, Edited, Kind, Layers, MeshVertex, Object, ObjectAttachment,
     ObjectId, OpenAttachment, PairPolicy, Simulation, VertexGrip, VertexMap, World, WorldEdit,
 };
-pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};
+pub use xpbd::{ConstraintCount, Losses, Xpbd, XpbdReport, XpbdSettings};

@@ -251,24 +251,20 @@ fn every_method_knows_surfaces_friction_thickness_and_bending() {
 #[test]
 fn what_no_method_knows_together_is_said() {
     let [_, moving] = cases(Feature::MovingObjects).remove(0);
-    let windy = with(moving, |s| {
-        s.air.density = 1.2;
-        s.method = MethodKind::Xpbd.into();
-    });
-    let error = SceneRun::new(&windy).err().map(|e| e.to_string());
+    let folded = with(moving, |s| s.method = MethodKind::Xpbd.into());
+    let folded = of(folded, |m| m.relaxed_fraction = [0.0, 0.2]);
+    let error = SceneRun::new(&folded).err().map(|e| e.to_string());
     let error = error.unwrap_or_default();
     for part in [
-        "air.density",
+        "kept share",
         "no method knows all",
         "moving objects",
         "xpbd",
     ] {
         assert!(error.contains(part), "{part}: {error}");
     }
-    let [_, viscous] = cases(Feature::Viscosity).remove(0);
-    let error = after(viscous, MethodKind::Xpbd)
-        .err()
-        .map(|e| e.to_string());
+    let [_, folded] = cases(Feature::KeptStrain).remove(1);
+    let error = after(folded, MethodKind::Xpbd).err().map(|e| e.to_string());
     let error = error.unwrap_or_default();
     assert!(error.contains("implicit-euler"), "{error}");
     assert!(!error.contains("no method"), "{error}");

@@ -19,6 +19,8 @@ fn the_quick_laws_hold_for_every_method() {
         "incline",
         "cloth-on-cloth",
         "fall",
+        "viscous-stretch",
+        "viscous-bending",
     ];
     let checks = checks(&quick);
     for name in quick {

@@ -11,6 +11,7 @@ use super::membrane::inverse_mass;
 use crate::lanes::{
     Corner, LANES, Point, Row, Triple, add_scaled, gather, lane_groups, scatter, sub,
 };
+use crate::laws::bending::BendingMatrix;
 use crate::{Material, System};
 use nalgebra::Matrix3;
 use pulp::Simd;
@@ -116,26 +117,56 @@ pub struct Filter {
 /// unconverged membrane sweeps feed it energy until the cloth vibrates permanently. Stable for q (1 + 2 theta) < 4.
 pub const LEAD: f64 = 0.4;
 
-/// The factor c, half of the largest q: q (1 + 2 theta) is up to 3.6.
-const FILTER_HEIGHT: f64 = 1.0;
+/// The bounds of a filter. They keep the sum of all that acts on one mode stable: with a viscous q_v it is
+/// q (1 + 2 theta) + 2 q_v < 4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilterBounds {
+    /// The factor c, half of the largest q.
+    factor: f64,
+    /// Largest z = h^2 w^2, or h w of a rate, at which nothing is filtered: then q = z.
+    unfiltered: f64,
+    /// Most stages.
+    stages: usize,
+}
+
+impl FilterBounds {
+    /// Bending without viscosity: q (1 + 2 theta) is up to 3.6.
+    pub const ELASTIC: Self = Self {
+        factor: 1.0,
+        unfiltered: 1.4 * 1.4,
+        stages: MAX_STAGES,
+    };
+    /// Bending of viscous cloth: up to 1.8.
+    pub const BESIDE_VISCOSITY: Self = Self {
+        factor: 0.5,
+        unfiltered: 1.0,
+        stages: MAX_STAGES,
+    };
+    /// Viscosity: 2 q_v is up to 1.6. It has no constraints beside it that would be cheaper, and with twice the stages a
+    /// substep costs about ten times as much.
+    pub const VISCOUS: Self = Self {
+        factor: 0.4,
+        unfiltered: 0.8,
+        stages: 2 * MAX_STAGES,
+    };
+}
+
 /// Damping of the Chebyshev polynomial: w0 - 1 times s^2. It makes q positive at its minima.
 const FILTER_DAMPING: f64 = 0.1;
-/// Most stages; with more, constraints are cheaper.
+/// Most stages of elastic bending; with more, constraints are cheaper.
 const MAX_STAGES: usize = 16;
-/// Largest h w_max at which the force is not filtered: q = (h w)^2 is then at most 2, as with the filter.
-const UNFILTERED_LIMIT: f64 = 1.4;
 
 impl Filter {
-    /// The filter of fewest stages that is stable at `frequency_step` = h w_max; none where more than
-    /// [`MAX_STAGES`] are needed.
-    pub fn new(frequency_step: f64) -> Option<Self> {
-        if frequency_step <= UNFILTERED_LIMIT {
+    /// The filter of fewest stages that is stable at `largest` = (h w_max)^2, or h w_max of a rate; none where more
+    /// than there may be are needed.
+    pub fn new(largest: f64, bounds: FilterBounds) -> Option<Self> {
+        if largest <= bounds.unfiltered {
             return Some(Self::default());
         }
-        (2..=MAX_STAGES).find_map(|count| Self::of_stages(count, frequency_step))
+        (2..=bounds.stages).find_map(|count| Self::of_stages(count, largest, bounds.factor))
     }
 
-    fn of_stages(count: usize, frequency_step: f64) -> Option<Self> {
+    fn of_stages(count: usize, largest: f64, height: f64) -> Option<Self> {
         let w0 = 1.0 + FILTER_DAMPING / (count * count) as f64;
         // T_j and its derivative at w0.
         let (mut t, mut slope) = (vec![1.0, w0], vec![0.0, 1.0]);
@@ -144,10 +175,10 @@ impl Filter {
             slope.push(2.0 * t[j] + 2.0 * w0 * slope[j] - slope[j - 1]);
         }
         let w1 = t[count] / slope[count];
-        if frequency_step * frequency_step > FILTER_HEIGHT * (1.0 + w0) / w1 {
+        if largest > height * (1.0 + w0) / w1 {
             return None;
         }
-        let pace = w1 / FILTER_HEIGHT;
+        let pace = w1 / height;
         let mut stages = vec![[0.0, 0.0, (pace / w0) as f32]];
         for j in 1..count {
             // Before the first stage the displacement is zero.
@@ -157,35 +188,35 @@ impl Filter {
         }
         Some(Self {
             stages,
-            factor: FILTER_HEIGHT as f32,
+            factor: height as f32,
         })
     }
 }
 
-/// The curvatures of a triangle along the principal directions of its stiffness.
+/// The curvatures of a triangle along the principal directions of its stiffness, or of its viscosity.
 #[derive(Clone, Debug)]
 pub struct Stencil {
+    /// The triangle.
+    pub triangle: u32,
     /// Vertices of the stencil.
     pub vertices: Vec<u32>,
     /// Weights of each in the three curvatures [1/m2].
-    weights: Vec<[f64; 3]>,
-    /// Stiffnesses A D [N m3].
-    stiffness: [f64; 3],
+    pub weights: Vec<[f64; 3]>,
+    /// Stiffnesses A D [N m3], or A times the viscosities [N m3 s].
+    pub stiffness: [f64; 3],
 }
 
 /// Least bending stiffness of a direction over the largest one: compliances must be finite.
 const MIN_STIFFNESS_RATIO: f64 = 1e-6;
 
-/// The curvature stencils of the triangles of a model that have a bending stiffness.
-pub fn stencils(system: &System) -> Vec<Stencil> {
+/// The curvature stencils of the triangles of a model whose `matrix` of bending is not zero.
+pub fn stencils(system: &System, matrix: fn(&Material) -> BendingMatrix) -> Vec<Stencil> {
     let curvatures = system.rest.curvatures.iter();
     let all = match system.topology.bending {
         Some(_) => curvatures.map(|stencil| (**stencil).clone()).collect(),
         None => system.topology.stencils(&system.rest.shapes()),
     };
-    let laws: Vec<_> = (system.materials.list.iter())
-        .map(Material::bending_matrix)
-        .collect();
+    let laws: Vec<_> = system.materials.list.iter().map(matrix).collect();
     let mut stencils = Vec::with_capacity(system.topology.triangles.len());
     for (t, stencil) in all.into_iter().enumerate() {
         let (weights, stiffness) =
@@ -194,6 +225,7 @@ pub fn stencils(system: &System) -> Vec<Stencil> {
         if largest > 0.0 {
             let area = system.rest.elements[t].area;
             stencils.push(Stencil {
+                triangle: t as u32,
                 vertices: stencil.vertices,
                 weights,
                 stiffness: stiffness.map(|d| area * d.max(MIN_STIFFNESS_RATIO * largest)),
@@ -392,7 +424,8 @@ mod tests {
 
     /// The polynomial q of the filter for h w_max = `limit`.
     fn filtered(limit: f64) -> impl Fn(f64) -> f64 {
-        let filter = Filter::new(limit).expect("within the stages there are");
+        let filter = Filter::new(limit * limit, FilterBounds::ELASTIC);
+        let filter = filter.expect("within the stages there are");
         move |z: f64| {
             let (mut before, mut d) = (0.0, 0.0);
             for [mu, nu, kappa] in filter.stages.iter().map(|n| n.map(f64::from)) {
@@ -416,7 +449,7 @@ mod tests {
         };
         for k in 1..=1000 {
             let z = 1e-3 * f64::from(k);
-            check_decay(UNFILTERED_LIMIT * UNFILTERED_LIMIT * z);
+            check_decay(FilterBounds::ELASTIC.unfiltered * z);
             for limit in [1.6, 5.0, 20.0] {
                 check_decay(filtered(limit)(limit * limit * z));
             }
@@ -433,7 +466,8 @@ mod tests {
                 assert!(q(z) > 0.0 && q(z) < 2.5, "{limit}: {z} {}", q(z));
             }
         }
-        assert!(Filter::new(1.0).expect("plain").is_identity());
-        assert_eq!(Filter::new(1e3), None);
+        let plain = Filter::new(1.0, FilterBounds::ELASTIC);
+        assert!(plain.expect("plain").is_identity());
+        assert_eq!(Filter::new(1e6, FilterBounds::ELASTIC), None);
     }
 }

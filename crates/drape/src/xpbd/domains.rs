@@ -34,6 +34,12 @@ pub fn for_domains<T: Divide>(
     );
 }
 
+impl Divide for &mut [Point] {
+    fn divide(self, slots: usize, _: usize) -> (Self, Self) {
+        self.split_at_mut(slots)
+    }
+}
+
 impl Divide for PredictSlices<'_> {
     fn divide(self, slots: usize, _: usize) -> (Self, Self) {
         let (now, now_) = self.now.split_at_mut(slots);

@@ -27,19 +27,19 @@ use pulp::Simd;
 #[repr(C, align(64))]
 pub struct MembraneBatch {
     /// Corners, as indices into the points of the region.
-    corners: [Corner; 3],
+    pub corners: [Corner; 3],
     /// a_1 and a_2 [1/m]; a_0 is minus their sum.
-    warp: [Row; 2],
+    pub warp: [Row; 2],
     /// b_1 and b_2 [1/m].
-    weft: [Row; 2],
+    pub weft: [Row; 2],
     /// P, Q and R times sigma.
     products: [Row; 3],
     /// sigma / A [kg]: times the compliance of the law and kappa it is alpha / h^2, scaled.
     compliance_scale: Row,
     /// sigma.
     scale: Row,
-    /// Index of the law.
-    law: u32,
+    /// Index of the law and of the material.
+    pub law: u32,
     /// Number of triangles.
     count: u32,
 }
@@ -122,6 +122,15 @@ impl MembraneBatch {
     /// Number of triangles.
     pub fn len(&self) -> usize {
         self.count as usize
+    }
+
+    /// Areas of the rest shapes of one lane group; zero in unused lanes [m2].
+    #[inline(always)]
+    pub fn rest_area<S: Simd>(&self, simd: S, lane_group: usize) -> S::f32s {
+        simd.div_f32s(
+            self.scale.lane_group::<S>(lane_group),
+            self.compliance_scale.lane_group::<S>(lane_group),
+        )
     }
 }
 

@@ -4,7 +4,8 @@
 //! A substep of h (Macklin, Müller and Chentanez 2016, algorithm 1; Macklin et al. 2019 for many
 //! substeps of one iteration):
 //! ```text
-//! v = (v + h (g + f_bend(x0 + theta h v) / m)) / (1 + drag h),  x = x0 + h v
+//! v = v - q(h W T) v                          where cloth is viscous
+//! v = (v + h (g + (f_bend(x0 + theta h v) + f_air(v)) / m)) / (1 + drag h),  x = x0 + h v
 //! for every constraint:  dlambda = -(J W J^T + alpha / h^2)^-1 (C + alpha / h^2 lambda)
 //!                        x = x + W J^T dlambda
 //! contacts and friction: the same with inequalities
@@ -15,12 +16,12 @@
 //! compliance of the order of h^2 / m.
 //!
 //! Inner loops run in single precision on positions relative to the middle of the cloth, with compensated
-//! summation; the state is in double precision. Viscosity, internal strain and the air's forces on triangles are
-//! not supported; drag per mass and restitution are.
+//! summation; the state is in double precision. Internal strain is not supported.
 
 // Loops over lanes and axes use indices, so that they unroll into vectors.
 #![allow(clippy::needless_range_loop)]
 
+mod air;
 mod attachment_constraint;
 mod bending;
 mod bounce;
@@ -35,14 +36,17 @@ mod moving_solids;
 mod particles;
 mod region;
 mod run;
+mod settings;
 mod several_solids;
 mod skin_contacts;
+mod triangle_sums;
 mod vertex_partition;
+mod viscosity;
 mod xpbd_method;
 
 use crate::lanes::LANES;
 use crate::{ContactSample, DrapeError, Model, State, System};
-use bending::{BendingForce, Filter};
+use bending::{BendingForce, Filter, FilterBounds};
 use bounce::BounceStep;
 pub(crate) use cloth::{ClothContacts, Substeps};
 use contact::{ContactConstraint, ContactStep, Solid};
@@ -52,30 +56,12 @@ use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
 use run::Run;
 use skin_contacts::{SkinSearch, StepStart};
+pub use settings::{Losses, XpbdSettings};
 use std::sync::Arc;
 use toile_geometry::Vec3;
 use vertex_partition::VertexPartition;
+use viscosity::Viscosity;
 pub(crate) use xpbd_method::XpbdMethod;
-
-/// Settings of the solver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct XpbdSettings {
-    /// Sweeps over all constraints in a substep. One sweep with many substeps is most efficient; one substep a step
-    /// needs hundreds.
-    pub iterations: u32,
-    /// Largest speed of a vertex; faster ones are slowed down to it [m/s].
-    pub speed_limit: f64,
-}
-
-impl Default for XpbdSettings {
-    /// One sweep, 100 m/s.
-    fn default() -> Self {
-        Self {
-            iterations: 1,
-            speed_limit: 100.0,
-        }
-    }
-}
 
 /// The outcome of some substeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -114,6 +100,8 @@ pub struct Xpbd {
     has_bending_constraints: bool,
     /// The filter of the bending force; none where bending is constraints.
     filter: Option<Filter>,
+    /// The viscosity, and its filter.
+    viscosity: Option<(Viscosity, Filter)>,
     laws: Vec<LawRow>,
     /// The substep for which filter and constraints are set up [s], and its (1 + drag h) / h^2 [1/s2].
     step: f64,
@@ -170,9 +158,13 @@ impl Xpbd {
         Self::with_samples(system, &system.rest.samples, settings)
     }
 
-    /// Builds the constraints of a model and of a state's samples.
+    /// Builds the constraints of a model and of a state's samples, for a way to rest.
     pub(crate) fn for_state(system: &System, state: &State) -> Self {
-        Self::with_samples(system, &state.samples, XpbdSettings::default())
+        let settings = XpbdSettings {
+            losses: Losses::DragAlone,
+            ..XpbdSettings::default()
+        };
+        Self::with_samples(system, &state.samples, settings)
     }
 
     /// Builds the constraints of a model and of contact samples, with settings.
@@ -185,6 +177,10 @@ impl Xpbd {
         let mut regions = Regions::new(&partition);
         regions.add_membranes(system, &partition);
         regions.add_elastics(system, &partition);
+        let viscosity = settings.losses.viscosity(system);
+        if viscosity.is_some() {
+            regions.add_viscous_bending(system, &partition);
+        }
         let solids = system.colliders.len();
         let mut particles = Particles::new(partition.len(), solids);
         if !system.colliders.is_empty() {
@@ -207,6 +203,7 @@ impl Xpbd {
             bending: BendingForce::new(system, &partition.vertex_of, &partition.slot_of),
             has_bending_constraints: false,
             filter: None,
+            viscosity: viscosity.map(|viscosity| (viscosity, Filter::default())),
             laws: system.materials.laws.iter().map(LawRow::new).collect(),
             step: f64::NAN,
             kappa: f64::NAN,
@@ -341,6 +338,7 @@ impl Xpbd {
                 }
             }
             let h = substep / f64::from(pieces);
+            self.set_step(system, h, kappa(h, drag))?;
             self.load(system, state, origin);
             self.recall_friction(state, &ContactStep::new(kappa(h, drag) as f32, h as f32));
             self.set_prescribed_velocities(system, state, substep * f64::from(count));
@@ -484,14 +482,13 @@ impl Xpbd {
     fn run(&mut self, system: &System, origin: Vec3, motion: &SubstepSize, count: u32) {
         let &SubstepSize { h, drag, time } = motion;
         let kappa = kappa(h, drag);
-        self.set_step(system, h, kappa);
         let g = system.control.gravity;
         let motion = MotionStep {
             step: h as f32,
             gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
             drag_factor: (1.0 / (1.0 + drag * h)) as f32,
             speed_limit: self.settings.speed_limit as f32,
-            lead: (bending::LEAD * h) as f32,
+            lead: self.lead(h) as f32,
         };
         let run = Run {
             sweep: SweepStep {
@@ -512,6 +509,8 @@ impl Xpbd {
                 step: h as f32,
                 gravity: g.norm() as f32,
             }),
+            air: self.settings.losses.air(system, h),
+            viscosity: self.viscosity.as_ref().map(|(own, filter)| (own, filter)),
             bending: &self.bending,
             filter: self.filter.as_ref(),
             time,
@@ -532,15 +531,38 @@ impl Xpbd {
         }
     }
 
-    /// Sets up filter and constraints for a size of substep.
-    fn set_step(&mut self, system: &System, h: f64, kappa: f64) {
+    /// Time by which positions are extrapolated for the bending force in substeps of h [s]; what viscosity damps
+    /// already is left out.
+    fn lead(&self, h: f64) -> f64 {
+        let damped = self
+            .viscosity
+            .as_ref()
+            .map_or(0.0, |(own, _)| own.bending_time);
+        (bending::LEAD * h - damped).max(0.0)
+    }
+
+    /// Sets up filters and constraints for a size of substep.
+    ///
+    /// # Errors
+    /// Viscosity beyond what the filter damps.
+    fn set_step(&mut self, system: &System, h: f64, kappa: f64) -> Result<(), DrapeError> {
         let iterated = self.settings.iterations > 1;
         if self.step != h {
-            self.step = h;
+            let bounds = match self.viscosity {
+                Some(_) => FilterBounds::BESIDE_VISCOSITY,
+                None => FilterBounds::ELASTIC,
+            };
             self.filter = match iterated {
                 true => None,
-                false => Filter::new(h * self.bending.frequency),
+                false => {
+                    let frequency = h * self.bending.frequency;
+                    Filter::new(frequency * frequency, bounds)
+                }
             };
+            if let Some((viscosity, filter)) = &mut self.viscosity {
+                *filter = viscosity.filter(h)?;
+            }
+            self.step = h;
         }
         if self.filter.is_none() && !self.has_bending_constraints {
             self.regions.add_bending(system, &self.partition);
@@ -556,6 +578,7 @@ impl Xpbd {
                 region.set_step(kappa);
             }
         }
+        Ok(())
     }
 }
 

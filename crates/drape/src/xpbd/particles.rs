@@ -4,7 +4,7 @@ use super::bending::{BendingForce, Filter};
 use super::contact::{ContactStep, Solid};
 use super::contact_block::{ContactBlock, solve_block};
 use super::several_solids::solve_several;
-use crate::lanes::{LANES, Point, lane_groups, load, store};
+use crate::lanes::{LANES, Point, Triple, add_scaled, lane_groups, load, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
 
@@ -30,6 +30,8 @@ pub struct Particles {
     pub velocity: Vec<Point>,
     /// Velocities without the contact impulses of the substep [m/s]; only where cloth has restitution.
     pub velocity_without_contact: Vec<Point>,
+    /// Impulses of the air in the substep [N s]; only where there is air.
+    pub air_impulses: Vec<Point>,
     /// Contact of each vertex with each solid: for sixteen vertices a block for every solid.
     pub contacts: Vec<ContactBlock>,
     /// Displacement by the unfiltered bending force, h^2 W K x [m].
@@ -52,6 +54,7 @@ impl Particles {
             filtered: [points.clone(), points.clone()],
             velocity: points,
             velocity_without_contact: Vec::new(),
+            air_impulses: Vec::new(),
             contacts: vec![ContactBlock::none(); count / LANES * solids],
         }
     }
@@ -106,6 +109,8 @@ pub struct Predict<'a, 'b> {
     pub start: &'a [Point],
     /// Bending.
     pub bending: FreeBending<'a>,
+    /// Impulses of the air on all points; empty where there is none.
+    pub air_impulses: &'a [Point],
     /// The substep.
     pub step: &'a MotionStep,
 }
@@ -121,30 +126,42 @@ impl WithSimd for Predict<'_, '_> {
         let (free, _) = self.fields.free.as_chunks_mut::<LANES>();
         let (low, _) = self.fields.low.as_chunks_mut::<LANES>();
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
+        let (impulses, _) = self.air_impulses.as_chunks::<LANES>();
         for b in 0..now.len() {
             for lane_group in 0..lane_groups::<S>() {
                 let block = [&mut now[b], &mut free[b], &mut low[b], &mut velocity[b]];
+                let mut gain = self
+                    .bending
+                    .gain(simd, first + b, lane_group, self.step.step);
+                if let Some(impulses) = impulses.get(first + b) {
+                    let [x, y, z, _] = load(simd, impulses, lane_group);
+                    let weight = load(simd, &starts[first + b], lane_group)[3];
+                    gain = add_scaled(simd, gain, [x, y, z], weight);
+                }
                 self.step
-                    .predict(simd, &starts[first + b], block, lane_group, {
-                        let slot = LANES * (first + b);
-                        match self.bending {
-                            FreeBending::None => [simd.splat_f32s(0.0); 3],
-                            FreeBending::Force(force, ahead) => {
-                                let (positions, _) = ahead.as_chunks::<LANES>();
-                                let here = load(simd, &positions[first + b], lane_group);
-                                let sum = force.times(simd, slot, ahead, here, lane_group);
-                                let scale =
-                                    simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
-                                scaled(simd, sum, scale)
-                            }
-                            FreeBending::Filtered(filtered, factor) => {
-                                let (filtered, _) = filtered.as_chunks::<LANES>();
-                                let [x, y, z, _] = load(simd, &filtered[first + b], lane_group);
-                                let factor = simd.splat_f32s(factor / self.step.step);
-                                scaled(simd, [x, y, z], factor)
-                            }
-                        }
-                    });
+                    .predict(simd, &starts[first + b], block, lane_group, gain);
+            }
+        }
+    }
+}
+
+impl FreeBending<'_> {
+    /// The velocity change by bending of one lane group of a block in a substep of h [s].
+    #[inline(always)]
+    fn gain<S: Simd>(&self, simd: S, block: usize, lane_group: usize, h: f32) -> Triple<S::f32s> {
+        match self {
+            Self::None => [simd.splat_f32s(0.0); 3],
+            Self::Force(force, ahead) => {
+                let (positions, _) = ahead.as_chunks::<LANES>();
+                let here = load(simd, &positions[block], lane_group);
+                let sum = force.times(simd, LANES * block, ahead, here, lane_group);
+                let scale = simd.mul_f32s(here[3], simd.splat_f32s(-h));
+                scaled(simd, sum, scale)
+            }
+            Self::Filtered(filtered, factor) => {
+                let (filtered, _) = filtered.as_chunks::<LANES>();
+                let [x, y, z, _] = load(simd, &filtered[block], lane_group);
+                scaled(simd, [x, y, z], simd.splat_f32s(factor / h))
             }
         }
     }

@@ -7,8 +7,9 @@ use super::contact::{ContactConstraint, ContactStencil, ContactStep, Solid, solv
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::skin_contacts::SkinContact;
 use super::vertex_partition::{Partition, VertexPartition, batches};
+use super::viscosity::{Viscosity, ViscousBatch};
 use crate::lanes::{LANES, Point, Row};
-use crate::{ContactSample, Model, System};
+use crate::{ContactSample, Material, Model, System};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -16,9 +17,12 @@ use toile_geometry::Vec3;
 /// The constraints of one partition; indices of vertices count from its first slot.
 #[derive(Clone, Debug, Default)]
 pub struct Region {
-    membrane: Vec<MembraneBatch>,
+    /// The triangles.
+    pub membrane: Vec<MembraneBatch>,
     membrane_multipliers: Vec<membrane::Multipliers>,
     bending: Vec<BendingBatch>,
+    /// Those with viscous bending.
+    pub viscous: Vec<ViscousBatch>,
     bending_multipliers: Vec<bending::Multipliers>,
     elastics: Vec<AttachmentConstraint>,
     attachments: Vec<AttachmentConstraint>,
@@ -108,7 +112,29 @@ impl Regions {
 
     /// Adds bending as constraints.
     pub fn add_bending(&mut self, system: &System, numbering: &VertexPartition) {
-        let mut stencils = bending::stencils(system);
+        let stencils = bending::stencils(system, Material::bending_matrix);
+        self.add_stencils(system, numbering, stencils, |region, batch, local| {
+            region.bending.push(BendingBatch::new(system, batch, local));
+        });
+    }
+
+    /// Adds the viscosity of bending.
+    pub fn add_viscous_bending(&mut self, system: &System, numbering: &VertexPartition) {
+        let stencils = Viscosity::stencils(system);
+        self.add_stencils(system, numbering, stencils, |region, batch, local| {
+            region.viscous.push(ViscousBatch::new(system, batch, local));
+        });
+    }
+
+    /// Adds stencils with a free vertex in batches; `add` has the region, the batch, and the index of a vertex in the
+    /// region.
+    fn add_stencils(
+        &mut self,
+        system: &System,
+        numbering: &VertexPartition,
+        mut stencils: Vec<Stencil>,
+        mut add: impl FnMut(&mut Region, &[&Stencil], &dyn Fn(u32) -> u32),
+    ) {
         stencils.retain(|s| {
             s.vertices
                 .iter()
@@ -128,9 +154,7 @@ impl Regions {
                 |i| vertices(members[i]).len(),
             ) {
                 let batch: Vec<_> = batch.iter().map(|&i| members[i]).collect();
-                region
-                    .bending
-                    .push(BendingBatch::new(system, &batch, local));
+                add(region, &batch, &local);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Substeps: prediction, constraints, contact, velocities, each in parallel over domains.
 
+use super::air::{AddAirImpulses, AirStep};
 use super::bending::{BendingForce, Filter};
 use super::bounce::{BounceStep, bounce};
 use super::contact::Solid;
@@ -9,6 +10,8 @@ use super::particles::{
     Predict, PredictSlices,
 };
 use super::region::{Regions, SweepStep};
+use super::triangle_sums::Ranges;
+use super::viscosity::{AddViscousForces, Viscosity, ViscousStage};
 use crate::ContactSample;
 
 /// Parameters of substeps of one size.
@@ -19,6 +22,10 @@ pub struct Run<'a> {
     pub motion: MotionStep,
     /// Parameters of restitution, where any material has it.
     pub bounces: Option<BounceStep>,
+    /// The air, where it exerts a force on triangles.
+    pub air: Option<AirStep>,
+    /// The viscosity with its filter, where any material has it.
+    pub viscosity: Option<(&'a Viscosity, &'a Filter)>,
     /// The bending matrix K.
     pub bending: &'a BendingForce,
     /// The filter of the bending force; none where bending is constraints.
@@ -68,6 +75,8 @@ impl Run<'_> {
                     contact.carry(&sweep.solid);
                 }
             }
+            self.damp(regions, particles);
+            self.sum_air_impulses(regions, particles);
             self.filter_bending(particles);
             for iteration in 0..self.iterations {
                 let sweep = SweepStep {
@@ -104,6 +113,84 @@ impl Run<'_> {
             ..
         } = particles;
         self.motion.extrapolate(start, velocity, ahead);
+    }
+
+    /// The partitions of the vertices.
+    fn ranges(&self) -> Ranges<'_> {
+        Ranges {
+            domains: self.domain_starts,
+            cuts: self.cut_starts,
+        }
+    }
+
+    /// Damps velocities by viscosity, stage by stage.
+    fn damp(&self, regions: &Regions, particles: &mut Particles) {
+        let Some((viscosity, filter)) = self.viscosity else {
+            return;
+        };
+        let Particles {
+            start,
+            velocity,
+            unfiltered: forces,
+            filtered,
+            ..
+        } = particles;
+        let [mut last, mut new] = filtered.each_mut();
+        last.copy_from_slice(velocity);
+        new.copy_from_slice(velocity);
+        for &stage in &filter.stages {
+            self.ranges().sum(regions, forces, |region, first, sums| {
+                self.arch.dispatch(AddViscousForces {
+                    viscosity,
+                    membrane: &region.membrane,
+                    bending: &region.viscous,
+                    starts: &start[first..],
+                    velocities: &last[first..],
+                    sums,
+                });
+            });
+            for_domains(self.domain_starts, 0, &mut new[..], &|d, new| {
+                let first = self.domain_starts[d];
+                let of_stage = ViscousStage {
+                    unfiltered: &velocity[first..],
+                    last: &last[first..],
+                    new,
+                    forces: &forces[first..],
+                    starts: &start[first..],
+                };
+                of_stage.advance(stage, self.motion.step);
+            });
+            std::mem::swap(&mut last, &mut new);
+        }
+        for (v, damped) in velocity.iter_mut().zip(last) {
+            for k in 0..3 {
+                v[k] += filter.factor * (damped[k] - v[k]);
+            }
+        }
+    }
+
+    /// Sums the impulses of the air at every vertex.
+    fn sum_air_impulses(&self, regions: &Regions, particles: &mut Particles) {
+        let Some(air) = &self.air else {
+            return particles.air_impulses.clear();
+        };
+        let Particles {
+            start,
+            velocity,
+            air_impulses,
+            ..
+        } = particles;
+        air_impulses.resize(start.len(), [0.0; 4]);
+        self.ranges()
+            .sum(regions, air_impulses, |region, first, sums| {
+                self.arch.dispatch(AddAirImpulses {
+                    batches: &region.membrane,
+                    starts: &start[first..],
+                    velocities: &velocity[first..],
+                    sums,
+                    air,
+                });
+            });
     }
 
     /// Computes the displacements of the bending filter, stage by stage.
@@ -153,6 +240,7 @@ impl Run<'_> {
             low,
             velocity,
             filtered,
+            air_impulses,
             ..
         } = particles;
         let regions = &mut regions.domains[..];
@@ -193,6 +281,7 @@ impl Run<'_> {
                     first: at,
                     start,
                     bending,
+                    air_impulses,
                     step: &self.motion,
                 });
                 let end = at + fields.now.len();

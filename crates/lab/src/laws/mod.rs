@@ -13,6 +13,7 @@ mod order;
 mod stick_slip;
 mod strain;
 mod swing;
+mod viscosity;
 
 pub use cantilever::{Resolved, locking};
 pub use drape::{Drape, cusick};
@@ -33,7 +34,7 @@ pub struct Law {
 }
 
 /// Every law.
-pub static LAWS: [Law; 24] = [
+pub static LAWS: [Law; 26] = [
     Law {
         name: "cantilever",
         title: "a strip clamped horizontally bends by its weight: drop over reach against the heavy elastica, four kinds of mesh",
@@ -105,6 +106,18 @@ pub static LAWS: [Law; 24] = [
         title: "frequency of a clamped strip",
         tolerances: &swing::VIBRATING,
         run: swing::vibrating,
+    },
+    Law {
+        name: "viscous-stretch",
+        title: "a viscous strip that was stretched swings out or creeps back by Kelvin and Voigt's law",
+        tolerances: &viscosity::STRETCHED,
+        run: viscosity::stretched,
+    },
+    Law {
+        name: "viscous-bending",
+        title: "a viscous clamped strip vibrates with its damping ratio",
+        tolerances: &viscosity::BENT,
+        run: viscosity::bent,
     },
     Law {
         name: "buckling",

@@ -28,7 +28,7 @@ const STEPS: f64 = 400.0;
 const SOLVED: f64 = 1e-13;
 
 /// A strip about to move in a shape.
-struct Swing {
+pub(super) struct Swing {
     system: System,
     rest: Vec<Vec3>,
     shape: Vec<f64>,
@@ -39,13 +39,9 @@ impl Swing {
     /// Circular frequency of the motion [rad/s], by the times the projection on the shape
     /// vanishes.
     fn measure(&self, settings: MethodSettings, expected: f64) -> Result<f64, LabError> {
-        let away = Vec3::new(0.0, 0.0, self.amplitude);
-        let place = |(p, s): (&Vec3, &f64)| p + away * *s;
-        let positions = self.rest.iter().zip(&self.shape).map(place).collect();
-        let mut state = State::at_rest(&self.system, positions);
+        let mut state = self.displaced();
         let period = std::f64::consts::TAU / expected;
-        let resting = State::at_rest(&self.system, self.rest.clone());
-        let step = sound_step(&self.system, &resting, settings, period / STEPS)?;
+        let step = self.sound_step(settings, period / STEPS)?;
         let mut crossings: Vec<f64> = Vec::new();
         let mut last = (0.0, self.project(&state));
         in_time(
@@ -67,6 +63,40 @@ impl Swing {
             return Ok(f64::NAN);
         };
         Ok(std::f64::consts::PI * (crossings.len() - 1) as f64 / (end - first))
+    }
+
+    /// Projections on the shape at the start and after each step until `duration` [s]; without a `step` [s], the
+    /// longest sound one up to that wanted.
+    pub(super) fn course(
+        &self,
+        settings: MethodSettings,
+        step: Option<f64>,
+        [wanted, duration]: [f64; 2],
+    ) -> Result<Vec<f64>, LabError> {
+        let mut state = self.displaced();
+        let step = match step {
+            Some(step) => step,
+            None => self.sound_step(settings, wanted)?,
+        };
+        let mut course = vec![self.project(&state)];
+        in_time(&self.system, &mut state, settings, [step, duration], |s| {
+            course.push(self.project(s));
+        })?;
+        Ok(course)
+    }
+
+    /// The strip displaced in its shape, at rest.
+    fn displaced(&self) -> State {
+        let away = Vec3::new(0.0, 0.0, self.amplitude);
+        let place = |(p, s): (&Vec3, &f64)| p + away * *s;
+        let positions = self.rest.iter().zip(&self.shape).map(place).collect();
+        State::at_rest(&self.system, positions)
+    }
+
+    /// The longest step that keeps a disturbance of the resting strip small, up to that wanted [s].
+    fn sound_step(&self, settings: MethodSettings, wanted: f64) -> Result<f64, LabError> {
+        let resting = State::at_rest(&self.system, self.rest.clone());
+        sound_step(&self.system, &resting, settings, wanted)
     }
 
     fn project(&self, state: &State) -> f64 {
@@ -118,9 +148,15 @@ fn chain(mesh: MeshKind, mode: usize) -> Result<Swing, LabError> {
     })
 }
 
-/// A strip clamped at one end, without gravity, displaced in its first mode.
-fn beam(mesh: MeshKind) -> Result<(Swing, f64), LabError> {
-    let (length, elements, bend) = (0.1, 20, 1e-4);
+/// A strip clamped at one end, in some elements along it, without gravity, displaced in its first mode, its bending
+/// viscous by a share of critical damping; and its frequency [rad/s].
+pub(super) fn beam(
+    mesh: MeshKind,
+    elements: usize,
+    damping_ratio: f64,
+) -> Result<(Swing, f64), LabError> {
+    let (length, bend) = (0.1f64, 1e-4);
+    let frequency = BEAM * (bend / (DENSITY * length.powi(4))).sqrt();
     let cell = length / (elements as f64 + 0.5);
     let from = -(STRAIGHT as f64 - 0.5) * cell;
     let flat = rectangle(
@@ -135,6 +171,7 @@ fn beam(mesh: MeshKind) -> Result<(Swing, f64), LabError> {
         shear: 50.0,
         poisson: 0.0,
         bend: [bend; 3],
+        bend_viscosity: 2.0 * damping_ratio * bend / frequency,
         ..Material::default()
     };
     let cloth = flat.cloth(material, |p| Vec3::new(p.x, p.y, 0.0));
@@ -147,7 +184,10 @@ fn beam(mesh: MeshKind) -> Result<(Swing, f64), LabError> {
     let k = BEAM_ROOT;
     let ratio = (k.cosh() + k.cos()) / (k.sinh() + k.sin());
     let shape = |p: &Vec2| {
-        let s = (k * p.x / length).max(0.0);
+        let s = match clamped(p.x, cell) {
+            true => 0.0,
+            false => k * p.x / length,
+        };
         0.5 * (s.cosh() - s.cos() - ratio * (s.sinh() - s.sin()))
     };
     let swing = Swing {
@@ -156,7 +196,7 @@ fn beam(mesh: MeshKind) -> Result<(Swing, f64), LabError> {
         system,
         amplitude: 1e-3 * length,
     };
-    Ok((swing, BEAM * (bend / (DENSITY * length.powi(4))).sqrt()))
+    Ok((swing, frequency))
 }
 
 /// Frequencies of the modes: the error of second order grows with the square of the wave number.
@@ -210,7 +250,7 @@ pub(super) fn vibrating(cases: &mut Cases) -> Result<(), LabError> {
             if mesh != MeshKind::Right && kind != usual {
                 continue;
             }
-            let (swing, expected) = beam(mesh)?;
+            let (swing, expected) = beam(mesh, 20, 0.0)?;
             cases.measure(
                 format!("{mesh_name}, {name}"),
                 Expected::value(VIBRATION, expected),

@@ -1,0 +1,153 @@
+//! The drag of the air on triangles ([`crate::laws::air`]) as impulses at the start of a substep.
+//!
+//! With w the velocity of a triangle's middle relative to the air, w_n its component along the normal and w_t the one
+//! in the plane, the impulse of a substep h is
+//! ```text
+//! p = -(r_n w_n + r_t w_t),   r_c = min(h rho A C_c |w_c| / 2, m / 2)
+//! ```
+//! m the mass of the triangle, a third of p to each corner. Taken at the velocities at the start, cloth that the wind
+//! holds taut has the whole force of the wind, and the terminal velocity is exact. The minimum acts where a substep
+//! would take half of w or more: then w is halved. With it |p| <= m |w| / 2, and since a vertex has a third of the mass of each
+//! of its triangles, all impulses together never add kinetic energy relative to the air, at any substep, coefficient
+//! and density (Cauchy and Schwarz over the triangles of a vertex).
+
+use super::membrane::MembraneBatch;
+use crate::System;
+use crate::lanes::{Point, Triple, add_scaled, cross, dot, gather, lane_groups, scatter, sub};
+use pulp::{Simd, WithSimd};
+
+/// Least twice the area of a triangle by which its normal is divided [m2]: that of edges of 30 nm. Smaller ones have
+/// next to no force, and their squares stay within single precision.
+const LEAST_SIZE: f32 = 1e-15;
+
+/// The air during a substep.
+#[derive(Clone, Debug)]
+pub struct AirStep {
+    /// Velocity of the wind [m/s].
+    wind: [f32; 3],
+    /// h rho C / 4 across and along the cloth [kg s/m3]: times twice the area and the speed it is r.
+    across: f32,
+    along: f32,
+    /// Mass per area of each material [kg/m2].
+    densities: Vec<f32>,
+}
+
+impl AirStep {
+    /// The air of a system in substeps of h [s]; none where it exerts no force on triangles.
+    pub fn new(system: &System, h: f64) -> Option<Self> {
+        let air = system.control.air;
+        let share = 0.25 * h * air.density;
+        air.acts().then(|| Self {
+            wind: [0, 1, 2].map(|k| air.wind[k] as f32),
+            across: (share * air.normal) as f32,
+            along: (share * air.tangential) as f32,
+            densities: (system.materials.list.iter())
+                .map(|material| material.density as f32)
+                .collect(),
+        })
+    }
+}
+
+/// Adds the impulses of some triangles to sums at their corners [N s].
+pub struct AddAirImpulses<'a> {
+    /// The triangles.
+    pub batches: &'a [MembraneBatch],
+    /// The points of their region at the start of the substep.
+    pub starts: &'a [Point],
+    /// Their velocities [m/s].
+    pub velocities: &'a [Point],
+    /// The sums.
+    pub sums: &'a mut [Point],
+    /// The air.
+    pub air: &'a AirStep,
+}
+
+impl WithSimd for AddAirImpulses<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for batch in self.batches {
+            let density = self.air.densities[batch.law as usize];
+            for lane_group in 0..lane_groups::<S>() {
+                let third = impulse(
+                    simd,
+                    (batch, density, lane_group),
+                    self.starts,
+                    self.velocities,
+                    self.air,
+                );
+                add_to_corners(simd, batch, lane_group, third, self.sums);
+            }
+        }
+    }
+}
+
+/// A third of the impulse on the triangles of one lane group.
+#[inline(always)]
+fn impulse<S: Simd>(
+    simd: S,
+    (batch, density, lane_group): (&MembraneBatch, f32, usize),
+    starts: &[Point],
+    velocities: &[Point],
+    air: &AirStep,
+) -> Triple<S::f32s> {
+    let [x0, y0, z0, _] = gather(simd, starts, &batch.corners[0], lane_group);
+    let [x1, y1, z1, _] = gather(simd, starts, &batch.corners[1], lane_group);
+    let [x2, y2, z2, _] = gather(simd, starts, &batch.corners[2], lane_group);
+    let d1 = sub(simd, [x1, y1, z1], [x0, y0, z0]);
+    let d2 = sub(simd, [x2, y2, z2], [x0, y0, z0]);
+    let normal = cross(simd, d1, d2);
+    // Twice the area; a triangle without area has no normal and no force.
+    let size = simd.sqrt_f32s(dot(simd, normal, normal));
+    let size = simd.max_f32s(size, simd.splat_f32s(LEAST_SIZE));
+    let [a, b, c] = &batch.corners;
+    let v0 = gather(simd, velocities, a, lane_group);
+    let v1 = gather(simd, velocities, b, lane_group);
+    let v2 = gather(simd, velocities, c, lane_group);
+    let third = simd.splat_f32s(1.0 / 3.0);
+    let mut w = [third; 3];
+    for k in 0..3 {
+        let sum = simd.add_f32s(simd.add_f32s(v0[k], v1[k]), v2[k]);
+        w[k] = simd.mul_add_e_f32s(sum, third, simd.splat_f32s(-air.wind[k]));
+    }
+    let across = simd.div_f32s(dot(simd, w, normal), size);
+    let zero = simd.splat_f32s(0.0);
+    let part = simd.div_f32s(across, size);
+    let along = add_scaled(simd, w, normal, simd.sub_f32s(zero, part));
+    let speed = simd.sqrt_f32s(dot(simd, along, along));
+    let mass = simd.mul_f32s(batch.rest_area(simd, lane_group), simd.splat_f32s(density));
+    let most = simd.mul_f32s(mass, simd.splat_f32s(0.5));
+    let of_normal = simd.mul_f32s(simd.splat_f32s(air.across), simd.abs_f32s(across));
+    let of_normal = simd.min_f32s(simd.mul_f32s(size, of_normal), most);
+    let of_normal = simd.mul_f32s(of_normal, part);
+    let of_plane = simd.mul_f32s(simd.splat_f32s(air.along), speed);
+    let of_plane = simd.min_f32s(simd.mul_f32s(size, of_plane), most);
+    let minus_third = simd.splat_f32s(-1.0 / 3.0);
+    let sum = add_scaled(
+        simd,
+        [zero; 3],
+        normal,
+        simd.mul_f32s(of_normal, minus_third),
+    );
+    add_scaled(simd, sum, along, simd.mul_f32s(of_plane, minus_third))
+}
+
+/// Adds the same vector to the sums of the three corners.
+#[inline(always)]
+fn add_to_corners<S: Simd>(
+    simd: S,
+    batch: &MembraneBatch,
+    lane_group: usize,
+    add: Triple<S::f32s>,
+    sums: &mut [Point],
+) {
+    for k in 0..3 {
+        let corner = &batch.corners[k];
+        let [x, y, z, w] = gather(simd, sums, corner, lane_group);
+        let x = simd.add_f32s(x, add[0]);
+        let y = simd.add_f32s(y, add[1]);
+        let z = simd.add_f32s(z, add[2]);
+        scatter(simd, sums, corner, lane_group, [x, y, z, w]);
+    }
+}
