@@ -70,6 +70,24 @@ impl Collider {
         animated_positions(loaded, self.track.as_ref(), self.motion.as_deref(), time)
     }
 
+    /// Poses of the frames of its track at a time [s], moved with it as a whole.
+    pub fn frames(&self, time: f64) -> Vec<Pose> {
+        let Some(track) = &self.track else {
+            return Vec::new();
+        };
+        let frames = track.frames(time);
+        match self.pose(time) {
+            None => frames,
+            Some(whole) => {
+                let moved = frames.into_iter().map(|frame| Pose {
+                    rotation: whole.rotation * frame.rotation,
+                    shift: whole.apply(frame.shift),
+                });
+                moved.collect()
+            }
+        }
+    }
+
     /// Its surface as one that moves; the tree over it is built once.
     pub(crate) fn moving_surface(&self) -> MovingSurface {
         let build = || MovingSurface::new(self.surface.mesh());

@@ -3,6 +3,7 @@
 use crate::Motion;
 use crate::laws::air::Air;
 use crate::laws::elastic::ElasticLaw;
+use crate::tie::Tie;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::Vec3;
@@ -104,6 +105,9 @@ pub struct Control {
     /// Springs to points of moving solids.
     #[serde(default)]
     pub frames: Vec<FrameAttachment>,
+    /// Springs from points within triangles, and to points of surfaces that bend. Only XPBD supports them.
+    #[serde(default)]
+    pub ties: Vec<Tie>,
 }
 
 impl Default for Control {
@@ -115,6 +119,7 @@ impl Default for Control {
             air: Air::default(),
             attachments: Attachments::default(),
             frames: Vec::new(),
+            ties: Vec::new(),
         }
     }
 }

@@ -401,7 +401,11 @@ impl SceneRun {
             let target = frame.target(self.state.time);
             (self.state.positions[frame.vertex as usize] - target).norm()
         });
-        let all = self.system.elastics().map(gap).chain(frames);
+        let ties = self.system.control.ties.iter().map(|tie| {
+            let target = self.system.place_of(&tie.to, &self.state);
+            (tie.from.of(&self.state.positions) - target).norm()
+        });
+        let all = (self.system.elastics().map(gap)).chain(frames).chain(ties);
         all.fold(0.0, f64::max)
     }
 

@@ -225,6 +225,7 @@ impl SubModel {
                 air: system.control.air,
                 attachments,
                 frames: Vec::new(),
+                ties: Vec::new(),
             },
         };
         Self {

@@ -1,6 +1,7 @@
 //! What carries the cloth: for each part of it that hangs together, its distance from the solids and the share of its
 //! weight that nothing carries.
 
+use crate::tie::Tie;
 use crate::{PlacedSolid, State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{TriangleMesh, Vec3};
@@ -82,7 +83,8 @@ fn held_vertices(system: &System) -> Vec<bool> {
     let mut held = system.prescribed.pinned.clone();
     let attached = system.control.attachments.all().iter().map(|a| a.vertex);
     let led = system.control.frames.iter().map(|frame| frame.vertex);
-    for vertex in attached.chain(led) {
+    let tied = system.control.ties.iter().flat_map(Tie::vertices);
+    for vertex in attached.chain(led).chain(tied) {
         held[vertex as usize] = true;
     }
     held

@@ -1,6 +1,6 @@
 //! Surfaces whose vertices move by a rule of time: the skin of a figure, recorded frames.
 
-use crate::Motion;
+use crate::{Motion, Pose};
 use std::fmt;
 use std::sync::Arc;
 use toile_geometry::Vec3;
@@ -9,6 +9,12 @@ use toile_geometry::Vec3;
 pub trait Track: Send + Sync {
     /// Places of the vertices at a time [s], as many at every time [m].
     fn positions(&self, time: f64) -> Vec<Vec3>;
+
+    /// Poses of the frames that move with the surface at a time [s], as many at every time: the bones of a figure. At
+    /// first none.
+    fn frames(&self, _time: f64) -> Vec<Pose> {
+        Vec::new()
+    }
 
     /// A digest of all that the places depend on: two tracks of one digest are the same.
     fn digest(&self) -> u64;
@@ -27,6 +33,11 @@ impl SharedTrack {
     /// [`Track::positions`].
     pub fn positions(&self, time: f64) -> Vec<Vec3> {
         self.0.positions(time)
+    }
+
+    /// [`Track::frames`].
+    pub fn frames(&self, time: f64) -> Vec<Pose> {
+        self.0.frames(time)
     }
 }
 

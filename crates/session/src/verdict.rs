@@ -396,12 +396,16 @@ const CLOSING: f64 = 0.5;
 fn elastic_name(run: &SceneRun, index: usize) -> String {
     let world = run.world();
     let point = |p: Vec3| format!("[{:.3}, {:.3}, {:.3}]", p.x, p.y, p.z);
+    let name = |id| world.object(id).map_or("", |object| &object.name);
     let end = |end: AttachmentEnd| match end {
         AttachmentEnd::Vertex(vertex) => {
-            let name = world
-                .object(vertex.object)
-                .map_or("", |object| &object.name);
-            format!("vertex {} of \"{name}\"", vertex.vertex)
+            format!("vertex {} of \"{}\"", vertex.vertex, name(vertex.object))
+        }
+        AttachmentEnd::Surface {
+            object, triangle, ..
+        } => format!("triangle {triangle} of \"{}\"", name(object)),
+        AttachmentEnd::TrackFrame { object, frame, .. } => {
+            format!("frame {frame} of \"{}\"", name(object))
         }
         AttachmentEnd::Point(p) | AttachmentEnd::Frame { point: p, .. } => point(p),
     };

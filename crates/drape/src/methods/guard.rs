@@ -38,6 +38,14 @@ impl<M: Method> Method for Guarded<M> {
                 remedy: "attach cloth to places, or use xpbd".to_owned(),
             });
         }
+        if !system.control.ties.is_empty() && !self.method.follows_frames() {
+            return Err(DrapeError::Scene {
+                place: "attachments".to_owned(),
+                what: "the method knows no attachments within triangles or to surfaces that bend"
+                    .to_owned(),
+                remedy: "attach vertices of cloth to places, or use xpbd".to_owned(),
+            });
+        }
         self.start.clone_from(state);
         let result = self.method.advance(system, state, step);
         if result.is_ok() {

@@ -7,6 +7,7 @@ use super::object::{Kind, ObjectId};
 use super::vertex_map::VertexMap;
 use crate::control::FrameAttachment;
 use crate::laws::elastic::ElasticLaw;
+use crate::tie::{Tie, TieEnd, TrianglePoint};
 use crate::{DrapeError, Elastic, ElasticEnd};
 use toile_geometry::Vec3;
 
@@ -28,6 +29,25 @@ pub enum AttachmentEnd {
         /// The point.
         point: Vec3,
     },
+    /// A point within a triangle of an object's mesh. It goes along with the triangle: of cloth, of a solid that moves,
+    /// of a surface that bends.
+    Surface {
+        /// The object.
+        object: ObjectId,
+        /// The triangle.
+        triangle: u32,
+        /// The weights of its corners, of sum 1.
+        weights: [f64; 3],
+    },
+    /// A point that moves with a frame of an animated object's track, such as a bone, in the coordinates of the frame [m].
+    TrackFrame {
+        /// The object.
+        object: ObjectId,
+        /// The frame.
+        frame: u16,
+        /// The point.
+        point: Vec3,
+    },
 }
 
 /// A spring of rest length zero between two ends, at least one of them on a cloth.
@@ -46,6 +66,8 @@ pub(super) enum ResolvedEnd {
     Vertex(u32),
     Point(Vec3),
     Moving(ObjectId, Vec3),
+    /// A point within a triangle of cloth, of a surface that bends, or in a frame of a track.
+    Tied(TieEnd),
 }
 
 /// The attachments of a world in terms of the merged cloth.
@@ -55,6 +77,8 @@ pub(super) struct ResolvedAttachments {
     pub elastics: Vec<Elastic>,
     /// Attachments of vertices to moving objects.
     pub frames: Vec<FrameAttachment>,
+    /// Attachments with an end within a triangle or on a surface that bends.
+    pub ties: Vec<Tie>,
 }
 
 impl World {
@@ -64,16 +88,79 @@ impl World {
             AttachmentEnd::Vertex(vertex) => match map.vertex(vertex) {
                 Some(v) => return Some(ResolvedEnd::Vertex(v)),
                 None => {
+                    let point = TrianglePoint::vertex(vertex.vertex);
+                    if let Some(solid) = self.bending_solid(vertex.object) {
+                        return Some(ResolvedEnd::Tied(TieEnd::Surface { solid, point }));
+                    }
                     let mesh = &self.object(vertex.object)?.mesh;
                     (vertex.object, *mesh.positions.get(vertex.vertex as usize)?)
                 }
             },
             AttachmentEnd::Frame { object, point } => (object, point),
+            AttachmentEnd::TrackFrame {
+                object,
+                frame,
+                point,
+            } => {
+                let solid = self.bending_solid(object)?;
+                return Some(ResolvedEnd::Tied(TieEnd::TrackFrame {
+                    solid,
+                    frame,
+                    point,
+                }));
+            }
+            AttachmentEnd::Surface {
+                object,
+                triangle,
+                weights,
+            } => {
+                let mesh = &self.object(object)?.mesh;
+                let vertices = *mesh.triangles.get(triangle as usize)?;
+                let point = TrianglePoint { vertices, weights };
+                if let Some(solid) = self.bending_solid(object) {
+                    return Some(ResolvedEnd::Tied(TieEnd::Surface { solid, point }));
+                }
+                let [a, b, c] = vertices.map(|vertex| map.vertex(MeshVertex { object, vertex }));
+                if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+                    let vertices = [a, b, c];
+                    let point = TrianglePoint { vertices, weights };
+                    return Some(ResolvedEnd::Tied(TieEnd::Cloth(point)));
+                }
+                (object, point.of(&mesh.positions))
+            }
         };
         Some(match self.object(object)?.kind {
             Kind::Animated => ResolvedEnd::Moving(object, point),
             _ => ResolvedEnd::Point(point),
         })
+    }
+
+    /// The number of a solid whose vertices move one by one, among the colliders.
+    fn bending_solid(&self, id: ObjectId) -> Option<u32> {
+        self.object(id).filter(|object| object.bends())?;
+        let mut solids = (self.objects()).filter(|(_, object)| object.kind != Kind::Deformable);
+        let at = solids.position(|(other, _)| other == id)?;
+        Some(at as u32)
+    }
+
+    /// A tie between two ends, one of which is within a triangle of cloth or not of a single point of cloth; none where
+    /// no force can move either end.
+    fn tie(&self, from: ResolvedEnd, to: ResolvedEnd, law: ElasticLaw) -> Option<Tie> {
+        let end = |end: ResolvedEnd| {
+            Some(match end {
+                ResolvedEnd::Vertex(v) => TieEnd::Cloth(TrianglePoint::vertex(v)),
+                ResolvedEnd::Point(place) => TieEnd::Place(place),
+                ResolvedEnd::Moving(object, point) => {
+                    let motion = self.object(object)?.motion.clone()?;
+                    TieEnd::Frame { point, motion }
+                }
+                ResolvedEnd::Tied(end) => end,
+            })
+        };
+        match (end(from)?, end(to)?) {
+            (TieEnd::Cloth(from), to) | (to, TieEnd::Cloth(from)) => Some(Tie { from, to, law }),
+            _ => None,
+        }
     }
 
     /// The attachments in terms of the merged cloth, without those between a merged vertex and itself and those that
@@ -109,6 +196,9 @@ impl World {
                         motion,
                         law,
                     }));
+                }
+                (from @ ResolvedEnd::Tied(_), to) | (from, to @ ResolvedEnd::Tied(_)) => {
+                    resolved.ties.extend(self.tie(from, to, law));
                 }
                 // No force can move either end.
                 _ => {}
@@ -153,8 +243,17 @@ impl World {
                 AttachmentEnd::Point(_) => {}
                 AttachmentEnd::Vertex(vertex) => {
                     self.check_vertex(vertex)?;
-                    self.existing(vertex.object)?.check_frame()?;
                 }
+                AttachmentEnd::Surface {
+                    object,
+                    triangle,
+                    weights,
+                } => self.existing(object)?.check_place(triangle, weights)?,
+                AttachmentEnd::TrackFrame {
+                    object,
+                    frame,
+                    point,
+                } => self.existing(object)?.check_track_frame(frame, point)?,
                 AttachmentEnd::Frame { object, point } => {
                     let solid = self.existing(object)?;
                     if solid.kind == Kind::Deformable {

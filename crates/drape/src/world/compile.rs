@@ -91,6 +91,7 @@ impl World {
             air_drag: environment.air.drag + environment.damping.mass,
             air: environment.air,
             frames: attachments.frames,
+            ties: attachments.ties,
             ..Control::default()
         };
         builder.elastics = attachments.elastics;

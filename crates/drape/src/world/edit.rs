@@ -272,6 +272,11 @@ impl World {
             let remedy = "remove what is attached to points of it, or attach it to vertices";
             return Err(object.refuse("cloth has no frame to be attached to", remedy));
         }
+        if kind != Kind::Animated && self.attachments.values().any(|a| a.has_track_frame_of(id)) {
+            let object = self.existing(id)?;
+            let remedy = "remove what is attached to them first";
+            return Err(object.refuse("the frames of its track would stand still", remedy));
+        }
         let object = self.existing_mut(id)?;
         let moves = |kind: Kind| object.motion.as_ref().filter(|_| kind == Kind::Animated);
         let [old_pose, new_pose] = [was, kind].map(|kind| moves(kind).map(|m| m.pose(time)));
@@ -381,6 +386,12 @@ impl ObjectAttachment {
         self.ends.iter().any(of)
     }
 
+    /// Whether an end is a point in a frame of an object's track.
+    fn has_track_frame_of(&self, id: ObjectId) -> bool {
+        let of = |end: &AttachmentEnd| matches!(end, AttachmentEnd::TrackFrame { object, .. } if *object == id);
+        self.ends.iter().any(of)
+    }
+
     /// Maps those of its ends that are points in the frame of an object.
     fn move_frames(&mut self, id: ObjectId, change: impl Fn(Vec3) -> Vec3) {
         for end in &mut self.ends {
@@ -396,7 +407,9 @@ impl ObjectAttachment {
     fn names(&self, id: ObjectId) -> bool {
         self.ends.iter().any(|end| match end {
             AttachmentEnd::Vertex(vertex) => vertex.object == id,
-            AttachmentEnd::Frame { object, .. } => *object == id,
+            AttachmentEnd::Frame { object, .. }
+            | AttachmentEnd::Surface { object, .. }
+            | AttachmentEnd::TrackFrame { object, .. } => *object == id,
             AttachmentEnd::Point(_) => false,
         })
     }

@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use super::attachment::ResolvedEnd;
+use crate::tie::{TieEnd, TrianglePoint};
 
 /// An attachment that was to draw its ends together, and has not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,18 +27,24 @@ impl Simulation {
     pub fn open_attachments(&self) -> Vec<OpenAttachment> {
         let (prescribed, _) = self.present().prescribed();
         let zero = toile_geometry::Vec3::zeros();
-        let place = |end: &ResolvedEnd| match *end {
-            ResolvedEnd::Vertex(v) => {
-                let v = v as usize;
-                let [x, velocity] = [self.state.positions[v], self.state.velocities[v]];
-                (x, velocity, prescribed[v])
-            }
-            ResolvedEnd::Point(point) => (point, zero, true),
+        let of_cloth = |point: &TrianglePoint| {
+            let [x, velocity] = [&self.state.positions, &self.state.velocities];
+            let weighed = point.vertices.iter().zip(point.weights);
+            let is_held = weighed
+                .filter(|(_, weight)| *weight != 0.0)
+                .all(|(&v, _)| prescribed[v as usize]);
+            (point.of(x), point.of(velocity), is_held)
+        };
+        let place = |end: &ResolvedEnd| match end {
+            ResolvedEnd::Vertex(v) => of_cloth(&TrianglePoint::vertex(*v)),
+            ResolvedEnd::Point(point) => (*point, zero, true),
             ResolvedEnd::Moving(object, point) => {
-                let motion = self.world().object(object).and_then(|o| o.motion.as_ref());
+                let motion = self.world().object(*object).and_then(|o| o.motion.as_ref());
                 let pose = motion.map(|motion| motion.pose(self.state.time));
-                (pose.map_or(point, |pose| pose.apply(point)), zero, true)
+                (pose.map_or(*point, |pose| pose.apply(*point)), zero, true)
             }
+            ResolvedEnd::Tied(TieEnd::Cloth(point)) => of_cloth(point),
+            ResolvedEnd::Tied(end) => (self.system.place_of(end, &self.state), zero, true),
         };
         let open = |(index, attachment): (usize, &super::ObjectAttachment)| {
             let [a, b] = attachment

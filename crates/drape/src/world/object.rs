@@ -235,13 +235,49 @@ impl Object {
         }
     }
 
-    /// Refuses what is to be attached to it where its vertices move one by one, so that it has no frame.
+    /// Whether its vertices move one by one.
+    pub(super) fn bends(&self) -> bool {
+        self.kind == Kind::Animated && self.track.is_some()
+    }
+
+    /// Refuses what is to be attached to its frame where its vertices move one by one, so that it has none.
     pub(super) fn check_frame(&self) -> Result<(), DrapeError> {
-        if self.kind == Kind::Animated && self.track.is_some() {
-            let remedy = "attach it to a point in space, or to a solid that moves as a whole";
-            return Err(self.refuse("nothing can be attached to a surface that bends", remedy));
+        if self.bends() {
+            let remedy = "attach it to a point of its surface or to a frame of its track";
+            return Err(self.refuse("a surface that bends has no frame of its own", remedy));
         }
         Ok(())
+    }
+
+    /// Refuses a point within a triangle that it has not, or outside of it.
+    pub(super) fn check_place(&self, triangle: u32, weights: [f64; 3]) -> Result<(), DrapeError> {
+        let count = self.mesh.triangles.len();
+        if triangle as usize >= count {
+            let what = format!("it has no triangle {triangle}");
+            return Err(self.refuse(&what, &format!("name one below {count}")));
+        }
+        let sum: f64 = weights.iter().sum();
+        // Rounding of weights in files; NaN is outside.
+        let within = weights.iter().all(|&weight| weight >= -1e-9);
+        if !(within && (sum - 1.0).abs() <= 1e-6) {
+            let what = format!("weights {weights:?} are of no point of a triangle");
+            return Err(self.refuse(&what, "give three numbers of 0 to 1 with the sum 1"));
+        }
+        Ok(())
+    }
+
+    /// Refuses a frame that its track has not, and a point in it that is no number.
+    pub(super) fn check_track_frame(&self, frame: u16, point: Vec3) -> Result<(), DrapeError> {
+        let track = self.track.as_ref().filter(|_| self.bends());
+        let count = track.map_or(0, |track| track.frames(0.0).len());
+        if usize::from(frame) >= count {
+            let what = format!("it has no frame {frame}: there are {count}");
+            return Err(self.refuse(&what, "attach it to a point of the surface"));
+        }
+        match point.iter().all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => Err(self.refuse("the point is not finite", "give numbers in m")),
+        }
     }
 
     /// Refuses a track of another surface, or one that begins at no number.

@@ -6,6 +6,7 @@ use super::object::{MeshVertex, ObjectId};
 use super::present::Present;
 use super::transfer::{MeetingPoint, StartingMotion, Transfer};
 use super::{VertexMap, World};
+use crate::tie::Tie;
 use crate::{Control, DrapeError, State, System};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -161,7 +162,10 @@ impl Simulation {
         let count = self.system.vertex_count() as u32;
         let attachments = (control.attachments.all().iter()).map(|attachment| attachment.vertex);
         let frames = control.frames.iter().map(|frame| frame.vertex);
-        if attachments.chain(frames).any(|vertex| vertex >= count) {
+        let misses = |tie: &Tie| !self.system.has_ends_of(tie);
+        if attachments.chain(frames).any(|vertex| vertex >= count)
+            || control.ties.iter().any(misses)
+        {
             return Err(DrapeError::Scene {
                 place: "checkpoint, control.attachments".to_owned(),
                 what: "there are fewer vertices".to_owned(),

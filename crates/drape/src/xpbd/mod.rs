@@ -39,6 +39,7 @@ mod run;
 mod settings;
 mod several_solids;
 mod skin_contacts;
+mod tie_constraint;
 mod triangle_sums;
 mod vertex_partition;
 mod viscosity;
@@ -413,6 +414,7 @@ impl Xpbd {
         }
         self.regions
             .set_attachments(system, &self.partition, origin);
+        self.regions.set_ties(system, &self.partition);
         let iterated = self.settings.iterations > 1;
         for region in self.regions.all_mut() {
             region.begin(iterated);

@@ -1,6 +1,6 @@
 //! The moving solids in a step: their surfaces, straight from its start to its end.
 
-use crate::Collider;
+use crate::{Collider, Pose};
 use std::sync::Arc;
 use toile_geometry::{MovingSurface, Vec3};
 
@@ -24,6 +24,8 @@ struct MovingSolid {
     surface: MovingSurface,
     /// Places of the vertices at the times asked for last [s], [m].
     known: Vec<(f64, Arc<Vec<Vec3>>)>,
+    /// Poses of the frames of its track at both ends of the step.
+    frames: [Vec<Pose>; 2],
 }
 
 /// Times whose places are kept: start, middle and end of a step, and the end of one part of it.
@@ -35,6 +37,7 @@ impl MovingSolid {
             of: of.clone(),
             surface: of.moving_surface(),
             known: Vec::new(),
+            frames: Default::default(),
         }
     }
 
@@ -64,6 +67,7 @@ impl MovingSolid {
     fn set_step(&mut self, times: [f64; 2]) -> f64 {
         let [from, to] = times.map(|time| self.positions(time));
         self.surface.set_step(&from, &to);
+        self.frames = times.map(|time| self.of.frames(time));
         let ways = from.iter().zip(&*to).map(|(a, b)| (b - a).norm_squared());
         ways.fold(0.0, f64::max)
     }
@@ -114,6 +118,15 @@ impl MovingSolids {
     pub fn surface(&self, collider: u32) -> Option<&MovingSurface> {
         let solid = self.solids.get(collider as usize)?.as_ref()?;
         Some(&solid.surface)
+    }
+
+    /// Where a point in a frame of a collider's track is at a share of the step, straight on between its ends [m]; none
+    /// where there is no such frame.
+    pub fn in_frame(&self, collider: u32, (frame, point): (u16, Vec3), share: f64) -> Option<Vec3> {
+        let solid = self.solids.get(collider as usize)?.as_ref()?;
+        let [from, to] = &solid.frames;
+        let [from, to] = [from, to].map(|poses| poses.get(usize::from(frame)));
+        Some(from?.apply(point).lerp(&to?.apply(point), share))
     }
 
     /// Whether any solid moves.

@@ -6,6 +6,7 @@ use super::carried_plane::CarriedPlane;
 use super::contact::{ContactConstraint, ContactStencil, ContactStep, Solid, solve_stencils};
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::skin_contacts::SkinContact;
+use super::tie_constraint::{TieConstraint, solve_ties, stiff_ties};
 use super::vertex_partition::{Partition, VertexPartition, batches};
 use super::viscosity::{Viscosity, ViscousBatch};
 use crate::lanes::{LANES, Point, Row};
@@ -28,6 +29,7 @@ pub struct Region {
     attachments: Vec<AttachmentConstraint>,
     /// Attachments that end on moving solids: index among the attachments, index among the control's frames.
     frames: Vec<[u32; 2]>,
+    ties: Vec<TieConstraint>,
     /// Contacts of points within triangles with surfaces.
     pub contacts: Vec<ContactStencil>,
     /// Their planes on solids that move; empty where none does.
@@ -206,6 +208,28 @@ impl Regions {
                 .frames
                 .push([region.attachments.len() as u32, number]);
             region.attachments.push(constraint);
+        }
+    }
+
+    /// Replaces the ties by those of the control.
+    pub fn set_ties(&mut self, system: &System, numbering: &VertexPartition) {
+        for region in self.all_mut() {
+            region.ties.clear();
+        }
+        for (number, tie) in stiff_ties(system) {
+            let vertices: Vec<u32> = tie.vertices().collect();
+            let partition = numbering.partition_of(&vertices);
+            let start = numbering.start(partition) as u32;
+            let constraint = TieConstraint::new(tie, number, numbering, start);
+            self.at(partition).ties.push(constraint);
+        }
+    }
+
+    /// Sets the ends of the ties to where they are at a time [s], the end of the substep.
+    pub fn follow_ties(&mut self, solid: &Solid, time: f64) {
+        let of = (&solid.system.control, solid.moving);
+        for tie in self.all_mut().flat_map(|region| &mut region.ties) {
+            tie.follow(of, solid.origin, [time, solid.shares[1]]);
         }
     }
 
@@ -396,6 +420,9 @@ impl Region {
         for constraint in self.elastics.iter_mut().chain(&mut self.attachments) {
             constraint.lambda = [0.0; 3];
         }
+        for tie in &mut self.ties {
+            tie.lambda = [0.0; 3];
+        }
         for contact in self.contacts.iter_mut().chain(&mut self.cloth) {
             contact.begun_at = contact.point(starts);
             contact.constraint.lambda_normal = 0.0;
@@ -442,6 +469,7 @@ impl Region {
         });
         solve_attachments(&mut self.elastics, points, step.contact.kappa);
         solve_attachments(&mut self.attachments, points, step.contact.kappa);
+        solve_ties(&mut self.ties, points, step.contact.kappa);
         solve_stencils(self.contacts.iter_mut(), points, &step.contact);
         let skin = self.skin.iter_mut().map(|contact| &mut contact.stencil);
         solve_stencils(skin, points, &step.contact);

@@ -69,6 +69,9 @@ impl Run<'_> {
                 },
                 ..self.sweep
             };
+            if !system.control.ties.is_empty() {
+                regions.follow_ties(&sweep.solid, times[1]);
+            }
             if sweep.solid.has_surfaces() {
                 for contact in &mut particles.contacts {
                     contact.clear();
