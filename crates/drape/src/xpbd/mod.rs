@@ -35,6 +35,7 @@ mod membrane;
 mod moving_solids;
 mod particles;
 mod region;
+mod report;
 mod run;
 mod settings;
 mod several_solids;
@@ -55,6 +56,7 @@ use membrane::{LawRow, inverse_mass};
 use moving_solids::MovingSolids;
 use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
+pub use report::{ConstraintCount, XpbdReport};
 use run::Run;
 use skin_contacts::{SkinSearch, StepStart};
 pub use settings::{Losses, XpbdSettings};
@@ -63,30 +65,6 @@ use toile_geometry::Vec3;
 use vertex_partition::VertexPartition;
 use viscosity::Viscosity;
 pub(crate) use xpbd_method::XpbdMethod;
-
-/// The outcome of some substeps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct XpbdReport {
-    /// Pieces into which each substep was divided; 1 where it was taken whole.
-    pub pieces: u32,
-    /// Kinetic energy at the end [J].
-    pub kinetic_energy: f64,
-    /// Speed of the fastest vertex at the end [m/s].
-    pub fastest: f64,
-}
-
-/// Numbers of constraints of one sweep.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ConstraintCount {
-    /// Triangles with three strains each.
-    pub membrane: usize,
-    /// Entries of the bending force, or triangles with three curvatures for x, y and z each.
-    pub bending: usize,
-    /// Elastics, three rows each.
-    pub elastics: usize,
-    /// Contact samples.
-    pub contacts: usize,
-}
 
 /// Most halvings of a substep that fails, before it is an error.
 const MAX_STEP_HALVINGS: u32 = 6;
