@@ -69,9 +69,11 @@ pub enum Task {
     Replay(Replay),
     /// Simulate a scene: objects, elastics, gravity (JSON, SI units; see docs/FORMATS.md).
     ///
-    /// Writes the frames asked for and the last state as OBJ (m), report.json (SI units) and
+    /// Writes the frames asked for (SCENE.frames, with checkpoints beside it), the last state as OBJ (m), report.json (SI units) and
     /// timing.json (s).
     Run(Run),
+    /// Write recorded frames (SCENE.frames of `toile run`) for other programs, or as pictures.
+    Frames(FramesTask),
     /// Hold the simulation against physical laws: expected, measured, error, pass (SI units).
     ///
     /// Exit status 0 if every check is met, 1 if any is not; docs/methods/laws.md names those that are not.
@@ -176,12 +178,15 @@ pub struct Run {
     /// Go on from checkpoint.json in that folder: the results are those of a run without interruption.
     #[arg(long)]
     pub resume: bool,
+    /// Go on from this frame, counted from 0: from the checkpoint in SCENE.checkpoints before it.
+    #[arg(long, value_name = "FRAME", conflicts_with = "resume")]
+    pub restart: Option<usize>,
     /// End the run with checkpoint.json and exit status 3 once a simulated second takes more processor time than this,
     /// as in 30s or 10min.
     #[arg(long, value_name = "TIME")]
     pub give_up: Option<Duration>,
     /// Paint pictures, picture-WHEN.png, from four sides, all with one camera that takes in whatever moves: first, last,
-    /// a time as in 0.5s, or frames for each frame saved (picture-00000.png and so on). Alone: first,last.
+    /// or a time as in 0.5s. Alone: first,last.
     #[arg(
         long,
         value_name = "WHEN",
@@ -193,6 +198,24 @@ pub struct Run {
     /// The object that the camera of the pictures follows. Default: it stands, and takes in all that moves.
     #[arg(long, value_name = "OBJECT", requires = "picture")]
     pub picture_of: Option<String>,
+}
+
+/// `toile frames`.
+#[derive(Debug, Args)]
+pub struct FramesTask {
+    /// The frames (NAME.frames).
+    pub frames: PathBuf,
+    /// File to write, by its ending: .glb animated by morph targets; .pc2 a point cache for each surface that moves,
+    /// with the mesh it belongs to as .obj beside it (Blender: mesh cache); .obj or .png a file for each frame,
+    /// NAME-00000.obj and so on.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Only this object; in pictures the one that the camera goes along with.
+    #[arg(long, value_name = "NAME")]
+    pub object: Option<String>,
+    /// Only this frame, counted from 0, as .obj or .png.
+    #[arg(long, value_name = "FRAME")]
+    pub frame: Option<usize>,
 }
 
 /// How finely to mesh and drape.

@@ -56,6 +56,7 @@ fn run(task: Task, output: &Output) -> Result<Made, Failure> {
         Task::Print(print) => print_commands::print(&print, output),
         Task::Nest(nest) => nest_commands::nest(&nest, output),
         Task::Body(body) => tool_commands::body(&body, output),
+        Task::Frames(frames) => tool_commands::frames(&frames, output),
         Task::Run(run) => return tool_commands::run(&run, output),
         Task::Validate(validate) => lab_commands::validate(&validate, output),
         Task::Chart(chart) => lab_commands::chart(&chart, output),

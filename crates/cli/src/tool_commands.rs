@@ -1,18 +1,18 @@
 //! Commands that need no session.
 
-use crate::arguments::{Body, Convert, Mesh, Run};
+use crate::arguments::{Body, Convert, FramesTask, Mesh, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Made, Output, count};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
-    AskedStance, BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, PersonFile,
-    PictureOptions, Project, RunOptions, SizeChoice, convert as convert_file, edit_body,
-    figure_named, fit_mesh, make_body, measure_mesh, mesh_panels, open_body_edits, open_mannequin,
-    open_measurements, run_scene, stretch_body,
+    AskedStance, BodyChoice, BodyReport, BodySource, Description, Figure, Fit, FramesExport,
+    Moment, PersonFile, PictureOptions, Project, RunOptions, SizeChoice, convert as convert_file,
+    edit_body, export_frames, figure_named, fit_mesh, make_body, measure_mesh, mesh_panels,
+    open_body_edits, open_mannequin, open_measurements, run_scene, stretch_body,
 };
 
 /// A pattern in another format.
@@ -321,11 +321,38 @@ fn rounded(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 
+/// Recorded frames in another format.
+pub fn frames(task: &FramesTask, output: &Output) -> Result<Value, Failure> {
+    let export = FramesExport {
+        object: task.object.clone(),
+        frame: task.frame,
+    };
+    let outcome = export_frames(&task.frames, &task.out, &export)
+        .map_err(|error| Failure::from(error).about(&task.frames))?;
+    for note in &outcome.notes {
+        output.warn(format!("note: {note}"));
+    }
+    output.say(format!("read {}", count(outcome.frames, "frame")));
+    match &outcome.files[..] {
+        [first, .., last] if outcome.files.len() > 8 => output.say(format!(
+            "wrote {} files, {} to {}",
+            outcome.files.len(),
+            first.display(),
+            last.display()
+        )),
+        files => files
+            .iter()
+            .for_each(|file| output.say(format!("wrote {}", file.display()))),
+    }
+    Ok(json!({ "files": outcome.files, "frames": outcome.frames, "warnings": outcome.notes }))
+}
+
 /// Simulates a scene.
 pub fn run(run: &Run, output: &Output) -> Result<Made, Failure> {
     let options = RunOptions {
         checkpoint_step: run.checkpoint,
         resume: run.resume,
+        restart: run.restart,
         give_up: run.give_up.map(Duration::as_seconds),
         pictures: PictureOptions {
             times: run.picture.clone(),
@@ -351,20 +378,7 @@ pub fn run(run: &Run, output: &Output) -> Result<Made, Failure> {
         number("body_intersections"),
         number("self_intersections"),
     ));
-    let is_frame = |file: &&PathBuf| {
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        name.starts_with("frame-")
-    };
-    let frames = outcome.files.iter().filter(is_frame).count();
-    if frames > 0 {
-        let all = run.out.join("frame-*.obj");
-        output.say(format!(
-            "wrote {} ({})",
-            all.display(),
-            count(frames, "file")
-        ));
-    }
-    for file in outcome.files.iter().filter(|file| !is_frame(file)) {
+    for file in &outcome.files {
         output.say(format!("wrote {}", file.display()));
     }
     let made = json!({ "files": outcome.files, "report": outcome.report });

@@ -479,7 +479,7 @@ fn a_scene_is_simulated_and_a_bad_one_refused() {
         report.contains("glitter"),
         "unknown fields are reported: {report}"
     );
-    assert!(place("out/frame-00001-flag.obj").is_file() && place("out/flag.obj").is_file());
+    assert!(place("out/scene.frames").is_file() && place("out/flag.obj").is_file());
     std::fs::write(place("bad.json"), scene.replace("[0, 4]", "[0, 99]")).unwrap();
     let bad = run("bad.json");
     assert_eq!(bad.status.code(), Some(2));

@@ -2,10 +2,12 @@
 
 use crate::merge::keeps_corners;
 use crate::{DrapeError, Material};
+use serde::{Deserialize, Serialize};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// A deformable surface: positions, and the rest shape of each triangle.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Cloth {
     /// Positions [m].
     pub positions: Vec<Vec3>,

@@ -1,6 +1,7 @@
 //! Settings of contact with solids and of cloth with cloth: offsets, stiffness, friction.
 
 use crate::{DrapeError, Material};
+use serde::{Deserialize, Serialize};
 
 /// Distance from a solid to which its distance field extends [m].
 pub(crate) const FIELD_REACH: f64 = 0.03;
@@ -13,7 +14,8 @@ pub(crate) const MOST_EXTRA: f64 = 8e-3;
 pub const MOST_OFFSET: f64 = FIELD_REACH - MOST_EXTRA;
 
 /// Settings of contact with solids and of cloth with cloth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ContactSettings {
     /// Distance of the middle of the cloth from a solid at which contact begins [m], at most [`MOST_OFFSET`]; half the
     /// cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an edge on the

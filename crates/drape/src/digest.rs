@@ -28,6 +28,13 @@ impl Digest {
         }
     }
 
+    /// Adds numbers.
+    pub fn numbers(&mut self, numbers: &[f64]) {
+        for number in numbers {
+            self.bytes(&number.to_bits().to_le_bytes());
+        }
+    }
+
     /// Adds vectors in space.
     pub fn vectors(&mut self, vectors: &[Vec3]) {
         for number in vectors.iter().flat_map(Vec3::iter) {

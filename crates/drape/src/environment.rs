@@ -1,11 +1,13 @@
 //! Gravity, air, damping and contact of a world, the same for all objects.
 
 use crate::{Air, ContactSettings, DrapeError};
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// Rayleigh damping (Rayleigh 1877): forces -(mass M + stiffness K) v. The stiffness part acts on
 /// strain rates of membrane and bending, so that rigid motion is not damped.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Damping {
     /// Coefficient of mass [1/s].
     pub mass: f64,
@@ -14,7 +16,8 @@ pub struct Damping {
 }
 
 /// Gravity, air, damping and contact, the same for all objects.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Environment {
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
@@ -32,6 +35,19 @@ pub struct Environment {
     pub(crate) recess: f64,
 }
 
+/// A load or a setting of the environment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Parameter {
+    /// Acceleration of gravity [m/s2].
+    Gravity(Vec3),
+    /// The air with its wind.
+    Air(Air),
+    /// Rayleigh damping.
+    Damping(Damping),
+    /// Contact.
+    Contact(ContactSettings),
+}
+
 /// Refuses a number that is not finite or below `least`.
 pub(crate) fn check_number(field: &str, value: f64, least: f64) -> Result<(), DrapeError> {
     match value.is_finite() && value >= least {
@@ -45,6 +61,19 @@ pub(crate) fn check_number(field: &str, value: f64, least: f64) -> Result<(), Dr
 }
 
 impl Environment {
+    /// The environment with another value of one parameter.
+    #[must_use]
+    pub fn with(&self, parameter: Parameter) -> Self {
+        let mut changed = self.clone();
+        match parameter {
+            Parameter::Gravity(gravity) => changed.gravity = gravity,
+            Parameter::Air(air) => changed.air = air,
+            Parameter::Damping(damping) => changed.damping = damping,
+            Parameter::Contact(contact) => changed.contact = contact,
+        }
+        changed
+    }
+
     /// Refuses numbers out of range.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //! use it by `#[serde(with = "crate::exact")]`.
 
 use serde::de::{Error, Unexpected};
-use serde::{Deserialize, Deserializer, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Words for numbers that are not finite.
 const WORDS: [(&str, f64); 3] = [
@@ -41,5 +41,25 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
             };
             known.map(|(_, number)| *number).ok_or_else(unknown)
         }
+    }
+}
+
+/// The same for two numbers.
+pub(crate) mod pair {
+    use super::Serialize;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    struct Number(#[serde(with = "super")] f64);
+
+    /// Writes two numbers or their words.
+    pub(crate) fn serialize<S: Serializer>(pair: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
+        pair.map(Number).serialize(to)
+    }
+
+    /// Reads two numbers or their words.
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
+        let pair = <[Number; 2]>::deserialize(from)?;
+        Ok(pair.map(|Number(number)| number))
     }
 }

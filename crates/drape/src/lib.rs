@@ -5,6 +5,7 @@
 //! contacts are recomputed, a [`Workspace`] is private memory. A model is compiled from a [`World`].
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod action;
 mod bending_structure;
 mod caps;
 mod carry;
@@ -46,9 +47,11 @@ mod pair_policies;
 mod pairs;
 mod patches;
 mod pseudo_transient;
+mod recorded_track;
 mod reference;
 mod rest_data;
 mod scene;
+mod scene_checkpoint;
 mod scene_run;
 mod sew;
 mod solid_friction;
@@ -65,6 +68,7 @@ mod verdict;
 mod world;
 mod xpbd;
 
+pub use action::{Action, HAND_STIFFNESS, Input, Spot};
 pub use carry::Carry;
 pub use cloth::Cloth;
 pub use collider::{Collider, PlacedSolid, PrescribedVertex};
@@ -74,7 +78,7 @@ pub use contacts::{Contact, Contacts};
 pub use control::{Attachment, Attachments, Control, FrameAttachment};
 pub use digest::Digest;
 pub use elastic::{Elastic, ElasticCouplings, ElasticEnd};
-pub use environment::{Damping, Environment};
+pub use environment::{Damping, Environment, Parameter};
 pub use equilibrium::{Equilibrium, Prediction};
 pub use error::DrapeError;
 pub use fabrics::{FabricSources, LIBRARY, LibraryFabric};
@@ -96,9 +100,11 @@ pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Expansion, Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pair_policies::{BETWEEN_OBJECTS, PairPolicies};
 pub use pseudo_transient::{PseudoTransientContinuation, RestSettings};
+pub use recorded_track::RecordedTrack;
 pub use rest_data::RestData;
 pub use scene::{MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject};
-pub use scene_run::{SceneCheckpoint, SceneRun, Surface, TimeSettings};
+pub use scene_checkpoint::SceneCheckpoint;
+pub use scene_run::{SceneRun, Surface, TimeSettings};
 pub use sew::{SewRun, SewSettings};
 pub use solid_friction::SolidFriction;
 pub use state::State;

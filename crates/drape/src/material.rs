@@ -3,9 +3,11 @@
 use crate::DrapeError;
 use crate::laws::bending::{BendingMatrix, bending_matrix};
 use crate::laws::stretch::{Compression, MembraneLaw};
+use serde::{Deserialize, Serialize};
 
 /// An orthotropic cloth: membrane, bending, mass, surface, and how it loses energy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Material {
     /// Mass per area [kg/m2].
     pub density: f64,
@@ -24,6 +26,7 @@ pub struct Material {
     /// Stretch beyond which warp and weft are 100 times as stiff, as a share of the rest length; infinite for none.
     /// Usual:
     /// 0.01 to 0.1.
+    #[serde(with = "crate::exact::pair")]
     pub strain_limit: [f64; 2],
     /// Law of the membrane under compression.
     pub compression: Compression,

@@ -1,18 +1,21 @@
 //! The run of a scene: a method steps its world in time or to equilibrium, and vertices that attachments have brought
 //! together are merged.
 
+use crate::action::{Action, Hand, Input};
 use crate::collision::Tally;
-use crate::digest::Digest;
 use crate::measure::{Measures, measure, self_intersections};
 use crate::merge::keeps_corners;
 use crate::method::Method;
 use crate::methods::whole_energy;
-use crate::world::{Edited, MeshVertex, ObjectId, Simulation, Solids, World, WorldEdit};
-use crate::{Control, DrapeError, Elastic, MethodKind, MethodSettings, Scene, State, Workspace};
-use serde::{Deserialize, Serialize};
+use crate::scene_checkpoint::{SceneCheckpoint, scene_digest};
+use crate::world::{Edited, ObjectId, Simulation, Solids, World, WorldEdit};
+use crate::{
+    Attachments, Cloth, Control, DrapeError, Elastic, MethodKind, MethodSettings, Scene, State,
+    Workspace,
+};
 use std::collections::BTreeMap;
 use std::ops::{Deref, Range};
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh};
 
 /// Duration, step and method of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,26 +50,22 @@ pub struct SceneRun {
     tally: Option<Tally>,
     /// Whether the method was rebuilt after the last step.
     is_renewed: bool,
-    /// Whether the world is not that of a scene, from the start or after an edit.
-    is_edited: bool,
+    /// The scene that it began with, if any.
+    origin: Option<Origin>,
+    /// Whether rest shapes are others than those that the structure was compiled for.
+    is_reshaped: bool,
+    /// Hands on the cloth.
+    hands: Vec<Hand>,
+    /// Attachments of the world, without the hands.
+    own_attachments: Attachments,
+    /// All that was done to it.
+    inputs: Vec<Input>,
 }
 
-/// A scene's run between two steps, without the scene, which has to be given again to resume: plain data for a file.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SceneCheckpoint {
-    /// Digest of the scene.
-    scene: u64,
-    /// Pairs of vertices merged during the run.
-    merged: Vec<[MeshVertex; 2]>,
-    /// Positions of the vertices when the structure was compiled [m].
-    layout: Vec<Vec3>,
-    state: State,
-    control: Control,
-    steps: usize,
-    split_steps: usize,
-    refinements: usize,
-    tally: Option<Tally>,
+/// The beginning of a run of a scene.
+struct Origin {
+    digest: u64,
+    world: World,
 }
 
 /// Steps between two searches for triangles that cross a solid between their contact samples.
@@ -107,11 +106,15 @@ impl SceneRun {
             step: scene.step,
             method: scene.method,
         };
+        let origin = Origin {
+            digest: scene_digest(scene),
+            world: world.clone(),
+        };
         let mut simulation = Simulation::new(world)?;
         simulation.state.time = -scene.lead_in;
         let run = Self::of_simulation(simulation, settings)?;
         Ok(Self {
-            is_edited: false,
+            origin: Some(origin),
             ..run
         })
     }
@@ -126,6 +129,7 @@ impl SceneRun {
     ) -> Result<Self, DrapeError> {
         simulation.world().check_features(settings.method.kind)?;
         Ok(Self {
+            own_attachments: simulation.system.control.attachments.clone(),
             simulation,
             settings,
             workspace: Workspace::default(),
@@ -135,7 +139,10 @@ impl SceneRun {
             refinements: 0,
             tally: None,
             is_renewed: true,
-            is_edited: true,
+            origin: None,
+            is_reshaped: false,
+            hands: Vec::new(),
+            inputs: Vec::new(),
         })
     }
 
@@ -149,19 +156,21 @@ impl SceneRun {
             what,
             remedy: "go on with the scene that it was saved of, or begin anew".to_owned(),
         };
-        if checkpoint.scene != digest(scene) {
+        let mut run = Self::new(scene)?;
+        if checkpoint.scene != run.digest() {
             return Err(refuse("scene", "it was saved of another scene".to_owned()));
         }
-        let mut run = Self::new(scene)?;
-        let mut world = run.world().clone();
-        for &vertex in checkpoint.merged.iter().flatten() {
-            world.check_vertex(vertex)?;
-        }
-        world.merge(checkpoint.merged);
+        let world = checkpoint.world.world(run.world())?;
+        world.check_features(scene.method.kind)?;
         let simulation = Simulation::laid_out(world, checkpoint.layout, Solids::new());
         run.simulation = simulation.map_err(|error| refuse("layout", error.to_string()))?;
+        run.own_attachments = run.system.control.attachments.clone();
         run.simulation
             .restore(checkpoint.state, checkpoint.control)?;
+        run.hands = checkpoint.hands;
+        for hand in &run.hands {
+            hand.attachments(&run.simulation)?;
+        }
         run.steps = checkpoint.steps;
         run.split_steps = checkpoint.split_steps;
         run.refinements = checkpoint.refinements;
@@ -169,8 +178,13 @@ impl SceneRun {
         Ok(run)
     }
 
+    /// Digest of its scene; 0 where it began elsewhere.
+    pub fn digest(&self) -> u64 {
+        self.origin.as_ref().map_or(0, |origin| origin.digest)
+    }
+
     /// Most steps to the next checkpoint. With contact of cloth with cloth there is one after each simulated second and
-    /// after each merge; without it after each step.
+    /// after each merge or edit; without it after each step.
     pub fn steps_to_checkpoint(&self) -> usize {
         match self.is_renewed || !self.has_cloth_contact() {
             true => 0,
@@ -178,11 +192,24 @@ impl SceneRun {
         }
     }
 
+    /// Whether a run that is recorded keeps a checkpoint here: at the start, once a simulated second, and after each
+    /// merge or edit.
+    pub fn is_landmark(&self) -> bool {
+        self.is_renewed || self.steps.is_multiple_of(self.span())
+    }
+
+    /// Whether checkpoints of its method can be taken: one without memory outside the state.
+    pub fn has_checkpoints(&self) -> bool {
+        let kind = self.settings.method.kind;
+        !kind.is_equilibrium() && kind != MethodKind::ImplicitMidpoint
+    }
+
     /// A checkpoint from which another process with the same scene goes on to the same bytes.
     ///
     /// # Errors
-    /// Between two checkpoints, after edits, and for methods with a memory outside the state.
-    pub fn checkpoint(&self, scene: &Scene) -> Result<SceneCheckpoint, DrapeError> {
+    /// Between two checkpoints, for a run that did not begin with a scene, after rest shapes were changed, and for
+    /// methods with a memory outside the state.
+    pub fn checkpoint(&self) -> Result<SceneCheckpoint, DrapeError> {
         let refuse = |what: String, remedy: &str| {
             Err(DrapeError::Scene {
                 place: "checkpoint".to_owned(),
@@ -190,22 +217,27 @@ impl SceneRun {
                 remedy: remedy.to_owned(),
             })
         };
-        let kind = self.settings.method.kind;
-        if kind.is_equilibrium() || kind == MethodKind::ImplicitMidpoint {
-            let what = format!("a run by \"{}\" has none", kind.name());
+        if !self.has_checkpoints() {
+            let name = self.settings.method.kind.name();
+            let what = format!("a run by \"{name}\" has none");
             return refuse(what, "run it to its end, or use another method");
         }
-        if self.is_edited {
-            let what = "the world was edited, and is not the scene's";
-            return refuse(what.to_owned(), "save a run of a scene before edits");
+        let Some(origin) = &self.origin else {
+            let what = "the run did not begin with a scene".to_owned();
+            return refuse(what, "save a run of a scene");
+        };
+        if self.is_reshaped {
+            let what = "rest shapes were changed and the structure was not made anew".to_owned();
+            return refuse(what, "save the run before, or replace the mesh instead");
         }
         if self.steps_to_checkpoint() > 0 {
             let what = format!("the next one is {} steps off", self.steps_to_checkpoint());
             return refuse(what, "take these steps first");
         }
         Ok(SceneCheckpoint {
-            scene: digest(scene),
-            merged: self.world().merged().collect(),
+            scene: origin.digest,
+            world: self.world().saved(&origin.world)?,
+            hands: self.hands.clone(),
             layout: self.system.topology.layout.clone(),
             state: self.state.clone(),
             control: self.system.control.clone(),
@@ -287,6 +319,9 @@ impl SceneRun {
         if !closed.is_empty() {
             self.simulation.edit(WorldEdit::Merge(closed))?;
             self.refinements = 0;
+            self.is_reshaped = false;
+            self.own_attachments = self.system.control.attachments.clone();
+            self.pull()?;
             self.rebuild_method();
         }
         let in_time = !self.settings.method.kind.is_equilibrium();
@@ -296,24 +331,109 @@ impl SceneRun {
         Ok(())
     }
 
-    /// Edits the world between two steps; the run goes on from the present state.
+    /// Does something between two steps and stamps it; the run goes on from the present state. The scene with its
+    /// inputs is the run: see [`Self::advance_by`].
     ///
     /// # Errors
-    /// An edit that does not fit, and a feature that the method does not support; the run is then unchanged.
+    /// An action that does not fit, and a feature that the method does not support; the run is then unchanged.
+    pub fn give(&mut self, action: Action) -> Result<Edited, DrapeError> {
+        let edited = match action.clone() {
+            Action::Edit(edit) => self.apply_edit(edit)?,
+            Action::Set(parameter) => {
+                let environment = self.world().environment().with(parameter);
+                self.apply_edit(WorldEdit::SetEnvironment(Box::new(environment)))?
+            }
+            Action::Pull { spot, to, force } => {
+                let held = self.hands.iter().position(|hand| hand.spot == spot);
+                let mut hand = Hand::new(&self.simulation, (spot, to, force))?;
+                match held {
+                    Some(k) => {
+                        hand.take_over(&self.hands[k]);
+                        self.hands[k] = hand;
+                    }
+                    None => self.hands.push(hand),
+                }
+                self.pull()?;
+                Edited::default()
+            }
+            Action::LetGo(spot) => {
+                self.hands.retain(|hand| hand.spot != spot);
+                self.pull()?;
+                Edited::default()
+            }
+        };
+        let step = self.steps as u64;
+        self.inputs.push(Input { step, action });
+        Ok(edited)
+    }
+
+    /// All that was done to it since its start or its checkpoint.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// Does what some inputs have for the present step, in their order, then takes one step: a run of the same scene
+    /// with the inputs of another comes to the same bytes.
+    ///
+    /// # Errors
+    /// Those of [`Self::give`] and [`Self::advance`].
+    pub fn advance_by(&mut self, inputs: &[Input]) -> Result<(), DrapeError> {
+        for input in inputs {
+            if input.step == self.steps as u64 {
+                self.give(input.action.clone())?;
+            }
+        }
+        self.advance()
+    }
+
+    /// [`Self::give`] with an edit.
+    ///
+    /// # Errors
+    /// Those of [`Self::give`].
     pub fn edit(&mut self, edit: WorldEdit) -> Result<Edited, DrapeError> {
+        self.give(Action::Edit(edit))
+    }
+
+    fn apply_edit(&mut self, edit: WorldEdit) -> Result<Edited, DrapeError> {
         let before = self.simulation.clone();
+        let shapes = matches!(edit, WorldEdit::Reshape(..));
+        let gone = match &edit {
+            WorldEdit::Remove(id)
+            | WorldEdit::ReplaceMesh(id, ..)
+            | WorldEdit::ChangeKind(id, _) => Some(*id),
+            _ => None,
+        };
         let edited = self.simulation.edit(edit)?;
         if let Err(error) = self.world().check_features(self.settings.method.kind) {
             self.simulation = before;
             return Err(error);
         }
-        self.is_edited = true;
+        self.is_reshaped = (self.is_reshaped || shapes) && !edited.is_restructured;
         if edited.is_restructured {
             self.refinements = 0;
         }
+        // Of what is gone or has another mesh hands let go.
+        self.hands.retain(|hand| Some(hand.spot.object) != gone);
+        self.own_attachments = self.system.control.attachments.clone();
+        self.pull()?;
         // The method may have cached solids and policies.
         self.rebuild_method();
         Ok(edited)
+    }
+
+    /// Lets the hands pull beside the attachments of the world.
+    fn pull(&mut self) -> Result<(), DrapeError> {
+        let control = &mut self.simulation.system.control;
+        control.attachments = self.own_attachments.clone();
+        if self.hands.is_empty() {
+            return Ok(());
+        }
+        let mut all = self.own_attachments.all().to_vec();
+        for hand in &self.hands {
+            all.extend(hand.attachments(&self.simulation)?);
+        }
+        self.simulation.system.control.attachments = all.into_iter().collect();
+        Ok(())
     }
 
     /// Refines contact samples of triangles that cross a solid although their corners are clear of it: where the solid
@@ -385,13 +505,41 @@ impl SceneRun {
                 numbers.push(at);
             }
             let triangles = mesh.triangles.iter();
-            let whole = triangles.filter(|t| keeps_corners(**t, &numbers));
-            let renumbered = whole.map(|t| t.map(|v| numbers[v as usize]));
-            surface.mesh.triangles.extend(renumbered);
+            for (number, triangle) in triangles.enumerate() {
+                if keeps_corners(*triangle, &numbers) {
+                    let corners = triangle.map(|v| numbers[v as usize]);
+                    surface.mesh.triangles.push(corners);
+                    surface.origin.push(number as u32);
+                }
+            }
             let range = first..surface.mesh.triangles.len();
             surface.objects.push((id, range));
         }
         surface
+    }
+
+    /// A surface as a cloth: rest shapes and materials of its triangles at their present places. None unless all its
+    /// objects are cloth.
+    pub fn cloth(&self, surface: &Surface) -> Option<Cloth> {
+        let mut whole = Cloth {
+            positions: surface.mesh.positions.clone(),
+            triangles: surface.mesh.triangles.clone(),
+            ..Cloth::default()
+        };
+        let mut panels = 0;
+        for (id, range) in &surface.objects {
+            let own = self.world().object(*id)?.deformable_cloth()?;
+            let first = whole.materials.len() as u16;
+            for &t in &surface.origin[range.clone()] {
+                let t = t as usize;
+                whole.rest.push(own.rest[t]);
+                whole.material.push(first + own.material[t]);
+                whole.panel.push(panels + own.panel[t]);
+            }
+            whole.materials.extend_from_slice(&own.materials);
+            panels += own.panel.iter().max().map_or(0, |most| most + 1);
+        }
+        Some(whole)
     }
 
     /// Largest gap of an elastic or of an attachment [m].
@@ -440,13 +588,6 @@ impl SceneRun {
     }
 }
 
-/// Digest of a scene; its debug format is exact to the last bit of a number.
-fn digest(scene: &Scene) -> u64 {
-    let mut digest = Digest::new();
-    digest.text(&format!("{scene:?}"));
-    digest.value()
-}
-
 /// Some objects as one surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
@@ -454,4 +595,6 @@ pub struct Surface {
     pub objects: Vec<(ObjectId, Range<usize>)>,
     /// Vertices [m] and triangles.
     pub mesh: TriangleMesh,
+    /// The triangle of its object's own mesh that each triangle is.
+    pub origin: Vec<u32>,
 }

@@ -39,6 +39,11 @@ impl SharedTrack {
     pub fn frames(&self, time: f64) -> Vec<Pose> {
         self.0.frames(time)
     }
+
+    /// [`Track::digest`].
+    pub fn digest(&self) -> u64 {
+        self.0.digest()
+    }
 }
 
 /// Places of the vertices of an animated surface at a time [s]: those of its track, or as it was loaded, moved as a
@@ -64,8 +69,7 @@ impl PartialEq for SharedTrack {
 }
 
 impl fmt::Debug for SharedTrack {
-    /// Its digest, by which it enters the digest of a scene.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "track {:016x}", self.0.digest())
+        f.write_str("SharedTrack")
     }
 }

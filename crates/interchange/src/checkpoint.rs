@@ -33,7 +33,7 @@ impl CheckpointFormat for SceneCheckpoint {
 }
 
 /// The version that is written and read: what was saved by another goes on to other bytes.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// What to do about a file that does not serve.
 const REMEDY: &str = "take another checkpoint, or drape from the start";

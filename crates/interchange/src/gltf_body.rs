@@ -17,15 +17,15 @@ const VERTICES: u32 = 34962;
 const CORNERS: u32 = 34963;
 
 #[derive(Default)]
-struct Binary {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
+pub(crate) struct Binary {
+    pub bytes: Vec<u8>,
+    pub views: Vec<Value>,
+    pub accessors: Vec<Value>,
 }
 
 impl Binary {
     /// Adds an accessor with a view of its own; returns its number.
-    fn add(&mut self, data: &[u8], accessor: Value, target: Option<u32>) -> usize {
+    pub fn add(&mut self, data: &[u8], accessor: Value, target: Option<u32>) -> usize {
         let mut view =
             json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": data.len() });
         if let Some(target) = target {
@@ -41,7 +41,12 @@ impl Binary {
     }
 
     /// Adds rows of floats with their bounds.
-    fn floats<const N: usize>(&mut self, rows: &[[f32; N]], kind: &str, vertices: bool) -> usize {
+    pub fn floats<const N: usize>(
+        &mut self,
+        rows: &[[f32; N]],
+        kind: &str,
+        vertices: bool,
+    ) -> usize {
         let bound = |pick: fn(f32, f32) -> f32, start: f32| -> Vec<f32> {
             (0..N)
                 .map(|k| rows.iter().map(|row| row[k]).fold(start, pick))

@@ -12,9 +12,11 @@ mod dxf;
 mod error;
 mod fabric_file;
 mod fabric_test;
+mod frames;
 mod garmentcode;
 mod gltf;
 mod gltf_body;
+mod gltf_frames;
 mod hpgl;
 mod jagua;
 mod mannequin_json;
@@ -35,6 +37,7 @@ mod mesh_read;
 mod native;
 mod obj;
 mod obj_read;
+mod pc2;
 mod pdf;
 mod pdf_fonts;
 mod ply;
@@ -59,11 +62,15 @@ pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};
+pub use frames::{
+    Frame, FrameHead, FrameSection, FrameSurface, FrameWriter, Frames, RestShape, read_frames,
+};
 pub use garmentcode::{
     GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
 };
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
 pub use gltf_body::write_body_glb;
+pub use gltf_frames::{MovingGlbMesh, write_frames_glb};
 pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua, write_jagua_instance};
 pub use mannequin_json::{read_mannequin, write_mannequin};
 pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
@@ -89,6 +96,7 @@ pub use native::{
 };
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
+pub use pc2::{PointCache, read_pc2, write_pc2};
 pub use ply::read_ply;
 pub use print::{Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock};
 pub use proportions::{proportion_boxes, read_proportions};

@@ -225,6 +225,19 @@ pub struct ObjectFile {
     /// `woman`, `man`, `mean`, or a file of measurements: a mannequin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
+    /// A file of recorded frames: the way of an animated object, or where a deformable one starts; or a point cache
+    /// (PC2) of its mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frames: Option<String>,
+    /// Which object of the recording it is; that of its name, or the only one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
+    /// The frame that a deformable object starts from, counted from 0; the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<usize>,
+    /// Frames a second of a point cache [1/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<f64>,
     /// Where it stands.
     #[serde(default)]
     pub transform: TransformFile,

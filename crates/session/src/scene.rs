@@ -5,19 +5,18 @@ use crate::frame_counts::FrameCounts;
 use crate::open::read_input;
 use crate::output::{cannot, file_name};
 use crate::pace::Pace;
+use crate::recorder::{Recorder, moving_surfaces};
 use crate::scene_builder::Builder;
-use crate::scene_checkpoint::{CheckpointTimes, RunOptions, SavedRun};
+use crate::scene_checkpoint::{CheckpointTimes, NAME, Place, RunOptions, SavedRun};
 use crate::scene_pictures::SceneAlbum;
 use crate::timing::Timing;
 use crate::watcher::report_progress;
 use crate::{SessionError, Watcher, verdict};
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use toile_drape::{
     Finding, Kind, Layers, Object, ObjectId, Scene, SceneCheckpoint, SceneRun, Surface, Verdict,
-    World,
 };
 use toile_interchange::{
     ExpectedKind, FormatError, ObjGroup, ObjMesh, read_scene, write_all_atomically, write_obj,
@@ -66,13 +65,19 @@ pub fn run_scene(
     timing.add("read", start);
     let start = Instant::now();
     check_frames(&scene).map_err(wrong)?;
-    let begun = Begun::new(&scene, folder, options)?;
-    let names = state_names(begun.run.world()).map_err(wrong)?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = name.trim_end_matches(".scene").to_owned();
+    let place = Place {
+        folder: folder.to_owned(),
+        name: file_name(&name),
+    };
+    let begun = Begun::new(&scene, &place, options)?;
+    let names = moving_surfaces(begun.run.world()).map_err(wrong)?;
     let mut course = Course {
         scene: &scene,
         counted: &builder.counted,
-        folder,
-        checkpoints: CheckpointTimes::new(options, &begun.run, &scene)?,
+        checkpoints: CheckpointTimes::new(options, &begun.run)?,
+        place,
         pace: Pace::new(options, &begun.run)?,
         names,
         begun,
@@ -81,19 +86,18 @@ pub fn run_scene(
     let given_up = course.follow(watcher)?;
     timing.add("simulate", start);
     let start = Instant::now();
-    let mut files = state_files(&course.begun.run, (&course.names, ""))?;
+    let mut files = state_files(&course.begun.run, &course.names)?;
     let Begun {
         run,
         crossings,
         album,
         frames,
+        ..
     } = &mut course.begun;
     let (report, verdict) = report(run, builder.notes, (crossings, frames), given_up);
     timing.add("measure", start);
     let start = Instant::now();
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let name = name.trim_end_matches(".scene");
-    files.extend(album.paint(run, &verdict, name)?);
+    files.extend(album.paint(run, &verdict, &name)?);
     timing.add("paint", start);
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
@@ -111,42 +115,56 @@ struct Begun {
     run: SceneRun,
     crossings: Crossings,
     album: SceneAlbum,
+    /// Where frames go, if they are saved.
+    recorder: Option<Recorder>,
     /// Frames written, and what they showed.
     frames: FrameCounts,
 }
 
 impl Begun {
-    /// A run at its start, or where its checkpoint in a folder was saved.
-    fn new(scene: &Scene, folder: &Path, options: &RunOptions) -> Result<Self, SessionError> {
-        let album =
-            |run: &SceneRun| SceneAlbum::new(&options.pictures, run, scene.frame_step.is_some());
-        if !options.resume {
-            let run = SceneRun::new(scene)?;
-            return Ok(Self {
-                crossings: Crossings::new(&run),
-                album: album(&run)?,
-                run,
-                frames: FrameCounts::default(),
-            });
-        }
-        let saved = SavedRun::read(folder)?;
+    /// A run at its start, or where a checkpoint of it was saved.
+    fn new(scene: &Scene, place: &Place, options: &RunOptions) -> Result<Self, SessionError> {
+        let album = |run: &SceneRun| SceneAlbum::new(&options.pictures, run);
+        let records = scene.frame_step.is_some();
+        let saved = match (options.restart, options.resume) {
+            (Some(frame), _) => {
+                check_frame(scene, frame)?;
+                SavedRun::before(place, frame)?
+            }
+            (None, true) => SavedRun::read(&place.folder)?,
+            (None, false) => {
+                let run = SceneRun::new(scene)?;
+                return Ok(Self {
+                    crossings: Crossings::new(&run),
+                    album: album(&run)?,
+                    recorder: records.then(|| Recorder::new(place.frames())),
+                    run,
+                    frames: FrameCounts::default(),
+                });
+            }
+        };
         let run = SceneRun::resume(scene, saved.run)?;
         let mut album = album(&SceneRun::new(scene)?)?;
-        album.resume(&run, saved.ways)?;
+        album.resume(&run, &saved.ways)?;
+        let recorder = match records {
+            true => Some(Recorder::resume(place.frames(), saved.frame_bytes)?),
+            false => None,
+        };
         let crossings = Crossings::resumed(&run, saved.crossings);
         Ok(Self {
             run,
             crossings,
             album,
+            recorder,
             frames: saved.frames,
         })
     }
 
     /// A checkpoint of the present state.
-    fn kept(&self, scene: &Scene) -> Result<Kept, SessionError> {
+    fn kept(&self) -> Result<Kept, SessionError> {
         Ok(Kept {
             time: self.run.state.time,
-            saved: self.saved(self.run.checkpoint(scene)?),
+            saved: self.saved(self.run.checkpoint()?),
         })
     }
 
@@ -154,6 +172,7 @@ impl Begun {
     fn saved(&self, run: SceneCheckpoint) -> SavedRun {
         SavedRun {
             frames: self.frames,
+            frame_bytes: self.recorder.as_ref().map_or(0, Recorder::length),
             crossings: self.crossings.counts(),
             ways: self.album.ways().clone(),
             run,
@@ -171,9 +190,9 @@ struct Kept {
 /// The course of a run from step to step.
 struct Course<'a> {
     scene: &'a Scene,
-    folder: &'a Path,
     /// Whether the stretch of each triangle of cloth counts.
     counted: &'a [bool],
+    place: Place,
     /// The surfaces that move, with the names of their files.
     names: Vec<(Vec<ObjectId>, String)>,
     begun: Begun,
@@ -186,6 +205,10 @@ struct Course<'a> {
 impl Course<'_> {
     /// Takes all steps; writes frames and checkpoints on the way. Gives why the run was given up, if it was.
     fn follow(&mut self, watcher: &mut dyn Watcher) -> Result<Option<Finding>, SessionError> {
+        if self.begun.run.steps() == 0 {
+            self.place.clear()?;
+            self.keep_landmark()?;
+        }
         // Where cloth meets cloth no checkpoint can be taken between whole seconds: the last one is kept.
         let mut kept = self.keep(None)?;
         while !self.begun.run.finished() {
@@ -199,16 +222,19 @@ impl Course<'_> {
             } = &mut self.begun;
             crossings.follow(run);
             album.follow(run);
-            if let Some(checkpoint) = self.checkpoints.due(run, self.scene)? {
-                self.begun.saved(checkpoint).write(self.folder)?;
+            if let Some(checkpoint) = self.checkpoints.due(run)? {
+                self.begun
+                    .saved(checkpoint)
+                    .write(&self.place.folder, NAME)?;
             }
+            self.keep_landmark()?;
             kept = self.keep(kept)?;
             let run = &self.begun.run;
             if let Some(mut finding) = self.pace.follow(run)
                 && !run.finished()
             {
                 if let Some(Kept { time, saved }) = self.newest_checkpoint(kept)? {
-                    saved.write(self.folder)?;
+                    saved.write(&self.place.folder, NAME)?;
                     finding.words.push_str(&format!(
                         "; checkpoint.json holds it at {time:.3} s, to go on from it with --resume"
                     ));
@@ -230,14 +256,24 @@ impl Course<'_> {
         if !self.pace.may_give_up() || !is_new || run.steps_to_checkpoint() > 0 {
             return Ok(kept);
         }
-        Ok(Some(self.begun.kept(self.scene)?))
+        Ok(Some(self.begun.kept()?))
+    }
+
+    /// Saves a checkpoint beside the frames, if there is one to be kept here.
+    fn keep_landmark(&self) -> Result<(), SessionError> {
+        let run = &self.begun.run;
+        if self.begun.recorder.is_none() || !run.is_landmark() || !run.has_checkpoints() {
+            return Ok(());
+        }
+        let saved = self.begun.saved(run.checkpoint()?);
+        saved.write(&self.place.checkpoints(), &Place::checkpoint(run.steps()))
     }
 
     /// A checkpoint of the present state where one can be taken, else the one that was kept.
     fn newest_checkpoint(&self, kept: Option<Kept>) -> Result<Option<Kept>, SessionError> {
         let run = &self.begun.run;
         match run.steps_to_checkpoint() {
-            0 => Ok(Some(self.begun.kept(self.scene)?)),
+            0 => Ok(Some(self.begun.kept()?)),
             _ => Ok(kept),
         }
     }
@@ -245,25 +281,31 @@ impl Course<'_> {
     /// Writes the frame that is due.
     fn write_frame(&mut self) -> Result<(), SessionError> {
         let Begun {
-            run, frames, album, ..
+            run,
+            frames,
+            recorder,
+            ..
         } = &mut self.begun;
-        let Some(step) = self.scene.frame_step else {
+        let (Some(step), Some(recorder)) = (self.scene.frame_step, recorder) else {
             return Ok(());
         };
         let number = frames.frames();
         if run.state.time + 1e-9 < number as f64 * step {
             return Ok(());
         }
-        let files = state_files(run, (&self.names, &format!("frame-{number:05}-")))?;
-        album.frame(run, number);
+        recorder.record(run, &self.names)?;
         frames.add(run, self.counted);
-        self.write(&files)
+        if !self.written.iter().any(|path| path == recorder.path()) {
+            self.written.push(recorder.path().to_owned());
+        }
+        Ok(())
     }
 
     fn write(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), SessionError> {
-        let paths = files.iter().map(|(name, _)| self.folder.join(name));
-        self.written.extend(paths);
-        Ok(write_all_atomically(self.folder, files)?)
+        let folder = &self.place.folder;
+        self.written
+            .extend(files.iter().map(|(name, _)| folder.join(name)));
+        Ok(write_all_atomically(folder, files)?)
     }
 }
 
@@ -280,50 +322,30 @@ fn check_frames(scene: &Scene) -> Result<(), FormatError> {
     }
 }
 
-/// Bytes of a file's name beyond which a surface of many objects is named by its first and how many others.
-const LONGEST_NAME: usize = 160;
-
-/// Names of the files of the surfaces that move, each with the objects that are sewn together in it or are to
-/// be; two of one name are refused.
-fn state_names(world: &World) -> Result<Vec<(Vec<ObjectId>, String)>, FormatError> {
-    let mut names: Vec<(Vec<ObjectId>, String)> = Vec::new();
-    let objects: BTreeMap<ObjectId, &Object> = world.objects().collect();
-    for group in world.groups() {
-        let of_group: Vec<&Object> = group.iter().map(|id| objects[id]).collect();
-        if of_group.iter().all(|object| object.kind == Kind::Static) {
-            continue;
-        }
-        let each: Vec<&str> = of_group.iter().map(|o| o.name.as_str()).collect();
-        let whole = each.join("+");
-        let files: Vec<String> = each.iter().map(|name| file_name(name)).collect();
-        let mut name = files.join("+");
-        if name.len() > LONGEST_NAME {
-            name = format!("{}+{}", files[0], files.len() - 1);
-        }
-        let same = |(_, known): &&(_, String)| known.to_lowercase() == name.to_lowercase();
-        if let Some((other, _)) = names.iter().find(same) {
-            let other: Vec<&str> = other.iter().map(|id| objects[id].name.as_str()).collect();
-            let other = other.join("+");
-            let index = objects.keys().position(|id| *id == group[0]).unwrap_or(0);
-            return Err(FormatError::new(
-                format!("objects[{index}]"),
-                format!("{whole:?} and {other:?} would be written to one file"),
-                "give one of them another name",
-            ));
-        }
-        names.push((group, name));
+/// Refuses a frame that the scene does not save.
+fn check_frame(scene: &Scene, frame: usize) -> Result<(), SessionError> {
+    let time = scene.frame_step.map(|step| step * frame as f64);
+    match time {
+        Some(time) if time <= scene.duration => Ok(()),
+        _ => Err(SessionError::Unknown {
+            kind: "frame",
+            name: frame.to_string(),
+            hint: match scene.frame_step {
+                None => "the scene saves none: give its frame_step a time".to_owned(),
+                Some(step) => format!("the last one is {:.0}", (scene.duration / step).floor()),
+            },
+        }),
     }
-    Ok(names)
 }
 
 /// The surfaces that move as OBJ files, a group for each object.
 fn state_files(
     run: &SceneRun,
-    (names, prefix): (&[(Vec<ObjectId>, String)], &str),
+    names: &[(Vec<ObjectId>, String)],
 ) -> Result<Vec<(String, Vec<u8>)>, SessionError> {
     let mut files = Vec::new();
     for (objects, name) in names {
-        let Surface { objects, mesh } = run.surface(objects);
+        let Surface { objects, mesh, .. } = run.surface(objects);
         let group = |(id, triangles): (ObjectId, Range<usize>)| {
             let name = run.world().object(id)?.name.clone();
             Some(ObjGroup { name, triangles })
@@ -338,7 +360,7 @@ fn state_files(
             ..ObjMesh::default()
         };
         let text = write_obj(&obj).map_err(cannot("the state"))?;
-        files.push((format!("{prefix}{name}.obj"), text.into_bytes()));
+        files.push((format!("{name}.obj"), text.into_bytes()));
     }
     Ok(files)
 }

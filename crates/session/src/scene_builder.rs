@@ -7,6 +7,7 @@ use crate::dressed_figure::HungGarment;
 use crate::fabrics::open_fabric;
 use crate::input::is_input;
 use crate::mesh_file::{open_mesh, stance_error};
+use crate::scene_frames::Recorded;
 use crate::scene_place::ScenePlace;
 use crate::watcher::report_progress;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
@@ -19,7 +20,7 @@ use toile_drape::{
     Stage,
 };
 use toile_geometry::{TriangleMesh, Vec3};
-use toile_interchange::{EndFile, MaterialFile, ObjectFile, SceneFile};
+use toile_interchange::{EndFile, MaterialFile, MotionFile, ObjectFile, SceneFile};
 /// Turns a scene file into a scene.
 pub(crate) struct Builder<'a> {
     /// The scene file.
@@ -29,7 +30,7 @@ pub(crate) struct Builder<'a> {
     /// What is worth telling.
     pub notes: Vec<String>,
     /// How its mesh files stand.
-    stance: Stance,
+    pub(crate) stance: Stance,
     /// The mesh files read, as they are.
     meshes: BTreeMap<String, TriangleMesh>,
     /// Bodies that wear garments, by the index of their object.
@@ -170,9 +171,10 @@ impl<'a> Builder<'a> {
                 _ => Ok(false),
             },
             ("deformable", None) => Ok(true),
+            ("animated", None) if object.frames.is_some() => Ok(false),
             ("animated", None) => {
                 let what = "it is animated but has no motion".to_owned();
-                wrong(what, "give it a motion, or write static")
+                wrong(what, "give it a motion or frames, or write static")
             }
             ("static" | "deformable", Some(_)) => {
                 let what = format!("it is {} but has a motion", object.kind);
@@ -193,13 +195,21 @@ impl<'a> Builder<'a> {
     ) -> Result<SceneObject, SessionError> {
         let place = format!("objects[{index}]");
         let deformable = self.is_deformable(&place, object)?;
-        let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
-            (Some(mesh), None, None) => (self.mesh(mesh)?, None),
-            (None, None, Some(body)) if !deformable => {
+        let mut course = None;
+        let recorded = self.recorded(&place, object, deformable)?;
+        let sources = (&object.mesh, &object.pattern, &object.body);
+        let (mut mesh, mut cloth) = match (recorded, sources) {
+            (Some(Recorded::Cloth(cloth)), _) => (cloth.mesh(), Some(cloth)),
+            (Some(Recorded::Moving(mesh, moving)), _) => {
+                course = Some(moving);
+                (mesh, None)
+            }
+            (None, (Some(mesh), None, None)) => (self.mesh(mesh)?, None),
+            (None, (None, None, Some(body))) if !deformable => {
                 let body = self.mannequin(index, body)?;
                 (body.skin().clone(), None)
             }
-            (None, Some(pattern), None) if deformable => {
+            (None, (None, Some(pattern), None)) if deformable => {
                 let cloth = match self.garments.remove(&index) {
                     Some(worn) => {
                         self.counted.extend(worn.counted);
@@ -252,6 +262,10 @@ impl<'a> Builder<'a> {
             }
         } else {
             match (&object.motion, &object.body) {
+                (motion, _) if course.is_some() => ObjectKind::Animated {
+                    motion: motion.as_ref().map(MotionFile::motion),
+                    track: self.recorded_track(&place, course, transform)?,
+                },
                 (Some(motion), Some(body)) => {
                     let body = self.mannequin(index, body)?;
                     self.figure_kind(index, body, motion)?
@@ -297,7 +311,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The mesh of a file as it stands in the scene.
-    fn mesh(&mut self, name: &str) -> Result<TriangleMesh, SessionError> {
+    pub(crate) fn mesh(&mut self, name: &str) -> Result<TriangleMesh, SessionError> {
         let stance = self.stance;
         let mut mesh = self.opened(name)?.clone();
         for p in &mut mesh.positions {

@@ -1,13 +1,13 @@
 //! The checkpoint file from which an interrupted run of a scene is resumed.
 
 use crate::frame_counts::FrameCounts;
-use crate::scene_pictures::Ways;
+use crate::state_picture::Ways;
 use crate::{PictureOptions, SessionError};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
-use toile_drape::{DrapeError, Scene, SceneCheckpoint, SceneRun};
+use std::path::{Path, PathBuf};
+use toile_drape::{DrapeError, SceneCheckpoint, SceneRun};
 use toile_interchange::{
-    CheckpointFormat, read_checkpoint, read_text, write_all_atomically, write_checkpoint,
+    CheckpointFormat, FileError, read_checkpoint, read_text, write_all_atomically, write_checkpoint,
 };
 
 /// How a scene is run beside what its file says.
@@ -17,6 +17,8 @@ pub struct RunOptions {
     pub checkpoint_step: Option<f64>,
     /// Goes on from the checkpoint in the folder of the results.
     pub resume: bool,
+    /// Goes on from this frame, counted from 0: from the checkpoint beside the frames that is before it.
+    pub restart: Option<usize>,
     /// Processor time of a simulated second beyond which the run is ended with a checkpoint [s]; none never ends it.
     pub give_up: Option<f64>,
     /// The pictures painted.
@@ -24,7 +26,59 @@ pub struct RunOptions {
 }
 
 /// Its file in the folder of the results.
-const NAME: &str = "checkpoint.json";
+pub(crate) const NAME: &str = "checkpoint.json";
+
+/// Where the results of a run go.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Name of the scene.
+    pub name: String,
+}
+
+impl Place {
+    /// The file of frames.
+    pub fn frames(&self) -> PathBuf {
+        self.folder.join(format!("{}.frames", self.name))
+    }
+
+    /// The folder of the checkpoints beside the frames.
+    pub fn checkpoints(&self) -> PathBuf {
+        self.folder.join(format!("{}.checkpoints", self.name))
+    }
+
+    /// The name there of the checkpoint after some steps.
+    pub fn checkpoint(steps: usize) -> String {
+        format!("{steps:08}.json")
+    }
+
+    /// The checkpoints there, the newest first.
+    fn kept(&self) -> Vec<PathBuf> {
+        let files = std::fs::read_dir(self.checkpoints()).into_iter().flatten();
+        let is_ours = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let number = name.strip_suffix(".json").unwrap_or_default();
+            number.len() >= 8 && number.bytes().all(|byte| byte.is_ascii_digit())
+        };
+        let files = files.filter_map(|file| Some(file.ok()?.path()));
+        let mut kept: Vec<PathBuf> = files.filter(is_ours).collect();
+        kept.sort_by(|a, b| b.as_os_str().len().cmp(&a.as_os_str().len()).then(b.cmp(a)));
+        kept
+    }
+
+    /// Removes the checkpoints of an earlier run.
+    ///
+    /// # Errors
+    /// One of them cannot be removed.
+    pub fn clear(&self) -> Result<(), SessionError> {
+        for path in self.kept() {
+            std::fs::remove_file(&path)
+                .map_err(|error| FileError::from_io("remove", &path, &error))?;
+        }
+        Ok(())
+    }
+}
 
 /// A run of a scene between two steps, with the counts of its report so far.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -32,6 +86,8 @@ const NAME: &str = "checkpoint.json";
 pub(crate) struct SavedRun {
     /// Frames written, and what they showed.
     pub frames: FrameCounts,
+    /// Bytes of the file of frames.
+    pub frame_bytes: u64,
     /// Crossings of cloth with cloth counted before the first step, most at one count, and at the last.
     pub crossings: [usize; 3],
     /// Where objects have been, if pictures are painted.
@@ -62,14 +118,33 @@ impl SavedRun {
         read_checkpoint(&text).map_err(|error| SessionError::Format { path, error })
     }
 
-    /// Writes it into the folder of the results, which is made if need be.
+    /// Reads the newest one beside the frames that is not after a frame.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be read.
+    pub fn before(place: &Place, frame: usize) -> Result<Self, SessionError> {
+        for path in place.kept() {
+            let text = read_text(&path)?;
+            let saved: Self =
+                read_checkpoint(&text).map_err(|error| SessionError::Format { path, error })?;
+            if saved.frames.frames() <= frame {
+                return Ok(saved);
+            }
+        }
+        Err(SessionError::Nothing {
+            action: "restart from",
+            hint: "no checkpoint beside the frames is before that frame: run the scene anew",
+        })
+    }
+
+    /// Writes it into a folder, which is made if need be.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), SessionError> {
+    pub fn write(&self, folder: &Path, name: &str) -> Result<(), SessionError> {
         let text =
             write_checkpoint(self).map_err(|error| SessionError::Write { file: NAME, error })?;
-        let file = (NAME.to_owned(), text.into_bytes());
+        let file = (name.to_owned(), text.into_bytes());
         Ok(write_all_atomically(folder, &[file])?)
     }
 }
@@ -85,7 +160,7 @@ impl CheckpointTimes {
     ///
     /// # Errors
     /// A step that is no time; a method of which no checkpoint can be taken.
-    pub fn new(options: &RunOptions, run: &SceneRun, scene: &Scene) -> Result<Self, SessionError> {
+    pub fn new(options: &RunOptions, run: &SceneRun) -> Result<Self, SessionError> {
         if let Some(step) = options.checkpoint_step {
             if !(step.is_finite() && step > 0.0) {
                 return Err(SessionError::Number {
@@ -94,7 +169,7 @@ impl CheckpointTimes {
                     hint: "give a number of simulated seconds above zero",
                 });
             }
-            run.checkpoint(scene)?;
+            run.checkpoint()?;
         }
         Ok(Self {
             step: options.checkpoint_step,
@@ -106,11 +181,7 @@ impl CheckpointTimes {
     ///
     /// # Errors
     /// The run cannot be saved at all.
-    pub fn due(
-        &mut self,
-        run: &SceneRun,
-        scene: &Scene,
-    ) -> Result<Option<SceneCheckpoint>, DrapeError> {
+    pub fn due(&mut self, run: &SceneRun) -> Result<Option<SceneCheckpoint>, DrapeError> {
         let Some(step) = self.step else {
             return Ok(None);
         };
@@ -120,6 +191,6 @@ impl CheckpointTimes {
         while self.next <= run.state.time + 1e-9 {
             self.next += step;
         }
-        run.checkpoint(scene).map(Some)
+        run.checkpoint().map(Some)
     }
 }

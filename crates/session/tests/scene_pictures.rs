@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use toile_session::{PictureOptions, PictureTime, RunOptions, Silent, run_scene};
 
-/// A cloth that falls beside a plate at rest; it runs for 0.1 s and saves four frames.
+/// A cloth that falls beside a plate at rest for 0.1 s.
 fn scene(folder: &Path, more: &str) -> PathBuf {
     let cloth = "v 0 1 0\nv 0.1 1 0\nv 0 1 0.1\nf 1 2 3\n";
     std::fs::write(folder.join("cloth.obj"), cloth).unwrap();
@@ -43,21 +43,18 @@ fn pictures(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn first_last_any_time_and_frames_are_painted() {
+fn first_last_and_any_time_are_painted() {
     let folder = tempfile::tempdir().unwrap();
-    let path = scene(folder.path(), r#", "frame_step": 0.05"#);
+    let path = scene(folder.path(), "");
     let out = folder.path().join("out");
-    let options = asked(&["first", "50ms", "frames", "last"], Some("cloth"));
+    let options = asked(&["first", "50ms", "last"], Some("cloth"));
     run_scene(&path, &out, &options, &mut Silent).unwrap();
     let painted = pictures(&out);
     let names: Vec<&str> = painted.iter().map(|(name, _)| &**name).collect();
     let [first, last, time] = ["first", "last", "0.05s"].map(|when| format!("picture-{when}.png"));
-    let frames = ["picture-00000.png", "picture-00001.png"];
-    assert_eq!(names, [&*time, frames[0], frames[1], &*first, &*last]);
+    assert_eq!(names, [&*time, &*first, &*last]);
     let of = |name: &str| &painted.iter().find(|(known, _)| known == name).unwrap().1;
     assert!(of(&first).starts_with(b"\x89PNG"));
-    // A frame is the state at its time.
-    assert!(of(&first) == of(frames[0]) && of(&time) == of(frames[1]));
     assert!(of(&first) != of(&time) && of(&time) != of(&last));
 }
 
@@ -98,10 +95,9 @@ fn times_and_objects_that_are_not_there_are_refused() {
     };
     refused("", asked(&["2s"], None), "to the scene's duration");
     refused("", asked(&["-1s"], None), "to the scene's duration");
-    refused("", asked(&["frames"], None), "frame_step");
     refused("", asked(&["last"], Some("shirt")), r#""plate", "cloth""#);
     let rest = r#", "method": { "name": "rest" }"#;
     refused(rest, asked(&["0.05s"], None), "a run to rest has no times");
     let wrong = "noon".parse::<PictureTime>().unwrap_err();
-    assert!(wrong.contains("write first, last, frames"), "{wrong}");
+    assert!(wrong.contains("write first, last"), "{wrong}");
 }

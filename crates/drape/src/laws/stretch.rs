@@ -20,6 +20,7 @@
 //! (t.E.t)^2 / (2 q(t)), q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
 //! compressive and the energy is convex, so its Hessian is exact and positive semidefinite.
 
+use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// Stiffness of a strain limit as a multiple of the membrane's own.
@@ -29,7 +30,7 @@ const LIMIT_STIFFNESS: f64 = 100.0;
 const LIMIT_ONSET: f64 = 0.02;
 
 /// Behaviour of a membrane under compression.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Compression {
     /// The law of tension. The Hessian may omit its negative part.
     #[default]

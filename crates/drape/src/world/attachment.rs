@@ -9,14 +9,15 @@ use crate::control::FrameAttachment;
 use crate::laws::elastic::ElasticLaw;
 use crate::tie::{Tie, TieEnd, TrianglePoint};
 use crate::{DrapeError, Elastic, ElasticEnd};
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// The number of an attachment: in order of creation, never given twice in a world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct AttachmentId(pub(super) u32);
 
 /// One end of an attachment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum AttachmentEnd {
     /// A vertex of an object. Of a solid it moves with the solid.
     Vertex(MeshVertex),
@@ -51,7 +52,8 @@ pub enum AttachmentEnd {
 }
 
 /// A spring of rest length zero between two ends, at least one of them on a cloth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ObjectAttachment {
     /// The ends.
     pub ends: [AttachmentEnd; 2],

@@ -7,12 +7,13 @@ use super::present::Present;
 use super::transfer::StartingMotion;
 use super::{PairPolicy, VertexMap, World};
 use crate::{Carry, Cloth, DrapeError, Environment, Motion};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{Vec2, Vec3};
 
 /// A change of a world between two steps.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum WorldEdit {
     /// Adds an object.
     Add(Box<Object>),

@@ -8,26 +8,30 @@ mod edit;
 mod gaps;
 mod object;
 mod present;
+mod saved;
 mod simulation;
 mod transfer;
 mod vertex_map;
+mod written_mesh;
 
 pub use attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
 pub(crate) use compile::Solids;
 pub use edit::{Edited, WorldEdit};
 pub use gaps::OpenAttachment;
 pub use object::{Kind, Layers, MeshVertex, Object, ObjectId, VertexGrip};
+pub(crate) use saved::SavedWorld;
 pub use simulation::Simulation;
 pub(crate) use transfer::MeetingPoint;
 pub use vertex_map::VertexMap;
 
 use crate::scene::{SceneEnd, SceneObject};
 use crate::{Cloth, DrapeError, Environment, Scene};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Whether contact acts between two objects.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PairPolicy {
     /// Contact acts.
     #[default]
@@ -177,7 +181,7 @@ impl World {
     }
 
     /// An object, or the error of an edit that names a missing one.
-    fn existing(&self, id: ObjectId) -> Result<&Object, DrapeError> {
+    pub(crate) fn existing(&self, id: ObjectId) -> Result<&Object, DrapeError> {
         self.object(id).ok_or_else(|| id.missing())
     }
 
@@ -248,7 +252,7 @@ impl World {
 
 impl ObjectId {
     /// The error of an edit that names a missing object.
-    fn missing(self) -> DrapeError {
+    pub(crate) fn missing(self) -> DrapeError {
         DrapeError::Scene {
             place: format!("object {}", self.0),
             what: "it is not there".to_owned(),

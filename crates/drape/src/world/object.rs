@@ -3,7 +3,8 @@
 use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
 use crate::track::animated_positions;
 use crate::{Cloth, DrapeError, Material, Motion, SharedTrack};
-use serde::{Deserialize, Serialize};
+use serde::ser::Error;
+use serde::{Deserialize, Serialize, Serializer};
 use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -30,7 +31,7 @@ impl MeshVertex {
 
 /// The cause of an object's motion in a running world. [`crate::ObjectKind`] is that of an object in a file, with its
 /// data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// A solid at rest.
     Static,
@@ -41,7 +42,8 @@ pub enum Kind {
 }
 
 /// Vertices of a cloth with a prescribed motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct VertexGrip {
     /// The vertices of its mesh.
     pub vertices: Vec<u32>,
@@ -50,7 +52,7 @@ pub struct VertexGrip {
 }
 
 /// Layers of the vertices of a cloth among cloths worn over one another; larger numbers lie farther out.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Layers {
     /// The same layer for all vertices.
     One(u16),
@@ -69,7 +71,8 @@ impl Layers {
 }
 
 /// An object. Kind, shape, material and motion are independent: a change of kind loses none of them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Object {
     /// Unique name.
     pub name: String,
@@ -77,6 +80,7 @@ pub struct Object {
     pub kind: Kind,
     /// Its surface [m]: of a static object in the world, of an animated one in its own frame, of a cloth as it was when
     /// it became cloth.
+    #[serde(with = "super::written_mesh")]
     pub mesh: Arc<TriangleMesh>,
     /// Rest shapes and materials of its triangles, and its starting positions [m]. Made from the mesh and the material
     /// when it first becomes deformable.
@@ -86,6 +90,11 @@ pub struct Object {
     /// Its motion as a whole while it is animated.
     pub motion: Option<Arc<Motion>>,
     /// The way of its vertices before that motion while it is animated.
+    #[serde(
+        skip_deserializing,
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "no_track"
+    )]
     pub track: Option<SharedTrack>,
     /// Vertices at rest while it is deformable.
     pub pins: Vec<u32>,
@@ -93,6 +102,14 @@ pub struct Object {
     pub grips: Vec<VertexGrip>,
     /// Its layers while it is deformable.
     pub layers: Layers,
+}
+
+/// Refuses to write a track, which is a rule and no data: whoever saves an object with one keeps its digest beside it.
+fn no_track<S: Serializer>(track: &Option<SharedTrack>, to: S) -> Result<S::Ok, S::Error> {
+    match track {
+        None => to.serialize_none(),
+        Some(_) => Err(S::Error::custom("the track of an object cannot be written")),
+    }
 }
 
 impl Object {
@@ -304,7 +321,7 @@ impl Object {
     }
 
     /// An error about this object.
-    pub(super) fn refuse(&self, what: &str, remedy: &str) -> DrapeError {
+    pub(crate) fn refuse(&self, what: &str, remedy: &str) -> DrapeError {
         DrapeError::Scene {
             place: format!("\"{}\"", self.name),
             what: what.to_owned(),

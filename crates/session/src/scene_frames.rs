@@ -1,0 +1,257 @@
+//! Recorded frames in a scene: as the way of an animated object, or as the start of a cloth.
+
+use crate::SessionError;
+use crate::input::read_file;
+use crate::recorded_surface::{RecordedSurface, open_frames};
+use crate::scene_builder::Builder;
+use std::path::Path;
+use toile_drape::{Cloth, DrapeError, RecordedTrack, SharedTrack};
+use toile_geometry::{TriangleMesh, Vec3};
+use toile_interchange::{FormatError, Frames, ObjectFile, TransformFile, read_pc2};
+
+/// What an object of a scene has of recorded frames.
+pub(crate) enum Recorded {
+    /// A cloth, where it starts.
+    Cloth(Cloth),
+    /// The surface of a solid at the first frame [m] with its course.
+    Moving(TriangleMesh, RecordedCourse),
+}
+
+/// Times [s] with the positions of all vertices [m].
+#[derive(Default)]
+pub(crate) struct RecordedCourse(Vec<(f64, Vec<Vec3>)>);
+
+impl Builder<'_> {
+    /// What an object has of recorded frames; nothing where it names none.
+    ///
+    /// # Errors
+    /// Frames that cannot be read or do not fit the object, and what frames take no part in.
+    pub(crate) fn recorded(
+        &mut self,
+        place: &str,
+        object: &ObjectFile,
+        deformable: bool,
+    ) -> Result<Option<Recorded>, SessionError> {
+        let wrong = |what: &str, remedy: &str| {
+            let place = place.to_owned();
+            Err(self.place.wrong(place, what.to_owned(), remedy))
+        };
+        let Some(frames) = &object.frames else {
+            let fields = [
+                object.object.is_some(),
+                object.frame.is_some(),
+                object.rate.is_some(),
+            ];
+            return match fields.contains(&true) {
+                false => Ok(None),
+                true => wrong(
+                    "it has object, frame or rate, but no frames",
+                    "name a file of frames, or leave them out",
+                ),
+            };
+        };
+        if object.kind == "static" {
+            return wrong(
+                "it is static but has frames",
+                "write animated or deformable",
+            );
+        }
+        let path = self.place.beside(frames);
+        match (&object.mesh, &object.pattern, &object.body) {
+            (None, None, None) if deformable => {
+                Ok(Some(Recorded::Cloth(recorded_cloth(&path, object)?)))
+            }
+            (None, None, None) => recorded_object(&path, object).map(Some),
+            (Some(mesh), None, None) if !deformable => {
+                let mesh = self.mesh(mesh)?;
+                let stance = self.stance;
+                cached_object(&path, mesh, object.rate, |p| stance.place(p)).map(Some)
+            }
+            _ => wrong(
+                "frames have a surface of their own; only a point cache (PC2) of an animated object goes with a mesh",
+                "name one file",
+            ),
+        }
+    }
+
+    /// The track of a recorded course where it stands in the scene.
+    ///
+    /// # Errors
+    /// Frames that are no track.
+    pub(crate) fn recorded_track(
+        &self,
+        place: &str,
+        course: Option<RecordedCourse>,
+        transform: &TransformFile,
+    ) -> Result<Option<SharedTrack>, SessionError> {
+        let track = course.map(|course| course.track(|p| transform.apply(p)));
+        track.transpose().map_err(|error| {
+            let remedy = "record the frames again";
+            self.place
+                .wrong(place.to_owned(), error.to_string(), remedy)
+        })
+    }
+}
+
+impl RecordedCourse {
+    /// The track, with each point where it stands in the scene.
+    ///
+    /// # Errors
+    /// Those of [`RecordedTrack::new`].
+    fn track(self, place: impl Fn(Vec3) -> Vec3) -> Result<SharedTrack, DrapeError> {
+        let placed = self.0.into_iter().map(|(time, mut positions)| {
+            positions.iter_mut().for_each(|p| *p = place(*p));
+            (time, positions)
+        });
+        Ok(SharedTrack::new(RecordedTrack::new(placed.collect())?))
+    }
+
+    /// With the triangles of its surface.
+    fn object(self, triangles: Vec<[u32; 3]>) -> Recorded {
+        let positions = self.0.first().map(|(_, first)| first.clone());
+        let mesh = TriangleMesh {
+            positions: positions.unwrap_or_default(),
+            triangles,
+        };
+        Recorded::Moving(mesh, self)
+    }
+}
+
+fn wrong(
+    path: &Path,
+    place: impl Into<String>,
+    what: impl Into<String>,
+    hint: &str,
+) -> SessionError {
+    SessionError::Format {
+        path: path.to_owned(),
+        error: FormatError::new(place, what, hint),
+    }
+}
+
+/// The recorded object of a scene's animated one: that of its name unless it says which.
+///
+/// # Errors
+/// Frames that cannot be read, an object that is not among them, or whose triangles change from frame to frame.
+fn recorded_object(path: &Path, object: &ObjectFile) -> Result<Recorded, SessionError> {
+    let frames = open_frames(path)?;
+    let mut triangles: Option<Vec<[u32; 3]>> = None;
+    let mut course = RecordedCourse::default();
+    for section in &frames.sections {
+        if section.frames.is_empty() {
+            continue;
+        }
+        let surface = named(section, object)?;
+        if triangles
+            .as_ref()
+            .is_some_and(|known| *known != surface.triangles)
+        {
+            let what = format!(
+                "the triangles of {:?} change at frame {}",
+                surface.name,
+                course.0.len()
+            );
+            let hint = "record it again in a run that starts after its seams are closed";
+            return Err(wrong(path, "frames", what, hint));
+        }
+        for frame in &section.frames {
+            course.0.push((frame.time, surface.mesh(frame).positions));
+        }
+        triangles = Some(surface.triangles);
+    }
+    Ok(course.object(triangles.unwrap_or_default()))
+}
+
+fn named(
+    section: &toile_interchange::FrameSection,
+    object: &ObjectFile,
+) -> Result<RecordedSurface, SessionError> {
+    let own = RecordedSurface::named(section, Some(&object.name));
+    match (&object.object, own) {
+        (Some(name), _) => RecordedSurface::named(section, Some(name)),
+        (None, Ok(own)) => Ok(own),
+        // Its name in this scene need not be that of the recording.
+        (None, Err(_)) => RecordedSurface::named(section, None),
+    }
+}
+
+/// A mesh that moves by a point cache (PC2) of its vertices, whose samples follow at a rate [1/s] from time 0; `place`
+/// turns a point as the mesh was turned.
+///
+/// # Errors
+/// A cache that cannot be read, or has other vertices than the mesh; no rate.
+fn cached_object(
+    path: &Path,
+    mesh: TriangleMesh,
+    rate: Option<f64>,
+    place: impl Fn(Vec3) -> Vec3,
+) -> Result<Recorded, SessionError> {
+    let bytes = read_file(path)?;
+    let cache = read_pc2(&bytes).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })?;
+    let Some(rate) = rate.filter(|rate| rate.is_finite() && *rate > 0.0) else {
+        let what = "it holds samples but no times";
+        return Err(wrong(
+            path,
+            "rate",
+            what,
+            "give the object its rate: frames a second, above 0",
+        ));
+    };
+    let points = cache.samples.first().map_or(0, Vec::len);
+    if points != mesh.positions.len() {
+        let what = format!(
+            "it has {points} points, the mesh {} vertices",
+            mesh.positions.len()
+        );
+        return Err(wrong(path, "points", what, "write both of the same mesh"));
+    }
+    let spacing = f64::from(cache.step) / rate;
+    let course = cache.samples.into_iter().enumerate().map(|(k, sample)| {
+        let positions = sample.iter().map(|p| place(Vec3::from(p.map(f64::from))));
+        (k as f64 * spacing, positions.collect())
+    });
+    Ok(RecordedCourse(course.collect()).object(mesh.triangles))
+}
+
+/// A cloth that starts where it is in a frame, with its rest shape: the last frame unless one is named.
+///
+/// # Errors
+/// Frames that cannot be read, a frame or an object that is not there, an object that is no cloth.
+fn recorded_cloth(path: &Path, object: &ObjectFile) -> Result<Cloth, SessionError> {
+    let frames = open_frames(path)?;
+    let (section, frame) = frame_of(&frames, object.frame).ok_or_else(|| {
+        let count: usize = frames.sections.iter().map(|s| s.frames.len()).sum();
+        SessionError::Unknown {
+            kind: "frame",
+            name: object.frame.unwrap_or_default().to_string(),
+            hint: format!("{} has {count}, counted from 0", path.display()),
+        }
+    })?;
+    let surface = named(section, object)?;
+    let Some(rest) = &surface.rest else {
+        let what = format!("{:?} is no cloth there", surface.name);
+        return Err(wrong(
+            path,
+            "frames",
+            what,
+            "name an object that was recorded as cloth",
+        ));
+    };
+    Ok(rest.on(&surface.mesh(frame)))
+}
+
+/// A frame by its number in the file, else the last.
+fn frame_of(
+    frames: &Frames,
+    number: Option<usize>,
+) -> Option<(&toile_interchange::FrameSection, &toile_interchange::Frame)> {
+    let sections = frames.sections.iter();
+    let mut all = sections.flat_map(|s| s.frames.iter().map(move |frame| (s, frame)));
+    match number {
+        Some(number) => all.nth(number),
+        None => all.last(),
+    }
+}
