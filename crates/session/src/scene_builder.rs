@@ -7,7 +7,7 @@ use crate::dressed_figure::HungGarment;
 use crate::fabrics::open_fabric;
 use crate::input::is_input;
 use crate::mesh_file::{open_mesh, stance_error};
-use crate::scene_frames::Recorded;
+use crate::scene_frames::{Recorded, recorded};
 use crate::scene_place::ScenePlace;
 use crate::watcher::report_progress;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
@@ -30,7 +30,7 @@ pub(crate) struct Builder<'a> {
     /// What is worth telling.
     pub notes: Vec<String>,
     /// How its mesh files stand.
-    pub(crate) stance: Stance,
+    stance: Stance,
     /// The mesh files read, as they are.
     meshes: BTreeMap<String, TriangleMesh>,
     /// Bodies that wear garments, by the index of their object.
@@ -196,7 +196,11 @@ impl<'a> Builder<'a> {
         let place = format!("objects[{index}]");
         let deformable = self.is_deformable(&place, object)?;
         let mut course = None;
-        let recorded = self.recorded(&place, object, deformable)?;
+        let cached = match (&object.frames, &object.mesh) {
+            (Some(_), Some(mesh)) => Some((self.mesh(mesh)?, self.stance)),
+            _ => None,
+        };
+        let recorded = recorded((self.place, &place), object, cached)?;
         let sources = (&object.mesh, &object.pattern, &object.body);
         let (mut mesh, mut cloth) = match (recorded, sources) {
             (Some(Recorded::Cloth(cloth)), _) => (cloth.mesh(), Some(cloth)),
@@ -264,7 +268,13 @@ impl<'a> Builder<'a> {
             match (&object.motion, &object.body) {
                 (motion, _) if course.is_some() => ObjectKind::Animated {
                     motion: motion.as_ref().map(MotionFile::motion),
-                    track: self.recorded_track(&place, course, transform)?,
+                    track: course
+                        .map(|course| course.track(|p| transform.apply(p)))
+                        .transpose()
+                        .map_err(|error| {
+                            let remedy = "record the frames again";
+                            self.place.wrong(place, error.to_string(), remedy)
+                        })?,
                 },
                 (Some(motion), Some(body)) => {
                     let body = self.mannequin(index, body)?;
@@ -311,7 +321,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The mesh of a file as it stands in the scene.
-    pub(crate) fn mesh(&mut self, name: &str) -> Result<TriangleMesh, SessionError> {
+    fn mesh(&mut self, name: &str) -> Result<TriangleMesh, SessionError> {
         let stance = self.stance;
         let mut mesh = self.opened(name)?.clone();
         for p in &mut mesh.positions {

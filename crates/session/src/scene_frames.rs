@@ -3,11 +3,12 @@
 use crate::SessionError;
 use crate::input::read_file;
 use crate::recorded_surface::{RecordedSurface, open_frames};
-use crate::scene_builder::Builder;
+use crate::scene_place::ScenePlace;
 use std::path::Path;
+use toile_body::Stance;
 use toile_drape::{Cloth, DrapeError, RecordedTrack, SharedTrack};
 use toile_geometry::{TriangleMesh, Vec3};
-use toile_interchange::{FormatError, Frames, ObjectFile, TransformFile, read_pc2};
+use toile_interchange::{FormatError, Frames, ObjectFile, read_pc2};
 
 /// What an object of a scene has of recorded frames.
 pub(crate) enum Recorded {
@@ -21,75 +22,49 @@ pub(crate) enum Recorded {
 #[derive(Default)]
 pub(crate) struct RecordedCourse(Vec<(f64, Vec<Vec3>)>);
 
-impl Builder<'_> {
-    /// What an object has of recorded frames; nothing where it names none.
-    ///
-    /// # Errors
-    /// Frames that cannot be read or do not fit the object, and what frames take no part in.
-    pub(crate) fn recorded(
-        &mut self,
-        place: &str,
-        object: &ObjectFile,
-        deformable: bool,
-    ) -> Result<Option<Recorded>, SessionError> {
-        let wrong = |what: &str, remedy: &str| {
-            let place = place.to_owned();
-            Err(self.place.wrong(place, what.to_owned(), remedy))
-        };
-        let Some(frames) = &object.frames else {
-            let fields = [
-                object.object.is_some(),
-                object.frame.is_some(),
-                object.rate.is_some(),
-            ];
-            return match fields.contains(&true) {
-                false => Ok(None),
-                true => wrong(
-                    "it has object, frame or rate, but no frames",
-                    "name a file of frames, or leave them out",
-                ),
-            };
-        };
-        if object.kind == "static" {
-            return wrong(
-                "it is static but has frames",
-                "write animated or deformable",
-            );
-        }
-        let path = self.place.beside(frames);
-        match (&object.mesh, &object.pattern, &object.body) {
-            (None, None, None) if deformable => {
-                Ok(Some(Recorded::Cloth(recorded_cloth(&path, object)?)))
-            }
-            (None, None, None) => recorded_object(&path, object).map(Some),
-            (Some(mesh), None, None) if !deformable => {
-                let mesh = self.mesh(mesh)?;
-                let stance = self.stance;
-                cached_object(&path, mesh, object.rate, |p| stance.place(p)).map(Some)
-            }
-            _ => wrong(
-                "frames have a surface of their own; only a point cache (PC2) of an animated object goes with a mesh",
-                "name one file",
+/// What an object has of recorded frames; nothing where it names none. `cached` is the mesh that its point cache moves,
+/// with the turn of the scene's meshes.
+///
+/// # Errors
+/// Frames that cannot be read or do not fit the object, and what frames take no part in; `at` is its place in the scene.
+pub(crate) fn recorded(
+    (scene, at): (ScenePlace, &str),
+    object: &ObjectFile,
+    cached: Option<(TriangleMesh, Stance)>,
+) -> Result<Option<Recorded>, SessionError> {
+    let wrong = |what: &str, remedy: &str| Err(scene.wrong(at.to_owned(), what.to_owned(), remedy));
+    let Some(frames) = &object.frames else {
+        let fields = [
+            object.object.is_some(),
+            object.frame.is_some(),
+            object.rate.is_some(),
+        ];
+        return match fields.contains(&true) {
+            false => Ok(None),
+            true => wrong(
+                "it has object, frame or rate, but no frames",
+                "name a file of frames, or leave them out",
             ),
+        };
+    };
+    let path = scene.beside(frames);
+    let sources = (&object.mesh, &object.pattern, &object.body);
+    match (object.kind.as_str(), sources, cached) {
+        ("static", ..) => wrong(
+            "it is static but has frames",
+            "write animated or deformable",
+        ),
+        ("deformable", (None, None, None), _) => {
+            Ok(Some(Recorded::Cloth(recorded_cloth(&path, object)?)))
         }
-    }
-
-    /// The track of a recorded course where it stands in the scene.
-    ///
-    /// # Errors
-    /// Frames that are no track.
-    pub(crate) fn recorded_track(
-        &self,
-        place: &str,
-        course: Option<RecordedCourse>,
-        transform: &TransformFile,
-    ) -> Result<Option<SharedTrack>, SessionError> {
-        let track = course.map(|course| course.track(|p| transform.apply(p)));
-        track.transpose().map_err(|error| {
-            let remedy = "record the frames again";
-            self.place
-                .wrong(place.to_owned(), error.to_string(), remedy)
-        })
+        ("animated", (None, None, None), _) => recorded_object(&path, object).map(Some),
+        ("animated", (Some(_), None, None), Some((mesh, stance))) => {
+            cached_object(&path, mesh, object.rate, |p| stance.place(p)).map(Some)
+        }
+        _ => wrong(
+            "frames have a surface of their own; only a point cache (PC2) of an animated object goes with a mesh",
+            "name one file",
+        ),
     }
 }
 
@@ -98,7 +73,7 @@ impl RecordedCourse {
     ///
     /// # Errors
     /// Those of [`RecordedTrack::new`].
-    fn track(self, place: impl Fn(Vec3) -> Vec3) -> Result<SharedTrack, DrapeError> {
+    pub fn track(self, place: impl Fn(Vec3) -> Vec3) -> Result<SharedTrack, DrapeError> {
         let placed = self.0.into_iter().map(|(time, mut positions)| {
             positions.iter_mut().for_each(|p| *p = place(*p));
             (time, positions)
