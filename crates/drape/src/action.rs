@@ -1,13 +1,14 @@
 //! What can be done to a running scene, and when it was done.
 
 use crate::laws::elastic::ElasticLaw;
-use crate::world::{ObjectId, World, WorldEdit};
+use crate::world::{MeshVertex, ObjectId, World, WorldEdit};
 use crate::{Attachment, DrapeError, Parameter, Simulation};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// Something done to a scene between two steps.
+/// Something done to a scene or a garment between two steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Action {
     /// Another structure.
     Edit(WorldEdit),
@@ -26,16 +27,21 @@ pub enum Action {
     LetGo(Spot),
 }
 
-/// A place within a triangle of an object's own mesh.
+/// A place on an object's own mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Spot {
-    /// The object.
-    pub object: ObjectId,
-    /// The triangle of its mesh.
-    pub triangle: u32,
-    /// Weights of its corners, none below 0, their sum 1.
-    pub weights: [f64; 3],
+#[serde(rename_all = "snake_case")]
+pub enum Spot {
+    /// A vertex.
+    Vertex(MeshVertex),
+    /// A place within a triangle.
+    Triangle {
+        /// The object.
+        object: ObjectId,
+        /// The triangle of its mesh.
+        triangle: u32,
+        /// Weights of its corners, none below 0, their sum 1.
+        weights: [f64; 3],
+    },
 }
 
 /// An action with its time.
@@ -48,40 +54,69 @@ pub struct Input {
     pub action: Action,
 }
 
-/// Stiffness of a hand [N/m]: 5 N, some times the weight of a garment, over 5 cm.
+/// Stiffness of a hand [N/m]: its usual force over 5 cm.
 pub const HAND_STIFFNESS: f64 = 100.0;
 
+/// Usual largest force of a hand [N]: some times the weight of a garment, so that cloth is drawn and not torn.
+pub const HAND_FORCE: f64 = 5.0;
+
 /// Farthest place cloth may be drawn to, along each axis [m]: no room is larger.
-const FARTHEST: f64 = 100.0;
+pub const FARTHEST_PULL: f64 = 100.0;
 
 impl Spot {
-    /// Corners of its triangle in the mesh of its object.
+    /// The object that it is on.
+    pub fn object(&self) -> ObjectId {
+        match self {
+            Self::Vertex(vertex) => vertex.object,
+            Self::Triangle { object, .. } => *object,
+        }
+    }
+
+    /// Vertices of the mesh of its object, with their weights.
     ///
     /// # Errors
-    /// An object or a triangle that is not there, an object that is no cloth, weights that are none.
-    fn corners(&self, world: &World) -> Result<[u32; 3], DrapeError> {
-        let object = world.existing(self.object)?;
+    /// An object, a vertex or a triangle that is not there, an object that is no cloth, weights that are none.
+    fn corners(&self, world: &World) -> Result<Vec<(u32, f64)>, DrapeError> {
+        let object = world.existing(self.object())?;
         if object.deformable_cloth().is_none() {
             return Err(object.refuse("it is no cloth to take hold of", "name a cloth"));
         }
-        let Some(corners) = object.mesh.triangles.get(self.triangle as usize) else {
-            let what = format!("it has no triangle {}", self.triangle);
+        let (triangle, weights) = match self {
+            Self::Vertex(vertex) => {
+                world.check_vertex(*vertex)?;
+                return Ok(vec![(vertex.vertex, 1.0)]);
+            }
+            Self::Triangle {
+                triangle, weights, ..
+            } => (*triangle, weights),
+        };
+        let Some(corners) = object.mesh.triangles.get(triangle as usize) else {
+            let what = format!("it has no triangle {triangle}");
             return Err(object.refuse(&what, "name a triangle below its triangle count"));
         };
-        let sum: f64 = self.weights.iter().sum();
-        let are_weights = self.weights.iter().all(|w| *w >= 0.0) && (sum - 1.0).abs() < 1e-9;
+        let sum: f64 = weights.iter().sum();
+        let are_weights = weights.iter().all(|w| *w >= 0.0) && (sum - 1.0).abs() < 1e-9;
         match are_weights {
-            true => Ok(*corners),
+            true => Ok(corners.iter().copied().zip(*weights).collect()),
             false => {
-                let what = format!("{:?} are no weights of three corners", self.weights);
+                let what = format!("{weights:?} are no weights of three corners");
                 Err(object.refuse(&what, "give numbers of 0 or more whose sum is 1"))
             }
         }
     }
+
+    /// Vertices of the merged cloth, with their weights.
+    fn vertices(&self, simulation: &Simulation) -> Result<Vec<(u32, f64)>, DrapeError> {
+        let corners = self.corners(simulation.world())?;
+        let own = simulation.map().vertices_of(self.object());
+        let own = own.ok_or_else(|| self.object().missing())?;
+        let merged = corners.into_iter().map(|(v, w)| (own[v as usize], w));
+        Ok(merged.collect())
+    }
 }
 
 /// A hand on the cloth.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Hand {
     /// Where it holds the cloth.
@@ -90,8 +125,8 @@ pub(crate) struct Hand {
     pub to: Vec3,
     /// Its largest force [N].
     pub force: f64,
-    /// Corners of the triangle seen from the spot when it took hold of it [m].
-    corners: [Vec3; 3],
+    /// Vertices of the spot seen from it when the hand took hold of it [m].
+    corners: Vec<Vec3>,
 }
 
 impl Hand {
@@ -110,7 +145,7 @@ impl Hand {
                 remedy: remedy.to_owned(),
             })
         };
-        if let Some(x) = to.iter().find(|x| x.is_nan() || x.abs() > FARTHEST) {
+        if let Some(x) = to.iter().find(|x| x.is_nan() || x.abs() > FARTHEST_PULL) {
             let what = format!("a coordinate of the place it draws to is {x} m");
             return refuse(what, "give a place within 100 m");
         }
@@ -118,19 +153,19 @@ impl Hand {
             return refuse(format!("its force is {force} N"), "give 0 N or more");
         }
         let vertices = spot.vertices(simulation)?;
-        let at = vertices.map(|v| simulation.state.positions[v as usize]);
-        let place: Vec3 = at.iter().zip(spot.weights).map(|(p, w)| p * w).sum();
+        let at = |v: u32| simulation.state.positions[v as usize];
+        let place: Vec3 = vertices.iter().map(|&(v, w)| at(v) * w).sum();
         Ok(Self {
             spot,
             to,
             force,
-            corners: at.map(|p| p - place),
+            corners: vertices.iter().map(|&(v, _)| at(v) - place).collect(),
         })
     }
 
     /// Holds the cloth as another hand on the same spot did.
     pub fn take_over(&mut self, other: &Self) {
-        self.corners = other.corners;
+        self.corners.clone_from(&other.corners);
     }
 
     /// Its springs on the corners of the triangle, by their weights: together they pull at the spot alone and do not
@@ -140,9 +175,9 @@ impl Hand {
     /// A spot that is no longer there.
     pub fn attachments(&self, simulation: &Simulation) -> Result<Vec<Attachment>, DrapeError> {
         let vertices = self.spot.vertices(simulation)?;
-        let corners = vertices.into_iter().zip(self.corners);
-        let weighted = corners.zip(self.spot.weights).filter(|(_, w)| *w > 0.0);
-        let springs = weighted.map(|((vertex, from), weight)| Attachment {
+        let corners = vertices.into_iter().zip(&self.corners);
+        let pulled = corners.filter(|((_, weight), _)| *weight > 0.0);
+        let springs = pulled.map(|((vertex, weight), from)| Attachment {
             vertex,
             place: self.to + from,
             law: ElasticLaw {
@@ -151,15 +186,5 @@ impl Hand {
             },
         });
         Ok(springs.collect())
-    }
-}
-
-impl Spot {
-    /// Vertices of the merged cloth at the corners of its triangle.
-    fn vertices(&self, simulation: &Simulation) -> Result<[u32; 3], DrapeError> {
-        let corners = self.corners(simulation.world())?;
-        let own = simulation.map().vertices_of(self.object);
-        let own = own.ok_or_else(|| self.object.missing())?;
-        Ok(corners.map(|corner| own[corner as usize]))
     }
 }

@@ -37,6 +37,7 @@ pub struct Environment {
 
 /// A load or a setting of the environment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Parameter {
     /// Acceleration of gravity [m/s2].
     Gravity(Vec3),

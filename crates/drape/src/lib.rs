@@ -68,7 +68,7 @@ mod verdict;
 mod world;
 mod xpbd;
 
-pub use action::{Action, HAND_STIFFNESS, Input, Spot};
+pub use action::{Action, FARTHEST_PULL, HAND_FORCE, HAND_STIFFNESS, Input, Spot};
 pub use carry::Carry;
 pub use cloth::Cloth;
 pub use collider::{Collider, PlacedSolid, PrescribedVertex};

@@ -413,7 +413,7 @@ impl SceneRun {
             self.refinements = 0;
         }
         // Of what is gone or has another mesh hands let go.
-        self.hands.retain(|hand| Some(hand.spot.object) != gone);
+        self.hands.retain(|hand| Some(hand.spot.object()) != gone);
         self.own_attachments = self.system.control.attachments.clone();
         self.pull()?;
         // The method may have cached solids and policies.

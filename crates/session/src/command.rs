@@ -1,9 +1,11 @@
 //! Commands: everything that can be asked of a session, as data.
 
-use crate::{Export, PanelOrigin, PastStep, Quality, StampedInput};
+use crate::interactive_run::read_inputs;
+use crate::{Export, PanelOrigin, PastStep, Quality};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_body::{Figure, PrimitiveEdit};
+use toile_drape::Input;
 use toile_measure::Measurements;
 use toile_pattern::Edit;
 
@@ -124,8 +126,12 @@ pub enum Command {
     /// Sews the garment and drapes it to rest.
     Drape {
         /// What was done to the cloth meanwhile.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        inputs: Vec<StampedInput>,
+        #[serde(
+            default,
+            skip_serializing_if = "Vec::is_empty",
+            deserialize_with = "read_inputs"
+        )]
+        inputs: Vec<Input>,
     },
     /// Writes files of the present project: marker, garment, pictures, pieces, report.
     Export(Export),

@@ -10,11 +10,11 @@ use crate::outfit::{DraftedPart, MeshedPart, Outfit, checked, tell_apart};
 use crate::put_on::PutOn;
 use crate::setup::{self, GarmentJob};
 use crate::watched_search::lay_watched;
-use crate::{Project, SessionError, StampedInput, Watcher};
+use crate::{Project, SessionError, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Mannequin};
-use toile_drape::{Aspect, DrapeError, Finding};
+use toile_drape::{Aspect, DrapeError, Finding, Input};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_marker::{FinishedMarker, Garments};
@@ -330,7 +330,7 @@ impl Derived {
     pub fn drape(
         &mut self,
         project: &Project,
-        inputs: &[StampedInput],
+        inputs: &[Input],
         watcher: &mut dyn Watcher,
     ) -> Result<Arc<Drape>, SessionError> {
         if let Some(drape) = self.drape.as_ref().filter(|drape| drape.inputs == inputs) {
@@ -351,7 +351,7 @@ impl Derived {
     fn drape_otherwise(
         &mut self,
         project: &Project,
-        inputs: &[StampedInput],
+        inputs: &[Input],
         watcher: &mut dyn Watcher,
     ) -> Result<Drape, SessionError> {
         let (put_on, [first, second]) = PutOn::otherwise(&self.sound_parts(project)?)

@@ -1,12 +1,14 @@
 //! Drapes a garment from its setup to rest, and summarises the result.
 
-use crate::interactive_run::InteractiveRun;
+use crate::interactive_run::{InteractiveRun, check_action};
 use crate::stuck::stuck;
 use crate::watcher::report_progress;
-use crate::{Draped, Event, GarmentJob, SessionError, StampedInput, Watcher, verdict};
+use crate::{Draped, Event, GarmentJob, SessionError, Watcher, verdict};
 use std::sync::Arc;
 use toile_drape::collision::Tally;
-use toile_drape::{DrapeError, Measures, Stage, Verdict, keeps_corners, stretch_per_triangle};
+use toile_drape::{
+    DrapeError, Input, Measures, Stage, Verdict, keeps_corners, stretch_per_triangle,
+};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A garment sewn and draped.
@@ -33,7 +35,7 @@ pub(crate) struct Drape {
     /// What is told of it: the words of the verdict, and whether a hand is still on the cloth.
     pub warnings: Vec<String>,
     /// What was done to the cloth meanwhile.
-    pub inputs: Vec<StampedInput>,
+    pub inputs: Vec<Input>,
 }
 
 impl Drape {
@@ -147,7 +149,7 @@ impl DrapeResult {
     }
 
     /// What was done to the cloth meanwhile.
-    pub fn inputs(&self) -> &[StampedInput] {
+    pub fn inputs(&self) -> &[Input] {
         &self.drape.inputs
     }
 }
@@ -155,16 +157,16 @@ impl DrapeResult {
 /// Sews, merges and drapes a garment to rest.
 pub(crate) fn drape(
     job: GarmentJob,
-    inputs: &[StampedInput],
+    inputs: &[Input],
     watcher: &mut dyn Watcher,
 ) -> Result<Drape, SessionError> {
     report_progress(watcher, "sewing", 0.0, "")?;
-    for stamped in inputs {
-        stamped.input.check(&job)?;
+    for input in inputs {
+        check_action(&input.action, &job)?;
     }
     let mut run = InteractiveRun::new(job)?;
-    for stamped in inputs {
-        run.give(stamped.input, Some(stamped.step));
+    for input in inputs {
+        run.give(input.action.clone(), Some(input.step));
     }
     loop {
         let progress = match run.advance() {

@@ -2,90 +2,148 @@
 
 use crate::rest_change::RestChange;
 use crate::{GarmentJob, SessionError};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use toile_drape::laws::elastic::ElasticLaw;
-use toile_drape::{Attachment, Carry, Cloth, DrapeError, GarmentRun, Progress, Stage};
+use toile_drape::{
+    Action, Attachment, Carry, Cloth, DrapeError, FARTHEST_PULL, GarmentRun, HAND_FORCE,
+    HAND_STIFFNESS, Input, MeshVertex, ObjectId, Progress, SceneObject, Spot, Stage,
+};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
-/// Something done to cloth while it is draped. Vertices are those of the job's garment, before
-/// seams are merged.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "input")]
-pub enum LiveInput {
-    /// An elastic draws a vertex to a place from now on; one that is held already, to this place.
-    Drag {
-        /// The vertex.
-        vertex: u32,
-        /// The place [m].
-        to: [f64; 3],
-    },
-    /// The vertex is let go.
-    Release {
-        /// The vertex.
-        vertex: u32,
-    },
+/// The number of the garment among the objects: it is the only cloth.
+fn garment() -> ObjectId {
+    SceneObject::id(0)
 }
 
-/// An input and when it applies.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StampedInput {
-    /// Steps taken before it.
-    pub step: u64,
-    /// What is done.
-    #[serde(flatten)]
-    pub input: LiveInput,
-}
-
-/// The pull of a hand: 5 N, some times the weight of a garment, from 5 cm on.
-const HAND: ElasticLaw = ElasticLaw {
-    stiffness: 100.0,
-    largest_force: 5.0,
-};
-
-/// Farthest place cloth may be drawn to, along each axis [m]: no room is larger.
-const FARTHEST: f64 = 100.0;
-
-impl LiveInput {
-    /// The vertex it concerns.
-    pub fn vertex(&self) -> u32 {
-        match *self {
-            Self::Drag { vertex, .. } | Self::Release { vertex } => vertex,
-        }
+/// A hand that draws a vertex of a garment, numbered before its seams are merged, to a place [m] with the usual force.
+pub fn pull_vertex(vertex: u32, to: [f64; 3]) -> Action {
+    Action::Pull {
+        spot: vertex_spot(vertex),
+        to: Vec3::from(to),
+        force: HAND_FORCE,
     }
+}
 
-    /// Refuses vertices and places that are not there.
-    pub(crate) fn check(&self, job: &GarmentJob) -> Result<(), SessionError> {
-        let count = job.garment.positions.len();
-        let vertex = self.vertex();
-        if vertex as usize >= count {
-            return Err(SessionError::Unknown {
-                kind: "vertex",
-                name: vertex.to_string(),
-                hint: format!("the garment has {count}, counted from 0"),
-            });
-        }
-        let corners = job.garment.triangles.iter().flatten();
-        if !corners.into_iter().any(|&corner| corner == vertex) {
-            return Err(SessionError::Unknown {
-                kind: "vertex",
-                name: vertex.to_string(),
-                hint: "it is in no triangle; take hold of one of the cloth".to_owned(),
-            });
-        }
-        let places = match self {
-            Self::Drag { to, .. } => to.as_slice(),
-            Self::Release { .. } => &[],
+/// The hand lets go of a vertex of a garment.
+pub fn let_go_of_vertex(vertex: u32) -> Action {
+    Action::LetGo(vertex_spot(vertex))
+}
+
+fn vertex_spot(vertex: u32) -> Spot {
+    Spot::Vertex(MeshVertex {
+        object: garment(),
+        vertex,
+    })
+}
+
+/// What a hand does to a garment: the vertex it is on, and where it draws it with which force, or none where it lets
+/// go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct HandInput {
+    vertex: u32,
+    pull: Option<(Vec3, f64)>,
+}
+
+impl HandInput {
+    /// That of an action; none where a garment does not take it.
+    fn of(action: &Action) -> Option<Self> {
+        let (spot, pull) = match action {
+            Action::Pull { spot, to, force } => (spot, Some((*to, *force))),
+            Action::LetGo(spot) => (spot, None),
+            Action::Edit(_) | Action::Set(_) => return None,
         };
-        match places.iter().find(|x| x.is_nan() || x.abs() > FARTHEST) {
-            Some(&value) => Err(SessionError::Number {
-                what: "a coordinate of the place cloth is drawn to [m]",
-                value,
-                hint: "give a place within 100 m",
+        match spot {
+            Spot::Vertex(vertex) if vertex.object == garment() => Some(Self {
+                vertex: vertex.vertex,
+                pull,
             }),
-            None => Ok(()),
+            _ => None,
         }
     }
+}
+
+/// Refuses what a garment does not take, and vertices, places and forces that are not there.
+///
+/// # Errors
+/// What is wrong, and what would be right.
+pub(crate) fn check_action(action: &Action, job: &GarmentJob) -> Result<(), SessionError> {
+    let Some(HandInput { vertex, pull }) = HandInput::of(action) else {
+        let what = "a garment takes hands on its vertices alone; edit its pattern for all else";
+        return Err(SessionError::Conflict(what.to_owned()));
+    };
+    let unknown = |hint: String| {
+        Err(SessionError::Unknown {
+            kind: "vertex",
+            name: vertex.to_string(),
+            hint,
+        })
+    };
+    let count = job.garment.positions.len();
+    if vertex as usize >= count {
+        return unknown(format!("the garment has {count}, counted from 0"));
+    }
+    let mut corners = job.garment.triangles.iter().flatten();
+    if !corners.any(|&corner| corner == vertex) {
+        return unknown("it is in no triangle; take hold of one of the cloth".to_owned());
+    }
+    let Some((to, force)) = pull else {
+        return Ok(());
+    };
+    if let Some(&value) = to.iter().find(|x| x.is_nan() || x.abs() > FARTHEST_PULL) {
+        return Err(SessionError::Number {
+            what: "a coordinate of the place cloth is drawn to [m]",
+            value,
+            hint: "give a place within 100 m",
+        });
+    }
+    match force >= 0.0 {
+        true => Ok(()),
+        false => Err(SessionError::Number {
+            what: "the force of a hand [N]",
+            value: force,
+            hint: "give 0 N or more",
+        }),
+    }
+}
+
+/// Inputs of a journal: as they are written, or as they were before there were actions, by vertex.
+///
+/// # Errors
+/// What is neither.
+pub(crate) fn read_inputs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Input>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Written {
+        Input(Input),
+        Vertex(VertexInput),
+    }
+    #[derive(Deserialize)]
+    #[serde(rename_all = "snake_case", tag = "input")]
+    enum VertexInput {
+        Drag {
+            step: u64,
+            vertex: u32,
+            to: [f64; 3],
+        },
+        Release {
+            step: u64,
+            vertex: u32,
+        },
+    }
+    let written = Vec::<Written>::deserialize(from)?;
+    let read = written.into_iter().map(|written| match written {
+        Written::Input(input) => input,
+        Written::Vertex(VertexInput::Drag { step, vertex, to }) => Input {
+            step,
+            action: pull_vertex(vertex, to),
+        },
+        Written::Vertex(VertexInput::Release { step, vertex }) => Input {
+            step,
+            action: let_go_of_vertex(vertex),
+        },
+    });
+    Ok(read.collect())
 }
 
 /// A garment being sewn and draped, with inputs applied at their steps.
@@ -94,12 +152,12 @@ pub(crate) struct InteractiveRun {
     run: GarmentRun,
     /// From the mesh of a level to the garment's.
     carry: Option<(usize, Carry)>,
-    /// Where each held vertex is drawn to.
-    held: BTreeMap<u32, Vec3>,
+    /// Where each held vertex is drawn to [m], and with which force [N].
+    held: BTreeMap<u32, (Vec3, f64)>,
     /// Inputs to come, by step; those of one step in the order given.
-    waiting: BTreeMap<u64, Vec<LiveInput>>,
+    waiting: BTreeMap<u64, Vec<Action>>,
     /// Inputs that were applied.
-    applied: Vec<StampedInput>,
+    applied: Vec<Input>,
     steps: u64,
 }
 
@@ -118,9 +176,9 @@ impl InteractiveRun {
     }
 
     /// Takes an input for after `step` steps; for the next step if that is past or not said.
-    pub fn give(&mut self, input: LiveInput, step: Option<u64>) {
+    pub fn give(&mut self, action: Action, step: Option<u64>) {
         let step = step.unwrap_or(0).max(self.steps);
-        self.waiting.entry(step).or_default().push(input);
+        self.waiting.entry(step).or_default().push(action);
     }
 
     /// What it is made from, and the garment.
@@ -158,7 +216,7 @@ impl InteractiveRun {
     }
 
     /// The inputs applied so far.
-    pub fn applied(&self) -> &[StampedInput] {
+    pub fn applied(&self) -> &[Input] {
         &self.applied
     }
 
@@ -200,27 +258,23 @@ impl InteractiveRun {
 
     /// Applies inputs of one step: of each vertex only the newest, as if the others had not been.
     /// Says whether anything changed.
-    fn apply(&mut self, inputs: Vec<LiveInput>) -> bool {
-        let newest: BTreeMap<u32, LiveInput> = inputs
+    fn apply(&mut self, actions: Vec<Action>) -> bool {
+        let hands = actions
             .into_iter()
-            .map(|input| (input.vertex(), input))
-            .collect();
+            .filter_map(|action| Some((HandInput::of(&action)?, action)));
+        let newest: BTreeMap<u32, (HandInput, Action)> =
+            hands.map(|hand| (hand.0.vertex, hand)).collect();
         let mut changed = false;
-        for (vertex, input) in newest {
-            let before = self.held.get(&vertex).copied();
-            let after = match input {
-                LiveInput::Drag { to, .. } => Some(Vec3::from(to)),
-                LiveInput::Release { .. } => None,
-            };
-            if before == after {
-                continue;
-            }
-            match after {
-                Some(place) => self.held.insert(vertex, place),
+        for (vertex, (HandInput { pull, .. }, action)) in newest {
+            let before = match pull {
+                Some(pull) => self.held.insert(vertex, pull),
                 None => self.held.remove(&vertex),
             };
+            if before == pull {
+                continue;
+            }
             let step = self.steps;
-            self.applied.push(StampedInput { step, input });
+            self.applied.push(Input { step, action });
             changed = true;
         }
         changed
@@ -229,12 +283,15 @@ impl InteractiveRun {
     /// Draws the held vertices where the hands are.
     fn pull(&mut self) -> Result<(), DrapeError> {
         let mut attachments = Vec::with_capacity(self.held.len());
-        for (&vertex, &place) in &self.held {
+        for (&vertex, &(place, largest_force)) in &self.held {
             let handle = self.handle(vertex)?;
             attachments.push(Attachment {
                 vertex: self.run.target()[handle as usize],
                 place,
-                law: HAND,
+                law: ElasticLaw {
+                    stiffness: HAND_STIFFNESS,
+                    largest_force,
+                },
             });
         }
         self.run.control_mut().attachments = attachments.into_iter().collect();

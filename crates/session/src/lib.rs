@@ -89,7 +89,7 @@ pub use frames_export::{FramesExport, FramesOutcome, export_frames};
 pub use garment_edit::{CannotFollow, GarmentEdit};
 pub use history::HistoryStep;
 pub use input::is_input;
-pub use interactive_run::{LiveInput, StampedInput};
+pub use interactive_run::{let_go_of_vertex, pull_vertex};
 pub use journal::{journal_lines, read_journal};
 pub use journal_files::open_journal;
 pub use live::{LiveFrame, LiveRun};

@@ -2,16 +2,16 @@
 
 use crate::drape::{Drape, DrapeResult};
 use crate::garment_edit::GarmentEdit;
-use crate::interactive_run::InteractiveRun;
+use crate::interactive_run::{InteractiveRun, check_action};
 use crate::rest_change::RestChange;
-use crate::{GarmentJob, LiveInput, SessionError, StampedInput};
+use crate::{GarmentJob, SessionError};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
-use toile_drape::{DrapeError, Progress, Stage, Verdict};
+use toile_drape::{Action, DrapeError, Input, Progress, Stage, Verdict};
 use toile_geometry::Vec3;
 
 /// One moment of a live drape.
@@ -44,7 +44,7 @@ struct Orders {
     stands: bool,
     stop: bool,
     /// Inputs not yet taken, with the step they are for.
-    inputs: Vec<(LiveInput, Option<u64>)>,
+    actions: Vec<(Action, Option<u64>)>,
     /// An edit not yet taken.
     edit: Option<GarmentEdit>,
     /// The garment the thread has in hand.
@@ -58,7 +58,7 @@ struct Shared {
     orders: Mutex<Orders>,
     woken: Condvar,
     latest: Mutex<Option<LiveFrame>>,
-    applied: Mutex<Vec<StampedInput>>,
+    applied: Mutex<Vec<Input>>,
     outcome: Mutex<Option<Result<DrapeResult, String>>>,
     warnings: Mutex<Vec<String>>,
     verdict: Mutex<Option<Verdict>>,
@@ -117,30 +117,30 @@ impl LiveRun {
         lock(&self.shared.latest).take()
     }
 
-    /// Does something to the cloth before the next step. Of several inputs for one vertex that
-    /// come between two steps only the newest counts. A garment at rest moves again.
+    /// Does something to the cloth before the next step: a garment takes hands on its vertices. Of several for one
+    /// vertex that come between two steps only the newest counts. A garment at rest moves again.
     ///
     /// # Errors
-    /// A vertex or a place that is not there.
-    pub fn give(&self, input: LiveInput) -> Result<(), SessionError> {
-        self.order(input, None)
+    /// A vertex or a place that is not there, another action.
+    pub fn give(&self, action: Action) -> Result<(), SessionError> {
+        self.order(action, None)
     }
 
     /// The same when so many steps are taken; before the next step if more are already. When the
     /// garment comes to rest earlier, then.
     ///
     /// # Errors
-    /// A vertex or a place that is not there.
-    pub fn give_at(&self, stamped: StampedInput) -> Result<(), SessionError> {
-        self.order(stamped.input, Some(stamped.step))
+    /// Those of [`LiveRun::give`].
+    pub fn give_at(&self, input: Input) -> Result<(), SessionError> {
+        self.order(input.action, Some(input.step))
     }
 
-    fn order(&self, input: LiveInput, step: Option<u64>) -> Result<(), SessionError> {
+    fn order(&self, action: Action, step: Option<u64>) -> Result<(), SessionError> {
         let mut orders = lock(&self.shared.orders);
         if let Some(job) = &orders.job {
-            input.check(job)?;
+            check_action(&action, job)?;
         }
-        orders.inputs.push((input, step));
+        orders.actions.push((action, step));
         self.shared.begin_again(&orders);
         Ok(())
     }
@@ -170,7 +170,7 @@ impl LiveRun {
 
     /// Everything that was done to the cloth so far, each with the step it was applied at. The
     /// same job with these inputs gives the same positions, bit by bit.
-    pub fn inputs(&self) -> Vec<StampedInput> {
+    pub fn inputs(&self) -> Vec<Input> {
         lock(&self.shared.applied).clone()
     }
 
@@ -266,8 +266,8 @@ impl Shared {
                 return NextTask::End;
             }
             if !orders.paused {
-                for (input, step) in orders.inputs.drain(..) {
-                    run.give(input, step);
+                for (action, step) in orders.actions.drain(..) {
+                    run.give(action, step);
                 }
                 if run.takes_edits()
                     && let Some(edit) = orders.edit.take()

@@ -10,7 +10,7 @@ use crate::output::cannot;
 use crate::watcher::{ProgressShare, report_progress};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, PastStep, Project, Session,
-    SessionError, StampedInput, Watcher, WornGarment,
+    SessionError, Watcher, WornGarment,
 };
 use std::fmt::Display;
 use std::path::Path;
@@ -480,7 +480,11 @@ impl Session {
         Ok(events)
     }
 
-    pub(crate) fn drape(&mut self, inputs: &[StampedInput], watcher: &mut dyn Watcher) -> Outcome {
+    pub(crate) fn drape(
+        &mut self,
+        inputs: &[toile_drape::Input],
+        watcher: &mut dyn Watcher,
+    ) -> Outcome {
         let mut events = Vec::new();
         let mut from = 0.0;
         if !self.derived.has_outfit() {

@@ -11,8 +11,8 @@ use toile_geometry::{Vec2, Vec3};
 use toile_measure::{Measurements, Origin};
 use toile_pattern::{Edit, Entity, Panel, plan};
 use toile_session::{
-    CannotFollow, Command, Figure, GarmentEdit, GarmentJob, LiveFrame, LiveInput, LiveRun,
-    OtherGarment, Quality, RestChange, Session, Silent,
+    CannotFollow, Command, Figure, GarmentEdit, GarmentJob, LiveFrame, LiveRun, OtherGarment,
+    Quality, RestChange, Session, Silent, let_go_of_vertex, pull_vertex,
 };
 
 /// A session with the band in it, meshed coarsely.
@@ -286,7 +286,7 @@ fn an_edit_that_needs_another_mesh_carries_the_garment_over() {
     assert_eq!(next.change, RestChange::Shapes);
     live.edit(next);
     let to = [0.0, 1.0, 1.0];
-    live.give(LiveInput::Drag { vertex, to }).unwrap();
+    live.give(pull_vertex(vertex, to)).unwrap();
     live.resume();
     let second = at_rest(&live);
     assert_eq!(second.job.revision, session.revision());
@@ -294,7 +294,7 @@ fn an_edit_that_needs_another_mesh_carries_the_garment_over() {
     assert!((height(&first) - height(&second)).abs() < 0.005);
     // The hand let go of the old mesh; the new one can be taken hold of.
     let vertex = second.target.len() as u32 - 1;
-    live.give(LiveInput::Drag { vertex, to }).unwrap();
+    live.give(pull_vertex(vertex, to)).unwrap();
     let held = seen(&live, |frame| frame.stage == Stage::Finished);
     let place = |frame: &LiveFrame| frame.positions[frame.target[vertex as usize] as usize];
     let to = Vec3::from(to);
@@ -307,7 +307,7 @@ fn an_edit_that_needs_another_mesh_carries_the_garment_over() {
     });
     assert!((place(&edited) - place(&held)).norm() < 0.02);
     assert!(!live.is_finished());
-    live.give(LiveInput::Release { vertex }).unwrap();
+    live.give(let_go_of_vertex(vertex)).unwrap();
     at_rest(&live);
 }
 

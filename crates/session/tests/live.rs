@@ -6,11 +6,11 @@ mod support;
 use std::path::Path;
 use std::time::Duration;
 use support::{band, lasting, make};
-use toile_drape::GarmentRun;
+use toile_drape::{Action, GarmentRun, Input, Parameter};
 use toile_geometry::Vec3;
 use toile_session::{
-    Command, DrapeResult, GarmentJob, LiveInput, LiveRun, Quality, Session, Silent, Stage,
-    StampedInput, open_journal,
+    Command, DrapeResult, GarmentJob, LiveRun, Quality, Session, Silent, Stage, let_go_of_vertex,
+    open_journal, pull_vertex,
 };
 
 /// A session with the band in it, meshed coarsely.
@@ -52,8 +52,8 @@ fn handle(job: &GarmentJob) -> (u32, [f64; 3]) {
     (vertex as u32, (at[vertex] + Vec3::z() * 0.5).into())
 }
 
-fn at(step: u64, input: LiveInput) -> StampedInput {
-    StampedInput { step, input }
+fn at(step: u64, action: Action) -> Input {
+    Input { step, action }
 }
 
 #[test]
@@ -106,18 +106,15 @@ fn the_same_inputs_give_the_same_positions_bit_by_bit() {
     let last_step = untouched.summary().steps.iter().sum::<usize>() as u64;
 
     // Held while it is sewn, drawn on while it settles, let go at last.
-    let drag = |share: f64| LiveInput::Drag {
-        vertex,
-        to: [to[0], to[1], to[2] * share],
-    };
+    let drag = |share: f64| pull_vertex(vertex, [to[0], to[1], to[2] * share]);
     let live = LiveRun::start(job.clone());
     live.pause();
     for (step, input) in [
         (2, drag(1.0)),
         (last_step / 2, drag(0.9)),
         (last_step / 2, drag(0.8)),
-        (last_step, LiveInput::Release { vertex }),
-        (last_step, LiveInput::Release { vertex: vertex + 1 }),
+        (last_step, let_go_of_vertex(vertex)),
+        (last_step, let_go_of_vertex(vertex + 1)),
     ] {
         live.give_at(at(step, input)).unwrap();
     }
@@ -128,7 +125,7 @@ fn the_same_inputs_give_the_same_positions_bit_by_bit() {
     assert_eq!(applied, first.inputs());
     assert_eq!(applied[0], at(2, drag(1.0)));
     assert_eq!(applied[1], at(last_step / 2, drag(0.8)));
-    assert_eq!(applied[2].input, LiveInput::Release { vertex });
+    assert_eq!(applied[2].action, let_go_of_vertex(vertex));
     assert_eq!(applied.len(), 3);
     assert_ne!(
         bits(&first.mesh().positions),
@@ -137,7 +134,7 @@ fn the_same_inputs_give_the_same_positions_bit_by_bit() {
 
     let again = LiveRun::start(job);
     for stamped in first.inputs() {
-        again.give_at(*stamped).unwrap();
+        again.give_at(stamped.clone()).unwrap();
     }
     let again = finished(&again);
     assert_eq!(again.inputs(), first.inputs());
@@ -151,7 +148,7 @@ fn cloth_that_is_held_goes_to_the_hand_and_falls_back() {
     let job = session.garment_setup().unwrap();
     let (vertex, to) = handle(&job);
     let live = LiveRun::start(job);
-    live.give(LiveInput::Drag { vertex, to }).unwrap();
+    live.give(pull_vertex(vertex, to)).unwrap();
     // It comes to rest in the hand, and does not end.
     let mut frame = None;
     for _ in 0..12_000 {
@@ -169,7 +166,7 @@ fn cloth_that_is_held_goes_to_the_hand_and_falls_back() {
     let in_hand = place(&held.positions);
 
     // Whenever the hand lets go, the journal knows: replayed it is the same garment.
-    live.give(LiveInput::Release { vertex }).unwrap();
+    live.give(let_go_of_vertex(vertex)).unwrap();
     let released = finished(&live);
     let fallen = place(&released.mesh().positions);
     let to = Vec3::from(to);
@@ -201,7 +198,7 @@ fn cloth_is_held_on_coarse_meshes_too() {
         job.setup.levels.last().unwrap().clone(),
     ];
     let (vertex, to) = handle(&job);
-    let drag = LiveInput::Drag { vertex, to };
+    let drag = pull_vertex(vertex, to);
     let live = LiveRun::start(job.clone());
     live.give(drag).unwrap();
     let mut levels = Vec::new();
@@ -221,14 +218,14 @@ fn cloth_is_held_on_coarse_meshes_too() {
             levels.push(frame.positions.len());
         }
         if frame.stage == Stage::Finished {
-            live.give(LiveInput::Release { vertex }).unwrap();
+            live.give(let_go_of_vertex(vertex)).unwrap();
         }
     }
     let first = finished(&live);
     assert!(levels.contains(&first.mesh().positions.len()));
     let again = LiveRun::start(job);
     for stamped in first.inputs() {
-        again.give_at(*stamped).unwrap();
+        again.give_at(stamped.clone()).unwrap();
     }
     let again = finished(&again);
     assert_eq!(again.inputs(), first.inputs());
@@ -250,11 +247,8 @@ fn inputs_that_make_no_sense_are_refused() {
         (0, 1e300),
         (0, -1e3),
     ] {
-        let input = LiveInput::Drag {
-            vertex,
-            to: [0.0, x, 0.0],
-        };
-        let error = live.give(input).unwrap_err();
+        let input = pull_vertex(vertex, [0.0, x, 0.0]);
+        let error = live.give(input.clone()).unwrap_err();
         assert!(error.is_bad_input(), "{error}");
         let before = session.journal().len();
         let inputs = vec![at(0, input)];
@@ -271,6 +265,36 @@ fn inputs_that_make_no_sense_are_refused() {
 }
 
 #[test]
+fn journals_of_earlier_versions_name_drags_by_vertices() {
+    let line = r#"{"command": "drape", "inputs": [
+        {"step": 120, "input": "drag", "vertex": 57, "to": [0.1, 1.2, 0.3]},
+        {"step": 180, "input": "release", "vertex": 57}]}"#;
+    let read: Command = serde_json::from_str(line).unwrap();
+    let inputs = vec![
+        at(120, pull_vertex(57, [0.1, 1.2, 0.3])),
+        at(180, let_go_of_vertex(57)),
+    ];
+    assert_eq!(read, Command::Drape { inputs });
+    let written = serde_json::to_string(&read).unwrap();
+    assert!(written.contains(r#""action":{"pull""#), "{written}");
+    assert_eq!(serde_json::from_str::<Command>(&written).unwrap(), read);
+    let wrong = line.replace("drag", "push");
+    assert!(serde_json::from_str::<Command>(&wrong).is_err());
+}
+
+#[test]
+fn a_garment_takes_hands_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let live = LiveRun::start(session.garment_setup().unwrap());
+    live.pause();
+    let gravity = Action::Set(Parameter::Gravity(Vec3::zeros()));
+    let said = live.give(gravity).unwrap_err();
+    assert!(said.is_bad_input(), "{said}");
+    assert!(said.to_string().contains("hands on its vertices"), "{said}");
+}
+
+#[test]
 fn a_hand_on_a_vertex_without_cloth_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = prepared(folder.path());
@@ -282,10 +306,7 @@ fn a_hand_on_a_vertex_without_cloth_is_refused() {
     let live = LiveRun::start(job);
     live.pause();
     let to = [0.0, 1.0, 0.0];
-    for input in [
-        LiveInput::Drag { vertex, to },
-        LiveInput::Release { vertex },
-    ] {
+    for input in [pull_vertex(vertex, to), let_go_of_vertex(vertex)] {
         let error = live.give(input).map_err(|error| error.to_string());
         let error = error.unwrap_err();
         assert!(error.contains(&format!("{vertex}")), "{error}");
@@ -316,8 +337,8 @@ fn a_result_is_exported_without_draping_again_and_replayed_to_the_same_bytes() {
     let (vertex, to) = handle(&job);
     let live = LiveRun::start(job);
     for stamped in [
-        at(5, LiveInput::Drag { vertex, to }),
-        at(9, LiveInput::Release { vertex }),
+        at(5, pull_vertex(vertex, to)),
+        at(9, let_go_of_vertex(vertex)),
     ] {
         live.give_at(stamped).unwrap();
     }

@@ -107,7 +107,7 @@ fn inputs() -> Vec<Input> {
         drag: 0.8,
         ..Air::default()
     };
-    let spot = Spot {
+    let spot = Spot::Triangle {
         object: SceneObject::id(0),
         triangle: 70,
         weights: [0.2, 0.5, 0.3],
@@ -249,7 +249,7 @@ fn checkpoints_of_another_track_and_actions_that_do_not_fit_are_refused() {
     let said = SceneRun::resume(&scene(0.3), read(&saved)).err().unwrap();
     assert!(said.to_string().contains("another scene"), "{said}");
 
-    let spot = |object: usize, triangle, weights| Spot {
+    let spot = |object: usize, triangle, weights| Spot::Triangle {
         object: SceneObject::id(object),
         triangle,
         weights,
@@ -291,15 +291,16 @@ fn hands_pull_at_their_spot_and_let_go_of_what_is_removed() {
         ..scene(0.0)
     })
     .unwrap();
-    let spot = Spot {
+    let weights = [0.25, 0.25, 0.5];
+    let spot = Spot::Triangle {
         object: SceneObject::id(1),
         triangle: 30,
-        weights: [0.25, 0.25, 0.5],
+        weights,
     };
     let place = |run: &SceneRun| -> Vec3 {
-        let mesh = run.mesh_of(spot.object).unwrap();
+        let mesh = run.mesh_of(spot.object()).unwrap();
         let corners = mesh.triangles[30].map(|v| mesh.positions[v as usize]);
-        corners.iter().zip(spot.weights).map(|(p, w)| p * w).sum()
+        corners.iter().zip(weights).map(|(p, w)| p * w).sum()
     };
     let to = place(&run) + Vec3::new(0.0, 0.05, 0.0);
     let pull = Action::Pull {
@@ -313,7 +314,7 @@ fn hands_pull_at_their_spot_and_let_go_of_what_is_removed() {
     }
     assert!((place(&run) - to).norm() < 0.03, "{:?}", place(&run) - to);
     assert_eq!(run.system.control.attachments.all().len(), 3);
-    run.edit(WorldEdit::Remove(spot.object)).unwrap();
+    run.edit(WorldEdit::Remove(spot.object())).unwrap();
     assert!(run.system.control.attachments.all().is_empty());
     run.advance().unwrap();
 }

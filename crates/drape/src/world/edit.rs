@@ -14,6 +14,7 @@ use toile_geometry::{Vec2, Vec3};
 
 /// A change of a world between two steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum WorldEdit {
     /// Adds an object.
     Add(Box<Object>),
