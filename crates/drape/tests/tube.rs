@@ -157,6 +157,7 @@ fn a_draped_tube_goes_along_with_its_ball_and_falls_when_its_seams_are_opened() 
     }
     let simulation = run.into_simulation();
     let settings = TimeSettings {
+        lead_in: 0.0,
         duration: f64::INFINITY,
         step: 1.0 / 60.0,
         method: MethodKind::Xpbd.into(),
