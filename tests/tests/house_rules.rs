@@ -5,7 +5,8 @@ use std::fs;
 use toile_tests::{files_below, root};
 
 /// Our libraries from below: each may at most use those before it.
-const LIBRARIES: [&str; 14] = [
+const LIBRARIES: [&str; 15] = [
+    "realtime",
     "geometry",
     "measure",
     "lettering",
@@ -45,7 +46,8 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 18] = [
+const LAYERS: [(&str, &[&str]); 19] = [
+    ("toile-realtime", &[]),
     ("toile-geometry", &[]),
     ("toile-measure", &[]),
     ("toile-lettering", &[]),
@@ -56,25 +58,25 @@ const LAYERS: [(&str, &[&str]); 18] = [
         &["geometry", "measure", "sparse", "pattern"],
     ),
     ("toile-nesting", &["geometry"]),
-    ("toile-body", &["geometry", "measure"]),
+    ("toile-body", &["geometry", "measure", "realtime"]),
     ("toile-sparse", &["geometry"]),
     ("toile-drape", &["geometry", "sparse"]),
     ("toile-picture", &["geometry", "lettering"]),
-    ("toile-interchange", lowest(11)),
+    ("toile-interchange", lowest(12)),
     (
         "toile-marker",
         &["geometry", "pattern", "cut", "nesting", "interchange"],
     ),
-    ("toile-session", lowest(13)),
+    ("toile-session", lowest(14)),
     ("toile", &["geometry", "measure", "session", "lab"]),
     (
         "toile-ui",
         &[
-            "geometry", "measure", "pattern", "cut", "session", "picture",
+            "realtime", "geometry", "measure", "pattern", "cut", "session", "picture",
         ],
     ),
     ("toile-tests", &TESTED),
-    ("toile-lab", lowest(14)),
+    ("toile-lab", lowest(15)),
 ];
 
 /// What may stand at the top level besides dot-files.

@@ -9,7 +9,7 @@ mod common;
 use common::freesewing::freesewing;
 use std::hint::black_box;
 use std::time::Instant;
-use toile_body::{Clip, EllipsoidTree, Figure, Mannequin, template_skin};
+use toile_body::{Clip, Figure, Mannequin, template_skin};
 use toile_geometry::{SurfaceTree, Vec3};
 use toile_measure::{Measurements, Origin};
 
@@ -83,27 +83,6 @@ fn measure() {
     timed("skin posed", 40, |k| {
         let pose = walk.pose_for(body.skeleton(), 0.03 * k as f64);
         black_box(body.posed_skin(&pose));
-    });
-    let mut ellipsoids = EllipsoidTree::new(&body, 1.0);
-    let garment: Vec<Vec3> = body.skin().positions.iter().take(1855).copied().collect();
-    let tests = (garment.len() * ellipsoids.len()) as f64;
-    let start = Instant::now();
-    for _ in 0..20 {
-        black_box(ellipsoids.inside(black_box(&garment)));
-    }
-    let rate = 20.0 * tests / start.elapsed().as_secs_f64();
-    println!("{:.0} million point-ellipsoid tests a second", rate * 1e-6);
-    let parents: Vec<usize> = garment
-        .iter()
-        .map(|&p| ellipsoids.nearest(p).map_or(0, |c| c.ellipsoid))
-        .collect();
-    timed("collision pass of a garment of 1,855 vertices", 20, |_| {
-        for (&p, &parent) in garment.iter().zip(&parents) {
-            black_box(ellipsoids.reparented(parent, p));
-        }
-    });
-    timed("ellipsoids posed", 20, |k| {
-        black_box(ellipsoids.pose(&walk.pose_for(body.skeleton(), 0.03 * k as f64)));
     });
     timed("box tree of the skin", 5, |_| {
         black_box(SurfaceTree::new(body.skin().clone()));

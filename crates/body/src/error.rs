@@ -27,6 +27,14 @@ pub enum BodyError {
         /// What to change.
         remedy: &'static str,
     },
+    /// A primitive that changes with a joint where rigid ones are needed.
+    #[error(
+        "primitive {primitive} changes with a reference joint, and a character's ellipsoids are rigid: take its keys out"
+    )]
+    NotRigid {
+        /// The primitive, counted from 0.
+        primitive: usize,
+    },
     /// The primitives leave a hole where the skin should be.
     #[error("the primitives of the {part} do not enclose its axis near ({x:.3}, {y:.3}, {z:.3}) m")]
     Open {

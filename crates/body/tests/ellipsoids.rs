@@ -1,19 +1,21 @@
-//! The ellipsoid hierarchy against the ellipsoids one by one.
+//! A mannequin's character against its own ellipsoids, one by one.
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::UnitQuaternion;
-use toile_body::{
-    Clip, EllipsoidTree, Figure, Joint, Mannequin, Part, Pose, Primitive, VISIBLE_RATIO, adjacent,
-};
+use toile_body::{Clip, Figure, Mannequin, Part, Primitive, VISIBLE_RATIO};
 use toile_geometry::{Ellipsoid, Vec3};
+use toile_realtime::{Ellipsoids, Field};
 
 fn woman() -> Mannequin {
     Mannequin::new(&Figure::Woman.average(), Figure::Woman).unwrap()
 }
 
-fn ellipsoid(p: &Primitive, scale: f64) -> Ellipsoid {
-    let axes = Vec3::from(p.radii) * (VISIBLE_RATIO * scale);
+fn ellipsoid(p: &Primitive, offset: f64) -> Ellipsoid {
+    let axes = (Vec3::from(p.radii) * VISIBLE_RATIO).add_scalar(offset);
     Ellipsoid::new(Vec3::from(p.centre), axes, p.rotation()).unwrap()
+}
+
+fn single(p: Vec3) -> [f32; 3] {
+    [p.x as f32, p.y as f32, p.z as f32]
 }
 
 /// Places in and round the body.
@@ -26,70 +28,65 @@ fn places(body: &Mannequin) -> Vec<Vec3> {
 }
 
 #[test]
-fn inside_and_nearest_agree_with_one_by_one() {
+fn a_character_in_motion_has_the_ellipsoids_of_the_posed_body() {
     let body = woman();
-    let mut tree = EllipsoidTree::new(&body, 1.1);
-    assert_eq!(tree.len(), body.primitives().len());
     let run = Clip::run(body.skeleton());
-    for time in [0.0, 0.21] {
-        let pose = run.pose_for(body.skeleton(), time);
-        tree.pose(&pose);
-        let single: Vec<Ellipsoid> = body
-            .posed_ellipsoids(&pose)
-            .iter()
-            .map(|p| ellipsoid(p, 1.1))
-            .collect();
-        let places = places(&body);
-        for (p, inside) in places.iter().zip(tree.inside(&places)) {
-            let least = single
-                .iter()
-                .map(|e| e.to_unit(*p).norm())
-                .fold(f64::INFINITY, f64::min);
-            assert_eq!(inside, least < 1.0, "{p:?} {least}");
-            let contact = tree.nearest(*p).unwrap();
-            assert!((contact.ratio - least).abs() < 1e-9);
-            let on = single[contact.ellipsoid].radial_point(*p);
-            assert!((contact.point - on).norm() < 1e-9);
+    let character = body.character(&[("run", &run)]).unwrap();
+    let mut ellipsoids = Ellipsoids::new(&character).unwrap();
+    assert_eq!(ellipsoids.len(), body.primitives().len());
+    let mut field = Field::new(&ellipsoids, 0.01).unwrap();
+    ellipsoids.start("run", 0.0).unwrap();
+    for step in [0.0, 0.21] {
+        ellipsoids.advance(step);
+        field.follow(&ellipsoids);
+        let pose = run.pose_for(body.skeleton(), f64::from(step));
+        let own = body.posed_ellipsoids(&pose);
+        let single_ones: Vec<Ellipsoid> = own.iter().map(|p| ellipsoid(p, 0.01)).collect();
+        for (k, p) in own.iter().enumerate() {
+            let at = ellipsoids.transform(k).unwrap().at.map(f64::from);
+            assert!((Vec3::from(at) - Vec3::from(p.centre)).norm() < 2e-6, "{k}");
+        }
+        for p in places(&body) {
+            let radial = |e: &Ellipsoid| {
+                let distance = (p - e.radial_point(p)).norm();
+                if e.contains(p) { -distance } else { distance }
+            };
+            let least = single_ones.iter().map(radial).fold(f64::INFINITY, f64::min);
+            let found = field.nearest(single(p)).unwrap();
+            assert!((f64::from(found.distance) - least).abs() < 2e-5, "{p:?}");
+            if least.abs() > 1e-5 {
+                assert_eq!(field.contains(single(p)), least < 0.0, "{p:?} {least}");
+            }
         }
     }
-    assert!(tree.nearest(Vec3::new(f64::NAN, 0.0, 0.0)).is_none());
-}
-
-#[test]
-fn only_what_moved_is_made_anew() {
-    let body = woman();
-    let mut tree = EllipsoidTree::new(&body, 1.0);
-    assert_eq!(tree.pose(&Pose::rest()), 0);
-    let bend = UnitQuaternion::new(Vec3::x() * -0.7);
-    let bent = Pose::rest().with(Joint::LElbow, bend);
-    let below = body
-        .primitives()
-        .iter()
-        .filter(|p| p.joint.follows(Joint::LElbow))
-        .count();
-    assert!(below > 0 && tree.pose(&bent) == below);
-    assert_eq!(tree.pose(&bent), 0);
-    let mut shifted = bent.clone();
-    shifted.shift = Vec3::x() * 0.1;
-    assert_eq!(tree.pose(&shifted), tree.len());
+    assert!(field.nearest([f32::NAN, 0.0, 0.0]).is_none());
 }
 
 #[test]
 fn a_parent_is_sought_in_its_part_and_those_beside_it() {
     let body = woman();
-    let tree = EllipsoidTree::new(&body, 1.0);
+    let ellipsoids = Ellipsoids::new(&body.character(&[]).unwrap()).unwrap();
+    let field = Field::new(&ellipsoids, 0.0).unwrap();
     let parts: Vec<Part> = body.primitives().iter().map(|p| p.local.part).collect();
     let on_leg = parts.iter().position(|&p| p == Part::LeftLeg).unwrap();
-    for p in places(&body) {
-        let next = tree.reparented(on_leg, p).unwrap();
-        assert!(adjacent(Part::LeftLeg).contains(&parts[next.ellipsoid]));
-        assert!(next.ratio >= tree.nearest(p).unwrap().ratio - 1e-12);
+    for p in places(&body).into_iter().map(single) {
+        let next = field.reparented(on_leg, p).unwrap();
+        assert!([Part::LeftLeg, Part::Trunk].contains(&parts[next.ellipsoid]));
+        assert!(next.distance >= field.nearest(p).unwrap().distance - 1e-6);
     }
-    assert!(tree.reparented(usize::MAX, Vec3::zeros()).is_none());
-    for part in Part::ALL {
-        assert!(adjacent(part).contains(&part));
-        for &other in adjacent(part) {
-            assert!(adjacent(other).contains(&part));
-        }
-    }
+    assert!(field.reparented(usize::MAX, [0.0; 3]).is_none());
+}
+
+#[test]
+fn only_what_moved_is_made_anew() {
+    let body = woman();
+    let walk = Clip::walk(body.skeleton());
+    let mut ellipsoids = Ellipsoids::new(&body.character(&[("walk", &walk)]).unwrap()).unwrap();
+    assert_eq!(ellipsoids.advance(0.1), 0);
+    ellipsoids.start("walk", 0.0).unwrap();
+    assert!(ellipsoids.advance(0.1) > 0);
+    ellipsoids.stop();
+    assert_eq!(ellipsoids.advance(0.1), 0);
+    ellipsoids.set_place([0.1, 0.0, 0.0], 0.0);
+    assert_eq!(ellipsoids.advance(0.0), ellipsoids.len());
 }

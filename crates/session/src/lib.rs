@@ -51,6 +51,7 @@ mod printing;
 mod product;
 mod project;
 mod put_on;
+mod realtime;
 mod recorded_surface;
 mod recorder;
 mod recovery;
@@ -108,6 +109,7 @@ pub use piece_facts::{
 pub use placed_panels::PanelOrigin;
 pub use printing::{PrintOptions, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
+pub use realtime::{Adjustment, RealtimeKey, RealtimeRun, RealtimeSurface};
 pub use recovery::{Abandoned, PastStep, Recovery, abandoned, state_folder};
 pub use rest_change::RestChange;
 pub use scene::{SceneOutcome, run_scene};

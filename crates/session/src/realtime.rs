@@ -1,0 +1,357 @@
+//! Clothes on a moving figure in real time: the figure's ellipsoids and skin, and garments whose
+//! drape is their rest shape.
+
+use crate::drape::Drape;
+use crate::{Command, OtherGarment, Quality, Session, SessionError, Watcher};
+use std::path::PathBuf;
+use toile_body::{Clip, Figure, Mannequin, Pose};
+use toile_geometry::{TriangleMesh, Vec3};
+use toile_picture::{
+    Backdrop, Camera, Edges, Finish, Lines, Paint, Projection, Scene, Surface, View, render,
+};
+use toile_realtime::{Character, Ellipsoids, Garment, GarmentSettings, RealtimeError};
+
+/// How clothes are adjusted in a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Adjustment {
+    /// They hang.
+    #[default]
+    Gravity,
+    /// They fit closely.
+    Shape,
+}
+
+/// What may be asked of a figure in real time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RealtimeKey {
+    /// Stand.
+    Stand,
+    /// Walk.
+    Walk,
+    /// Run.
+    Run,
+    /// The other adjustment.
+    Switch,
+}
+
+impl RealtimeKey {
+    /// All, each with the name of the key that asks for it.
+    pub const ALL: [(&str, Self); 4] = [
+        ("down", Self::Stand),
+        ("up", Self::Walk),
+        ("right", Self::Run),
+        ("g", Self::Switch),
+    ];
+
+    /// The one of a key's name.
+    pub fn named(name: &str) -> Option<Self> {
+        let found = Self::ALL.iter().find(|(known, _)| *known == name);
+        found.map(|(_, key)| *key)
+    }
+}
+
+/// A surface of triangles in `f32`, with a colour for each triangle (sRGB, 0..=1).
+#[derive(Clone, Debug, Default)]
+pub struct RealtimeSurface {
+    /// Its name.
+    pub name: String,
+    /// Where its vertices are [m].
+    pub positions: Vec<[f32; 3]>,
+    /// Corners of the triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Colours of the triangles.
+    pub colours: Vec<[f64; 3]>,
+}
+
+/// A skin that is blended from the motions of joints.
+struct Skin {
+    rest: Vec<[f32; 3]>,
+    shares: Vec<Vec<(u16, f32)>>,
+    motions: Vec<toile_realtime::Frame>,
+}
+
+/// A dressed figure in real time.
+pub struct RealtimeRun {
+    ellipsoids: Ellipsoids,
+    skin: Skin,
+    /// The body as it is seen.
+    pub body: RealtimeSurface,
+    /// The garments as they are seen, the innermost first.
+    pub clothes: Vec<RealtimeSurface>,
+    garments: Vec<Garment>,
+    adjustment: Adjustment,
+}
+
+/// Fade from one clip to the next [s]: about a step.
+const FADE: f32 = 0.4;
+
+/// Distance of the innermost garment from the ellipsoids, and of each garment from the one below
+/// it [m]: the ellipsoids lie a little within the skin.
+const FIRST_OFFSET: f32 = 0.008;
+const NEXT_OFFSET: f32 = 0.008;
+
+/// Colour of the body (sRGB).
+const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
+
+fn single(p: Vec3) -> [f32; 3] {
+    [p.x as f32, p.y as f32, p.z as f32]
+}
+
+fn cannot(error: RealtimeError) -> SessionError {
+    SessionError::Conflict(error.to_string())
+}
+
+/// The character of a mannequin with the clips of the window: stand, walk and run.
+pub(crate) fn standing_character(body: &Mannequin) -> Result<Character, SessionError> {
+    let skeleton = body.skeleton();
+    let [walk, run] = [Clip::walk(skeleton), Clip::run(skeleton)];
+    let stand = Clip {
+        step: 1.0,
+        poses: vec![standing(&walk)],
+        is_loop: false,
+    };
+    Ok(body.character(&[("stand", &stand), ("walk", &walk), ("run", &run)])?)
+}
+
+/// A pose to stand in: midway between the two middles of a stride, when the feet pass each other.
+fn standing(walk: &Clip) -> Pose {
+    let [a, b] = [0.3, 0.8].map(|phase| walk.at(phase * walk.duration()));
+    a.blended(&b, 0.5)
+}
+
+impl RealtimeRun {
+    /// Dresses a figure: the patterns are sewn on it and draped at the quality of a preview, each in
+    /// a layer of its own, the first innermost.
+    ///
+    /// # Errors
+    /// A pattern that cannot be read or made, clothes no ellipsoids fit into; the watcher asked to
+    /// stop.
+    pub fn dressed(
+        figure: Figure,
+        patterns: &[PathBuf],
+        watcher: &mut dyn Watcher,
+    ) -> Result<Self, SessionError> {
+        let Some((path, others)) = patterns.split_first() else {
+            return Err(SessionError::Conflict(
+                "no pattern to dress the figure in; name one, as in --figure woman skirt.toile.json"
+                    .to_owned(),
+            ));
+        };
+        let mut commands = vec![Command::OpenPattern { path: path.clone() }];
+        if !others.is_empty() {
+            let others = others.iter().zip(2..);
+            let others = others.map(|(path, layer)| OtherGarment {
+                path: path.clone(),
+                layer,
+            });
+            commands.push(Command::SetLayers {
+                layer: 1,
+                others: others.collect(),
+            });
+        }
+        commands.extend([
+            Command::SetBody {
+                figure: Some(figure),
+                measurements: None,
+            },
+            Command::SetQuality {
+                quality: Quality::Preview,
+            },
+            Command::drape(),
+        ]);
+        let mut session = Session::new();
+        session.execute_all(&commands, watcher)?;
+        let body = session.mannequin()?;
+        let drape = session.derived.drape.clone();
+        let drape = drape.ok_or_else(|| SessionError::Conflict("nothing was draped".to_owned()))?;
+        Self::new(&body, clothes(&drape))
+    }
+
+    /// A body in clothes that lie on it at rest.
+    ///
+    /// # Errors
+    /// A body whose ellipsoids are not rigid, clothes no ellipsoids fit into.
+    pub(crate) fn new(
+        body: &Mannequin,
+        clothes: Vec<RealtimeSurface>,
+    ) -> Result<Self, SessionError> {
+        let mut ellipsoids = Ellipsoids::new(&standing_character(body)?).map_err(cannot)?;
+        let mut garments = Vec::new();
+        for (k, cloth) in clothes.iter().enumerate() {
+            let settings = GarmentSettings {
+                offset: FIRST_OFFSET + k as f32 * NEXT_OFFSET,
+                ..GarmentSettings::default()
+            };
+            let made = Garment::new(&ellipsoids, &cloth.positions, &cloth.triangles, settings);
+            garments.push(made.map_err(cannot)?);
+        }
+        let skin = body.skin();
+        let positions: Vec<[f32; 3]> = skin.positions.iter().map(|&p| single(p)).collect();
+        let shares = (0..positions.len()).map(|v| {
+            let own = body.shares(v).iter();
+            own.map(|&(joint, share)| (joint as u16, share as f32))
+                .collect()
+        });
+        ellipsoids.start("stand", 2.0 * FADE).map_err(cannot)?;
+        Ok(Self {
+            skin: Skin {
+                shares: shares.collect(),
+                rest: positions.clone(),
+                motions: Vec::new(),
+            },
+            body: RealtimeSurface {
+                name: "body".to_owned(),
+                colours: vec![SKIN; skin.triangles.len()],
+                triangles: skin.triangles.clone(),
+                positions,
+            },
+            ellipsoids,
+            clothes,
+            garments,
+            adjustment: Adjustment::default(),
+        })
+    }
+
+    /// The adjustment of this frame.
+    pub fn adjustment(&self) -> Adjustment {
+        self.adjustment
+    }
+
+    /// The clip that is played.
+    pub fn clip(&self) -> &str {
+        self.ellipsoids.playing().unwrap_or_default()
+    }
+
+    /// The garments, the innermost first.
+    pub fn garments(&self) -> &[Garment] {
+        &self.garments
+    }
+
+    /// Does what a key asks for.
+    ///
+    /// # Errors
+    /// A clip that is not there.
+    pub fn press(&mut self, key: RealtimeKey) -> Result<(), SessionError> {
+        let clip = match key {
+            RealtimeKey::Stand => "stand",
+            RealtimeKey::Walk => "walk",
+            RealtimeKey::Run => "run",
+            RealtimeKey::Switch => {
+                self.adjustment = match self.adjustment {
+                    Adjustment::Gravity => Adjustment::Shape,
+                    Adjustment::Shape => Adjustment::Gravity,
+                };
+                return Ok(());
+            }
+        };
+        self.ellipsoids.start(clip, FADE).map_err(cannot)
+    }
+
+    /// Computes one frame, `dt` after the last [s]: ellipsoids, then every garment. What is seen
+    /// stays as it was until [`RealtimeRun::show`].
+    pub fn frame(&mut self, dt: f32) {
+        self.ellipsoids.advance(dt);
+        for garment in &mut self.garments {
+            match self.adjustment {
+                Adjustment::Gravity => garment.adjust_by_gravity(&self.ellipsoids, dt),
+                Adjustment::Shape => garment.adjust_by_shape(&self.ellipsoids, dt),
+            }
+        }
+    }
+
+    /// Brings the surfaces that are seen to the last frame.
+    pub fn show(&mut self) {
+        let skin = &mut self.skin;
+        skin.motions.clear();
+        skin.motions.extend(self.ellipsoids.motions());
+        let posed = self.body.positions.iter_mut().zip(&skin.rest);
+        for ((place, rest), shares) in posed.zip(&skin.shares) {
+            *place = [0.0; 3];
+            for &(joint, share) in shares {
+                let moved = skin.motions[usize::from(joint)].applied(*rest);
+                *place = std::array::from_fn(|k| place[k] + share * moved[k]);
+            }
+        }
+        for (cloth, garment) in self.clothes.iter_mut().zip(&self.garments) {
+            for (into, place) in cloth.positions.iter_mut().zip(garment.positions()) {
+                *into = place;
+            }
+        }
+    }
+
+    /// What is seen, from half-way in front, as a PNG of a size [pixels].
+    ///
+    /// # Errors
+    /// A size that cannot be drawn.
+    pub fn png(&self, size: [usize; 2]) -> Result<Vec<u8>, SessionError> {
+        let clothes = self
+            .clothes
+            .iter()
+            .map(|cloth| surface(cloth, Finish::Cloth));
+        let scene = Scene {
+            surfaces: clothes
+                .chain([surface(&self.body, Finish::Smooth)])
+                .collect(),
+        };
+        let aspect = size[0] as f64 / size[1] as f64;
+        let bounds = scene.bounds().unwrap_or_default();
+        let camera = Camera::fit_to(bounds, View::ThreeQuarter, aspect, Projection::Perspective);
+        Ok(render(&scene, &camera, size, &Backdrop::default())?.to_png()?)
+    }
+}
+
+fn surface(shown: &RealtimeSurface, finish: Finish) -> Surface {
+    let place = |p: &[f32; 3]| Vec3::from(p.map(f64::from));
+    Surface {
+        mesh: TriangleMesh {
+            positions: shown.positions.iter().map(place).collect(),
+            triangles: shown.triangles.clone(),
+        },
+        normals: Vec::new(),
+        paint: Paint::PerTriangle(shown.colours.clone()),
+        finish,
+        lines: Lines {
+            edges: Edges::Pairs(Vec::new()),
+            colour: [0.2; 3],
+            width: 1.0,
+            opacity: 0.5,
+        },
+        framed: true,
+    }
+}
+
+/// The garments of a drape, each with the vertices of its own triangles.
+fn clothes(drape: &Drape) -> Vec<RealtimeSurface> {
+    let mut colours = vec![[0.7; 3]; drape.job.garment.triangles.len()];
+    for (panel, look) in drape.job.garment.panels.iter().zip(drape.job.panels.iter()) {
+        colours[panel.triangles.clone()].fill(look.colour);
+    }
+    let mut parts: Vec<_> = drape.job.parts.iter().collect();
+    parts.sort_by_key(|part| part.layer);
+    let mut made = Vec::new();
+    for part in parts {
+        let mut cloth = RealtimeSurface {
+            name: part.name.clone(),
+            ..RealtimeSurface::default()
+        };
+        let mut number = vec![u32::MAX; drape.mesh.positions.len()];
+        for (triangle, &origin) in drape.mesh.triangles.iter().zip(&drape.origin) {
+            if !part.triangles.contains(&(origin as usize)) {
+                continue;
+            }
+            cloth.triangles.push(triangle.map(|v| {
+                let known = &mut number[v as usize];
+                if *known == u32::MAX {
+                    *known = cloth.positions.len() as u32;
+                    cloth
+                        .positions
+                        .push(single(drape.mesh.positions[v as usize]));
+                }
+                *known
+            }));
+            cloth.colours.push(colours[origin as usize]);
+        }
+        made.push(cloth);
+    }
+    made
+}
