@@ -72,7 +72,7 @@ const LAYERS: [(&str, &[&str]); 19] = [
     (
         "toile-ui",
         &[
-            "realtime", "geometry", "measure", "pattern", "cut", "session", "picture",
+            "geometry", "measure", "pattern", "cut", "session", "picture",
         ],
     ),
     ("toile-tests", &TESTED),

@@ -7,6 +7,7 @@
 mod app;
 mod canvas;
 mod fields;
+mod figure;
 mod glossary;
 mod gpu;
 mod inspector;
@@ -19,6 +20,7 @@ pub use app::command::{Menu, UiCommand};
 pub use app::command_table::{commands, named};
 pub use app::{Beginning, ToileApp};
 pub use canvas::selection::{Item, Selection};
+pub use figure::{FigureTask, FigureWindow};
 pub use tools::slots::{Answer, Slot, SlotKind, SlotTool};
 pub use tools::{
     Event as ToolEvent, LineStep, Overlay, Pointer, State as ToolState, Tone, Tool, ToolModifiers,

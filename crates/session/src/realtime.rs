@@ -4,12 +4,12 @@
 use crate::drape::Drape;
 use crate::{Command, OtherGarment, Quality, Session, SessionError, Watcher};
 use std::path::PathBuf;
-use toile_body::{Clip, Figure, Mannequin, Pose};
+use toile_body::{Clip, Figure, Mannequin, Skeleton};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_picture::{
-    Backdrop, Camera, Edges, Finish, Lines, Paint, Projection, Scene, Surface, View, render,
+    Backdrop, Camera, Edges, Finish, Image, Lines, Paint, Projection, Scene, Surface, View, render,
 };
-use toile_realtime::{Character, Ellipsoids, Garment, GarmentSettings, RealtimeError};
+use toile_realtime::{Ellipsoids, Garment, GarmentSettings, RealtimeError};
 
 /// How clothes are adjusted in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -101,22 +101,14 @@ fn cannot(error: RealtimeError) -> SessionError {
     SessionError::Conflict(error.to_string())
 }
 
-/// The character of a mannequin with the clips of the window: stand, walk and run.
-pub(crate) fn standing_character(body: &Mannequin) -> Result<Character, SessionError> {
-    let skeleton = body.skeleton();
-    let [walk, run] = [Clip::walk(skeleton), Clip::run(skeleton)];
-    let stand = Clip {
-        step: 1.0,
-        poses: vec![standing(&walk)],
-        is_loop: false,
-    };
-    Ok(body.character(&[("stand", &stand), ("walk", &walk), ("run", &run)])?)
-}
-
-/// A pose to stand in: midway between the two middles of a stride, when the feet pass each other.
-fn standing(walk: &Clip) -> Pose {
-    let [a, b] = [0.3, 0.8].map(|phase| walk.at(phase * walk.duration()));
-    a.blended(&b, 0.5)
+/// The clips of our own that a character of the window has, by name.
+pub(crate) fn own_clips(skeleton: &Skeleton) -> [(&'static str, Clip); 4] {
+    [
+        ("stand", Clip::stand(skeleton)),
+        ("astride", Clip::astride(skeleton)),
+        ("walk", Clip::walk(skeleton)),
+        ("run", Clip::run(skeleton)),
+    ]
 }
 
 impl RealtimeRun {
@@ -175,7 +167,9 @@ impl RealtimeRun {
         body: &Mannequin,
         clothes: Vec<RealtimeSurface>,
     ) -> Result<Self, SessionError> {
-        let mut ellipsoids = Ellipsoids::new(&standing_character(body)?).map_err(cannot)?;
+        let clips = own_clips(body.skeleton());
+        let clips = clips.each_ref().map(|(name, clip)| (*name, clip));
+        let mut ellipsoids = Ellipsoids::new(&body.character(&clips)?).map_err(cannot)?;
         let mut garments = Vec::new();
         for (k, cloth) in clothes.iter().enumerate() {
             let settings = GarmentSettings {
@@ -279,24 +273,46 @@ impl RealtimeRun {
         }
     }
 
-    /// What is seen, from half-way in front, as a PNG of a size [pixels].
+    /// Presses keys, each followed by so many frames of a sixtieth of a second, and paints what is
+    /// seen after each, side by side, each of a size [pixels], as PNG.
     ///
     /// # Errors
-    /// A size that cannot be drawn.
-    pub fn png(&self, size: [usize; 2]) -> Result<Vec<u8>, SessionError> {
+    /// No keys, or more pictures than fit into one.
+    pub fn pictures(
+        &mut self,
+        keys: &[(RealtimeKey, usize)],
+        [width, height]: [usize; 2],
+    ) -> Result<Vec<u8>, SessionError> {
+        let bounds = self.scene().bounds().unwrap_or_default();
+        let aspect = width as f64 / height as f64;
+        let camera = Camera::fit_to(bounds, View::ThreeQuarter, aspect, Projection::Perspective);
+        let mut strip = Image::new(width * keys.len(), height, [1.0; 3])?;
+        for (k, (key, frames)) in keys.iter().enumerate() {
+            self.press(*key)?;
+            for _ in 0..*frames {
+                self.frame(1.0 / 60.0);
+            }
+            self.show();
+            let picture = render(
+                &self.scene(),
+                &camera,
+                [width, height],
+                &Backdrop::default(),
+            )?;
+            strip.place(&picture, k * width, 0);
+        }
+        Ok(strip.to_png()?)
+    }
+
+    fn scene(&self) -> Scene {
         let clothes = self
             .clothes
             .iter()
             .map(|cloth| surface(cloth, Finish::Cloth));
-        let scene = Scene {
-            surfaces: clothes
-                .chain([surface(&self.body, Finish::Smooth)])
-                .collect(),
-        };
-        let aspect = size[0] as f64 / size[1] as f64;
-        let bounds = scene.bounds().unwrap_or_default();
-        let camera = Camera::fit_to(bounds, View::ThreeQuarter, aspect, Projection::Perspective);
-        Ok(render(&scene, &camera, size, &Backdrop::default())?.to_png()?)
+        let body = surface(&self.body, Finish::Smooth);
+        Scene {
+            surfaces: clothes.chain([body]).collect(),
+        }
     }
 }
 

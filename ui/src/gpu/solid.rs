@@ -4,7 +4,7 @@ use crate::theme::Palette;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{Vec3, triangle_area};
-use toile_session::{Garment, GarmentJob, LiveFrame, Stage};
+use toile_session::{Garment, GarmentJob, LiveFrame, RealtimeSurface, Stage};
 
 /// One corner as the graphics card takes it: position [m], normal, colour (linear, 0..=1), and
 /// how it is lit.
@@ -106,6 +106,22 @@ pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
             colour,
             Finish::Solid,
         )
+    });
+    corners.collect()
+}
+
+/// A surface of a figure in motion, lit from both sides.
+pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
+    let place = |p: &[f32; 3]| Vec3::from(p.map(f64::from));
+    let positions: Vec<Vec3> = surface.positions.iter().map(place).collect();
+    let normals = normals(&positions, &surface.triangles);
+    let triangles = surface.triangles.iter().zip(&surface.colours);
+    let corners = triangles.flat_map(|(triangle, colour)| {
+        let colour = colour.map(linear);
+        triangle.map(|v| {
+            let v = v as usize;
+            Corner::new(positions[v], normals[v], colour, Finish::Cloth)
+        })
     });
     corners.collect()
 }
