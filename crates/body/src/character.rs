@@ -3,7 +3,16 @@
 
 use crate::{BodyError, Clip, Joint, Mannequin, Part, Pose, Skeleton, VISIBLE_RATIO};
 use toile_geometry::Vec3;
-use toile_realtime::{Character, CharacterEllipsoid, CharacterJoint, Group, KeyPose, KeyedClip};
+use toile_realtime::{
+    Character, CharacterEllipsoid, CharacterJoint, Ellipsoids, Field, Group, KeyPose, KeyedClip,
+};
+
+/// Share of the skin nearest to an ellipsoid that lies within it. For all of it the ellipsoids
+/// beside a crease would swell.
+const COVERED: f32 = 0.9;
+
+/// By how much an ellipsoid is enlarged at the most [m].
+const MOST_ENLARGED: f32 = 0.03;
 
 /// The name of a part's group.
 fn group(part: Part) -> &'static str {
@@ -22,9 +31,10 @@ fn single(v: Vec3) -> [f32; 3] {
 }
 
 impl Mannequin {
-    /// The body as a character with some named clips: an ellipsoid for every primitive, as large
-    /// as it is visible alone, in groups by part; the trunk touches all others, which touch nothing
-    /// else. The ellipsoids lie within the skin, where primitives blend.
+    /// The body as a character with some named clips: an ellipsoid for every primitive, in groups by
+    /// part; the trunk touches all others, which touch nothing else. Primitives are visible beyond
+    /// their own ellipsoids where they blend: each ellipsoid is enlarged until most of the skin it
+    /// is nearest to lies within.
     ///
     /// # Errors
     /// A primitive that changes with a reference joint: a character's ellipsoids are rigid.
@@ -60,12 +70,37 @@ impl Mannequin {
             }
         });
         let clips = clips.iter().map(|(name, clip)| keyed(name, clip, skeleton));
-        Ok(Character {
+        let mut character = Character {
             joints: joints.collect(),
             groups: groups.into(),
             ellipsoids: ellipsoids.collect(),
             clips: clips.collect(),
-        })
+        };
+        self.cover(&mut character);
+        Ok(character)
+    }
+
+    /// Enlarges ellipsoids until they hold most of the skin at rest.
+    fn cover(&self, character: &mut Character) {
+        let Ok(ellipsoids) = Ellipsoids::new(character) else {
+            return;
+        };
+        let Ok(field) = Field::new(&ellipsoids, 0.0) else {
+            return;
+        };
+        let mut gaps = vec![Vec::new(); ellipsoids.len()];
+        for &p in &self.skin().positions {
+            if let Some(nearest) = field.nearest(single(p)) {
+                gaps[nearest.ellipsoid].push(nearest.distance);
+            }
+        }
+        for (ellipsoid, gaps) in character.ellipsoids.iter_mut().zip(&mut gaps) {
+            gaps.sort_by(f32::total_cmp);
+            let index = (COVERED * gaps.len() as f32) as usize;
+            let gap = gaps.get(index).copied().unwrap_or(0.0);
+            let more = gap.clamp(0.0, MOST_ENLARGED);
+            ellipsoid.semi_axes = ellipsoid.semi_axes.map(|axis| axis + more);
+        }
     }
 }
 

@@ -9,8 +9,10 @@ fn woman() -> Mannequin {
     Mannequin::new(&Figure::Woman.average(), Figure::Woman).unwrap()
 }
 
-fn ellipsoid(p: &Primitive, offset: f64) -> Ellipsoid {
-    let axes = (Vec3::from(p.radii) * VISIBLE_RATIO).add_scalar(offset);
+fn ellipsoid(p: &Primitive, semi_axes: [f32; 3], offset: f64) -> Ellipsoid {
+    let axes = Vec3::from(semi_axes.map(f64::from)).add_scalar(offset);
+    let grown = axes - Vec3::from(p.radii) * VISIBLE_RATIO;
+    assert!(grown.min() > offset - 1e-6 && grown.max() < offset + 0.03 + 1e-6);
     Ellipsoid::new(Vec3::from(p.centre), axes, p.rotation()).unwrap()
 }
 
@@ -41,7 +43,11 @@ fn a_character_in_motion_has_the_ellipsoids_of_the_posed_body() {
         field.follow(&ellipsoids);
         let pose = run.pose_for(body.skeleton(), f64::from(step));
         let own = body.posed_ellipsoids(&pose);
-        let single_ones: Vec<Ellipsoid> = own.iter().map(|p| ellipsoid(p, 0.01)).collect();
+        let single_ones: Vec<Ellipsoid> = own
+            .iter()
+            .enumerate()
+            .map(|(k, p)| ellipsoid(p, ellipsoids.semi_axes(k).unwrap(), 0.01))
+            .collect();
         for (k, p) in own.iter().enumerate() {
             let at = ellipsoids.transform(k).unwrap().at.map(f64::from);
             assert!((Vec3::from(at) - Vec3::from(p.centre)).norm() < 2e-6, "{k}");

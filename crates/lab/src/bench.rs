@@ -38,6 +38,8 @@ enum Work {
     Touching(u32),
     /// Factorisation of a matrix of about so many vertices.
     Factor(Lattice, usize),
+    /// Clothes in real time beside the method as published, one thread.
+    Realtime,
     /// Points dragged in a large pattern and in those that ship, one thread.
     Drag,
 }
@@ -46,7 +48,7 @@ impl Work {
     /// Threads it is given in turn.
     fn threads(self) -> &'static [usize] {
         match self {
-            Self::Drag => &THREADS[..1],
+            Self::Drag | Self::Realtime => &THREADS[..1],
             _ => &THREADS,
         }
     }
@@ -80,6 +82,7 @@ fn all() -> Vec<(String, Work)> {
         }
     }
     list.push(("drag".to_owned(), Work::Drag));
+    list.push(("realtime".to_owned(), Work::Realtime));
     list.push(("nest".to_owned(), Work::Nest));
     list.push(("nest-queries".to_owned(), Work::NestQueries));
     for (name, cells) in [("1k", 22), ("30k", 122), ("1m", 707)] {
@@ -206,6 +209,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             crate::factor::factor((lattice, vertices), &mut result)?;
         }
         Work::Drag => crate::drag::drag(&mut result)?,
+        Work::Realtime => crate::realtime::realtime(&mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
         Work::NestQueries => crate::nest::queries(threads, &mut result)?,
     }

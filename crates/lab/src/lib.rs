@@ -22,6 +22,8 @@ mod law_report;
 mod laws;
 mod nest;
 mod propped;
+mod published;
+mod realtime;
 mod root;
 mod scenes;
 mod settle;

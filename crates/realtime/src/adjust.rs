@@ -3,7 +3,7 @@
 use crate::Ellipsoids;
 use crate::garment::{Ball, Garment};
 use crate::lanes::LANES;
-use crate::turn::{Frame, moved};
+use crate::turn::{Frame, difference, dot, moved};
 
 /// Earth's mean acceleration [m/s2].
 const GRAVITY: f32 = 9.81;
@@ -45,6 +45,7 @@ impl Garment {
         if dt > 0.0 {
             self.take_velocities(dt);
         }
+        self.find_parents();
         self.end(ellipsoids);
     }
 
@@ -83,17 +84,23 @@ impl Garment {
     }
 
     fn end(&mut self, ellipsoids: &Ellipsoids) {
-        self.find_parents();
         self.last.copy_from_slice(ellipsoids.frames());
         self.adjusted += 1;
     }
 
-    /// Moves vertices and velocities with the joints of their parents.
+    /// Moves vertices and velocities with the joints that their rest shape hangs on. With that of
+    /// the nearest ellipsoid alone, as published, cloth would be torn where two joints meet.
     fn carry(&mut self) {
-        for (k, &parent) in self.parents.iter().enumerate() {
-            let motion = &self.motions[self.row_joints[parent as usize]];
-            self.places.set(k, motion.applied(self.places.at(k)));
-            self.velocities.set(k, motion.turned(self.velocities.at(k)));
+        for (k, (joints, &share)) in self.homes.joints.iter().zip(&self.homes.share).enumerate() {
+            let [first, second] = joints.map(|joint| &self.motions[usize::from(joint)]);
+            let (place, velocity) = (self.places.at(k), self.velocities.at(k));
+            let mut carried = first.applied(place);
+            if share > 0.0 {
+                let gap = difference(second.applied(place), carried);
+                carried = moved(carried, share, gap);
+            }
+            self.places.set(k, carried);
+            self.velocities.set(k, first.turned(velocity));
         }
         self.starts.copy_from(&self.places);
     }
@@ -119,13 +126,20 @@ impl Garment {
         }
     }
 
-    /// The velocities against the parents that the frame came to.
+    /// The velocities against the parents that the frame came to. Bounds and contacts take energy
+    /// and give none: a vertex becomes no faster than the step made it, or cloth that is hauled in
+    /// round after round would fly.
     fn take_velocities(&mut self, dt: f32) {
-        let columns = self.velocities.0.iter_mut().zip(&self.places.0);
-        for ((velocities, places), starts) in columns.zip(&self.starts.0) {
-            for ((velocity, place), start) in velocities.iter_mut().zip(places).zip(starts) {
-                *velocity = ((place - start) / dt).clamp(-FASTEST, FASTEST);
-            }
+        for k in 0..self.order.len() {
+            let (place, start) = (self.places.at(k), self.starts.at(k));
+            let found = difference(place, start).map(|x| x / dt);
+            let given = self.velocities.at(k);
+            let [squared, most] = [found, given].map(|v| dot(v, v).min(FASTEST * FASTEST));
+            let scale = match squared > most {
+                true => (most / squared).sqrt(),
+                false => 1.0,
+            };
+            self.velocities.set(k, found.map(|x| x * scale));
         }
     }
 
@@ -159,7 +173,7 @@ impl Garment {
                 return;
             }
             self.edges.limit(bounds, &mut self.places);
-            self.push_out(friction);
+            self.push_out(0.0);
             self.rounds += 1;
         }
     }
@@ -168,8 +182,11 @@ impl Garment {
     fn find_parents(&mut self) {
         for block in (self.turn..self.places.0[0].len() / LANES).step_by(PARENT_TURNS) {
             let first = block * LANES;
-            let sees = std::array::from_fn(|l| self.sees(first + l));
-            let rows = self.field.nearest_rows(&self.places.block(block), &sees);
+            let own: [u64; LANES] = std::array::from_fn(|l| self.own_group(first + l));
+            let beside = std::array::from_fn(|l| self.sees(first + l) & !own[l]);
+            let rows = self
+                .field
+                .nearest_rows(&self.places.block(block), (&own, &beside));
             for (parent, row) in self.parents[first..first + LANES].iter_mut().zip(rows) {
                 *parent = row as u32;
             }

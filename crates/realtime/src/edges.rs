@@ -20,7 +20,7 @@ pub(crate) struct Edges {
 
 /// Share of the higher end of an edge that stands upright at rest: of a level one it is a half.
 /// None at all would let nothing slide over a shoulder.
-const UPRIGHT_SHARE: f32 = 0.1;
+const UPRIGHT_SHARE: f32 = 0.25;
 
 /// Lengths over rest that edges may have.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +29,10 @@ pub(crate) struct Bounds {
     pub most: f32,
 }
 
-/// Share of the room between rest and a bound that a corrected edge is left with: edges beside it
-/// then come to lie within their bounds sooner.
-const INNER: f32 = 0.5;
+/// Share of the room between rest and a bound that a corrected edge is left with: a little less
+/// than all, so that edges beside it come to lie within their bounds soon. Much less, and cloth
+/// that hangs would be thrown up by all its edges together.
+const INNER: f32 = 0.97;
 
 /// Bounds in squares, and the lengths that edges beyond them get.
 struct Limit {

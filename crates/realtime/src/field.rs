@@ -155,29 +155,36 @@ impl Field {
         }
     }
 
-    /// For each vertex of a block the row nearest along the ray from its centre, among the rows of
-    /// the groups that it sees, by its bits.
-    pub(crate) fn nearest_rows(&self, places: &[Lanes; 3], sees: &[u64; LANES]) -> [usize; LANES] {
-        let seen = sees.iter().fold(0, |a, b| a | b);
+    /// For each vertex of a block the row nearest along the ray from its centre: of its own groups
+    /// any, of those beside them one that it lies outside of, or pinched vertices would change
+    /// sides. Groups by bits.
+    pub(crate) fn nearest_rows(
+        &self,
+        places: &[Lanes; 3],
+        (own, beside): (&[u64; LANES], &[u64; LANES]),
+    ) -> [usize; LANES] {
+        let any = own.iter().chain(beside).fold(0, |a, b| a | b);
         let mut best = [f32::INFINITY; LANES];
         let mut rows = [0u32; LANES];
         for row in 0..self.len() {
             let group = self.groups[row];
-            if seen >> group & 1 == 0 {
+            if any >> group & 1 == 0 {
                 continue;
             }
             let squared = self.ratios(row, places);
             let c = self.centre(row);
-            let hidden: Lanes = each(|l| match sees[l] >> group & 1 {
-                0 => f32::INFINITY,
-                _ => 0.0,
+            // The least |q|^2 at which the row counts for each vertex.
+            let least: Lanes = each(|l| match (own[l] >> group & 1, beside[l] >> group & 1) {
+                (1, _) => 0.0,
+                (_, 1) => 1.0,
+                _ => f32::INFINITY,
             });
             for l in 0..LANES {
                 let [x, y, z] = [0, 1, 2].map(|k| places[k][l] - c[k]);
                 // At the very centre the ray has no direction and the distance no end: held.
                 let ratio = squared[l].max(1e-8).sqrt();
-                let distance = (x * x + y * y + z * z).sqrt() * (1.0 - 1.0 / ratio) + hidden[l];
-                let is_nearer = distance < best[l];
+                let distance = (x * x + y * y + z * z).sqrt() * (1.0 - 1.0 / ratio);
+                let is_nearer = squared[l] >= least[l] && distance < best[l];
                 best[l] = if is_nearer { distance } else { best[l] };
                 rows[l] = if is_nearer { row as u32 } else { rows[l] };
             }
@@ -246,7 +253,7 @@ impl Field {
         if !p.iter().all(|x| x.is_finite()) {
             return None;
         }
-        let row = self.nearest_rows(&p.map(|x| [x; LANES]), &[sees; LANES])[0];
+        let row = self.nearest_rows(&p.map(|x| [x; LANES]), (&[sees; LANES], &[0; LANES]))[0];
         let q = self.unit(row, p);
         let ratio = dot(q, q).sqrt().max(1e-4);
         let c = self.centre(row);

@@ -35,7 +35,7 @@ impl Default for GarmentSettings {
         Self {
             offset: 0.0,
             stretch: 0.08,
-            shortening: 0.10,
+            shortening: 0.08,
             friction: 0.6,
             damping: 2.0,
             stiffness: 300.0,
@@ -79,9 +79,8 @@ pub struct Garment {
     pub(crate) targets: Columns,
     pub(crate) follows_targets: bool,
     pub(crate) homes: Homes,
-    /// Row of the parent ellipsoid, and the joint of each row.
+    /// Row of the parent ellipsoid.
     pub(crate) parents: Vec<u32>,
-    pub(crate) row_joints: Vec<usize>,
     /// Joints: their frames at rest inverted, in the last frame, and how they moved.
     pub(crate) bind_inverse: Vec<Frame>,
     pub(crate) last: Vec<Frame>,
@@ -124,7 +123,7 @@ impl Garment {
         let edges = Edges::new(&ranked, &bind)?;
         let mut parents = Vec::with_capacity(padded);
         for block in 0..padded / LANES {
-            let rows = field.nearest_rows(&bind.block(block), &[u64::MAX; LANES]);
+            let rows = field.nearest_rows(&bind.block(block), (&[u64::MAX; LANES], &[0; LANES]));
             parents.extend(rows.map(|row| row as u32));
         }
         let nearest: Vec<usize> = parents
@@ -134,9 +133,8 @@ impl Garment {
         let frames = ellipsoids.frames();
         let words = field.len().div_ceil(64);
         let blocks = padded / LANES;
-        Ok(Self {
+        let mut garment = Self {
             homes: Homes::new(&nearest, edges.ends(), frames.len()),
-            row_joints: ellipsoids.joints.clone(),
             bind_inverse: frames.iter().map(Frame::inverse).collect(),
             last: frames.to_vec(),
             motions: vec![Frame::NONE; frames.len()],
@@ -158,7 +156,20 @@ impl Garment {
             rank,
             bind,
             parents,
-        })
+        };
+        garment.rest_outside(&ranked)?;
+        Ok(garment)
+    }
+
+    /// Takes for the rest shape the mesh put out of the enlarged ellipsoids: a layer farther out is
+    /// wider, and bounds of its edges and the ellipsoids can hold together.
+    fn rest_outside(&mut self, triangles: &[[u32; 3]]) -> Result<(), RealtimeError> {
+        self.push_out(0.0);
+        self.edges = Edges::new(triangles, &self.places)?;
+        self.bind.copy_from(&self.places);
+        self.targets.copy_from(&self.places);
+        self.starts.copy_from(&self.places);
+        Ok(())
     }
 
     /// Number of vertices.
@@ -192,15 +203,29 @@ impl Garment {
         self.edges.extremes(&self.places)
     }
 
-    /// Vertices inside an ellipsoid of their parent's group or of one that touches it.
+    /// Vertices inside an ellipsoid of their own group, that of their parent.
     pub fn inside_count(&self) -> usize {
-        let is_inside = |&k: &usize| self.field.contains_among(self.places.at(k), self.sees(k));
+        self.count_within(|k| self.own_group(k))
+    }
+
+    /// Vertices inside an ellipsoid of another group that touches their own: pinched between limbs,
+    /// as in an armpit.
+    pub fn pinched_count(&self) -> usize {
+        self.count_within(|k| self.sees(k) & !self.own_group(k))
+    }
+
+    fn count_within(&self, groups: impl Fn(usize) -> u64) -> usize {
+        let is_inside = |&k: &usize| self.field.contains_among(self.places.at(k), groups(k));
         (0..self.len()).filter(is_inside).count()
     }
 
     /// The enlarged ellipsoids as of the last adjustment.
     pub fn field(&self) -> &Field {
         &self.field
+    }
+
+    pub(crate) fn own_group(&self, k: usize) -> u64 {
+        1 << self.field.groups[self.parents[k] as usize]
     }
 
     pub(crate) fn sees(&self, k: usize) -> u64 {

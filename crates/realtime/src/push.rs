@@ -11,16 +11,13 @@ const SLACK: f32 = 0.01;
 /// Times that a block is put out of the deepest ellipsoid before vertices go out along rays.
 const PUSHES: usize = 6;
 
-/// What the vertices of a block see: groups by bits, of each, of all and of any.
-struct Seen {
-    each: [u64; LANES],
-    all: u64,
-    any: u64,
-}
+/// Groups, by bits, of each vertex of a block.
+type Masks = [u64; LANES];
 
 impl Garment {
-    /// Puts every vertex out of the ellipsoids that it sees. Vertices put out lose so much of
-    /// their shift along the surface as friction times the depth allows.
+    /// Puts every vertex out of its own group, that of its parent, and out of those that touch it
+    /// where there is room between: one that is pinched between limbs stays with its own. Vertices
+    /// put out lose so much of their shift along the surface as friction times the depth allows.
     pub(crate) fn push_out(&mut self, friction: f32) {
         for block in 0..self.balls.len() {
             self.push_block(block, friction);
@@ -34,32 +31,44 @@ impl Garment {
         if self.reached[words.clone()].iter().all(|word| *word == 0) {
             return;
         }
-        let sees: [u64; LANES] = std::array::from_fn(|l| self.sees(first + l));
-        let seen = Seen {
-            all: sees.iter().fold(u64::MAX, |a, b| a & b),
-            any: sees.iter().fold(0, |a, b| a | b),
-            each: sees,
+        let own: Masks = std::array::from_fn(|l| self.own_group(first + l));
+        let beside: Masks = std::array::from_fn(|l| self.sees(first + l) & !own[l]);
+        let starts = self.starts.block(block);
+        let rubbed = |inside: &[Lanes; 3], out: [Lanes; 3]| match friction > 0.0 {
+            true => held_by_friction(&starts, inside, &out, friction),
+            false => out,
         };
         let reached = &self.reached[words];
         let mut rows = [0; LANES];
+        let mut is_out = false;
         for _ in 0..PUSHES {
-            let (ratios, deepest) = self.deepest(reached, &seen, &places);
-            if ratios.iter().all(|&ratio| ratio >= 1.0) {
-                self.places.set_block(block, &places);
-                return;
+            let (ratios, deepest) = self.deepest(reached, &own, &places);
+            is_out = ratios.iter().all(|&ratio| ratio >= 1.0);
+            if is_out {
+                break;
             }
             rows = deepest;
-            let out = self.put_out(&ratios, &deepest, &places);
-            places = match friction > 0.0 {
-                true => held_by_friction(&self.starts.block(block), &places, &out, friction),
-                false => out,
-            };
+            places = rubbed(&places, self.put_out(&ratios, &deepest, &places));
         }
-        for l in 0..LANES {
-            let p = [places[0][l], places[1][l], places[2][l]];
-            let out = self.field.exit(rows[l] as usize, p, sees[l]);
-            for axis in 0..3 {
-                places[axis][l] = out[axis];
+        if !is_out {
+            for l in 0..LANES {
+                let p = [places[0][l], places[1][l], places[2][l]];
+                let out = self.field.exit(rows[l] as usize, p, own[l]);
+                for axis in 0..3 {
+                    places[axis][l] = out[axis];
+                }
+            }
+        }
+        let (ratios, deepest) = self.deepest(reached, &beside, &places);
+        if ratios.iter().any(|&ratio| ratio < 1.0) {
+            let tried = rubbed(&places, self.put_out(&ratios, &deepest, &places));
+            let (back, _) = self.deepest(reached, &own, &tried);
+            for l in 0..LANES {
+                if back[l] >= 1.0 {
+                    for axis in 0..3 {
+                        places[axis][l] = tried[axis][l];
+                    }
+                }
             }
         }
         self.places.set_block(block, &places);
@@ -92,10 +101,17 @@ impl Garment {
         range
     }
 
-    /// For each vertex the least `|q|^2` below 1 among the ellipsoids that it sees, and its row; 1
+    /// For each vertex the least `|q|^2` below 1 among the ellipsoids of its groups, and its row; 1
     /// for one outside.
     #[inline(always)]
-    fn deepest(&self, reached: &[u64], seen: &Seen, places: &[Lanes; 3]) -> (Lanes, [u32; LANES]) {
+    fn deepest(
+        &self,
+        reached: &[u64],
+        groups: &Masks,
+        places: &[Lanes; 3],
+    ) -> (Lanes, [u32; LANES]) {
+        let any = groups.iter().fold(0, |a, b| a | b);
+        let all = groups.iter().fold(u64::MAX, |a, b| a & b);
         let mut best = [1.0f32; LANES];
         let mut rows = [0u32; LANES];
         for (word, bits) in reached.iter().enumerate() {
@@ -104,13 +120,17 @@ impl Garment {
                 let row = 64 * word + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
                 let group = self.field.groups[row];
-                if seen.any >> group & 1 == 0 {
+                if any >> group & 1 == 0 {
                     continue;
                 }
                 let mut ratios = self.field.ratios(row, places);
-                if seen.all >> group & 1 == 0 {
-                    for (ratio, sees) in ratios.iter_mut().zip(seen.each) {
-                        *ratio = if sees >> group & 1 == 0 { 1.0 } else { *ratio };
+                if all >> group & 1 == 0 {
+                    for (ratio, groups) in ratios.iter_mut().zip(groups) {
+                        *ratio = if groups >> group & 1 == 0 {
+                            1.0
+                        } else {
+                            *ratio
+                        };
                     }
                 }
                 for l in 0..LANES {

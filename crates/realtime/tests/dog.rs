@@ -55,7 +55,7 @@ fn a_dog_trots_in_a_coat() {
         assert_eq!(garment.inside_count(), 0, "frame {frame}");
         let [shortest, longest] = garment.edge_extremes();
         assert!(
-            shortest > 0.899 && longest < 1.1,
+            shortest > 0.9 && longest < 1.1,
             "frame {frame}: {shortest} {longest}"
         );
     }

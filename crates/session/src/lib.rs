@@ -109,7 +109,7 @@ pub use piece_facts::{
 pub use placed_panels::PanelOrigin;
 pub use printing::{PrintOptions, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
-pub use realtime::{Adjustment, RealtimeKey, RealtimeRun, RealtimeSurface};
+pub use realtime::{Adjustment, RealtimeKey, RealtimeRun, RealtimeSurface, woman_character};
 pub use recovery::{Abandoned, PastStep, Recovery, abandoned, state_folder};
 pub use rest_change::RestChange;
 pub use scene::{SceneOutcome, run_scene};

@@ -9,7 +9,7 @@ use toile_geometry::{TriangleMesh, Vec3};
 use toile_picture::{
     Backdrop, Camera, Edges, Finish, Image, Lines, Paint, Projection, Scene, Surface, View, render,
 };
-use toile_realtime::{Ellipsoids, Garment, GarmentSettings, RealtimeError};
+use toile_realtime::{Character, Ellipsoids, Garment, GarmentSettings, RealtimeError};
 
 /// How clothes are adjusted in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,8 +86,8 @@ pub struct RealtimeRun {
 const FADE: f32 = 0.4;
 
 /// Distance of the innermost garment from the ellipsoids, and of each garment from the one below
-/// it [m]: the ellipsoids lie a little within the skin.
-const FIRST_OFFSET: f32 = 0.008;
+/// it [m]: most of the skin lies within the ellipsoids, and not all.
+const FIRST_OFFSET: f32 = 0.006;
 const NEXT_OFFSET: f32 = 0.008;
 
 /// Colour of the body (sRGB).
@@ -109,6 +109,21 @@ pub(crate) fn own_clips(skeleton: &Skeleton) -> [(&'static str, Clip); 4] {
         ("walk", Clip::walk(skeleton)),
         ("run", Clip::run(skeleton)),
     ]
+}
+
+/// The average woman as a character that stands, walks and runs.
+///
+/// # Errors
+/// None that is known: the average woman can be made.
+pub fn woman_character() -> Result<Character, SessionError> {
+    let body = Mannequin::new(&Figure::Woman.average(), Figure::Woman)?;
+    character_of(&body)
+}
+
+fn character_of(body: &Mannequin) -> Result<Character, SessionError> {
+    let clips = own_clips(body.skeleton());
+    let clips = clips.each_ref().map(|(name, clip)| (*name, clip));
+    Ok(body.character(&clips)?)
 }
 
 impl RealtimeRun {
@@ -167,9 +182,7 @@ impl RealtimeRun {
         body: &Mannequin,
         clothes: Vec<RealtimeSurface>,
     ) -> Result<Self, SessionError> {
-        let clips = own_clips(body.skeleton());
-        let clips = clips.each_ref().map(|(name, clip)| (*name, clip));
-        let mut ellipsoids = Ellipsoids::new(&body.character(&clips)?).map_err(cannot)?;
+        let mut ellipsoids = Ellipsoids::new(&character_of(body)?).map_err(cannot)?;
         let mut garments = Vec::new();
         for (k, cloth) in clothes.iter().enumerate() {
             let settings = GarmentSettings {
