@@ -479,7 +479,8 @@ pub struct Body {
     )]
     pub time: Option<Duration>,
     /// File to write, by its ending: .obj the skin (m), .glb the skin with its skeleton and the
-    /// whole motion, .json a mannequin file; measurements (JSON) with --mesh.
+    /// whole motion, .character.json ellipsoids for real time with stand, astride, walk, run and the
+    /// motion, other .json a mannequin file; measurements (JSON) with --mesh.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

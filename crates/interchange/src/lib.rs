@@ -7,6 +7,7 @@
 
 mod atomic;
 mod bvh;
+mod character_json;
 mod checkpoint;
 mod dxf;
 mod error;
@@ -58,6 +59,7 @@ mod xml;
 
 pub use atomic::{check_folder, write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
+pub use character_json::{read_character, write_character};
 pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
 pub use fabric_file::{FabricFile, read_fabric};

@@ -267,11 +267,10 @@ fn posed(ellipsoids: &Ellipsoids, blending: Blending) -> Result<f64, RealtimeErr
 
 /// Measures everything into a report.
 pub(crate) fn realtime(result: &mut Timed) -> Result<(), LabError> {
-    let character = woman_character()?;
-    let words = |error: RealtimeError| LabError::Files {
-        what: error.to_string(),
-    };
-    result.report = Some(measured(&character, result).map_err(words)?);
+    let words = |what: String| LabError::Files { what };
+    let character = woman_character().map_err(|error| words(error.to_string()))?;
+    let report = measured(&character, result).map_err(|error| words(error.to_string()))?;
+    result.report = Some(report);
     Ok(())
 }
 

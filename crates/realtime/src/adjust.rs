@@ -173,7 +173,7 @@ impl Garment {
                 return;
             }
             self.edges.limit(bounds, &mut self.places);
-            self.push_out(0.0);
+            self.push_out(friction);
             self.rounds += 1;
         }
     }

@@ -1,35 +1,10 @@
 //! A figure that is no human, from a file written by hand.
 #![allow(clippy::unwrap_used)]
 
-use toile_realtime::{Character, Ellipsoids, Garment, GarmentSettings};
+mod coat;
 
-const DOG: &str = include_str!("dog.character.json");
-
-fn dog() -> Character {
-    serde_json::from_str(DOG).unwrap()
-}
-
-/// A coat: a tube round the trunk, open below and clear of the legs, `cells` round it and along it.
-fn coat(cells: u32) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
-    let mut positions = Vec::new();
-    for i in 0..=cells {
-        for j in 0..=cells {
-            let along = -0.22 + 0.44 * i as f32 / cells as f32;
-            let angle = 0.55 * std::f32::consts::PI * (2.0 * j as f32 / cells as f32 - 1.0);
-            let (sine, cosine) = angle.sin_cos();
-            positions.push([0.15 * sine, 0.5 + 0.16 * cosine, along]);
-        }
-    }
-    let mut triangles = Vec::new();
-    for i in 0..cells {
-        for j in 0..cells {
-            let a = i * (cells + 1) + j;
-            let (b, c, d) = (a + 1, a + cells + 1, a + cells + 2);
-            triangles.extend([[a, c, b], [b, c, d]]);
-        }
-    }
-    (positions, triangles)
-}
+use coat::{coat, dog};
+use toile_realtime::{Ellipsoids, Garment, GarmentSettings};
 
 #[test]
 fn a_dog_trots_in_a_coat() {

@@ -117,12 +117,19 @@ pub(crate) fn own_clips(skeleton: &Skeleton) -> [(&'static str, Clip); 4] {
 /// None that is known: the average woman can be made.
 pub fn woman_character() -> Result<Character, SessionError> {
     let body = Mannequin::new(&Figure::Woman.average(), Figure::Woman)?;
-    character_of(&body)
+    character_with(&body, None)
 }
 
-fn character_of(body: &Mannequin) -> Result<Character, SessionError> {
-    let clips = own_clips(body.skeleton());
-    let clips = clips.each_ref().map(|(name, clip)| (*name, clip));
+/// A body as a character with the clips of our own, and one more, which takes the place of one of
+/// the same name.
+pub(crate) fn character_with(
+    body: &Mannequin,
+    more: Option<(&str, &Clip)>,
+) -> Result<Character, SessionError> {
+    let own = own_clips(body.skeleton());
+    let own = own.iter().map(|(name, clip)| (*name, clip));
+    let others = own.filter(|(name, _)| more.is_none_or(|(new, _)| new != *name));
+    let clips: Vec<(&str, &Clip)> = others.chain(more).collect();
     Ok(body.character(&clips)?)
 }
 
@@ -182,7 +189,7 @@ impl RealtimeRun {
         body: &Mannequin,
         clothes: Vec<RealtimeSurface>,
     ) -> Result<Self, SessionError> {
-        let mut ellipsoids = Ellipsoids::new(&character_of(body)?).map_err(cannot)?;
+        let mut ellipsoids = Ellipsoids::new(&character_with(body, None)?).map_err(cannot)?;
         let mut garments = Vec::new();
         for (k, cloth) in clothes.iter().enumerate() {
             let settings = GarmentSettings {

@@ -6,6 +6,7 @@ use crate::mesh_file::{OpenedMesh, open_person};
 use crate::open::read_input;
 use crate::output::cannot;
 use crate::product::body_obj;
+use crate::realtime::character_with;
 use crate::{FabricChoice, PanelOrigin, PatternFormat, Project, SessionError};
 use std::path::Path;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
@@ -16,7 +17,7 @@ use toile_body::{
 use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
     ExpectedKind, FormatError, ObjGroup, ObjMesh, write_atomically, write_body_glb,
-    write_garmentcode, write_mannequin, write_measurements, write_obj,
+    write_character, write_garmentcode, write_mannequin, write_measurements, write_obj,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
@@ -358,7 +359,7 @@ pub enum BodySource<'a> {
 }
 
 /// Makes a mannequin and writes it by the name of the file: `.glb` with skeleton and the whole clip
-/// of the motion, `.json` as a mannequin file, else its skin as OBJ, at rest or at a moment of a
+/// of the motion, `.character.json` with ellipsoids and clips for real time, other `.json` as a mannequin file, else its skin as OBJ, at rest or at a moment of a
 /// motion. Returns every measurement as asked or predicted and as got at rest.
 ///
 /// # Errors
@@ -369,19 +370,22 @@ pub fn make_body(
     moment: Option<&Moment>,
     to: &Path,
 ) -> Result<BodyReport, SessionError> {
-    let remedy = "bodies are written as NAME.obj (skin), NAME.glb (with skeleton and motion) and NAME.json (mannequin file)";
+    let remedy = "bodies are written as NAME.obj (skin), NAME.glb (with skeleton and motion), NAME.json (mannequin file) and NAME.character.json (ellipsoids and clips for real time)";
     check_ending(to, &[".obj", ".glb", ".json"], remedy)?;
     let extension = to
         .extension()
         .and_then(|end| end.to_str())
         .unwrap_or_default();
-    if moment.is_some() && extension.eq_ignore_ascii_case("json") {
+    let name = to.file_name().unwrap_or_default().to_string_lossy();
+    let is_character = name.to_lowercase().ends_with(".character.json");
+    if moment.is_some() && extension.eq_ignore_ascii_case("json") && !is_character {
         return Err(SessionError::Conflict(format!(
             "{}: a mannequin file holds no pose; write a posed body as NAME.obj or NAME.glb",
             to.display()
         )));
     }
-    if moment.is_some_and(|m| m.time != 0.0) && extension.eq_ignore_ascii_case("glb") {
+    let is_whole = is_character || extension.eq_ignore_ascii_case("glb");
+    if moment.is_some_and(|m| m.time != 0.0) && is_whole {
         return Err(SessionError::Conflict(format!(
             "{}: this file holds the whole motion; leave --time out, or write the pose as NAME.obj",
             to.display()
@@ -403,6 +407,11 @@ pub fn make_body(
             let named = motion.as_ref().map(|(m, motion)| (m.name(), motion));
             let named = named.as_ref().map(|(name, motion)| (&**name, *motion));
             write_body_glb(&mannequin, named)
+        }
+        "json" if is_character => {
+            let named = motion.as_ref().map(|(m, motion)| (m.name(), motion));
+            let named = named.as_ref().map(|(name, motion)| (&**name, *motion));
+            write_character(&character_with(&mannequin, named)?).map(String::into_bytes)
         }
         "json" => write_mannequin(&mannequin.description()).map(String::into_bytes),
         _ => {

@@ -1,0 +1,95 @@
+//! Character files: ellipsoids, joints and clips for real time, as JSON that can be written by hand.
+
+use crate::FormatError;
+use serde::{Deserialize, Serialize};
+use toile_realtime::{Character, CharacterEllipsoid, CharacterJoint, Group, KeyedClip};
+
+const KIND: &str = "character";
+const VERSION: u32 = 1;
+
+/// The native file: lengths in metres, times in seconds, rotation vectors in radians.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CharacterFile {
+    toile: u32,
+    kind: String,
+    joints: Vec<CharacterJoint>,
+    groups: Vec<Group>,
+    ellipsoids: Vec<CharacterEllipsoid>,
+    #[serde(default)]
+    clips: Vec<KeyedClip>,
+}
+
+/// Reads a character file and checks it.
+///
+/// # Errors
+/// Text that is no character file, or a character that cannot be: the place and the remedy.
+pub fn read_character(text: &str) -> Result<Character, FormatError> {
+    let hint = "write {\"toile\": 1, \"kind\": \"character\", \"joints\": […], \"groups\": […], \"ellipsoids\": […]}";
+    let file: CharacterFile = serde_json::from_str(text).map_err(|error| {
+        let place = format!("line {}, column {}", error.line(), error.column());
+        FormatError::new(place, error.to_string(), hint)
+    })?;
+    if file.kind != KIND || file.toile != VERSION {
+        let what = format!(
+            "{:?} of version {} is not known here",
+            file.kind, file.toile
+        );
+        return Err(FormatError::new("kind", what, hint));
+    }
+    let character = Character {
+        joints: file.joints,
+        groups: file.groups,
+        ellipsoids: file.ellipsoids,
+        clips: file.clips,
+    };
+    let refused = |error: toile_realtime::RealtimeError| {
+        FormatError::new(error.place, error.what, error.hint)
+    };
+    character.check().map_err(refused)?;
+    Ok(character)
+}
+
+/// Writes a character file: a line for each joint, group, ellipsoid and key pose.
+///
+/// # Errors
+/// A number that JSON cannot hold.
+pub fn write_character(character: &Character) -> Result<String, FormatError> {
+    let line = |value: Result<String, serde_json::Error>| {
+        value.map_err(|error| FormatError::new("character", error.to_string(), "correct it"))
+    };
+    let list = |name: &str, lines: Vec<String>| {
+        format!("  \"{name}\": [\n    {}\n  ]", lines.join(",\n    "))
+    };
+    let joints: Result<Vec<_>, _> = (character.joints.iter())
+        .map(|joint| line(serde_json::to_string(joint)))
+        .collect();
+    let groups: Result<Vec<_>, _> = (character.groups.iter())
+        .map(|group| line(serde_json::to_string(group)))
+        .collect();
+    let ellipsoids: Result<Vec<_>, _> = (character.ellipsoids.iter())
+        .map(|ellipsoid| line(serde_json::to_string(ellipsoid)))
+        .collect();
+    let mut clips = Vec::new();
+    for clip in &character.clips {
+        let keys: Result<Vec<_>, _> = (clip.keys.iter())
+            .map(|key| line(serde_json::to_string(key)))
+            .collect();
+        clips.push(format!(
+            "{{\"name\": {}, \"loop\": {}, \"keys\": [\n      {}\n    ]}}",
+            line(serde_json::to_string(&clip.name))?,
+            clip.is_loop,
+            keys?.join(",\n      ")
+        ));
+    }
+    let lists = [
+        list("joints", joints?),
+        list("groups", groups?),
+        list("ellipsoids", ellipsoids?),
+        list("clips", clips),
+    ];
+    Ok(format!(
+        "{{\n  \"toile\": {VERSION},\n  \"kind\": \"{KIND}\",\n{}\n}}\n",
+        lists.join(",\n")
+    ))
+}
