@@ -46,8 +46,9 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 19] = [
+const LAYERS: [(&str, &[&str]); 20] = [
     ("toile-realtime", &[]),
+    ("toile-realtime-c", &["realtime"]),
     ("toile-geometry", &[]),
     ("toile-measure", &[]),
     ("toile-lettering", &[]),

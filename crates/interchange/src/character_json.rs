@@ -1,24 +1,7 @@
 //! Character files: ellipsoids, joints and clips for real time, as JSON that can be written by hand.
 
 use crate::FormatError;
-use serde::{Deserialize, Serialize};
-use toile_realtime::{Character, CharacterEllipsoid, CharacterJoint, Group, KeyedClip};
-
-const KIND: &str = "character";
-const VERSION: u32 = 1;
-
-/// The native file: lengths in metres, times in seconds, rotation vectors in radians.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CharacterFile {
-    toile: u32,
-    kind: String,
-    joints: Vec<CharacterJoint>,
-    groups: Vec<Group>,
-    ellipsoids: Vec<CharacterEllipsoid>,
-    #[serde(default)]
-    clips: Vec<KeyedClip>,
-}
+use toile_realtime::{Character, CharacterFile};
 
 /// Reads a character file and checks it.
 ///
@@ -30,24 +13,10 @@ pub fn read_character(text: &str) -> Result<Character, FormatError> {
         let place = format!("line {}, column {}", error.line(), error.column());
         FormatError::new(place, error.to_string(), hint)
     })?;
-    if file.kind != KIND || file.toile != VERSION {
-        let what = format!(
-            "{:?} of version {} is not known here",
-            file.kind, file.toile
-        );
-        return Err(FormatError::new("kind", what, hint));
-    }
-    let character = Character {
-        joints: file.joints,
-        groups: file.groups,
-        ellipsoids: file.ellipsoids,
-        clips: file.clips,
-    };
     let refused = |error: toile_realtime::RealtimeError| {
         FormatError::new(error.place, error.what, error.hint)
     };
-    character.check().map_err(refused)?;
-    Ok(character)
+    file.into_character().map_err(refused)
 }
 
 /// Writes a character file: a line for each joint, group, ellipsoid and key pose.
@@ -89,7 +58,9 @@ pub fn write_character(character: &Character) -> Result<String, FormatError> {
         list("clips", clips),
     ];
     Ok(format!(
-        "{{\n  \"toile\": {VERSION},\n  \"kind\": \"{KIND}\",\n{}\n}}\n",
+        "{{\n  \"toile\": {},\n  \"kind\": \"{}\",\n{}\n}}\n",
+        CharacterFile::VERSION,
+        CharacterFile::KIND,
         lists.join(",\n")
     ))
 }

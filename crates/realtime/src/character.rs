@@ -20,6 +20,53 @@ pub struct Character {
     pub clips: Vec<KeyedClip>,
 }
 
+/// A character file: its kind and version before the character. `serde_json` reads it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CharacterFile {
+    /// The version of the format.
+    toile: u32,
+    /// "character".
+    kind: String,
+    joints: Vec<CharacterJoint>,
+    groups: Vec<Group>,
+    ellipsoids: Vec<CharacterEllipsoid>,
+    #[serde(default)]
+    clips: Vec<KeyedClip>,
+}
+
+impl CharacterFile {
+    /// The version written, and the only one read.
+    pub const VERSION: u32 = 1;
+    /// The kind that a character file names.
+    pub const KIND: &str = "character";
+
+    /// The character, checked.
+    ///
+    /// # Errors
+    /// Another kind or version, and what [`Character::check`] finds.
+    pub fn into_character(self) -> Result<Character, RealtimeError> {
+        if self.kind != Self::KIND || self.toile != Self::VERSION {
+            return Err(RealtimeError::new(
+                "kind",
+                format!(
+                    "{:?} of version {} is not known here",
+                    self.kind, self.toile
+                ),
+                "begin with \"toile\": 1, \"kind\": \"character\"",
+            ));
+        }
+        let character = Character {
+            joints: self.joints,
+            groups: self.groups,
+            ellipsoids: self.ellipsoids,
+            clips: self.clips,
+        };
+        character.check()?;
+        Ok(character)
+    }
+}
+
 /// A joint of the tree.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

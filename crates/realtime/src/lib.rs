@@ -23,7 +23,8 @@ mod push;
 mod turn;
 
 pub use character::{
-    Character, CharacterEllipsoid, CharacterJoint, Group, KeyPose, KeyedClip, MOST_GROUPS,
+    Character, CharacterEllipsoid, CharacterFile, CharacterJoint, Group, KeyPose, KeyedClip,
+    MOST_GROUPS,
 };
 pub use ellipsoids::Ellipsoids;
 pub use error::RealtimeError;

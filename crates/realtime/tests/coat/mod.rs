@@ -1,17 +1,13 @@
 //! A dog from a file written by hand, and a coat for it.
 
-use toile_realtime::Character;
+use toile_realtime::{Character, CharacterFile};
 
 const DOG: &str = include_str!("../dog.character.json");
 
 /// The dog.
 pub fn dog() -> Character {
-    // Kind and version are the reader's; the character is what is left.
-    let mut file: serde_json::Value = serde_json::from_str(DOG).unwrap();
-    let fields = file.as_object_mut().unwrap();
-    fields.remove("toile");
-    fields.remove("kind");
-    serde_json::from_value(file).unwrap()
+    let file: CharacterFile = serde_json::from_str(DOG).unwrap();
+    file.into_character().unwrap()
 }
 
 /// A coat: a tube round the trunk, open below and clear of the legs, `cells` round it and along it.
