@@ -35,7 +35,7 @@ const LARGE: [usize; 2] = [911, 944];
 const SMALL: [usize; 2] = [464, 454];
 
 /// A tube wound of one thread of vertices, `round` a turn, between two heights about an axis: any
-/// number of vertices, as far out as the ellipsoids reach.
+/// number of vertices, a little farther out than the ellipsoids reach at their height.
 fn tube(field: &Field, count: usize, [top, bottom]: [[f32; 3]; 2], largest: f32) -> Mesh {
     // About as far apart along as round.
     let girth = 0.75 * largest * std::f32::consts::TAU;
@@ -44,16 +44,8 @@ fn tube(field: &Field, count: usize, [top, bottom]: [[f32; 3]; 2], largest: f32)
         let share = k as f32 / (count - 1) as f32;
         let axis: [f32; 3] = std::array::from_fn(|i| top[i] + share * (bottom[i] - top[i]));
         let angle = std::f32::consts::TAU * k as f32 / round as f32;
-        let at = |radius: f32| {
-            [
-                axis[0] + radius * angle.sin(),
-                axis[1],
-                axis[2] + radius * angle.cos(),
-            ]
-        };
-        let radii = (1..200).map(|step| step as f32 * largest / 200.0);
-        let outermost = radii.filter(|&r| field.contains(at(r))).last();
-        at(outermost.unwrap_or(0.3 * largest) + 0.012)
+        let radius = reach(field, axis, largest) + 0.012;
+        on_circle(axis, angle, radius)
     });
     let positions: Vec<[f32; 3]> = positions.collect();
     let round = round as u32;
@@ -63,16 +55,36 @@ fn tube(field: &Field, count: usize, [top, bottom]: [[f32; 3]; 2], largest: f32)
     (positions, triangles)
 }
 
+/// A place round an upright axis.
+fn on_circle(axis: [f32; 3], angle: f32, radius: f32) -> [f32; 3] {
+    [
+        axis[0] + radius * angle.sin(),
+        axis[1],
+        axis[2] + radius * angle.cos(),
+    ]
+}
+
+/// How far the ellipsoids reach round an axis at its height, no farther than the largest radius.
+fn reach(field: &Field, axis: [f32; 3], largest: f32) -> f32 {
+    let radii = (1..100).map(|step| step as f32 * largest / 100.0);
+    let is_reached = |radius: &f32| {
+        let angles = (0..48).map(|k| std::f32::consts::TAU * k as f32 / 48.0);
+        let mut places = angles.map(|angle| on_circle(axis, angle, *radius));
+        places.any(|p| field.contains(p))
+    };
+    radii.filter(is_reached).last().unwrap_or(0.3 * largest)
+}
+
 /// A blouse without sleeves: a tube round the trunk.
 fn blouse(field: &Field, count: usize) -> Mesh {
     tube(field, count, [[0.0, 1.24, 0.0], [0.0, 0.86, 0.0]], 0.22)
 }
 
-/// Trousers without a seat: a tube round each leg.
+/// Trousers without a seat: a tube round each leg, below where the thighs touch.
 fn trousers(field: &Field, count: usize) -> Mesh {
     let leg = |side: f32, count| {
-        let ends = [[side * 0.085, 0.74, 0.0], [side * 0.13, 0.12, -0.03]];
-        tube(field, count, ends, 0.12)
+        let ends = [[side * 0.105, 0.62, 0.0], [side * 0.13, 0.12, -0.03]];
+        tube(field, count, ends, 0.09)
     };
     let (mut positions, mut triangles) = leg(1.0, count / 2);
     let first = positions.len() as u32;

@@ -87,8 +87,8 @@ impl Field {
             for i in 0..3 {
                 let scale = self.inverse[row][i];
                 let axis: Vector = std::array::from_fn(|j| frame.rows[j][i] * scale);
-                for j in 0..3 {
-                    self.unit[3 * i + j][row] = axis[j];
+                for (j, entry) in axis.into_iter().enumerate() {
+                    self.unit[3 * i + j][row] = entry;
                 }
                 self.shift[i][row] = dot(axis, frame.at);
                 self.centre[i][row] = frame.at[i];
@@ -156,8 +156,8 @@ impl Field {
     }
 
     /// For each vertex of a block the row nearest along the ray from its centre: of its own groups
-    /// any, of those beside them one that it lies outside of, or pinched vertices would change
-    /// sides. Groups by bits.
+    /// any, of those beside them one in a group that it lies outside of, or pinched vertices would
+    /// change sides. Groups by bits.
     pub(crate) fn nearest_rows(
         &self,
         places: &[Lanes; 3],
@@ -166,30 +166,54 @@ impl Field {
         let any = own.iter().chain(beside).fold(0, |a, b| a | b);
         let mut best = [f32::INFINITY; LANES];
         let mut rows = [0u32; LANES];
-        for row in 0..self.len() {
-            let group = self.groups[row];
-            if any >> group & 1 == 0 {
-                continue;
+        let mut first = 0;
+        while first < self.len() {
+            let group = self.groups[first];
+            let count = self.groups[first..]
+                .iter()
+                .take_while(|g| **g == group)
+                .count();
+            if any >> group & 1 == 1 {
+                let (near, near_rows, is_inside) = self.nearest_of(first..first + count, places);
+                for l in 0..LANES {
+                    let is_open =
+                        own[l] >> group & 1 == 1 || beside[l] >> group & 1 == 1 && !is_inside[l];
+                    let is_nearer = is_open && near[l] < best[l];
+                    best[l] = if is_nearer { near[l] } else { best[l] };
+                    rows[l] = if is_nearer { near_rows[l] } else { rows[l] };
+                }
             }
+            first += count;
+        }
+        rows.map(|row| row as usize)
+    }
+
+    /// For each vertex of a block the least distance to some rows, the row, and whether it lies
+    /// inside any of them.
+    #[inline(always)]
+    fn nearest_of(
+        &self,
+        among: std::ops::Range<usize>,
+        places: &[Lanes; 3],
+    ) -> (Lanes, [u32; LANES], [bool; LANES]) {
+        let mut best = [f32::INFINITY; LANES];
+        let mut rows = [0u32; LANES];
+        let mut is_inside = [false; LANES];
+        for row in among {
             let squared = self.ratios(row, places);
             let c = self.centre(row);
-            // The least |q|^2 at which the row counts for each vertex.
-            let least: Lanes = each(|l| match (own[l] >> group & 1, beside[l] >> group & 1) {
-                (1, _) => 0.0,
-                (_, 1) => 1.0,
-                _ => f32::INFINITY,
-            });
             for l in 0..LANES {
                 let [x, y, z] = [0, 1, 2].map(|k| places[k][l] - c[k]);
                 // At the very centre the ray has no direction and the distance no end: held.
                 let ratio = squared[l].max(1e-8).sqrt();
                 let distance = (x * x + y * y + z * z).sqrt() * (1.0 - 1.0 / ratio);
-                let is_nearer = squared[l] >= least[l] && distance < best[l];
+                let is_nearer = distance < best[l];
                 best[l] = if is_nearer { distance } else { best[l] };
                 rows[l] = if is_nearer { row as u32 } else { rows[l] };
+                is_inside[l] |= squared[l] < 1.0;
             }
         }
-        rows.map(|row| row as usize)
+        (best, rows, is_inside)
     }
 
     /// A place inside a row put onto its surface along the steepest way out, the gradient of
