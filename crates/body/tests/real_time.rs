@@ -61,9 +61,9 @@ fn beyond(inner: &Garment, outer: &Garment, triangles: &[[u32; 3]]) -> usize {
         positions: outer.positions().map(place).collect(),
         triangles: triangles.to_vec(),
     };
-    let tree = SurfaceTree::new(mesh.clone()).unwrap();
+    let tree = SurfaceTree::new(mesh.clone());
     let is_beyond = |p: &Vec3| {
-        let closest = tree.closest_point(*p).unwrap();
+        let closest = tree.closest_point(*p, f64::INFINITY).unwrap();
         let [a, b, c] = mesh.corners(closest.triangle as usize);
         let normal = (b - a).cross(&(c - a)).normalize();
         (p - closest.point).dot(&normal) > 1e-3
