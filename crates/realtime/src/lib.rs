@@ -1,4 +1,4 @@
-//! Garments on moving figures of ellipsoids, adjusted once a frame in microseconds (Rudomin, Castillo,
+//! Garments on moving figures of ellipsoids, adjusted once a frame (Rudomin, Castillo,
 //! Muñoz and Alencastre 2002).
 //!
 //! A [`Character`] is what files hold. [`Ellipsoids`] are one such character in motion; any number
