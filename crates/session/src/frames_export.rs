@@ -67,7 +67,10 @@ pub fn export_frames(
             let chosen = chosen(&frames, &surfaces, export.frame)?;
             match &*ending {
                 "obj" => obj_files(&chosen, export, &stem)?,
-                _ => pictures(&frames, &chosen, export, &stem)?,
+                _ => {
+                    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                    pictures(&frames, &chosen, export, [&stem, &name])?
+                }
             }
         }
         _ => {
@@ -267,7 +270,7 @@ fn pictures(
     frames: &Frames,
     chosen: &[Chosen],
     export: &FramesExport,
-    stem: &str,
+    [stem, name]: [&str; 2],
 ) -> Result<Vec<File>, SessionError> {
     let shown = |section: &FrameSection, frame: &Frame| -> Vec<ShownSurface> {
         let surfaces = RecordedSurface::all(section).into_iter();
@@ -295,7 +298,7 @@ fn pictures(
     let mut files = Vec::with_capacity(chosen.len());
     for (number, (section, frame)) in all.enumerate() {
         if chosen.iter().any(|chosen| chosen.number == number) {
-            let title = format!("{stem} at {:.3} s", frame.time);
+            let title = format!("{name} at {:.3} s", frame.time);
             let picture = camera.picture(&shown(section, frame), [title, String::new()])?;
             files.push((frame_name(stem, number, export, "png"), picture));
         }
