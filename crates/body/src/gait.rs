@@ -191,20 +191,20 @@ const WALK: Gait = Gait {
     lean: 0.03,
 };
 
-/// A run of 2.5 m/s at a leg of 0.82 m: a foot is on the ground for a third of the stride, so that twice a stride
+/// A run of 2.2 m/s at a leg of 0.82 m: a foot is on the ground for a third of the stride, so that twice a stride
 /// neither is, and the hips are lowest over the standing foot (Novacheck 1998).
 const RUN: Gait = Gait {
     duration: 0.72,
-    speed: 3.0,
+    speed: 2.7,
     duty: 0.34,
-    ahead: 0.26,
+    ahead: 0.2,
     pitch: [-0.12, 0.85],
     flat: [0.2, 0.5],
-    lift: [0.1, 0.32],
+    lift: [0.09, 0.34],
     apart: 0.65,
     bounce: [0.03, 0.16],
-    elbow: [1.15, -0.16, 0.0, 0.0, 0.0],
-    shoulder: [-0.05, -0.48, 0.0, 0.0, 0.0],
+    elbow: [0.9, -0.14, 0.0, 0.0, 0.0],
+    shoulder: [-0.03, -0.38, 0.0, 0.0, 0.0],
     twist: 0.12,
     lean: 0.12,
 };

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use toile_body::{Clip, Figure, Mannequin};
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 use toile_realtime::{Ellipsoids, Field, Garment, GarmentSettings};
 
 const FRAME: f32 = 1.0 / 60.0;
@@ -28,9 +27,11 @@ fn tube(ellipsoids: &Ellipsoids, offset: f32, [top, bottom]: [f32; 2]) -> Mesh {
             let angle = std::f32::consts::TAU * j as f32 / round as f32;
             let at = |r: f32| [r * angle.sin(), height, r * angle.cos()];
             let radii = (1..220).map(|k| 0.001 * k as f32);
-            positions.push(at(
-                radii.filter(|&r| field.contains(at(r))).last().unwrap() + 0.002
-            ));
+            positions.push(at(radii
+                .filter(|&r| field.contains(at(r)))
+                .next_back()
+                .unwrap()
+                + 0.002));
         }
     }
     let at = |i: u32, j: u32| i * round + j % round;
@@ -51,78 +52,6 @@ fn garment(ellipsoids: &Ellipsoids, offset: f32, heights: [f32; 2]) -> (Garment,
     };
     let made = Garment::new(ellipsoids, &mesh.0, &mesh.1, settings).unwrap();
     (made, mesh)
-}
-
-/// Vertices of the inner garment that lie on the outer side of the outer one, farther than a
-/// millimetre.
-fn beyond(inner: &Garment, outer: &Garment, triangles: &[[u32; 3]]) -> usize {
-    let place = |p: [f32; 3]| Vec3::from(p.map(f64::from));
-    let mesh = TriangleMesh {
-        positions: outer.positions().map(place).collect(),
-        triangles: triangles.to_vec(),
-    };
-    let tree = SurfaceTree::new(mesh.clone());
-    let is_beyond = |p: &Vec3| {
-        let closest = tree.closest_point(*p, f64::INFINITY).unwrap();
-        let [a, b, c] = mesh.corners(closest.triangle as usize);
-        let normal = (b - a).cross(&(c - a)).normalize();
-        (p - closest.point).dot(&normal) > 1e-3
-    };
-    inner.positions().map(place).filter(is_beyond).count()
-}
-
-#[test]
-fn layers_stay_in_their_order_by_their_offsets() {
-    let mut ellipsoids = woman();
-    let (mut inner, _) = garment(&ellipsoids, 0.004, [1.20, 0.92]);
-    let (mut outer, (_, triangles)) = garment(&ellipsoids, 0.024, [1.24, 0.86]);
-    let (mut hanging, _) = garment(&ellipsoids, 0.004, [1.20, 0.92]);
-    ellipsoids.start("walk", 0.5).unwrap();
-    let (mut closely, mut both_hang, mut looks) = (0, 0, 0);
-    for frame in 0..600 {
-        if frame == 300 {
-            ellipsoids.start("run", 0.5).unwrap();
-        }
-        ellipsoids.advance(FRAME);
-        inner.adjust_by_shape(&ellipsoids, FRAME);
-        hanging.adjust_by_gravity(&ellipsoids, FRAME);
-        outer.adjust_by_gravity(&ellipsoids, FRAME);
-        if frame % 20 == 0 {
-            closely += beyond(&inner, &outer, &triangles);
-            both_hang += beyond(&hanging, &outer, &triangles);
-            looks += inner.len();
-        }
-    }
-    let share = both_hang as f64 / looks as f64;
-    println!(
-        "beyond the outer: fitted {closely}, hanging {:.2} %",
-        100.0 * share
-    );
-    assert_eq!(closely, 0);
-    assert!(share <= 0.01, "{share}");
-}
-
-#[test]
-fn clothes_keep_their_bounds_and_stay_out_of_the_body_by_both_adjustments() {
-    let mut ellipsoids = woman();
-    let (mut worn, _) = garment(&ellipsoids, 0.006, [1.24, 0.86]);
-    ellipsoids.start("walk", 0.4).unwrap();
-    let mut edges = [1.0f32; 2];
-    for frame in 0..600 {
-        if frame == 300 {
-            ellipsoids.start("run", 0.4).unwrap();
-        }
-        ellipsoids.advance(FRAME);
-        match frame / 100 % 2 {
-            0 => worn.adjust_by_gravity(&ellipsoids, FRAME),
-            _ => worn.adjust_by_shape(&ellipsoids, FRAME),
-        }
-        assert_eq!(worn.inside_count(), 0, "frame {frame}");
-        let [low, high] = worn.edge_extremes();
-        edges = [edges[0].min(low), edges[1].max(high)];
-    }
-    println!("edges {edges:?}, {} rounds a frame", worn.rounds() / 600);
-    assert!(edges[0] >= 0.9 && edges[1] <= 1.1, "{edges:?}");
 }
 
 #[test]

@@ -42,6 +42,9 @@ fn prepared(table: &toml::Table) -> tempfile::TempDir {
     }
     for entry in std::fs::read_dir(patterns()).unwrap() {
         let path = entry.unwrap().path();
+        if path.is_dir() {
+            continue;
+        }
         write(
             path.file_name().unwrap().to_str().unwrap(),
             &std::fs::read(&path).unwrap(),

@@ -23,6 +23,7 @@ fn shipped() -> Vec<(String, Pattern)> {
     let mut found: Vec<(String, Pattern)> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_file())
         .map(|path| {
             let text = std::fs::read_to_string(&path).unwrap();
             let name = path.file_name().unwrap().to_string_lossy().into_owned();

@@ -72,7 +72,10 @@ fn reach(field: &Field, axis: [f32; 3], largest: f32) -> f32 {
         let mut places = angles.map(|angle| on_circle(axis, angle, *radius));
         places.any(|p| field.contains(p))
     };
-    radii.filter(is_reached).last().unwrap_or(0.3 * largest)
+    radii
+        .filter(is_reached)
+        .next_back()
+        .unwrap_or(0.3 * largest)
 }
 
 /// A blouse without sleeves: a tube round the trunk.

@@ -11,7 +11,8 @@ use toile_session::{Budget, MarkerFormat, NestOptions, Silent, SizeSelection, ne
 fn patterns() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");
     let entries = std::fs::read_dir(folder).unwrap();
-    entries.map(|entry| entry.unwrap().path()).collect()
+    let paths = entries.map(|entry| entry.unwrap().path());
+    paths.filter(|path| path.is_file()).collect()
 }
 
 /// How far any point of a ring lies from another ring [m].

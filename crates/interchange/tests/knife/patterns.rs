@@ -32,8 +32,10 @@ pub fn shipped() -> Vec<(String, Pattern)> {
         let text = std::fs::read_to_string(&path).unwrap();
         (name, read_pattern(&text).unwrap().0)
     };
-    let files = std::fs::read_dir(folder).unwrap();
-    let mut found: Vec<(String, Pattern)> = files.map(|e| read(e.unwrap().path())).collect();
+    let paths = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    let mut found: Vec<(String, Pattern)> = paths.filter(|p| p.is_file()).map(read).collect();
     found.sort_by(|a, b| a.0.cmp(&b.0));
     assert!(found.len() >= 4);
     found
