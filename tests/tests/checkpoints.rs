@@ -367,7 +367,7 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
     let run = GarmentRun::new(setup()).unwrap();
     let text = write_checkpoint(&run.checkpoint().unwrap()).unwrap();
     let cut = &text[..text.len() / 2];
-    let newer = text.replacen("\"version\":4", "\"version\":5", 1);
+    let newer = text.replacen("\"version\":5", "\"version\":6", 1);
     let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
     let mut changed = text.clone();
     let other = if &text[digit..=digit] == "7" {
@@ -385,7 +385,7 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
             "line 1: this is no checkpoint",
         ),
         (&head[..head.len() - 3], "line 1: "),
-        (&newer, "version: it is 5; only version 4 is known"),
+        (&newer, "version: it is 6; only version 5 is known"),
         (head, "line 2: it was cut short or changed"),
         (cut, "line 2: it was cut short or changed"),
         (&changed, "line 2: it was cut short or changed"),

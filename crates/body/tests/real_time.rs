@@ -26,12 +26,8 @@ fn tube(ellipsoids: &Ellipsoids, offset: f32, [top, bottom]: [f32; 2]) -> Mesh {
             let height = top + (bottom - top) * i as f32 / along as f32;
             let angle = std::f32::consts::TAU * j as f32 / round as f32;
             let at = |r: f32| [r * angle.sin(), height, r * angle.cos()];
-            let radii = (1..220).map(|k| 0.001 * k as f32);
-            positions.push(at(radii
-                .filter(|&r| field.contains(at(r)))
-                .next_back()
-                .unwrap()
-                + 0.002));
+            let mut radii = (1..220).map(|k| 0.001 * k as f32);
+            positions.push(at(radii.rfind(|&r| field.contains(at(r))).unwrap() + 0.002));
         }
     }
     let at = |i: u32, j: u32| i * round + j % round;

@@ -66,16 +66,13 @@ fn on_circle(axis: [f32; 3], angle: f32, radius: f32) -> [f32; 3] {
 
 /// How far the ellipsoids reach round an axis at its height, no farther than the largest radius.
 fn reach(field: &Field, axis: [f32; 3], largest: f32) -> f32 {
-    let radii = (1..100).map(|step| step as f32 * largest / 100.0);
+    let mut radii = (1..100).map(|step| step as f32 * largest / 100.0);
     let is_reached = |radius: &f32| {
         let angles = (0..48).map(|k| std::f32::consts::TAU * k as f32 / 48.0);
         let mut places = angles.map(|angle| on_circle(axis, angle, *radius));
         places.any(|p| field.contains(p))
     };
-    radii
-        .filter(is_reached)
-        .next_back()
-        .unwrap_or(0.3 * largest)
+    radii.rfind(is_reached).unwrap_or(0.3 * largest)
 }
 
 /// A blouse without sleeves: a tube round the trunk.
