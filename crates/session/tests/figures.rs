@@ -15,6 +15,8 @@ fn scene(folder: &Path, text: &str) -> PathBuf {
 fn run(text: &str) -> Result<serde_json::Value, SessionError> {
     let folder = tempfile::tempdir().unwrap();
     let path = scene(folder.path(), text);
+    let triangle = "v 0 1 0\nv 0.1 1 0\nv 0 1 0.1\nf 1 2 3\n";
+    std::fs::write(folder.path().join("a.obj"), triangle).unwrap();
     let out = folder.path().join("out");
     let outcome = run_scene(&path, &out, &RunOptions::default(), &mut Silent)?;
     Ok(outcome.report)
@@ -53,41 +55,42 @@ fn asked(figure: &str, shirt: &str) -> String {
 fn what_no_figure_can_do_is_refused_by_its_place() {
     let walks = r#""kind": "animated", "motion": { "clip": "walk" }"#;
     let worn = r#""pattern": "PATTERNS/t-shirt.toile.json", "on": "woman""#;
+    let bare = r#""mesh": "a.obj""#;
     let motion = |fields: &str| format!(r#""kind": "animated", "motion": {{ {fields} }}"#);
     let cases = [
         (
             motion(r#""strides": 3"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.clip",
         ),
         (
             motion(r#""clip": "walk", "strides": -1"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.strides",
         ),
         (
             motion(r#""clip": "stand", "strides": 2"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.strides",
         ),
         (
             motion(r#""clip": "walk", "rate": 3"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.rate",
         ),
         (
             motion(r#""clip": "walk", "lead_in": false"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.lead_in",
         ),
         (
             motion(r#""clip": "walk", "pivot": [0, 1, 0]"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.pivot",
         ),
         (
             motion(r#""clip": "walk", "keys": [{ "time": 1 }, { "time": 1 }]"#),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0].motion.keys",
         ),
         (
@@ -117,7 +120,7 @@ fn what_no_figure_can_do_is_refused_by_its_place() {
         ),
         (
             r#""kind": "static", "motion": { "clip": "walk" }"#.to_owned(),
-            worn.to_owned(),
+            bare.to_owned(),
             "objects[0]",
         ),
         (
@@ -130,7 +133,6 @@ fn what_no_figure_can_do_is_refused_by_its_place() {
         ),
     ];
     for (figure, shirt, place) in cases {
-        // What is wrong is told before anything is sewn, or the shirt is left out.
         let error = run(&asked(&figure, &shirt)).unwrap_err();
         let said = error.to_string();
         assert!(error.is_bad_input(), "{said}");
@@ -142,7 +144,7 @@ fn what_no_figure_can_do_is_refused_by_its_place() {
         said.contains("objects[0]") && said.contains("it is no body"),
         "{said}"
     );
-    let missing = asked(&motion(r#""clip": "skip.bvh""#), worn);
+    let missing = asked(&motion(r#""clip": "skip.bvh""#), bare);
     let said = run(&missing).unwrap_err().to_string();
     assert!(said.contains("skip.bvh"), "{said}");
 }
