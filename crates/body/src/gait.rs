@@ -7,7 +7,7 @@ use nalgebra::UnitQuaternion;
 use std::f64::consts::{PI, TAU};
 use toile_geometry::Vec3;
 
-/// Poses of a stride: between two of them a standing foot, slerped, slides by less than half a millimetre.
+/// Poses of a stride: so many that a standing foot, slerped between two of them, stays where it stands.
 const FRAMES: usize = 48;
 
 impl Clip {
