@@ -173,6 +173,16 @@ impl PlacedSolid<'_> {
         }
     }
 
+    /// Whether a triangle of a surface whose vertices move one by one is partly inside another part of it; its area [m2].
+    pub fn buried_area(&self, triangle: u32) -> Option<f64> {
+        let surface = self.tracked.as_ref()?;
+        let area = || {
+            let [a, b, c] = surface.corners(triangle, 1.0);
+            0.5 * (b - a).cross(&(c - a)).norm()
+        };
+        surface.has_buried(triangle, 1.0).then(area)
+    }
+
     /// Exact signed distance of a point from the surface [m].
     pub fn exact_distance(&self, point: Vec3) -> f64 {
         let closest = self.closest_point(point);

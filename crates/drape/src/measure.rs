@@ -26,6 +26,11 @@ pub struct Measures {
     pub penetration_max: f64,
     /// Pairs of a cloth triangle and a solid triangle that intersect, exactly.
     pub body_intersections: usize,
+    /// Those of them with a solid triangle that is partly inside another part of its solid, where a figure's skin goes
+    /// through itself: there cloth has nowhere to be.
+    pub buried_intersections: usize,
+    /// Area of those triangles over that of the solids.
+    pub buried_share: f64,
     /// Edges of cloth with both ends more than 5 mm inside a solid that lie nearest to opposite sides of it (outward
     /// normals there more than 90 degrees apart): such cloth is not pressed in from one side, it goes through.
     pub edges_through_body: usize,
@@ -143,11 +148,23 @@ fn measure_solids(
     };
     let edges = mesh.topology().edges;
     let mut on_body = Vec::new();
+    let mut areas = [0.0; 2];
     for (number, collider) in system.colliders.iter().enumerate() {
         let solid = collider.at(state.time);
         let pairs = solid.crossings(mesh);
         let pair_meets = |pair: &[u32; 2]| meets(&mesh.triangles[pair[0] as usize], number);
-        on_body.extend(pairs.into_iter().filter(pair_meets));
+        let pairs: Vec<[u32; 2]> = pairs.into_iter().filter(pair_meets).collect();
+        let mut met: Vec<u32> = pairs.iter().map(|pair| pair[1]).collect();
+        met.sort_unstable();
+        met.dedup();
+        let buried: Vec<(u32, f64)> = (met.iter())
+            .filter_map(|&t| Some((t, solid.buried_area(t)?)))
+            .collect();
+        let is_buried = |pair: &&[u32; 2]| buried.iter().any(|(t, _)| *t == pair[1]);
+        measures.buried_intersections += pairs.iter().filter(is_buried).count();
+        areas[0] += buried.iter().map(|(_, area)| area).sum::<f64>();
+        areas[1] += collider.surface.mesh().area();
+        on_body.extend(pairs);
         let nearest = |(v, &p): (usize, &Vec3)| {
             let is_met = meets(&[v as u32], number);
             (is_met.then(|| solid.closest_point(p))).flatten()
@@ -159,6 +176,9 @@ fn measure_solids(
         measures.edges_through_body += edges_through(&edges, &closest);
     }
     measures.body_intersections = on_body.len();
+    if areas[0] > 0.0 {
+        measures.buried_share = areas[0] / areas[1];
+    }
     on_body
 }
 

@@ -195,3 +195,103 @@ fn a_tip_that_rises_under_the_middle_of_a_face_lifts_it() {
         "{highest} {tip}"
     );
 }
+
+/// A roof 30 cm long with slopes of 84 degrees, its ridge at a height, turned by 25 degrees about the vertical.
+fn roof(ridge: f64) -> TriangleMesh {
+    let section = [[-0.022, ridge - 0.2], [0.0, ridge], [0.022, ridge - 0.2]];
+    let (sin, cos) = 25.0_f64.to_radians().sin_cos();
+    let ends = [-0.15, 0.15].map(|z| {
+        section.map(|[x, y]| Vec3::new(cos * x + sin * z + 0.003, y, cos * z - sin * x + 0.007))
+    });
+    TriangleMesh {
+        positions: ends.concat(),
+        triangles: vec![
+            [0, 3, 1],
+            [3, 4, 1],
+            [1, 4, 2],
+            [4, 5, 2],
+            [0, 2, 5],
+            [0, 5, 3],
+            [0, 1, 2],
+            [3, 5, 4],
+        ],
+    }
+}
+
+#[test]
+fn a_ridge_that_rises_lifts_the_edges_that_lie_across_it() {
+    let at = |time: f64| 0.094 + 0.25 * time;
+    let kind = tracked(move |time| roof(at(time)).positions);
+    let mut scene = over(roof(at(0.0)), kind, [0.2, 0.1]);
+    scene.duration = 0.4;
+    let mut run = SceneRun::new(&scene).unwrap();
+    while !run.finished() {
+        run.advance().unwrap();
+        let crossings = run.measure().body_intersections;
+        assert_eq!(crossings, 0, "at {:.3} s", run.state.time);
+    }
+    let highest = run.state.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+    let ridge = at(run.state.time);
+    assert!(highest > ridge, "{highest} {ridge}");
+}
+
+/// Two balls beside an upright sheet, as one surface, with so much room between them \[m\].
+fn jaws(room: f64) -> TriangleMesh {
+    let mut both = TriangleMesh::default();
+    for side in [-1.0, 1.0] {
+        let ball = solids::sphere(0.1, Vec3::new(side * (0.1 + 0.5 * room), 0.01, 0.003));
+        let first = both.positions.len() as u32;
+        both.positions.extend(ball.positions);
+        let triangles = ball.triangles.iter().map(|t| t.map(|v| v + first));
+        both.triangles.extend(triangles);
+    }
+    both
+}
+
+#[test]
+fn cloth_between_two_parts_of_a_skin_keeps_between_them_and_is_let_go_where_they_go_through_each_other()
+ {
+    // Down to 2 mm of room, 2 mm into each other, and apart again.
+    let room = |time: f64| match time {
+        t if t < 0.3 => 0.02 - 0.06 * t,
+        t if t < 0.6 => 0.002,
+        t if t < 0.7 => 0.002 - 0.04 * (t - 0.6),
+        t if t < 0.8 => -0.002,
+        t => -0.002 + 0.06 * (t - 0.8),
+    };
+    let mut scene = over(
+        jaws(room(0.0)),
+        tracked(move |time| jaws(room(time)).positions),
+        [0.2, 0.0],
+    );
+    let sheet = sheets::sheet([10; 2], [0.2; 2], |u, v| Vec3::new(0.0, u - 0.1, v - 0.1));
+    let pins = (0..sheet.positions.len() as u32).filter(|&v| sheet.positions[v as usize].y > 0.09);
+    scene.objects[0].kind = ObjectKind::Deformable {
+        material: Material::default(),
+        pins: pins.collect(),
+    };
+    scene.objects[0].mesh = sheet;
+    scene.duration = 1.2;
+    let mut run = SceneRun::new(&scene).unwrap();
+    let mut buried = 0;
+    while !run.finished() {
+        run.advance().unwrap();
+        let (time, measures) = (run.state.time, run.measure());
+        if room(time) >= 0.002 {
+            assert_eq!(measures.body_intersections, 0, "at {time:.3} s");
+        }
+        buried += measures.buried_intersections;
+        // Contact lets cloth out at 1 m/s over the surface.
+        let fastest = run
+            .state
+            .velocities
+            .iter()
+            .map(Vec3::norm)
+            .fold(0.0, f64::max);
+        assert!(fastest < 1.5, "{fastest} m/s at {time:.3} s");
+    }
+    assert!(
+        buried > 0,
+        "nothing was met where they go through each other"
+    );
+}

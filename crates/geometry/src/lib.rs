@@ -14,6 +14,7 @@ mod ellipsoid;
 mod mesh;
 mod moving_surface;
 mod path;
+mod pinch;
 mod polygon;
 mod polygon_boolean;
 mod polygon_contact;
@@ -37,6 +38,7 @@ pub use ellipsoid::Ellipsoid;
 pub use mesh::{MeshDefect, Topology, TriangleMesh};
 pub use moving_surface::MovingSurface;
 pub use path::{Path, PathCrossing, PathPlace};
+pub use pinch::Room;
 pub use polygon::{Bounds2, Location, Polygon, ring_area};
 pub use polygon_boolean::{
     Corner, difference, intersection, offset, total_area, union, wound_region,

@@ -11,8 +11,13 @@ struct Connectivity {
     /// Where the triangles of each vertex begin in `around`; one entry more than there are vertices.
     first: Vec<u32>,
     around: Vec<u32>,
+    /// The triangle across each side of each triangle, or [`NONE`] on a rim.
+    across: Vec<[u32; 3]>,
     is_closed: bool,
 }
+
+/// In place of a triangle's number: there is none.
+const NONE: u32 = u32::MAX;
 
 impl Connectivity {
     fn new(mesh: &TriangleMesh) -> Self {
@@ -32,12 +37,28 @@ impl Connectivity {
             }
         }
         let is_closed = mesh.topology().boundary().next().is_none();
-        Self {
+        let mut all = Self {
             triangles: mesh.triangles.clone(),
             first,
             around,
+            across: Vec::new(),
             is_closed,
-        }
+        };
+        let across = |t: usize| [0, 1, 2].map(|side| all.find_across(t as u32, side));
+        all.across = (0..all.triangles.len()).map(across).collect();
+        all
+    }
+
+    /// The lowest other triangle that has both ends of a side, or [`NONE`].
+    fn find_across(&self, triangle: u32, side: usize) -> u32 {
+        let own = self.triangles[triangle as usize];
+        let (from, to) = (own[side], own[(side + 1) % 3]);
+        let has_both = |&&t: &&u32| t != triangle && self.triangles[t as usize].contains(&to);
+        self.around(from)
+            .iter()
+            .find(has_both)
+            .copied()
+            .unwrap_or(NONE)
     }
 
     fn around(&self, vertex: u32) -> &[u32] {
@@ -138,10 +159,9 @@ impl MovingSurface {
         if !point.iter().all(|x| x.is_finite()) {
             return None;
         }
-        let distance2 = |triangle: u32| {
-            let corners = self.corners(triangle, time);
-            let (weights, _) = closest_point_on_triangle(point, corners);
-            (weighted(corners, weights) - point).norm_squared()
+        let distance2 = |triangle| {
+            self.away_from_triangle(triangle, point, time)
+                .norm_squared()
         };
         let triangle = self.tree.closest(point, reach, likely, distance2)?;
         Some(self.closest_on(triangle, point, time))
@@ -170,6 +190,26 @@ impl MovingSurface {
         weights[k] = 1.0;
         let here = (triangle, self.corners(triangle, time), weights);
         Some(ClosestPoint::of(self.vertex(vertex, time), here, normal))
+    }
+
+    /// Whether a side of a triangle is told of by this triangle: each edge has one that tells of it.
+    pub fn tells_of(&self, triangle: u32, side: usize) -> bool {
+        triangle < self.connectivity.across[triangle as usize][side]
+    }
+
+    /// Unit normals at a time of the step of a triangle and of the one across a side of it; none on a rim. The edge is
+    /// convex where their cross product points along the side.
+    pub fn normals_at_side(&self, triangle: u32, side: usize, time: f64) -> Option<[Vec3; 2]> {
+        let across = self.connectivity.across[triangle as usize][side];
+        let normals = || [triangle, across].map(|t| self.face_normal(t, time));
+        (across != NONE).then(normals)
+    }
+
+    /// A place of a triangle at a time of the step, with a unit normal.
+    pub fn place(&self, triangle: u32, weights: [f64; 3], normal: Vec3, time: f64) -> ClosestPoint {
+        let corners = self.corners(triangle, time);
+        let here = weighted(corners, weights);
+        ClosestPoint::of(here, (triangle, corners, weights), normal)
     }
 
     /// Unit pseudo-normal of a feature of a triangle at a time of the step; zero where the triangles that meet there
@@ -203,7 +243,24 @@ impl MovingSurface {
         sum.try_normalize(0.0).unwrap_or_default()
     }
 
-    fn face_normal(&self, triangle: u32, time: f64) -> Vec3 {
+    /// From the closest point of a triangle at a time of the step to a point \[m\].
+    pub(crate) fn away_from_triangle(&self, triangle: u32, point: Vec3, time: f64) -> Vec3 {
+        let corners = self.corners(triangle, time);
+        let (weights, _) = closest_point_on_triangle(point, corners);
+        point - weighted(corners, weights)
+    }
+
+    /// The triangle of the least squared distance from a point, among those within `reach` \[m\] of it.
+    pub(crate) fn closest_by(
+        &self,
+        point: Vec3,
+        reach: f64,
+        distance2: impl Fn(u32) -> f64,
+    ) -> Option<u32> {
+        self.tree.closest(point, reach, None, distance2)
+    }
+
+    pub(crate) fn face_normal(&self, triangle: u32, time: f64) -> Vec3 {
         let [a, b, c] = self.corners(triangle, time);
         let across = (b - a).cross(&(c - a));
         across.try_normalize(0.0).unwrap_or_default()

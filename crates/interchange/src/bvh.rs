@@ -2,6 +2,7 @@
 
 use crate::FormatError;
 use nalgebra::UnitQuaternion;
+use std::f64::consts::PI;
 use toile_body::{Clip, Joint, Pose, Skeleton};
 use toile_geometry::Vec3;
 
@@ -101,7 +102,7 @@ const MOST: [usize; 2] = [1000, 200_000];
 pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
     let mut words = Words::new(text);
     words.expect("HIERARCHY")?;
-    let bones = hierarchy(&mut words)?;
+    let mut bones = hierarchy(&mut words)?;
     words.expect("Frames:")?;
     let frames = words.number()?;
     if frames.fract() != 0.0 || !(1.0..=MOST[1] as f64).contains(&frames) {
@@ -112,6 +113,11 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
     let step = words.number()?;
     if step <= 0.0 {
         return Err(words.problem("the time from frame to frame is not above zero"));
+    }
+    let upright = upright(&bones);
+    for bone in &mut bones {
+        bone.offset = upright * bone.offset;
+        bone.end = bone.end.map(|end| upright * end);
     }
     let carrier = Carrier::new(&bones, skeleton)?;
     let mut poses = Vec::new();
@@ -125,13 +131,13 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
                     Channel::Position(axis) if bone.parent.is_none() => shift[axis] = value,
                     Channel::Position(_) => {}
                     Channel::Rotation(axis) => {
-                        let turn = Vec3::ith(axis, value.to_radians());
-                        local[k] *= UnitQuaternion::new(turn);
+                        let axis = upright * Vec3::ith(axis, value.to_radians());
+                        local[k] *= UnitQuaternion::new(axis);
                     }
                 }
             }
         }
-        poses.push(carrier.pose(&bones, &local, shift));
+        poses.push(carrier.pose(&bones, &local, upright * shift));
     }
     Ok(Clip {
         step,
@@ -139,6 +145,36 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
         is_loop: false,
         advance: Vec3::zeros(),
     })
+}
+
+/// What turns the file's axes so that Y is up. A file does not say which axis that is: it is the one along which the
+/// shoulders lie over the knees at rest, most of all.
+fn upright(bones: &[Bone]) -> UnitQuaternion<f64> {
+    let places = places_at_rest(bones);
+    let middle = |pair: [Joint; 2]| {
+        let named =
+            |k: &usize| joint_named(&bones[*k].name).is_some_and(|joint| pair.contains(&joint));
+        let found: Vec<Vec3> = (0..bones.len()).filter(named).map(|k| places[k]).collect();
+        found.iter().sum::<Vec3>() / found.len().max(1) as f64
+    };
+    let up = middle([Joint::LShoulder, Joint::RShoulder]) - middle([Joint::LKnee, Joint::RKnee]);
+    let axis = up.iamax();
+    let up = Vec3::ith(axis, up[axis].signum());
+    match axis {
+        1 if up.y > 0.0 => UnitQuaternion::identity(),
+        // Head down it still faces forward.
+        1 => UnitQuaternion::new(Vec3::z() * PI),
+        _ => UnitQuaternion::rotation_between(&up, &Vec3::y()).unwrap_or_default(),
+    }
+}
+
+/// Where the bones begin at rest, in the file's unit.
+fn places_at_rest(bones: &[Bone]) -> Vec<Vec3> {
+    let mut places = vec![Vec3::zeros(); bones.len()];
+    for (k, bone) in bones.iter().enumerate() {
+        places[k] = bone.offset + bone.parent.map_or(Vec3::zeros(), |parent| places[parent]);
+    }
+    places
 }
 
 fn hierarchy(words: &mut Words) -> Result<Vec<Bone>, FormatError> {
@@ -310,10 +346,7 @@ impl Carrier {
                 "name the joints as CMU or H-Anim do, such as lThigh or l_hip",
             ));
         }
-        let mut rest = vec![Vec3::zeros(); bones.len()];
-        for (k, b) in bones.iter().enumerate() {
-            rest[k] = b.offset + b.parent.map_or(Vec3::zeros(), |parent| rest[parent]);
-        }
+        let rest = places_at_rest(bones);
         let mut align = [UnitQuaternion::identity(); Joint::COUNT];
         for joint in Joint::ALL {
             let Some(end) = end_of(joint) else {
@@ -399,6 +432,30 @@ mod tests {
             .unwrap()
             .skeleton()
             .clone()
+    }
+
+    #[test]
+    fn a_file_whose_z_is_up_gives_the_same_clip() {
+        let lying = SMALL
+            .replace("0 -5 0", "0 0 -5")
+            .replace("1 5 0", "1 0 5")
+            .replace("Yposition Zposition", "Zposition Yposition")
+            .replace(
+                "Zrotation Xrotation Yrotation",
+                "Yrotation Xrotation Zrotation",
+            );
+        let skeleton = skeleton();
+        let [upright, lying] = [SMALL, &lying].map(|text| read_bvh(text, &skeleton).unwrap());
+        for (a, b) in upright.poses.iter().zip(&lying.poses) {
+            assert!((a.shift - b.shift).norm() < 1e-12);
+            let [a, b] = [a, b].map(|pose| skeleton.frames(pose));
+            for joint in Joint::ALL {
+                assert!(
+                    (a.centre(joint) - b.centre(joint)).norm() < 1e-12,
+                    "{joint:?}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -5,13 +5,19 @@ use toile_drape::{Measures, SceneRun, Workspace, measure};
 
 /// Counts over the saved frames of a run, all exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub(crate) struct FrameCounts {
     /// Frames looked at.
     frames: usize,
-    /// Those in which a triangle of cloth crosses one of a solid, and the most pairs in one of them.
+    /// Those in which a triangle of cloth crosses one of a solid, and the most pairs in one of them and its time [s]. Where
+    /// the solid goes through itself a pair counts apart.
     crossing_solids: usize,
     most_solid_pairs: usize,
+    most_solid_pairs_at: Option<f64>,
+    /// The most pairs with triangles of a solid that lie inside another part of it, in one frame, and the largest share
+    /// that these are of the solids' area.
+    most_buried_pairs: usize,
+    buried_share: f64,
     /// Those in which cloth crosses cloth, and the most pairs in one of them.
     crossing_cloth: usize,
     most_cloth_pairs: usize,
@@ -33,13 +39,20 @@ impl FrameCounts {
         };
         let Measures {
             body_intersections,
+            buried_intersections,
+            buried_share,
             self_intersections,
             strain_p99,
             ..
         } = measure(&run.system, &run.state, &mut Workspace::default(), counted);
         self.frames += 1;
-        self.crossing_solids += usize::from(body_intersections > 0);
-        self.most_solid_pairs = self.most_solid_pairs.max(body_intersections);
+        let open = body_intersections - buried_intersections;
+        self.crossing_solids += usize::from(open > 0);
+        if open > self.most_solid_pairs {
+            (self.most_solid_pairs, self.most_solid_pairs_at) = (open, Some(run.state.time));
+        }
+        self.most_buried_pairs = self.most_buried_pairs.max(buried_intersections);
+        self.buried_share = self.buried_share.max(buried_share);
         self.crossing_cloth += usize::from(self_intersections > 0);
         self.most_cloth_pairs = self.most_cloth_pairs.max(self_intersections);
         for (most, now) in self.stretch_p99.iter_mut().zip(strain_p99) {

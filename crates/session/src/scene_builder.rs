@@ -107,7 +107,7 @@ impl<'a> Builder<'a> {
             duration: self.duration(),
             step: file.step,
             frame_step: file.frame_step,
-            method: file.method().map_err(wrong)?,
+            method: self.method().map_err(wrong)?,
             contact: self.contact(),
             objects,
             elastics,

@@ -7,7 +7,7 @@
 //! point does not creep, whatever moves it between its constraint and the end of the substep. Contacts of cloth with
 //! cloth are stencils of the same form with other weights.
 
-use super::carried_plane::{CarriedMotion, CarriedPlane};
+use super::carried_plane::{CarriedMotion, CarriedPlane, kept_offset};
 use super::moving_solids::MovingSolids;
 use crate::lanes::Point;
 use crate::laws::contact::HARDER;
@@ -56,6 +56,10 @@ pub const NO_SAMPLE: u32 = u32::MAX;
 /// Ratio of the tangential to the normal compliance of contact with solids, as for every other method.
 pub const TANGENTIAL_SOFTNESS: f32 = 2.0;
 
+/// How many times stiffer contact is with a solid that moves. Tight cloth of 200 N/m over a bent knee of 40 mm presses with
+/// 5 kPa, more than the stiffness of contact at rest bears within the offset.
+pub const MOVING_STIFFNESS: f64 = 10.0;
+
 /// Largest speed at which a contact moves cloth out of a solid [m/s].
 const MAX_OUTWARD_SPEED: f32 = 1.0;
 
@@ -87,10 +91,14 @@ impl ContactConstraint {
         } else {
             0.0
         };
-        let compliance = (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32;
+        let soft = (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32;
+        let compliance = match system.colliders[solid].is_moving() {
+            true => soft / MOVING_STIFFNESS as f32,
+            false => soft,
+        };
         Self {
             compliance,
-            tangential_compliance: TANGENTIAL_SOFTNESS * compliance,
+            tangential_compliance: TANGENTIAL_SOFTNESS * soft,
             friction: friction as f32,
             offset: (system.contact.offset + found.extra_offset) as f32,
             sample: number as u32,
@@ -151,7 +159,7 @@ impl ContactConstraint {
     fn set_plane(&mut self, motion: &CarriedMotion, origin: Vec3) {
         let (n, moved) = (motion.normal, motion.displacement);
         self.normal = [n.x as f32, n.y as f32, n.z as f32];
-        self.level = (n.dot(&(motion.point - origin)) + f64::from(self.offset)) as f32;
+        self.level = (n.dot(&(motion.point - origin)) + motion.offset) as f32;
         self.surface_displacement = [moved.x as f32, moved.y as f32, moved.z as f32];
     }
 
@@ -221,15 +229,24 @@ impl ContactConstraint {
             return;
         }
         let [_, now] = solid.shares;
-        let closest = surface.closest_point(position, now, f64::INFINITY, carried.triangle());
+        let closest = surface.closest_point(position, now, f64::INFINITY, carried.known_triangle());
         let Some(closest) = closest else {
             self.radius2 = f32::INFINITY;
             return;
         };
-        *carried = CarriedPlane::new(surface, &closest, now);
-        self.set_plane(&carried.at(surface, solid.shares), solid.origin);
+        let thickness = solid.system.contact.cloth_offset;
+        let kept = kept_offset(surface, (&closest, now), offset, thickness);
+        *carried = CarriedPlane::new(surface, (&closest, now), kept.unwrap_or(0.0));
+        if kept.is_some() {
+            self.set_plane(&carried.at(surface, solid.shares), solid.origin);
+        }
         let gap = closest.signed_distance - offset;
-        let radius = (0.5 * gap).max(PLANE_REACH * offset).max(1e-5);
+        let mut radius = (0.5 * gap).max(PLANE_REACH * offset);
+        if let Some(kept) = kept.filter(|&kept| kept < offset) {
+            // Soon the other wall of the pinch is the nearer one.
+            radius = PLANE_REACH * kept;
+        }
+        let radius = radius.max(1e-5);
         self.radius2 = (radius * radius) as f32;
     }
 

@@ -40,6 +40,7 @@ mod run;
 mod settings;
 mod several_solids;
 mod skin_contacts;
+mod skin_edges;
 mod tie_constraint;
 mod triangle_sums;
 mod vertex_partition;

@@ -441,7 +441,10 @@ impl Region {
         for (contact, carried) in self.contacts.iter_mut().zip(&self.carried) {
             contact.constraint.carry(solid, carried);
         }
-        for SkinContact { stencil, carried } in &mut self.skin {
+        for SkinContact {
+            stencil, carried, ..
+        } in &mut self.skin
+        {
             stencil.constraint.carry(solid, carried);
         }
     }
@@ -450,6 +453,9 @@ impl Region {
     pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
         if step.is_first {
             self.end_substep(starts, &step.contact);
+            for contact in &mut self.skin {
+                contact.follow(&step.solid, starts);
+            }
             self.clear(starts);
             if step.solid.moving.any() {
                 self.carry(&step.solid);

@@ -1,45 +1,101 @@
-//! Vertices of moving solids against faces of the cloth: the half of contact that samples of the cloth leave open.
+//! Vertices and edges of moving solids against faces and edges of the cloth: the half of contact that samples of the
+//! cloth leave open.
 //!
 //! Contact samples keep points of the cloth off a surface. Between them a face reaches over the surface, and where that
 //! is sharp, as at an elbow, it would cut through. So every vertex of the surface that a face comes near keeps that face
-//! off, at half the distance that samples keep: where the surface is as smooth as the cloth is fine this never acts.
+//! off, and every convex edge an edge of the cloth that crosses over it, at half the distance that samples keep: where
+//! the surface is as smooth as the cloth is fine this never acts.
 
 use super::Xpbd;
-use super::carried_plane::CarriedPlane;
-use super::contact::{ContactConstraint, ContactStencil};
+use super::carried_plane::{CarriedPlane, kept_offset};
+use super::contact::{ContactConstraint, ContactStencil, Solid};
 use super::moving_solids::MovingSolids;
+use super::skin_edges::edges_near;
 use crate::System;
+use crate::lanes::Point;
+use crate::laws::contact::HARDER;
 use rayon::prelude::*;
-use toile_geometry::{ClosestPoint, MovingSurface, TriangleMesh, Vec3};
+use toile_geometry::{
+    ClosestPoint, MovingSurface, TriangleMesh, Vec3, closest_on_segments, closest_point_on_triangle,
+};
 
 /// Distance that a vertex keeps a face off, over the contact offset. An edge of 15 mm over a limb of 40 mm radius comes
 /// 0.7 mm nearer to it than its ends, which is less than the half that is left.
 const OFFSET: f64 = 0.5;
-/// Distance within which a face is looked for, over the contact offset; and the one that a vertex may come to in the step
-/// by the present speeds for its face to be watched.
-const REACH: f64 = 2.5;
-const NEAR: f64 = 1.0;
+/// Distance within which a face is looked for, over the contact offset; and the one that a vertex or an edge may come to
+/// in the step by the present speeds for its face or edge of the cloth to be watched.
+pub(super) const REACH: f64 = 2.5;
+pub(super) const NEAR: f64 = 1.0;
 /// Least cosine between the normal of a vertex and that of its face, to either side: in a fold of the skin the plane of a
 /// vertex says nothing about a face across it.
 const FACING: f64 = 0.7;
 /// Weight of a corner from which the closest point of a face is that corner, whose own sample keeps it off.
 const CORNER: f64 = 0.98;
+/// Sine of the angle between two edges of equal length below which they have no common normal.
+const PARALLEL: f64 = 0.1;
 
-/// A vertex of a moving solid near a face of the cloth.
+/// A vertex or edge of a moving solid near a face or an edge of the cloth.
 #[derive(Clone, Copy, Debug)]
 pub struct SkinContact {
-    /// The point of the face, with the plane that the vertex keeps it off.
+    /// The point of the cloth, with the plane that the solid keeps it off.
     pub stencil: ContactStencil,
-    /// The vertex as a place of one of its triangles.
+    /// The place of the solid on one of its triangles.
     pub carried: CarriedPlane,
+    /// The side of that triangle, where it is an edge.
+    pub side: Option<u8>,
 }
 
-/// A vertex and the face that it is near to.
-struct Near {
-    solid: u32,
-    vertex: ClosestPoint,
-    face: u32,
-    weights: [f64; 3],
+impl SkinContact {
+    /// Finds the points that are nearest to each other anew, of the face or the edge of the cloth and the vertex or the
+    /// edge of the solid, at the start of a substep. `points` are the vertices then.
+    pub fn follow(&mut self, solid: &Solid, points: &[Point]) {
+        let Some(surface) = solid.moving.surface(self.stencil.constraint.solid) else {
+            return;
+        };
+        let time = solid.shares[0];
+        let corners = self.stencil.vertices.map(|v| {
+            let [x, y, z, _] = points[v as usize];
+            solid.origin + Vec3::new(x.into(), y.into(), z.into())
+        });
+        let plane = self.carried.at(surface, [time; 2]);
+        let weights = match self.side {
+            None => closest_point_on_triangle(plane.point, [corners[0], corners[1], corners[2]]).0,
+            Some(side) => {
+                let (triangle, side) = (self.carried.triangle, usize::from(side));
+                let ends = surface.corners(triangle, time);
+                let (own, other) = ([corners[0], corners[1]], [ends[side], ends[(side + 1) % 3]]);
+                let [s, t] = closest_on_segments(own, other);
+                let across = (own[1] - own[0]).cross(&(other[1] - other[0]));
+                let across = across * across.dot(&plane.normal).signum();
+                // Where they are nearly parallel the normal stays as it is.
+                let normal = across.try_normalize(PARALLEL * (own[1] - own[0]).norm_squared());
+                let mut weights = [0.0; 3];
+                (weights[side], weights[(side + 1) % 3]) = (1.0 - t, t);
+                let normal = normal.unwrap_or(plane.normal);
+                let place = surface.place(triangle, weights, normal, time);
+                self.carried = CarriedPlane::new(surface, (&place, time), plane.offset);
+                [1.0 - s, s, 0.0]
+            }
+        };
+        let [a, b, c] = weights.map(|w| w as f32);
+        self.stencil.weights = [a, b, c, 0.0];
+    }
+}
+
+/// A place of a moving solid and the point of the cloth that it is near to.
+pub(super) struct Near {
+    pub solid: u32,
+    /// On a vertex or an edge of the solid, with the normal that keeps the cloth off.
+    pub place: ClosestPoint,
+    /// The side of its triangle, where it is an edge.
+    pub side: Option<u8>,
+    /// Vertices of the cloth and their weights.
+    pub vertices: [u32; 3],
+    pub weights: [f64; 3],
+    /// Area of cloth that meets it [m2].
+    pub area: f64,
+    /// Distance from the solid that the cloth is kept at [m].
+    pub offset: f64,
 }
 
 /// The search for vertices of moving solids near the cloth.
@@ -62,7 +118,8 @@ pub struct StepStart<'a> {
 }
 
 impl SkinSearch {
-    /// All vertices that come near a face in the step, in order of solids and vertices.
+    /// All vertices that come near a face in the step, in order of solids and vertices, then the edges that come near an
+    /// edge.
     fn near(&mut self, system: &System, moving: &MovingSolids, start: &StepStart) -> Vec<Near> {
         let cloth = self.cloth.get_or_insert_with(|| {
             MovingSurface::new(&TriangleMesh {
@@ -89,18 +146,19 @@ impl SkinSearch {
             let near = last.par_iter_mut().enumerate().with_min_len(256);
             let near = near.filter_map(|(v, last)| look.at_vertex(v as u32, last));
             found.extend(near.collect::<Vec<_>>());
+            found.extend(edges_near(&look));
         }
         found
     }
 }
 
-/// A look at the cloth from the vertices of one solid.
-struct Look<'a> {
-    system: &'a System,
-    cloth: &'a MovingSurface,
-    surface: &'a MovingSurface,
-    start: &'a StepStart<'a>,
-    solid: u32,
+/// A look at the cloth from one solid.
+pub(super) struct Look<'a> {
+    pub system: &'a System,
+    pub cloth: &'a MovingSurface,
+    pub surface: &'a MovingSurface,
+    pub start: &'a StepStart<'a>,
+    pub solid: u32,
 }
 
 impl Look<'_> {
@@ -130,28 +188,50 @@ impl Look<'_> {
         if own.normal.dot(&across).abs() < FACING {
             return None;
         }
-        let velocity: Vec3 = (corners.iter().zip(face.weights))
+        let near = Near {
+            solid: self.solid,
+            place: own,
+            side: None,
+            vertices: corners,
+            weights: face.weights,
+            area: system.rest.elements[face.triangle as usize].area,
+            offset: 0.0,
+        };
+        self.met(near, face.point)
+    }
+
+    /// A place of the solid that comes nearer to a point of the cloth in the step than it should, by the present speeds.
+    /// Cloth that is nearer to a wall that faces the other way is on the far side of something, unless both are a pinch.
+    pub fn met(&self, mut near: Near, point: Vec3) -> Option<Near> {
+        let Self {
+            system,
+            surface,
+            start,
+            ..
+        } = self;
+        let (normal, own) = (near.place.normal, near.place.triangle);
+        let velocity: Vec3 = (near.vertices.iter().zip(near.weights))
             .map(|(&v, w)| start.velocities[v as usize] * w)
             .sum();
-        let moved = surface.vertex(vertex, 1.0) - place;
-        let comes = own.normal.dot(&(moved - velocity * start.part)) * f64::from(start.parts);
-        let gap = own.normal.dot(&(face.point - place));
+        let moved = surface.displacement(own, near.place.weights, [0.0, 1.0]);
+        let comes = normal.dot(&(moved - velocity * start.part)) * f64::from(start.parts);
+        let gap = normal.dot(&(point - near.place.point));
         if gap - comes.max(0.0) >= NEAR * system.contact.offset {
             return None;
         }
-        // Where two walls face each other the face keeps off the nearer one.
-        let wall = surface.closest_point(face.point, 0.0, reach, Some(own.triangle))?;
-        (wall.normal.dot(&own.normal) > 0.0).then_some(Near {
-            solid: self.solid,
-            vertex: own,
-            face: face.triangle,
-            weights: face.weights,
-        })
+        let (offset, thickness) = (system.contact.offset, system.contact.cloth_offset);
+        let kept = kept_offset(surface, (&near.place, 0.0), offset, thickness)?;
+        let wall = surface.closest_point(point, 0.0, REACH * offset, Some(own))?;
+        if kept == offset && wall.normal.dot(&normal) <= 0.0 {
+            return None;
+        }
+        near.offset = kept.min(OFFSET * offset);
+        Some(near)
     }
 }
 
 impl Xpbd {
-    /// Replaces the contacts of vertices of moving solids with faces of the cloth by those at the start of the step, whose
+    /// Replaces the contacts of vertices and edges of moving solids with the cloth by those at the start of the step, whose
     /// first part the solids are placed for.
     pub(super) fn set_skin_contacts(&mut self, system: &System, start: &StepStart) {
         let near = match self.moving.any() {
@@ -160,26 +240,25 @@ impl Xpbd {
         };
         let slot_of = &self.partition.slot_of;
         let slots = |near: &Near| {
-            let [a, b, c] =
-                system.topology.triangles[near.face as usize].map(|v| slot_of[v as usize]);
+            let [a, b, c] = near.vertices.map(|v| slot_of[v as usize]);
             [a, b, c, a]
         };
         let moving = &self.moving;
         let contact = |near: &Near, start: u32| {
             let [a, b, c] = near.weights.map(|w| w as f32);
-            let area = system.rest.elements[near.face as usize].area;
-            let compliance = (1.0 / (system.contact.stiffness * area)).min(1e30) as f32;
+            let stiffness = HARDER * system.contact.stiffness * near.area;
+            let compliance = (1.0 / stiffness).min(1e30) as f32;
             let carried = moving
                 .surface(near.solid)
-                .map(|surface| CarriedPlane::new(surface, &near.vertex, 0.0));
+                .map(|surface| CarriedPlane::new(surface, (&near.place, 0.0), near.offset));
             SkinContact {
                 stencil: ContactStencil {
                     vertices: slots(near).map(|slot| slot - start),
                     weights: [a, b, c, 0.0],
                     constraint: ContactConstraint {
-                        normal: [0, 1, 2].map(|k| near.vertex.normal[k] as f32),
+                        normal: [0, 1, 2].map(|k| near.place.normal[k] as f32),
                         compliance,
-                        offset: (OFFSET * system.contact.offset) as f32,
+                        offset: near.offset as f32,
                         solid: near.solid,
                         ..ContactConstraint::none()
                     },
@@ -188,6 +267,7 @@ impl Xpbd {
                     restitution: None,
                 },
                 carried: carried.unwrap_or_default(),
+                side: near.side,
             }
         };
         self.regions.replace(
