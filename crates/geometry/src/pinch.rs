@@ -2,7 +2,7 @@
 
 use crate::predicates::orient2d;
 use crate::tree::ClosestPoint;
-use crate::{MovingSurface, Vec2, Vec3};
+use crate::{MovingSurface, Vec2, Vec3, triangles_intersect};
 use std::cell::Cell;
 
 /// The room in front of a place of a surface.
@@ -58,17 +58,31 @@ impl MovingSurface {
         self.is_closed() && self.winding(place.point + place.normal * IN_FRONT, time) > 0
     }
 
-    /// Whether a corner or the middle of a triangle lies inside another part of the surface at a time of the step.
+    /// Whether a triangle is partly inside another part of the surface at a time of the step: it crosses a triangle that it
+    /// shares no corner with, or a corner or its middle lies inside.
     pub fn has_buried(&self, triangle: u32, time: f64) -> bool {
-        let corners = self.triangles()[triangle as usize];
+        let (own, corners) = (
+            self.triangles()[triangle as usize],
+            self.corners(triangle, time),
+        );
+        let [a, b, c] = corners;
+        let mut crosses = false;
+        self.near_box(a.inf(&b).inf(&c), a.sup(&b).sup(&c), 0.0, |other| {
+            let meets = self.triangles()[other as usize]
+                .iter()
+                .any(|v| own.contains(v));
+            crosses |= !meets && triangles_intersect(corners, self.corners(other, time));
+        });
         let middle = self.place(
             triangle,
             [1.0 / 3.0; 3],
             self.face_normal(triangle, time),
             time,
         );
-        let mut corners = corners.iter().filter_map(|&v| self.at_vertex(v, time));
-        self.is_buried(&middle, time) || corners.any(|corner| self.is_buried(&corner, time))
+        let mut corners = own.iter().filter_map(|&v| self.at_vertex(v, time));
+        crosses
+            || self.is_buried(&middle, time)
+            || corners.any(|corner| self.is_buried(&corner, time))
     }
 
     /// How often the surface winds round a point at a time of the step: 0 outside, 1 inside, 2 where two parts of it are.
@@ -161,7 +175,7 @@ mod tests {
         let overlapping = boxes(&[TRUNK, [[0.98, 0.2, 0.2], [1.5, 0.8, 0.8]]]);
         assert_eq!(room(&overlapping, [0.999, 0.5, 0.43]), Room::Buried);
         assert_eq!(room(&overlapping, [0.999, 0.05, 0.43]), Room::Free);
-        // The side of the trunk that the other box goes through, by its middle; and that box's end inside, by all of it.
+        // The side of the trunk that the other box goes through, and all of that box but its end outside.
         let buried = (0..24)
             .filter(|&t| overlapping.has_buried(t, 0.0))
             .collect::<Vec<_>>();
