@@ -101,7 +101,7 @@ impl<'a> Builder<'a> {
         }
         Ok(Scene {
             gravity: Vec3::from(file.gravity),
-            air: file.air.air(),
+            air: self.air(),
             damping: file.damping.damping(),
             lead_in: self.lead_in,
             duration: self.duration(),

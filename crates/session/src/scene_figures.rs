@@ -8,7 +8,7 @@ use crate::setup::CLOTH_OFFSET;
 use crate::{SessionError, Watcher};
 use std::sync::Arc;
 use toile_body::{Clip, Mannequin, PlayError};
-use toile_drape::{ContactSettings, MethodKind, MethodSettings, ObjectKind, SharedTrack};
+use toile_drape::{Air, ContactSettings, MethodKind, MethodSettings, ObjectKind, SharedTrack};
 use toile_interchange::{FormatError, MotionFile, ObjectFile};
 
 /// How long figures stand still at the end of a scene that says no duration [s].
@@ -87,6 +87,18 @@ impl Builder<'_> {
             contact.cloth_offset = CLOTH_OFFSET;
         }
         contact
+    }
+
+    /// The air as the file says; where garments are worn it is that of sea level unless it says otherwise.
+    pub(crate) fn air(&self) -> Air {
+        let air = self.file.air.air();
+        match self.file.air.density {
+            None if self.is_worn() => Air {
+                density: Air::SEA_LEVEL,
+                ..air
+            },
+            _ => air,
+        }
     }
 
     /// The method as the file says; where garments are worn the substeps of `xpbd` are short enough for tight cloth unless

@@ -89,7 +89,7 @@ fn scene(amplitude: f64) -> Scene {
     }
 }
 
-/// What is done: attach, detach, pin, air, a slope, and a hand that pulls, moves and lets go.
+/// What is done: attach, detach, pin, wind, and a hand that pulls, moves and lets go.
 fn inputs() -> Vec<Input> {
     let corner = |vertex| MeshVertex {
         object: SceneObject::id(1),
@@ -103,8 +103,9 @@ fn inputs() -> Vec<Input> {
         stiffness: 20.0,
         merge_within: None,
     };
-    let air = Air {
-        drag: 0.8,
+    let wind = Air {
+        density: 1.2,
+        wind: Vec3::new(4.0, 0.0, 2.0),
         ..Air::default()
     };
     let spot = Spot::Triangle {
@@ -128,11 +129,7 @@ fn inputs() -> Vec<Input> {
             Action::Edit(WorldEdit::Pin(SceneObject::id(0), vec![0, 6, 3])),
         ),
         (120, Action::LetGo(spot)),
-        (131, Action::Set(Parameter::Air(air))),
-        (
-            140,
-            Action::Set(Parameter::Gravity(Vec3::new(2.0, -9.0, 1.0))),
-        ),
+        (131, Action::Set(Parameter::Air(wind))),
     ];
     let inputs = all.into_iter().map(|(step, action)| Input { step, action });
     inputs.collect()

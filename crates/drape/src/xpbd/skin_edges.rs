@@ -1,6 +1,6 @@
 //! Convex edges of a moving solid near edges of the cloth that cross over them.
 
-use super::skin_contacts::{Look, NEAR, Near};
+use super::skin_look::{Look, NEAR, Near};
 use rayon::prelude::*;
 use toile_geometry::{MovingSurface, Vec3, closest_on_segments};
 
