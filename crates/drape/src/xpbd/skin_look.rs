@@ -18,8 +18,9 @@ pub struct Near {
     pub place: ClosestPoint,
     /// The side of its triangle, where it is an edge.
     pub side: Option<u8>,
-    /// Vertices of the cloth and their weights.
+    /// Vertices of the cloth.
     pub vertices: [u32; 3],
+    /// Their barycentric weights.
     pub weights: [f64; 3],
     /// Area of cloth that meets it [m2].
     pub area: f64,
