@@ -5,7 +5,9 @@ use crate::track::animated_positions;
 use crate::{Motion, Pose, SharedTrack};
 use nalgebra::Matrix3;
 use std::sync::{Arc, OnceLock};
-use toile_geometry::{ClosestPoint, DistanceField, MovingSurface, SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{
+    ClosestPoint, DistanceField, MovingSurface, SurfaceTree, TriangleMesh, Vec3, triangle_area,
+};
 
 /// A solid surface: the exact mesh for counts of crossings, a smooth distance field for forces.
 #[derive(Clone)]
@@ -173,13 +175,10 @@ impl PlacedSolid<'_> {
         }
     }
 
-    /// Whether a triangle of a surface whose vertices move one by one is partly inside another part of it; its area [m2].
+    /// Area of a triangle of a surface whose vertices move one by one, where it is partly inside another part of it [m2].
     pub fn buried_area(&self, triangle: u32) -> Option<f64> {
         let surface = self.tracked.as_ref()?;
-        let area = || {
-            let [a, b, c] = surface.corners(triangle, 1.0);
-            0.5 * (b - a).cross(&(c - a)).norm()
-        };
+        let area = || triangle_area(surface.corners(triangle, 1.0));
         surface.has_buried(triangle, 1.0).then(area)
     }
 

@@ -3,6 +3,7 @@
 use crate::collision::{ClothSurface, layer_violations_of, layers_of};
 use crate::{State, System, Workspace};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
 
 /// Measures of one state. Crossings and depths of objects that ignore each other
@@ -148,22 +149,19 @@ fn measure_solids(
     };
     let edges = mesh.topology().edges;
     let mut on_body = Vec::new();
-    let mut areas = [0.0; 2];
+    let mut buried_area = 0.0;
     for (number, collider) in system.colliders.iter().enumerate() {
         let solid = collider.at(state.time);
         let pairs = solid.crossings(mesh);
         let pair_meets = |pair: &[u32; 2]| meets(&mesh.triangles[pair[0] as usize], number);
         let pairs: Vec<[u32; 2]> = pairs.into_iter().filter(pair_meets).collect();
-        let mut met: Vec<u32> = pairs.iter().map(|pair| pair[1]).collect();
-        met.sort_unstable();
-        met.dedup();
-        let buried: Vec<(u32, f64)> = (met.iter())
-            .filter_map(|&t| Some((t, solid.buried_area(t)?)))
-            .collect();
-        let is_buried = |pair: &&[u32; 2]| buried.iter().any(|(t, _)| *t == pair[1]);
-        measures.buried_intersections += pairs.iter().filter(is_buried).count();
-        areas[0] += buried.iter().map(|(_, area)| area).sum::<f64>();
-        areas[1] += collider.surface.mesh().area();
+        let mut buried = BTreeMap::new();
+        for &[_, triangle] in &pairs {
+            let area = buried.entry(triangle);
+            let area = area.or_insert_with(|| solid.buried_area(triangle));
+            measures.buried_intersections += usize::from(area.is_some());
+        }
+        buried_area += buried.values().flatten().sum::<f64>();
         on_body.extend(pairs);
         let nearest = |(v, &p): (usize, &Vec3)| {
             let is_met = meets(&[v as u32], number);
@@ -176,8 +174,9 @@ fn measure_solids(
         measures.edges_through_body += edges_through(&edges, &closest);
     }
     measures.body_intersections = on_body.len();
-    if areas[0] > 0.0 {
-        measures.buried_share = areas[0] / areas[1];
+    if buried_area > 0.0 {
+        let areas = system.colliders.iter().map(|c| c.surface.mesh().area());
+        measures.buried_share = buried_area / areas.sum::<f64>();
     }
     on_body
 }

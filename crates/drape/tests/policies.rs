@@ -27,10 +27,7 @@ fn sheets_at(places: &[(Vec3, f64)], cells: usize, width: f64) -> (TriangleMesh,
     for &(place, slope) in places {
         let at = |u: f64, v: f64| place + Vec3::new(u, slope * u, v);
         let part = sheet([cells; 2], [width; 2], at);
-        let first = mesh.positions.len() as u32;
-        let shifted = part.triangles.iter().map(|t| t.map(|v| v + first));
-        mesh.triangles.extend(shifted);
-        mesh.positions.extend(part.positions);
+        mesh.append(&part);
         starts.push(mesh.positions.len());
     }
     (mesh, starts)

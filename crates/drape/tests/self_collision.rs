@@ -179,10 +179,7 @@ fn bounded_moves_never_cross() {
                     0.1 * v,
                 )
             });
-            let first = mesh.positions.len() as u32;
-            mesh.positions.extend(part.positions);
-            mesh.triangles
-                .extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+            mesh.append(&part);
         }
         let mut surface = ClothSurface::of_mesh(&mesh);
         for _ in 0..5 {
@@ -213,10 +210,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
         let part = sheet([6; 2], [1.0; 2], |u, v| {
             Vec3::new(0.1 * u, 0.003 * f64::from(layer), 0.1 * v)
         });
-        let first = mesh.positions.len() as u32;
-        mesh.positions.extend(part.positions);
-        mesh.triangles
-            .extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+        mesh.append(&part);
     }
     let cloth = Cloth::from_mesh("layers", &mesh, Material::default()).unwrap();
     let mut builder = SystemBuilder::new("layers", &cloth).unwrap();

@@ -239,11 +239,8 @@ fn a_ridge_that_rises_lifts_the_edges_that_lie_across_it() {
 fn jaws(room: f64) -> TriangleMesh {
     let mut both = TriangleMesh::default();
     for side in [-1.0, 1.0] {
-        let ball = solids::sphere(0.1, Vec3::new(side * (0.1 + 0.5 * room), 0.01, 0.003));
-        let first = both.positions.len() as u32;
-        both.positions.extend(ball.positions);
-        let triangles = ball.triangles.iter().map(|t| t.map(|v| v + first));
-        both.triangles.extend(triangles);
+        let middle = Vec3::new(side * (0.1 + 0.5 * room), 0.01, 0.003);
+        both.append(&solids::sphere(0.1, middle));
     }
     both
 }

@@ -379,15 +379,9 @@ mod tests {
     #[test]
     fn the_gradient_is_the_slope_and_does_not_jump_between_two_walls() {
         let mut two = ball(0.05, 3);
-        let count = two.positions.len() as u32;
-        let other: Vec<Vec3> = two
-            .positions
-            .iter()
-            .map(|p| p + Vec3::new(0.106, 0.0, 0.0))
-            .collect();
-        two.positions.extend(other);
-        let moved: Vec<[u32; 3]> = two.triangles.iter().map(|t| t.map(|v| v + count)).collect();
-        two.triangles.extend(moved);
+        let mut other = two.clone();
+        other.positions.iter_mut().for_each(|p| p.x += 0.106);
+        two.append(&other);
         let field = DistanceField::new(Arc::new(SurfaceTree::new(two)), 6e-3, 0.02);
         let mut last: Option<Vec3> = None;
         for k in 0..=200 {

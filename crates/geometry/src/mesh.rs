@@ -119,6 +119,14 @@ impl TriangleMesh {
         Ok(())
     }
 
+    /// Adds the vertices and triangles of another mesh, which stay apart from its own.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.positions.len() as u32;
+        let triangles = other.triangles.iter().map(|t| t.map(|v| v + first));
+        self.triangles.extend(triangles);
+        self.positions.extend_from_slice(&other.positions);
+    }
+
     /// Surface area \[m2\].
     pub fn area(&self) -> f64 {
         (0..self.triangles.len())

@@ -121,11 +121,7 @@ mod tests {
     fn boxes(all: &[[[f64; 3]; 2]]) -> MovingSurface {
         let mut mesh = TriangleMesh::default();
         for [low, high] in all {
-            let cuboid = TriangleMesh::cuboid(Vec3::from(*low), Vec3::from(*high));
-            let first = mesh.positions.len() as u32;
-            let triangles = cuboid.triangles.iter().map(|t| t.map(|v| v + first));
-            mesh.triangles.extend(triangles);
-            mesh.positions.extend(cuboid.positions);
+            mesh.append(&TriangleMesh::cuboid(Vec3::from(*low), Vec3::from(*high)));
         }
         MovingSurface::new(&mesh)
     }

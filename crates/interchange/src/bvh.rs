@@ -131,8 +131,8 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
                     Channel::Position(axis) if bone.parent.is_none() => shift[axis] = value,
                     Channel::Position(_) => {}
                     Channel::Rotation(axis) => {
-                        let axis = upright * Vec3::ith(axis, value.to_radians());
-                        local[k] *= UnitQuaternion::new(axis);
+                        let turn = upright * Vec3::ith(axis, value.to_radians());
+                        local[k] *= UnitQuaternion::new(turn);
                     }
                 }
             }
@@ -432,6 +432,31 @@ mod tests {
             .unwrap()
             .skeleton()
             .clone()
+    }
+
+    #[test]
+    fn whichever_axis_is_up_becomes_y() {
+        for up in [0, 1, 2].map(|axis| Vec3::ith(axis, 1.0)) {
+            for up in [up, -up] {
+                let bone = |name: &str, offset| Bone {
+                    name: name.to_owned(),
+                    parent: Some(0),
+                    offset,
+                    end: None,
+                    channels: Vec::new(),
+                };
+                let mut bones = vec![bone("lShldr", up * 5.0), bone("lShin", up * -5.0)];
+                bones.insert(
+                    0,
+                    Bone {
+                        parent: None,
+                        ..bone("hip", Vec3::zeros())
+                    },
+                );
+                let turned = upright(&bones) * up;
+                assert!((turned - Vec3::y()).norm() < 1e-12, "{up:?} {turned:?}");
+            }
+        }
     }
 
     #[test]

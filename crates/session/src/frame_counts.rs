@@ -5,7 +5,7 @@ use toile_drape::{Measures, SceneRun, Workspace, measure};
 
 /// Counts over the saved frames of a run, all exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct FrameCounts {
     /// Frames looked at.
     frames: usize,

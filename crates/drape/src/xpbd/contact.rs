@@ -58,7 +58,7 @@ pub const TANGENTIAL_SOFTNESS: f32 = 2.0;
 
 /// How many times stiffer contact is with a solid that moves. Tight cloth of 200 N/m over a bent knee of 40 mm presses with
 /// 5 kPa, more than the stiffness of contact at rest bears within the offset.
-pub const MOVING_STIFFNESS: f64 = 10.0;
+const MOVING_STIFFNESS: f32 = 10.0;
 
 /// Largest speed at which a contact moves cloth out of a solid [m/s].
 const MAX_OUTWARD_SPEED: f32 = 1.0;
@@ -93,7 +93,7 @@ impl ContactConstraint {
         };
         let soft = (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32;
         let compliance = match system.colliders[solid].is_moving() {
-            true => soft / MOVING_STIFFNESS as f32,
+            true => soft / MOVING_STIFFNESS,
             false => soft,
         };
         Self {

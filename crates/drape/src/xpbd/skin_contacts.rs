@@ -147,16 +147,16 @@ impl Look<'_> {
         if own.normal.dot(&across).abs() < FACING {
             return None;
         }
-        let near = Near {
+        let offset = self.kept_off(&own, (corners, face.weights))?;
+        Some(Near {
             solid: self.solid,
             place: own,
             side: None,
             vertices: corners,
             weights: face.weights,
             area: system.rest.elements[face.triangle as usize].area,
-            offset: 0.0,
-        };
-        self.met(near, face.point)
+            offset,
+        })
     }
 }
 
@@ -188,7 +188,6 @@ impl Xpbd {
                     constraint: ContactConstraint {
                         normal: [0, 1, 2].map(|k| near.place.normal[k] as f32),
                         compliance,
-                        offset: near.offset as f32,
                         solid: near.solid,
                         ..ContactConstraint::none()
                     },

@@ -12,6 +12,8 @@ const FLAT: f64 = 0.4;
 /// Least cosine between the normal of an edge and the common normal of both edges, where the normals of the triangles at
 /// the edge differ by less.
 const FACING: f64 = 0.5;
+/// Area of an equilateral triangle over the square of its side: the cloth that meets an edge.
+const OF_SQUARE: f64 = 0.433;
 /// Greatest depth of the cloth behind an edge at which it still is on the outer side, over the contact offset.
 const DEPTH: f64 = 1.0;
 
@@ -49,18 +51,13 @@ impl Ridge {
         let corners = surface.corners(triangle, 0.0);
         let along = corners[(side + 1) % 3] - corners[side];
         let sine = own.cross(&other).dot(&along) / along.norm();
-        let height = own
-            .cross(&along)
-            .dot(&(corners[(side + 2) % 3] - corners[side]))
-            / along.norm();
-        let is_convex = sine > 0.0 && height > 0.0;
-        let turn = if is_convex {
-            sine.atan2(own.dot(&other))
-        } else {
-            0.0
-        };
+        if sine <= 0.0 || sine.is_nan() {
+            return Self::default();
+        }
+        let across = corners[(side + 2) % 3] - corners[side];
+        let height = own.cross(&along).dot(&across) / along.norm();
         Self {
-            turn: turn as f32,
+            turn: sine.atan2(own.dot(&other)) as f32,
             height: height as f32,
         }
     }
@@ -112,21 +109,19 @@ impl Look<'_> {
             }
         });
         near.sort_unstable();
-        let found = near.into_iter().filter_map(|(triangle, side)| {
-            let (near, point) = self.at_edges(edge, [a, b], (triangle, side))?;
-            self.met(near, point)
-        });
+        let sides = near.into_iter();
+        let found = sides.filter_map(|side| self.at_edges(edge, [a, b], side));
         found.collect()
     }
 
-    /// An edge of the cloth and one of the solid that cross over each other, with the point of the cloth [m]; none where
-    /// they are nearest at an end.
+    /// An edge of the cloth and one of the solid that cross over each other and come near in the step; none where they are
+    /// nearest at an end.
     fn at_edges(
         &self,
         edge: [u32; 2],
         [a, b]: [Vec3; 2],
         (triangle, side): (u32, usize),
-    ) -> Option<(Near, Vec3)> {
+    ) -> Option<Near> {
         let (surface, offset) = (self.surface, self.system.contact.offset);
         let corners = surface.corners(triangle, 0.0);
         let (p, q) = (corners[side], corners[(side + 1) % 3]);
@@ -149,15 +144,17 @@ impl Look<'_> {
         }
         let mut weights = [0.0; 3];
         (weights[side], weights[(side + 1) % 3]) = (1.0 - t, t);
-        let near = Near {
+        let place = surface.place(triangle, weights, normal, 0.0);
+        let (vertices, weights) = ([edge[0], edge[1], edge[0]], [1.0 - s, s, 0.0]);
+        let offset = self.kept_off(&place, (vertices, weights))?;
+        Some(Near {
             solid: self.solid,
-            place: surface.place(triangle, weights, normal, 0.0),
+            place,
             side: Some(side as u8),
-            vertices: [edge[0], edge[1], edge[0]],
-            weights: [1.0 - s, s, 0.0],
-            area: 0.433 * (b - a).norm_squared(),
-            offset: 0.0,
-        };
-        Some((near, point))
+            vertices,
+            weights,
+            area: OF_SQUARE * (b - a).norm_squared(),
+            offset,
+        })
     }
 }

@@ -11,6 +11,7 @@ const OFFSET: f64 = 0.5;
 /// in the step by the present speeds for its face or edge of the cloth to be watched.
 pub const REACH: f64 = 2.5;
 pub const NEAR: f64 = 1.0;
+
 /// A place of a moving solid and the point of the cloth that it is near to.
 pub struct Near {
     pub solid: u32,
@@ -48,32 +49,36 @@ pub struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// A place of the solid that comes nearer to a point of the cloth in the step than it should, by the present speeds.
-    /// Cloth that is nearer to a wall that faces the other way is on the far side of something, unless both are a pinch.
-    pub fn met(&self, mut near: Near, point: Vec3) -> Option<Near> {
+    /// The distance at which a place of the solid is to keep the cloth off [m], where it comes nearer to it in the step than
+    /// it should, by the present speeds; `vertices` and `weights` are those of the point of the cloth. Cloth that is nearer
+    /// to a wall that faces the other way is on the far side of something, unless both are a pinch.
+    pub fn kept_off(
+        &self,
+        place: &ClosestPoint,
+        (vertices, weights): ([u32; 3], [f64; 3]),
+    ) -> Option<f64> {
         let Self {
             system,
             surface,
             start,
             ..
         } = self;
-        let (normal, own) = (near.place.normal, near.place.triangle);
-        let velocity: Vec3 = (near.vertices.iter().zip(near.weights))
-            .map(|(&v, w)| start.velocities[v as usize] * w)
-            .sum();
-        let moved = surface.displacement(own, near.place.weights, [0.0, 1.0]);
-        let comes = normal.dot(&(moved - velocity * start.part)) * f64::from(start.parts);
-        let gap = normal.dot(&(point - near.place.point));
-        if gap - comes.max(0.0) >= NEAR * system.contact.offset {
-            return None;
-        }
+        let sum = |of: &[Vec3]| -> Vec3 {
+            let corners = vertices.iter().zip(weights);
+            corners.map(|(&v, w)| of[v as usize] * w).sum()
+        };
+        let point = sum(start.positions);
+        let moved = surface.displacement(place.triangle, place.weights, [0.0, 1.0]);
+        let closing = moved - sum(start.velocities) * start.part;
+        let comes = place.normal.dot(&closing) * f64::from(start.parts);
+        let gap = place.normal.dot(&(point - place.point));
         let (offset, thickness) = (system.contact.offset, system.contact.cloth_offset);
-        let kept = kept_offset(surface, (&near.place, 0.0), offset, thickness)?;
-        let wall = surface.closest_point(point, 0.0, REACH * offset, Some(own))?;
-        if kept == offset && wall.normal.dot(&normal) <= 0.0 {
+        if gap - comes.max(0.0) >= NEAR * offset {
             return None;
         }
-        near.offset = kept.min(OFFSET * offset);
-        Some(near)
+        let kept = kept_offset(surface, (place, 0.0), offset, thickness)?;
+        let wall = surface.closest_point(point, 0.0, REACH * offset, Some(place.triangle))?;
+        let is_beyond = kept == offset && wall.normal.dot(&place.normal) <= 0.0;
+        (!is_beyond).then_some(kept.min(OFFSET * offset))
     }
 }
