@@ -3,7 +3,7 @@
 use crate::swept_tree::SweptTree;
 use crate::tree::{ClosestPoint, weighted};
 use crate::{Feature, TriangleMesh, Vec3, closest_point_on_triangle, triangles_intersect};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Triangles that keep their vertices, and which of them meet at each vertex.
 struct Connectivity {
@@ -79,6 +79,8 @@ pub struct MovingSurface {
     starts: Vec<Vec3>,
     ends: Vec<Vec3>,
     tree: SweptTree,
+    /// Unit normals of the triangles at the start of the step, once they were asked for.
+    start_normals: OnceLock<Vec<Vec3>>,
 }
 
 impl MovingSurface {
@@ -89,6 +91,7 @@ impl MovingSurface {
             starts: mesh.positions.clone(),
             ends: mesh.positions.clone(),
             tree: SweptTree::new(mesh),
+            start_normals: OnceLock::new(),
         }
     }
 
@@ -101,6 +104,7 @@ impl MovingSurface {
         assert_eq!(ends.len(), self.ends.len(), "places at the end");
         self.starts.copy_from_slice(starts);
         self.ends.copy_from_slice(ends);
+        self.start_normals.take();
         self.tree
             .refit(&self.connectivity.triangles, [&self.starts, &self.ends]);
     }
@@ -123,6 +127,15 @@ impl MovingSurface {
     /// Places of the vertices at the end of the step \[m\].
     pub fn ends(&self) -> &[Vec3] {
         &self.ends
+    }
+
+    /// Length of the longest side of a triangle at the start of the step \[m\].
+    pub fn longest_side(&self) -> f64 {
+        let place = |v: u32| self.starts[v as usize];
+        let sides = (self.connectivity.triangles.iter())
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[a, b]| (place(b) - place(a)).norm_squared());
+        sides.fold(0.0, f64::max).sqrt()
     }
 
     /// A vertex at a time of the step \[m\].
@@ -197,11 +210,20 @@ impl MovingSurface {
         triangle < self.connectivity.across[triangle as usize][side]
     }
 
-    /// Unit normals at a time of the step of a triangle and of the one across a side of it; none on a rim. The edge is
+    /// Unit normals of all triangles at the start of the step, zero of those without area; they are found once a step.
+    fn start_normals(&self) -> &[Vec3] {
+        let all = 0..self.connectivity.triangles.len() as u32;
+        self.start_normals.get_or_init(|| {
+            all.map(|triangle| self.face_normal(triangle, 0.0))
+                .collect()
+        })
+    }
+
+    /// Unit normals at the start of the step of a triangle and of the one across a side of it; none on a rim. The edge is
     /// convex where their cross product points along the side.
-    pub fn normals_at_side(&self, triangle: u32, side: usize, time: f64) -> Option<[Vec3; 2]> {
+    pub fn normals_at_side(&self, triangle: u32, side: usize) -> Option<[Vec3; 2]> {
         let across = self.connectivity.across[triangle as usize][side];
-        let normals = || [triangle, across].map(|t| self.face_normal(t, time));
+        let normals = || [triangle, across].map(|t| self.start_normals()[t as usize]);
         (across != NONE).then(normals)
     }
 

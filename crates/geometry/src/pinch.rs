@@ -28,7 +28,7 @@ impl MovingSurface {
     pub fn room(&self, place: &ClosestPoint, time: f64, reach: f64) -> Room {
         let is_behind = Cell::new(false);
         let distance2 = |triangle: u32| {
-            if self.face_normal(triangle, time).dot(&place.normal) > FACING {
+            if !self.faces(triangle, place.normal, time) {
                 return f64::INFINITY;
             }
             let away = self.away_from_triangle(triangle, place.point, time);
@@ -50,6 +50,14 @@ impl MovingSurface {
             true => Room::Buried,
             false => Room::Free,
         }
+    }
+
+    /// Whether a triangle faces a direction, a unit vector, at a time of the step.
+    fn faces(&self, triangle: u32, direction: Vec3, time: f64) -> bool {
+        let [a, b, c] = self.corners(triangle, time);
+        let across = (b - a).cross(&(c - a));
+        let along = across.dot(&direction);
+        along < 0.0 && along * along >= FACING * FACING * across.norm_squared()
     }
 
     /// Whether a place lies inside another part of the surface at a time of the step, by how often the surface winds

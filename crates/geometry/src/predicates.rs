@@ -85,6 +85,18 @@ fn coplanar_segment_meets_triangle(segment: [Vec3; 2], triangle: [Vec3; 3]) -> b
 
 /// Whether two closed triangles in space share a point: touching counts. Exact.
 pub fn triangles_intersect(a: [Vec3; 3], b: [Vec3; 3]) -> bool {
+    // Most pairs that are asked for lie apart by the plane of one of them.
+    !is_on_one_side(a, b) && !is_on_one_side(b, a) && sides_intersect(a, b)
+}
+
+/// Whether a triangle lies strictly on one side of the plane of another.
+fn is_on_one_side(triangle: [Vec3; 3], [a, b, c]: [Vec3; 3]) -> bool {
+    let sides = triangle.map(|p| orient3d(a, b, c, p));
+    sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
+}
+
+/// Whether a side of one of two triangles meets the other triangle.
+fn sides_intersect(a: [Vec3; 3], b: [Vec3; 3]) -> bool {
     (0..3).any(|k| segment_intersects_triangle([a[k], a[(k + 1) % 3]], b))
         || (0..3).any(|k| segment_intersects_triangle([b[k], b[(k + 1) % 3]], a))
 }

@@ -47,7 +47,9 @@ impl<M: Method> Method for Guarded<M> {
             });
         }
         self.start.clone_from(state);
-        let result = self.method.advance(system, state, step);
+        // Within the pool: from outside of it every parallel part of the step would wake a thread and wait for it.
+        let method = &mut self.method;
+        let result = rayon::scope(|_| method.advance(system, state, step));
         if result.is_ok() {
             relax(system, state, state.time - self.start.time);
         }

@@ -235,8 +235,9 @@ impl Xpbd {
         let parts: Vec<Substeps> = self.parts(system, state.time, substeps).collect();
         for (number, part) in parts.iter().enumerate() {
             self.place_solids(state.time, part);
-            if number == 0 {
-                self.meet_solids(system, state, (part, parts.len() as u32));
+            match number {
+                0 => self.meet_solids(system, state, (part, parts.len() as u32)),
+                _ => self.keep_meeting_solids(),
             }
             report = self.advance_part(system, state, cloth, (origin, part))?;
             pieces = pieces.max(report.pieces);

@@ -136,21 +136,22 @@ impl ContactConstraint {
     }
 
     /// Moves the plane of a near surface that moves to the end of the coming substep, and turns the slip with it. The
-    /// distance to a far one is valid for the whole step.
+    /// distance to a far one is valid for the whole step; an invalid plane is found anew before its next use.
     pub fn carry(&mut self, solid: &Solid, carried: &CarriedPlane) {
-        if self.normal == [0.0; 3] {
+        if self.normal == [0.0; 3] || self.radius2 < 0.0 {
             return;
         }
-        let Some(surface) = solid.moving.surface(self.solid) else {
+        if solid.moving.surface(self.solid).is_none() {
             return;
-        };
-        let motion = carried.at(surface, solid.shares);
+        }
+        let motion = carried.at(solid.shares);
         self.set_plane(&motion, solid.origin);
         for k in 0..3 {
             self.queried_at[k] += self.surface_displacement[k];
         }
         if self.slip != [0.0; 3] {
-            let slip = motion.rotation * Vec3::from(self.slip.map(f64::from));
+            let slip = Vec3::from(self.slip.map(f64::from));
+            let slip = slip + motion.turn.cross(&slip);
             self.slip = [slip.x as f32, slip.y as f32, slip.z as f32];
         }
     }
@@ -238,7 +239,7 @@ impl ContactConstraint {
         let kept = kept_offset(surface, (&closest, now), offset, thickness);
         *carried = CarriedPlane::new(surface, (&closest, now), kept.unwrap_or(0.0));
         if kept.is_some() {
-            self.set_plane(&carried.at(surface, solid.shares), solid.origin);
+            self.set_plane(&carried.at(solid.shares), solid.origin);
         }
         let gap = closest.signed_distance - offset;
         let mut radius = (0.5 * gap).max(PLANE_REACH * offset);

@@ -245,8 +245,9 @@ impl Xpbd {
         let parts: Vec<Substeps> = self.parts(system, state.time, &substeps).collect();
         for (number, part) in parts.iter().enumerate() {
             self.place_solids(state.time, part);
-            if number == 0 {
-                self.meet_solids(system, state, (part, parts.len() as u32));
+            match number {
+                0 => self.meet_solids(system, state, (part, parts.len() as u32)),
+                _ => self.keep_meeting_solids(),
             }
             report = self.advance_about(system, state, origin, part)?;
             pieces = pieces.max(report.pieces);
@@ -272,6 +273,15 @@ impl Xpbd {
             parts,
         };
         self.set_skin_contacts(system, &start);
+    }
+
+    /// Places the vertices and edges of moving solids that meet the cloth in the next part of a step.
+    fn keep_meeting_solids(&mut self) {
+        for region in self.regions.all_mut() {
+            for contact in &mut region.skin {
+                contact.go_on(&self.moving);
+            }
+        }
     }
 
     /// Substeps from a time [s] on, divided so that moving solids move straight in each part; one part where all are at

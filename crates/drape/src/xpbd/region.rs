@@ -477,9 +477,16 @@ impl Region {
         solve_attachments(&mut self.attachments, points, step.contact.kappa);
         solve_ties(&mut self.ties, points, step.contact.kappa);
         solve_stencils(self.contacts.iter_mut(), points, &step.contact);
+        self.solve_skin(points, step);
+        solve_stencils(self.cloth.iter_mut(), points, &step.contact);
+    }
+}
+
+impl Region {
+    /// Solves the contacts of vertices and edges of moving solids.
+    pub fn solve_skin(&mut self, points: &mut [Point], step: &SweepStep) {
         let skin = self.skin.iter_mut().map(|contact| &mut contact.stencil);
         solve_stencils(skin, points, &step.contact);
-        solve_stencils(self.cloth.iter_mut(), points, &step.contact);
     }
 }
 

@@ -13,6 +13,7 @@ use super::region::{Regions, SweepStep};
 use super::triangle_sums::Ranges;
 use super::viscosity::{AddViscousForces, Viscosity, ViscousStage};
 use crate::ContactSample;
+use crate::lanes::Point;
 
 /// Parameters of substeps of one size.
 pub struct Run<'a> {
@@ -90,6 +91,7 @@ impl Run<'_> {
                 self.cuts(regions, particles, &sweep);
                 let Particles { start, now, .. } = &mut *particles;
                 regions.global.sweep(&sweep, now, start);
+                self.solve_skin(regions, now, &sweep);
                 self.solve_contacts(particles, &sweep, iteration + 1 == self.iterations);
             }
             if let Some(step) = self.bounces {
@@ -306,6 +308,17 @@ impl Run<'_> {
         for_domains(self.cut_starts, 0, all, &|_, all| {
             all.regions[0].sweep(sweep, all.now, all.start);
         });
+    }
+
+    /// Solves the contacts of vertices and edges of moving solids once more: what was solved after those of their region
+    /// has pulled the cloth into them.
+    fn solve_skin(&self, regions: &mut Regions, now: &mut [Point], sweep: &SweepStep) {
+        let domains = self.domain_starts.iter().zip(&mut regions.domains);
+        let cuts = self.cut_starts.iter().zip(&mut regions.cuts);
+        for (&first, region) in domains.chain(cuts) {
+            region.solve_skin(&mut now[first..], sweep);
+        }
+        regions.global.solve_skin(now, sweep);
     }
 
     /// Solves the contacts of vertices with solids and, in the last iteration, updates velocities.

@@ -4,13 +4,13 @@
 //! Contact samples keep points of the cloth off a surface. Between them a face reaches over the surface, and where that
 //! is sharp, as at an elbow, it would cut through. So every vertex of the surface that a face comes near keeps that face
 //! off, and every convex edge an edge of the cloth that crosses over it, at half the distance that samples keep: where
-//! the surface is as smooth as the cloth is fine this never acts.
+//! the surface is as smooth as the cloth is fine this never acts, and nothing is looked for.
 
 use super::Xpbd;
 use super::carried_plane::CarriedPlane;
 use super::contact::{ContactConstraint, ContactStencil, Solid};
 use super::moving_solids::MovingSolids;
-use super::skin_edges::edges_near;
+use super::skin_edges::{Ridges, edges_near};
 use super::skin_look::{Look, Near, REACH, StepStart};
 use crate::System;
 use crate::lanes::Point;
@@ -40,6 +40,13 @@ pub struct SkinContact {
 }
 
 impl SkinContact {
+    /// Goes on in the next part of a step, for which the surfaces are set.
+    pub fn go_on(&mut self, moving: &MovingSolids) {
+        if let Some(surface) = moving.surface(self.stencil.constraint.solid) {
+            self.carried.go_on(surface);
+        }
+    }
+
     /// Finds the points that are nearest to each other anew, of the face or the edge of the cloth and the vertex or the
     /// edge of the solid, at the start of a substep. `points` are the vertices then.
     pub fn follow(&mut self, solid: &Solid, points: &[Point]) {
@@ -51,7 +58,7 @@ impl SkinContact {
             let [x, y, z, _] = points[v as usize];
             solid.origin + Vec3::new(x.into(), y.into(), z.into())
         });
-        let plane = self.carried.at(surface, [time; 2]);
+        let plane = self.carried.at([time; 2]);
         let weights = match self.side {
             None => closest_point_on_triangle(plane.point, [corners[0], corners[1], corners[2]]).0,
             Some(side) => {
@@ -66,8 +73,7 @@ impl SkinContact {
                 let mut weights = [0.0; 3];
                 (weights[side], weights[(side + 1) % 3]) = (1.0 - t, t);
                 let normal = normal.unwrap_or(plane.normal);
-                let place = surface.place(triangle, weights, normal, time);
-                self.carried = CarriedPlane::new(surface, (&place, time), plane.offset);
+                self.carried.shift(surface, weights, (normal, time));
                 [1.0 - s, s, 0.0]
             }
         };
@@ -111,10 +117,14 @@ impl SkinSearch {
                 start,
                 solid,
             };
-            let near = last.par_iter_mut().enumerate().with_min_len(256);
-            let near = near.filter_map(|(v, last)| look.at_vertex(v as u32, last));
+            let ridges = Ridges::of(&look);
+            let sharp = ridges.sharp_vertices(&look);
+            let near = last.par_iter_mut().zip(&sharp).enumerate();
+            let near = near.with_min_len(256).filter_map(|(v, (last, is_sharp))| {
+                is_sharp.then(|| look.at_vertex(v as u32, last)).flatten()
+            });
             found.extend(near.collect::<Vec<_>>());
-            found.extend(edges_near(&look));
+            found.extend(edges_near(&look, &ridges));
         }
         found
     }

@@ -17,16 +17,48 @@ const OF_SQUARE: f64 = 0.433;
 /// Greatest depth of the cloth behind an edge at which it still is on the outer side, over the contact offset.
 const DEPTH: f64 = 1.0;
 
+/// How sharp the sides of a surface are at the start of a step, by triangle and side; those are left out that are far from
+/// the cloth.
+pub(super) struct Ridges(Vec<[Ridge; 3]>);
+
+impl Ridges {
+    /// Those that the cloth may come near in the step.
+    pub fn of(look: &Look) -> Self {
+        let surface = look.surface;
+        let near = look.within();
+        let triangles = surface.triangles().par_iter().enumerate();
+        let ridges = triangles.with_min_len(512).map(|(t, corners)| {
+            match corners.iter().any(|&v| near.contains(surface, v)) {
+                true => [0, 1, 2].map(|side| Ridge::at(surface, t as u32, side)),
+                false => Default::default(),
+            }
+        });
+        Self(ridges.collect())
+    }
+
+    /// Whether the surface is sharp at each vertex for the longest edge of the cloth: elsewhere no face of the cloth comes
+    /// nearer to it than its samples let.
+    pub fn sharp_vertices(&self, look: &Look) -> Vec<bool> {
+        let half = 0.5 * look.longest_edge() as f32;
+        let least = (FLAT * look.system.contact.offset) as f32;
+        let mut sharp = vec![false; look.surface.starts().len()];
+        for (corners, ridges) in look.surface.triangles().iter().zip(&self.0) {
+            for (side, ridge) in ridges.iter().enumerate() {
+                if ridge.over_chord(half) > least {
+                    sharp[corners[side] as usize] = true;
+                    sharp[corners[(side + 1) % 3] as usize] = true;
+                }
+            }
+        }
+        sharp
+    }
+}
+
 /// All edges that come near an edge of the cloth in the step, in order of the latter.
-pub(super) fn edges_near(look: &Look) -> Vec<Near> {
-    let surface = look.surface;
-    let sides = |t| [0, 1, 2].map(|side| Ridge::at(surface, t, side));
-    let triangles = (0..surface.triangles().len() as u32).into_par_iter();
-    let ridges: Vec<[Ridge; 3]> = triangles.map(sides).collect();
+pub(super) fn edges_near(look: &Look, Ridges(ridges): &Ridges) -> Vec<Near> {
     let triangles = look.cloth.triangles().par_iter().enumerate();
     let near = triangles.with_min_len(128).flat_map_iter(|(t, corners)| {
         let sides = (0..3).filter(move |&side| look.cloth.tells_of(t as u32, side));
-        let ridges = &ridges;
         sides.flat_map(move |side| look.at_edge([corners[side], corners[(side + 1) % 3]], ridges))
     });
     near.collect()
@@ -44,8 +76,10 @@ struct Ridge {
 
 impl Ridge {
     fn at(surface: &MovingSurface, triangle: u32, side: usize) -> Self {
-        let normals = surface.normals_at_side(triangle, side, 0.0);
-        let Some([own, other]) = normals.filter(|_| surface.tells_of(triangle, side)) else {
+        if !surface.tells_of(triangle, side) {
+            return Self::default();
+        }
+        let Some([own, other]) = surface.normals_at_side(triangle, side) else {
             return Self::default();
         };
         let corners = surface.corners(triangle, 0.0);
@@ -130,7 +164,7 @@ impl Look<'_> {
         if !inside.contains(&s) || !inside.contains(&t) {
             return None;
         }
-        let [first, second] = surface.normals_at_side(triangle, side, 0.0)?;
+        let [first, second] = surface.normals_at_side(triangle, side)?;
         let outward = (first + second).try_normalize(0.0)?;
         let across = (b - a).cross(&(q - p)).try_normalize(0.0)?;
         let cosine = across.dot(&outward);

@@ -48,7 +48,55 @@ pub struct Look<'a> {
     pub solid: u32,
 }
 
+/// A box that holds the cloth throughout a step, and as much round it as contacts reach [m].
+pub struct Within {
+    low: Vec3,
+    high: Vec3,
+    /// Parts of the step; surfaces are given for the first one.
+    parts: f64,
+}
+
+impl Within {
+    /// Whether a vertex of a moving surface comes into it, as far as boxes tell.
+    pub fn contains(&self, surface: &MovingSurface, vertex: u32) -> bool {
+        let [a, b] = [surface.starts(), surface.ends()].map(|places| places[vertex as usize]);
+        let b = a.lerp(&b, self.parts);
+        (0..3).all(|k| a[k].max(b[k]) >= self.low[k] && a[k].min(b[k]) <= self.high[k])
+    }
+}
+
 impl Look<'_> {
+    /// The box outside of which the surface cannot meet the cloth in the step. Its margin is wider than any side of the
+    /// surface is long, so that a triangle that meets the cloth has its corners inside.
+    pub fn within(&self) -> Within {
+        let StepStart {
+            positions,
+            velocities,
+            part,
+            parts,
+        } = *self.start;
+        let step = part * f64::from(parts);
+        let nothing = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
+        let [low, high] = positions
+            .iter()
+            .zip(velocities)
+            .fold(nothing, |[low, high], (p, v)| {
+                let end = p + v * step;
+                [low.inf(p).inf(&end), high.sup(p).sup(&end)]
+            });
+        let margin = Vec3::repeat(REACH * self.system.contact.offset + self.surface.longest_side());
+        Within {
+            low: low - margin,
+            high: high + margin,
+            parts: f64::from(parts),
+        }
+    }
+
+    /// The longest edge of the cloth [m].
+    pub fn longest_edge(&self) -> f64 {
+        self.cloth.longest_side()
+    }
+
     /// The distance at which a place of the solid is to keep the cloth off [m], where it comes nearer to it in the step than
     /// it should, by the present speeds; `vertices` and `weights` are those of the point of the cloth. Cloth that is nearer
     /// to a wall that faces the other way is on the far side of something, unless both are a pinch.
