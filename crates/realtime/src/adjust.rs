@@ -18,6 +18,13 @@ const LONGEST_STEP: f32 = 1.0 / 20.0;
 /// each of weight 2, symplectic Euler stays stable below 4 over 12 to 16.
 const STABLE: f32 = 0.2;
 
+/// Rounds after which edges that do not become fewer beyond their bounds by a tenth are left: bounds
+/// and ellipsoids cannot hold together.
+const STALLED: usize = 8;
+
+/// Distance from its target, beyond its slack, from which a vertex has gone astray [m].
+const STRAY: f32 = 0.03;
+
 /// In each frame one block of so many finds its parents anew: cloth slides over an ellipsoid in
 /// some tenths of a second, so eight frames are soon enough.
 const PARENT_TURNS: usize = 8;
@@ -41,6 +48,9 @@ impl Garment {
         if dt > 0.0 {
             self.step(dt);
         }
+        set_motions(&mut self.motions, ellipsoids.frames(), &self.bind_inverse);
+        self.bring_targets(None);
+        self.hold_near_targets();
         self.bring_within(self.settings.friction);
         if dt > 0.0 {
             self.take_velocities(dt);
@@ -58,6 +68,7 @@ impl Garment {
             return;
         }
         if !self.follows_targets {
+            self.parents.copy_from_slice(&self.first_parents);
             set_motions(&mut self.motions, &self.last, &self.bind_inverse);
             self.bring_targets(None);
             self.velocities
@@ -163,19 +174,75 @@ impl Garment {
         }
     }
 
-    /// Puts vertices out of the ellipsoids and edges within their bounds, in turn, until both hold
-    /// or the rounds are over; the ellipsoids have the last word.
-    fn bring_within(&mut self, friction: f32) {
-        let bounds = self.bounds();
-        self.push_out(friction);
-        for _ in 0..self.settings.rounds {
-            if self.edges.limit(bounds, &mut self.places) == 0 {
-                return;
+    /// Brings vertices as near to their targets as they may be away from them.
+    fn hold_near_targets(&mut self) {
+        for (k, &slack) in self.slack.iter().enumerate() {
+            let (place, target) = (self.places.at(k), self.targets.at(k));
+            let gap = difference(place, target);
+            let squared = dot(gap, gap);
+            if squared > slack * slack {
+                self.places
+                    .set(k, moved(target, slack / squared.sqrt(), gap));
             }
-            self.edges.limit(bounds, &mut self.places);
+        }
+    }
+
+    /// Puts vertices out of the ellipsoids and edges within their bounds, in turn, until both hold,
+    /// the rounds are over or help no more; the ellipsoids have the last word.
+    fn bring_within(&mut self, friction: f32) {
+        self.edges.open_all();
+        self.has_moved.fill(true);
+        self.push_out(friction);
+        let (mut fewest, mut stalled) = (usize::MAX, 0);
+        for _ in 0..self.settings.rounds {
+            let beyond = self.limit_edges();
+            if beyond == 0 {
+                break;
+            }
+            self.limit_edges();
             self.push_out(friction);
             self.rounds += 1;
+            let is_fewer = beyond < fewest - fewest / 10;
+            (fewest, stalled) = match is_fewer {
+                true => (beyond, 0),
+                false => (fewest, stalled + 1),
+            };
+            if stalled == STALLED {
+                break;
+            }
         }
+        self.return_strays();
+    }
+
+    /// Puts back what has been put out of the ellipsoids on another side than its target is.
+    fn return_strays(&mut self) {
+        for k in 0..self.order.len() {
+            let (place, target) = (self.places.at(k), self.targets.at(k));
+            let gap = difference(place, target);
+            let most = self.slack[k] + STRAY;
+            if dot(gap, gap) <= most * most {
+                continue;
+            }
+            self.parents[k] = self.first_parents[k];
+            let (parent, own) = (self.parents[k] as usize, self.own_group(k));
+            let back = match self.field.contains_among(target, own) {
+                true => self.field.exit(parent, target, (self.outward(k), own)),
+                false => target,
+            };
+            self.places.set(k, back);
+        }
+    }
+
+    /// One sweep over the edges; how many were beyond their bounds.
+    fn limit_edges(&mut self) -> usize {
+        let bounds = self.bounds();
+        let Self {
+            edges,
+            places,
+            has_moved,
+            ..
+        } = self;
+        edges.limit(bounds, places, |k| has_moved[k / LANES] = true)
     }
 
     /// Finds the parents of the blocks whose turn it is, among the groups that each sees.

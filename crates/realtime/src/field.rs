@@ -224,7 +224,7 @@ impl Field {
     }
 
     /// `R S^-1 q`, not scaled; at the very centre any direction.
-    fn steepest_way(&self, row: usize, p: Vector) -> Vector {
+    pub(crate) fn steepest_way(&self, row: usize, p: Vector) -> Vector {
         let q = self.unit(row, p);
         let way = std::array::from_fn(|j| {
             (0..3)
@@ -237,11 +237,22 @@ impl Field {
         }
     }
 
-    /// Puts a place that lies within any row that it sees onto the boundary of all of them, along
-    /// the steepest way out of `row`. A straight way leaves each ellipsoid once for good, so every
-    /// one is left at most once. `sees` are the bits of groups.
-    pub(crate) fn exit(&self, row: usize, p: Vector, sees: u64) -> Vector {
-        let way = self.steepest_way(row, p);
+    /// Puts a place that lies within any row that it sees onto the boundary of all of them: along the
+    /// steepest way out of `row`, or along another `way`, whichever is shorter. `sees` are the bits of
+    /// groups.
+    pub(crate) fn exit(&self, row: usize, p: Vector, (way, sees): (Vector, u64)) -> Vector {
+        let places = [self.steepest_way(row, p), way].map(|way| self.exit_along(p, way, sees));
+        let [first, second] = places.map(|place| {
+            let gap = difference(place, p);
+            dot(gap, gap)
+        });
+        // A way of no length, before there is a rest shape, leads nowhere.
+        places[usize::from(dot(way, way) > 0.0 && second < first)]
+    }
+
+    /// The first place along a way that lies outside of all rows that it sees. A straight way leaves
+    /// each ellipsoid once for good, so every one is left at most once.
+    fn exit_along(&self, p: Vector, way: Vector, sees: u64) -> Vector {
         let mut reached = 0.0;
         loop {
             let place = moved(p, reached, way);
@@ -300,6 +311,12 @@ impl Field {
     pub fn reparented(&self, parent: usize, p: [f32; 3]) -> Option<Nearest> {
         let row = *self.row_of.get(parent)?;
         self.searched(p, self.touching[self.groups[row]])
+    }
+
+    /// The distance of a place from the nearest ellipsoid, along the ray from its centre [m].
+    pub(crate) fn nearest_of_all(&self, p: Vector) -> f32 {
+        let (near, _, _) = self.nearest_of(0..self.len(), &p.map(|x| [x; LANES]));
+        near[0]
     }
 
     /// Whether a place lies inside any ellipsoid: exact up to rounding.

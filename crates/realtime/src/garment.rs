@@ -4,7 +4,7 @@ use crate::edges::{Bounds, Edges};
 use crate::field::Field;
 use crate::home::{Homes, along_a_curve, columns};
 use crate::lanes::{Columns, LANES};
-use crate::turn::Frame;
+use crate::turn::{Frame, Vector, dot};
 use crate::{Ellipsoids, RealtimeError};
 
 /// How a garment behaves.
@@ -26,6 +26,9 @@ pub struct GarmentSettings {
     /// Time in which the shape adjustment brings a vertex to a third of its distance from the
     /// rest shape [s].
     pub draw: f32,
+    /// How far cloth that lies on the ellipsoids at rest may hang away from where its shape is
+    /// carried [m]; cloth that stands off from them may as much farther as it stands off.
+    pub slack: f32,
     /// Rounds of edge bounds and pushing out in a frame, at the most.
     pub rounds: usize,
 }
@@ -40,6 +43,7 @@ impl Default for GarmentSettings {
             damping: 2.0,
             stiffness: 300.0,
             draw: 0.08,
+            slack: 0.03,
             rounds: 64,
         }
     }
@@ -77,15 +81,23 @@ pub struct Garment {
     /// Rest shape, and where it is brought by its joints; `None` after an adjustment by gravity.
     pub(crate) bind: Columns,
     pub(crate) targets: Columns,
+    /// Unit vectors out of the ellipsoids at rest.
+    pub(crate) outward: Columns,
     pub(crate) follows_targets: bool,
+    /// How far each vertex may be from its target [m].
+    pub(crate) slack: Vec<f32>,
     pub(crate) homes: Homes,
     /// Row of the parent ellipsoid.
     pub(crate) parents: Vec<u32>,
+    /// That at rest.
+    pub(crate) first_parents: Vec<u32>,
     /// Joints: their frames at rest inverted, in the last frame, and how they moved.
     pub(crate) bind_inverse: Vec<Frame>,
     pub(crate) last: Vec<Frame>,
     pub(crate) motions: Vec<Frame>,
     pub(crate) balls: Vec<Ball>,
+    /// Whether a vertex of each block has moved since the block was put out.
+    pub(crate) has_moved: Vec<bool>,
     pub(crate) reached: Vec<u64>,
     pub(crate) scratch: Vec<f32>,
     pub(crate) turn: usize,
@@ -139,22 +151,26 @@ impl Garment {
             last: frames.to_vec(),
             motions: vec![Frame::NONE; frames.len()],
             balls: vec![Ball::NOWHERE; blocks],
+            has_moved: vec![true; blocks],
             reached: vec![0; blocks * words],
             scratch: vec![0.0; field.len()],
             places: bind.clone(),
             starts: bind.clone(),
             targets: bind.clone(),
             velocities: Columns::zeros(padded),
+            outward: Columns::zeros(padded),
             follows_targets: true,
+            slack: vec![settings.slack; padded],
             turn: 0,
             adjusted: 0,
-            rounds: 0,
+            rounds: 64,
             settings,
             field,
             edges,
             order,
             rank,
             bind,
+            first_parents: parents.clone(),
             parents,
         };
         garment.rest_outside(&ranked)?;
@@ -169,6 +185,13 @@ impl Garment {
         self.bind.copy_from(&self.places);
         self.targets.copy_from(&self.places);
         self.starts.copy_from(&self.places);
+        for k in 0..self.order.len() {
+            let place = self.places.at(k);
+            self.slack[k] += self.field.nearest_of_all(place).max(0.0);
+            let way = self.field.steepest_way(self.parents[k] as usize, place);
+            let length = dot(way, way).sqrt();
+            self.outward.set(k, way.map(|x| x / length));
+        }
         Ok(())
     }
 
@@ -232,6 +255,14 @@ impl Garment {
         self.field.touching[self.field.groups[self.parents[k] as usize]]
     }
 
+    /// The way out of the ellipsoids that a vertex has at rest, as its joint has turned since.
+    pub(crate) fn outward(&self, k: usize) -> Vector {
+        match self.homes.joints.get(k) {
+            Some(&[joint, _]) => self.motions[usize::from(joint)].turned(self.outward.at(k)),
+            None => [0.0, 1.0, 0.0],
+        }
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         Bounds {
             least: 1.0 - self.settings.shortening,
@@ -249,6 +280,7 @@ impl GarmentSettings {
             ("damping", self.damping, 0.0, 1e3),
             ("stiffness", self.stiffness, 0.0, 1e6),
             ("draw", self.draw, 1e-4, 1e3),
+            ("slack", self.slack, 0.0, 1e3),
         ];
         for (name, value, least, most) in ranges {
             if !(least..=most).contains(&value) {

@@ -15,12 +15,15 @@ const PUSHES: usize = 6;
 type Masks = [u64; LANES];
 
 impl Garment {
-    /// Puts every vertex out of its own group, that of its parent, and out of those that touch it
-    /// where there is room between: one that is pinched between limbs stays with its own. Vertices
-    /// put out lose so much of their shift along the surface as friction times the depth allows.
+    /// Puts every vertex of the blocks that have moved out of its own group, that of its parent, and
+    /// out of those that touch it where there is room between: one that is pinched between limbs
+    /// stays with its own. Vertices put out lose so much of their shift along the surface as friction
+    /// times the depth allows.
     pub(crate) fn push_out(&mut self, friction: f32) {
         for block in 0..self.balls.len() {
-            self.push_block(block, friction);
+            if std::mem::take(&mut self.has_moved[block]) {
+                self.push_block(block, friction);
+            }
         }
     }
 
@@ -53,7 +56,9 @@ impl Garment {
         if !is_out {
             for l in 0..LANES {
                 let p = [places[0][l], places[1][l], places[2][l]];
-                let out = self.field.exit(rows[l] as usize, p, own[l]);
+                let out = self
+                    .field
+                    .exit(rows[l] as usize, p, (self.outward(first + l), own[l]));
                 for axis in 0..3 {
                     places[axis][l] = out[axis];
                 }
@@ -69,6 +74,13 @@ impl Garment {
                         places[axis][l] = tried[axis][l];
                     }
                 }
+            }
+        }
+        let before = self.places.block(block);
+        for l in 0..LANES {
+            if (0..3).any(|axis| places[axis][l] != before[axis][l]) {
+                self.edges.open_around(first + l);
+                self.has_moved[block] = true;
             }
         }
         self.places.set_block(block, &places);

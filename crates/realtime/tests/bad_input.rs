@@ -63,6 +63,7 @@ fn clothes_that_cannot_be_are_refused_with_place_and_remedy() {
             "friction",
         ),
         (made(&SHEET, &[[0, 1, 2]], |s| s.rounds = 0), "rounds"),
+        (made(&SHEET, &[[0, 1, 2]], |s| s.slack = f32::NAN), "slack"),
     ];
     for (made, place) in cases {
         let error = made.unwrap_err();
