@@ -9,6 +9,8 @@ const END: f64 = 0.02;
 /// Height of the arc that the surface makes under an edge of the cloth, over the contact offset, below which it is flat
 /// there: the rest of the offset is left when the ends of the edge are kept off.
 const FLAT: f64 = 0.4;
+/// The same at a vertex for faces of the cloth: in a pinch samples keep off less than the offset.
+const FLAT_IN_PINCH: f64 = 0.1;
 /// Least cosine between the normal of an edge and the common normal of both edges, where the normals of the triangles at
 /// the edge differ by less.
 const FACING: f64 = 0.5;
@@ -40,7 +42,7 @@ impl Ridges {
     /// nearer to it than its samples let.
     pub fn sharp_vertices(&self, look: &Look) -> Vec<bool> {
         let half = 0.5 * look.longest_edge() as f32;
-        let least = (FLAT * look.system.contact.offset) as f32;
+        let least = (FLAT_IN_PINCH * look.system.contact.offset) as f32;
         let mut sharp = vec![false; look.surface.starts().len()];
         for (corners, ridges) in look.surface.triangles().iter().zip(&self.0) {
             for (side, ridge) in ridges.iter().enumerate() {
