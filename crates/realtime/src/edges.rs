@@ -165,16 +165,17 @@ impl Edges {
         let limit = Limit::new(bounds);
         let mut beyond = 0;
         for word in 0..self.open.len() {
-            // What is opened by a correction below comes in this sweep, what is above in the next.
-            let mut below = u64::MAX;
+            // Of the edges that a correction opens, the later ones are looked at in this sweep, the
+            // earlier ones in the next.
+            let mut later = u64::MAX;
             loop {
-                let bits = self.open[word] & below;
+                let bits = self.open[word] & later;
                 if bits == 0 {
                     break;
                 }
                 let bit = bits.trailing_zeros();
                 self.open[word] &= !(1 << bit);
-                below = u64::MAX << bit << 1;
+                later = u64::MAX << bit << 1;
                 let edge = 64 * word + bit as usize;
                 if self.correct(edge, &limit, places) {
                     beyond += 1;

@@ -313,12 +313,6 @@ impl Field {
         self.searched(p, self.touching[self.groups[row]])
     }
 
-    /// The distance of a place from the nearest ellipsoid, along the ray from its centre [m].
-    pub(crate) fn nearest_of_all(&self, p: Vector) -> f32 {
-        let (near, _, _) = self.nearest_of(0..self.len(), &p.map(|x| [x; LANES]));
-        near[0]
-    }
-
     /// Whether a place lies inside any ellipsoid: exact up to rounding.
     pub fn contains(&self, p: [f32; 3]) -> bool {
         self.contains_among(p, u64::MAX)

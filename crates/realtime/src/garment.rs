@@ -163,7 +163,7 @@ impl Garment {
             slack: vec![settings.slack; padded],
             turn: 0,
             adjusted: 0,
-            rounds: 64,
+            rounds: 0,
             settings,
             field,
             edges,
@@ -187,7 +187,8 @@ impl Garment {
         self.starts.copy_from(&self.places);
         for k in 0..self.order.len() {
             let place = self.places.at(k);
-            self.slack[k] += self.field.nearest_of_all(place).max(0.0);
+            let off = self.field.nearest(place).map_or(0.0, |near| near.distance);
+            self.slack[k] += off.max(0.0);
             let way = self.field.steepest_way(self.parents[k] as usize, place);
             let length = dot(way, way).sqrt();
             self.outward.set(k, way.map(|x| x / length));

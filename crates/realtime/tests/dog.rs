@@ -17,6 +17,7 @@ fn a_dog_trots_in_a_coat() {
         GarmentSettings::default(),
     )
     .unwrap();
+    assert_eq!([garment.rounds(), garment.adjustments()], [0, 0]);
     ellipsoids.start("stand", 0.0).unwrap();
     for frame in 0..900 {
         if frame == 60 {

@@ -234,11 +234,7 @@ impl Xpbd {
         let mut pieces = 1;
         let parts: Vec<Substeps> = self.parts(system, state.time, substeps).collect();
         for (number, part) in parts.iter().enumerate() {
-            self.place_solids(state.time, part);
-            match number {
-                0 => self.meet_solids(system, state, (part, parts.len() as u32)),
-                _ => self.keep_meeting_solids(),
-            }
+            self.place_solids(system, state, (&parts, number));
             report = self.advance_part(system, state, cloth, (origin, part))?;
             pieces = pieces.max(report.pieces);
         }

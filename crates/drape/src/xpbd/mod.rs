@@ -244,11 +244,7 @@ impl Xpbd {
         let mut pieces = 1;
         let parts: Vec<Substeps> = self.parts(system, state.time, &substeps).collect();
         for (number, part) in parts.iter().enumerate() {
-            self.place_solids(state.time, part);
-            match number {
-                0 => self.meet_solids(system, state, (part, parts.len() as u32)),
-                _ => self.keep_meeting_solids(),
-            }
+            self.place_solids(system, state, (&parts, number));
             report = self.advance_about(system, state, origin, part)?;
             pieces = pieces.max(report.pieces);
         }
@@ -256,27 +252,27 @@ impl Xpbd {
         Ok(report)
     }
 
-    /// Gives the moving solids their places for some substeps from a state on; every surface is queried again.
-    fn place_solids(&mut self, time: f64, substeps: &Substeps) {
-        let end = time + substeps.substep * f64::from(substeps.count);
-        self.moving.set_step([time, end]);
+    /// Gives the moving solids their places for one of the parts of a step from a state on; every surface is queried again.
+    /// Before the first part their vertices and edges near the cloth are looked for, before the others those go on.
+    fn place_solids(
+        &mut self,
+        system: &System,
+        state: &State,
+        (parts, number): (&[Substeps], usize),
+    ) {
+        let Substeps { substep, count, .. } = parts[number];
+        let part = substep * f64::from(count);
+        self.moving.set_step([state.time, state.time + part]);
         self.invalidate_surfaces();
-    }
-
-    /// Looks for vertices of moving solids near faces of the cloth, once the solids are placed for the first of some parts
-    /// of a step.
-    fn meet_solids(&mut self, system: &System, state: &State, (first, parts): (&Substeps, u32)) {
-        let start = StepStart {
-            positions: &state.positions,
-            velocities: &state.velocities,
-            part: first.substep * f64::from(first.count),
-            parts,
-        };
-        self.set_skin_contacts(system, &start);
-    }
-
-    /// Places the vertices and edges of moving solids that meet the cloth in the next part of a step.
-    fn keep_meeting_solids(&mut self) {
+        if number == 0 {
+            let start = StepStart {
+                positions: &state.positions,
+                velocities: &state.velocities,
+                part,
+                parts: parts.len() as u32,
+            };
+            return self.set_skin_contacts(system, &start);
+        }
         for region in self.regions.all_mut() {
             for contact in &mut region.skin {
                 contact.go_on(&self.moving);

@@ -41,7 +41,7 @@ impl Ridges {
     /// Whether the surface is sharp at each vertex for the longest edge of the cloth: elsewhere no face of the cloth comes
     /// nearer to it than its samples let.
     pub fn sharp_vertices(&self, look: &Look) -> Vec<bool> {
-        let half = 0.5 * look.longest_edge() as f32;
+        let half = 0.5 * look.cloth.longest_side() as f32;
         let least = (FLAT_IN_PINCH * look.system.contact.offset) as f32;
         let mut sharp = vec![false; look.surface.starts().len()];
         for (corners, ridges) in look.surface.triangles().iter().zip(&self.0) {

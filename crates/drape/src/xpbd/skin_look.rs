@@ -92,11 +92,6 @@ impl Look<'_> {
         }
     }
 
-    /// The longest edge of the cloth [m].
-    pub fn longest_edge(&self) -> f64 {
-        self.cloth.longest_side()
-    }
-
     /// The distance at which a place of the solid is to keep the cloth off [m], where it comes nearer to it in the step than
     /// it should, by the present speeds; `vertices` and `weights` are those of the point of the cloth. Cloth that is nearer
     /// to a wall that faces the other way is on the far side of something, unless both are a pinch.
