@@ -126,7 +126,7 @@ impl FigureWindow {
             self.run.clip(),
             self.spent * 1e3
         );
-        let help = "↓ stand   ↑ walk   → run   G hang or fit closely";
+        let help = "Down: stand   Up: walk   Right: run   G: hang or fit closely";
         let drawn = match &self.renderer {
             Some(_) => "",
             None => "\nThis computer offers no graphics card or driver for the 3D view",
