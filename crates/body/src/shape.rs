@@ -5,7 +5,7 @@ use crate::curve::Monotone;
 use crate::definitions::{THIGH_DROP, trunk_range};
 use crate::girths::Girth;
 use crate::levels::{Level, Levels};
-use crate::solve::SolveInput;
+use crate::solve_input::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 use crate::warp::Shape;
 use std::cmp::Ordering;

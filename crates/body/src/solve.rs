@@ -4,22 +4,11 @@ use crate::BodyError;
 use crate::girths::Girth;
 use crate::levels::{self, Level, Levels, OVER, SkinOffsets};
 use crate::measured::{Shares, TapedSkin};
-use crate::request::Request;
-use crate::rings::TemplateSkin;
 use crate::shape::{Scales, shape};
+use crate::solve_input::SolveInput;
 use crate::tape::{Skinned, extent, half_length};
-use crate::template::Template;
-use crate::template_marks::TemplateMarks;
 use crate::warp::{Follow, Shape, Warp};
 use toile_geometry::{TriangleMesh, Vec3, closed_length};
-
-/// Input of the solution: a template with its skin and marks, and the measurements asked for.
-pub(crate) struct SolveInput<'a> {
-    pub(crate) template: &'a Template,
-    pub(crate) skin: &'a TemplateSkin,
-    pub(crate) marks: TemplateMarks,
-    pub(crate) request: Request,
-}
 
 /// The solution.
 pub(crate) struct Solved {
@@ -103,16 +92,6 @@ impl SolveInput<'_> {
             levels,
             mesh,
         })
-    }
-
-    /// Middle vertices where the crotch may be lowest.
-    pub(crate) fn crotch_vertices(&self) -> Vec<u32> {
-        (0..self.skin.mirror.len() as u32)
-            .filter(|&v| {
-                let y = self.skin.mesh.positions[v as usize].y;
-                self.skin.mirror[v as usize] == v && y < self.marks.crotch + 0.05
-            })
-            .collect()
     }
 
     pub(crate) fn taken<'a>(
