@@ -4,7 +4,7 @@ use crate::Part;
 use crate::bands::Near;
 use crate::cuts::CutPlane;
 use crate::definitions::{BodyMarks, KNEE, Taping};
-use crate::girths::Girth;
+use crate::girths::{Girth, PerGirth};
 use crate::levels::{Level, Levels, upright};
 use crate::tape::{
     Skinned, along, breadth_at, extent, fall, half_length, hanging, outermost, stretched,
@@ -28,22 +28,22 @@ pub(crate) struct TapedSkin<'a> {
     shares: Shares,
     body: OnceCell<BodyMarks>,
     /// Cache of places.
-    places: RefCell<[Option<f64>; Girth::COUNT]>,
+    places: RefCell<PerGirth<Option<f64>>>,
     /// Cache of hulls.
-    hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
+    hulls: RefCell<PerGirth<Option<Rc<[Vec2]>>>>,
     /// Cache of lengths.
     known: RefCell<Vec<(String, Option<f64>)>>,
     around: OnceCell<Option<Around>>,
     bust: OnceCell<Option<Vec3>>,
     /// Cache of girths round the trunk where they are found.
-    found: [OnceCell<f64>; Girth::COUNT],
+    found: PerGirth<OnceCell<f64>>,
     through_neck: OnceCell<Vec<[Vec3; 2]>>,
     /// Vertices in the left armpit from front to back.
     armpit: &'a [u32],
 }
 
 /// Shares of their ranges at which girths lie [1].
-pub(crate) type Shares = [Option<f64>; Girth::COUNT];
+pub(crate) type Shares = PerGirth<Option<f64>>;
 
 /// The tight way in the middle from the waist in front round the crotch to the waist behind.
 struct Around {
@@ -139,11 +139,11 @@ impl<'a> TapedSkin<'a> {
 
     /// The hull of a girth's section: round the trunk at the level that lengths give it.
     pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
-        if let Some(known) = &self.hulls.borrow()[girth as usize] {
+        if let Some(known) = &self.hulls.borrow()[girth] {
             return known.clone();
         }
         let hull: Rc<[Vec2]> = self.taken_hull(girth).into();
-        self.hulls.borrow_mut()[girth as usize] = Some(hull.clone());
+        self.hulls.borrow_mut()[girth] = Some(hull.clone());
         hull
     }
 
@@ -208,15 +208,15 @@ impl<'a> TapedSkin<'a> {
 
     /// The place of a girth [m]; none where lengths alone say it.
     fn place(&self, girth: Girth) -> Option<f64> {
-        if let Some(known) = self.places.borrow()[girth as usize] {
+        if let Some(known) = self.places.borrow()[girth] {
             return Some(known);
         }
         let taping = self.taping(girth)?;
-        let place = match self.shares[girth as usize] {
+        let place = match self.shares[girth] {
             Some(share) => taping.at(share),
             None => taping.find(|place| Some(self.taped(&taping, place)))?,
         };
-        self.places.borrow_mut()[girth as usize] = Some(place);
+        self.places.borrow_mut()[girth] = Some(place);
         Some(place)
     }
 
@@ -264,9 +264,9 @@ impl<'a> TapedSkin<'a> {
 
     /// The shares of their ranges at which girths lie, for the next body that is much the same.
     pub(crate) fn shares(&self) -> Shares {
-        Girth::ALL.map(|girth| {
+        Shares::of(|girth| {
             let taping = self.taping(girth)?;
-            let known = self.places.borrow()[girth as usize];
+            let known = self.places.borrow()[girth];
             known.map(|place| taping.share(place))
         })
     }
@@ -283,9 +283,7 @@ impl<'a> TapedSkin<'a> {
             .level()
             .and_then(|_| self.taping(girth).zip(self.place(girth)));
         match found {
-            Some((taping, place)) => {
-                *self.found[girth as usize].get_or_init(|| self.taped(&taping, place))
-            }
+            Some((taping, place)) => *self.found[girth].get_or_init(|| self.taped(&taping, place)),
             None => closed_length(&self.hull(girth)),
         }
     }

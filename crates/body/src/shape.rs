@@ -3,7 +3,7 @@
 use crate::BodyError;
 use crate::curve::Monotone;
 use crate::definitions::{THIGH_DROP, trunk_range};
-use crate::girths::Girth;
+use crate::girths::{Girth, PerGirth};
 use crate::levels::{Level, Levels};
 use crate::solve_input::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
@@ -14,15 +14,15 @@ use std::cmp::Ordering;
 #[derive(Clone, Debug)]
 pub(crate) struct Scales {
     /// Of each girth.
-    pub(crate) girth: [f64; Girth::COUNT],
+    pub(crate) girth: PerGirth<f64>,
     /// Square of lateral over frontal scale, of girths round the trunk.
-    pub(crate) aspect: [f64; Girth::COUNT],
+    pub(crate) aspect: PerGirth<f64>,
     /// How much fuller the corners of a section are, of girths round the trunk.
-    pub(crate) corners: [f64; Girth::COUNT],
+    pub(crate) corners: PerGirth<f64>,
     /// How much fuller the front corners of the chest are, and the back ones emptier.
     pub(crate) folds: f64,
     /// Front over back: the front's share of the scale beyond one half.
-    pub(crate) split: [f64; Girth::COUNT],
+    pub(crate) split: PerGirth<f64>,
     /// How much narrower the trunk is at the crotch than at the hips, so that nothing there is larger
     /// round than they are.
     pub(crate) seat: f64,
@@ -44,7 +44,7 @@ pub(crate) struct Scales {
     /// How flat the crotch lies from front to back.
     pub(crate) flat: f64,
     /// Depth of the sides of girths round the trunk [m].
-    pub(crate) sides: [f64; Girth::COUNT],
+    pub(crate) sides: PerGirth<f64>,
     /// Depth of the middle of the crotch over the lowest place's [m].
     pub(crate) fork: f64,
 }
@@ -56,11 +56,11 @@ impl Scales {
     /// All the template's own, at a ratio of statures.
     pub(crate) fn new(global: f64, marks: &TemplateMarks) -> Self {
         Self {
-            girth: [global; Girth::COUNT],
-            aspect: [1.0; Girth::COUNT],
-            corners: [0.0; Girth::COUNT],
+            girth: PerGirth::of(|_| global),
+            aspect: PerGirth::of(|_| 1.0),
+            corners: PerGirth::of(|_| 0.0),
             folds: 0.0,
-            split: [0.0; Girth::COUNT],
+            split: PerGirth::of(|_| 0.0),
             seat: 1.0,
             shoulder: global,
             neck: global,
@@ -71,7 +71,7 @@ impl Scales {
             armpit: 0.0,
             bulge: 0.0,
             flat: 0.0,
-            sides: [0.0; Girth::COUNT],
+            sides: PerGirth::of(|_| 0.0),
             fork: 0.0,
         }
     }
@@ -89,10 +89,6 @@ impl Scales {
             &mut self.seat,
         ];
         self.girth.iter_mut().chain(single)
-    }
-
-    fn of(&self, girth: Girth) -> f64 {
-        self.girth[girth as usize]
     }
 }
 
@@ -151,7 +147,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
     let on_template = |level: f64| curve.inverse(level);
     let sections = trunk(input, s, levels, &on_template);
     let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
-    let aspect = s.aspect[Girth::Hips as usize].sqrt();
+    let aspect = s.aspect[Girth::Hips].sqrt();
     let shape = Shape {
         levels: heights,
         lateral: column(1),
@@ -169,7 +165,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         ],
         arm_angle: q.get("arm_pose_angle"),
         global,
-        stance: (s.of(Girth::Hips) * aspect).max(ASTRIDE * s.of(Girth::Thigh)),
+        stance: (s.girth[Girth::Hips] * aspect).max(ASTRIDE * s.girth[Girth::Thigh]),
         // An asked crotch length says how deep the seat is.
         leg_form: if q.is_asked("crotch_length") {
             1.0
@@ -228,10 +224,9 @@ fn trunk(
 ) -> Vec<Section> {
     let (m, t) = (&input.marks, input.template);
     let section = |y: f64, girth: Girth| -> Section {
-        let k = girth as usize;
-        let (scale, form) = (s.girth[k], s.aspect[k].sqrt());
+        let (scale, form) = (s.girth[girth], s.aspect[girth].sqrt());
         let frontal = scale / form;
-        let [front, back] = [1.0 + 2.0 * s.split[k], 1.0 - 2.0 * s.split[k]];
+        let [front, back] = [1.0 + 2.0 * s.split[girth], 1.0 - 2.0 * s.split[girth]];
         [y, scale * form, frontal * front, frontal * back]
     };
     let [y, crotch @ ..] = section(m.crotch, Girth::Hips);
@@ -264,7 +259,7 @@ fn trunk(
     let top = rows[rows.len() - 1];
     rows.retain(|row| row[0] < m.tip.y - APART * t.height);
     let global = input.request.get("height") / t.height;
-    let (neck, head) = (s.of(Girth::Neck), s.of(Girth::Head));
+    let (neck, head) = (s.girth[Girth::Neck], s.girth[Girth::Head]);
     let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
     let tip = [m.tip.y, s.shoulder, front, back];
     rows.extend(under_the_arm(&rows, tip, m.armpit, APART * t.height));
@@ -295,10 +290,10 @@ fn corners(
     ] {
         let y = on_template(levels.at(level));
         if rows.iter().all(|row| (row[0] - y).abs() > apart) && y < m.tip.y {
-            rows.push([y, s.corners[girth as usize]]);
+            rows.push([y, s.corners[girth]]);
         }
     }
-    rows.push([0.0, s.corners[Girth::Hips as usize]]);
+    rows.push([0.0, s.corners[Girth::Hips]]);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < apart);
     rows
@@ -347,7 +342,7 @@ fn leg(
     let (m, t, q) = (&input.marks, input.template, &input.request);
     let global = q.get("height") / t.height;
     let foot = if q.girth(Girth::Heel).is_some() {
-        s.of(Girth::Heel)
+        s.girth[Girth::Heel]
     } else {
         global
     };
@@ -361,11 +356,11 @@ fn leg(
         (Girth::LowerThigh, m.lower_thigh),
     ] {
         if q.girth(girth).is_some() {
-            rows.push([y, s.of(girth)]);
+            rows.push([y, s.girth[girth]]);
         }
     }
-    rows.push([thigh, s.of(Girth::Thigh)]);
-    rows.push([thigh.max(m.crotch) + 0.05 * t.height, s.of(Girth::Thigh)]);
+    rows.push([thigh, s.girth[Girth::Thigh]]);
+    rows.push([thigh.max(m.crotch) + 0.05 * t.height, s.girth[Girth::Thigh]]);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
     rows
@@ -374,7 +369,7 @@ fn leg(
 /// Scales of the arm over template distance from the shoulder joint.
 fn arm(input: &SolveInput, s: &Scales, global: f64) -> Vec<[f64; 2]> {
     let (m, q) = (&input.marks, &input.request);
-    let mut rows = vec![[0.0, 0.5 * (global + s.of(Girth::UpperArm))]];
+    let mut rows = vec![[0.0, 0.5 * (global + s.girth[Girth::UpperArm])]];
     for (girth, distance) in [
         (Girth::UpperArm, m.upper_arm),
         (Girth::Elbow, m.elbow),
@@ -382,10 +377,10 @@ fn arm(input: &SolveInput, s: &Scales, global: f64) -> Vec<[f64; 2]> {
         (Girth::Wrist, m.wrist),
     ] {
         if q.girth(girth).is_some() {
-            rows.push([distance, s.of(girth)]);
+            rows.push([distance, s.girth[girth]]);
         }
     }
-    rows.push([1.1 * m.wrist, s.of(Girth::Wrist)]);
+    rows.push([1.1 * m.wrist, s.girth[Girth::Wrist]]);
     rows.push([1.3 * m.wrist, global]);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);

@@ -41,7 +41,7 @@ impl SolveInput<'_> {
         let mut offsets = SkinOffsets::default();
         let crotch = self.crotch_vertices();
         let mut before: Option<[Scales; 2]> = None;
-        let mut known: Option<Shares> = Some([Some(0.5); Girth::COUNT]);
+        let mut known: Option<Shares> = Some(Shares::of(|_| Some(0.5)));
         let slow = self.request.follows_skin();
         let forming = FORMING[usize::from(!slow)];
         let extrapolating = if slow { forming } else { forming + LAST };
@@ -111,7 +111,7 @@ impl SolveInput<'_> {
             if let Some(asked) = q.girth(girth) {
                 let got = taken.girth(girth);
                 miss = miss.max((asked - got).abs());
-                scales.girth[girth as usize] *= match taken.at_section(girth) {
+                scales.girth[girth] *= match taken.at_section(girth) {
                     Some(there) => {
                         let [low, high] = BESIDE.map(|share| share * asked / there);
                         ratio(asked, got).clamp(low.min(1.0), high.max(1.0))
@@ -193,7 +193,7 @@ impl SolveInput<'_> {
             let asked = q.is_asked(breadth) && q.is_asked(depth);
             let hull = taken.hull(girth);
             let [x, z] = extent(&hull);
-            let form = &mut scales.aspect[girth as usize];
+            let form = &mut scales.aspect[girth];
             *form *= ratio(q.get(breadth) * z, q.get(depth) * x);
             *form = form.clamp(ASPECT[0], ASPECT[1]);
             // The girth over breadth and depth: how full the corners are. The survey's waist is
@@ -204,13 +204,13 @@ impl SolveInput<'_> {
             };
             let wanted = around / (q.get(breadth) + q.get(depth));
             let found = closed_length(&hull) / (x + z);
-            let corners = &mut scales.corners[girth as usize];
+            let corners = &mut scales.corners[girth];
             *corners = (*corners + 2.0 * ratio(wanted, found).ln()).clamp(CORNERS[0], CORNERS[1]);
         }
         // The chest's breadth is taken between the front folds of the armpits: at its girth and
         // depth the front corners against the back ones decide it.
         let [_, z] = extent(&taken.hull(Girth::Bust));
-        let form = &mut scales.aspect[Girth::Bust as usize];
+        let form = &mut scales.aspect[Girth::Bust];
         *form *= ratio(z, q.get("chest_depth"));
         *form = form.clamp(ASPECT[0], ASPECT[1]);
         // Asked widths of front or back have said that already.
@@ -231,7 +231,7 @@ impl SolveInput<'_> {
             let hull = taken.hull(girth);
             let [own, other] = [side, -side].map(|side| half_length(&hull, side));
             let asked = (q.get(name) / (own + other)).clamp(0.3, 0.7);
-            let split = &mut scales.split[girth as usize];
+            let split = &mut scales.split[girth];
             *split += side * (asked - own / (own + other));
             *split = split.clamp(-SPLIT, SPLIT);
         }
@@ -258,7 +258,7 @@ impl SolveInput<'_> {
         for (girth, name, side) in PARTS {
             if q.is_asked(name) {
                 let at = taken.sides_of(girth, side, q.get(name), SIDES * height);
-                scales.sides[girth as usize] = at;
+                scales.sides[girth] = at;
             }
         }
         if let (true, Some(longer)) = (q.follows_skin(), gap("bust_to_underbust")) {
@@ -270,7 +270,7 @@ impl SolveInput<'_> {
             // Where a level one is not enough hips nobody gave a form are deeper.
             let is_said = q.is_asked("hip_depth") || q.is_asked("hip_breadth");
             if scales.flat == FLAT[1] && round >= SHAPING && !is_said {
-                let form = &mut scales.aspect[Girth::Hips as usize];
+                let form = &mut scales.aspect[Girth::Hips];
                 let depth = q.get("hip_depth");
                 let by = *form * (-1.4 * longer / depth).exp_m1();
                 step(form, by, ASPECT, depth);

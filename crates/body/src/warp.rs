@@ -6,7 +6,7 @@
 
 use crate::bands::Near;
 use crate::curve::{Monotone, smooth_step};
-use crate::girths::Girth;
+use crate::girths::{Girth, PerGirth};
 use crate::rings::at_length;
 use crate::template::Template;
 use crate::template_marks::{FORK, FORK_STEP, TemplateMarks};
@@ -61,7 +61,7 @@ pub(crate) struct Shape {
     /// How flat the crotch lies from front to back: none is as on the template, one is level.
     pub(crate) flat: f64,
     /// Depth of the sides before which a part of a girth lies [m].
-    pub(crate) sides: [f64; Girth::COUNT],
+    pub(crate) sides: PerGirth<f64>,
     /// Depth of the middle of the crotch over the lowest place's [m].
     pub(crate) fork: f64,
 }
@@ -175,7 +175,7 @@ impl Warp {
             bust_spread: 0.0,
             bust_bulge: 0.0,
             flat: 0.0,
-            sides: [0.0; Girth::COUNT],
+            sides: PerGirth::of(|_| 0.0),
             fork: 0.0,
         };
         Self {
@@ -350,7 +350,7 @@ impl Warp {
 
     /// Depth of the sides of a girth, before which its front part lies [m].
     pub(crate) fn side_of(&self, girth: Girth) -> f64 {
-        self.shape.sides[girth as usize]
+        self.shape.sides[girth]
     }
 
     /// Depth of the middle of the crotch on the body [m].
