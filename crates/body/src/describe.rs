@@ -60,7 +60,7 @@ impl Mannequin {
             frame: Some(BodyFrame {
                 height: template_body.template.height,
                 crotch: template_body.template.crotch,
-                armpit: template_body.marks.armpit,
+                armpit: template_body.marks.armpit.height,
                 hand: template_body.template.hand,
                 neck_radius: template_body.template.neck_radius,
                 joints: template_body.template.joints,

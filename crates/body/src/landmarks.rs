@@ -61,12 +61,12 @@ impl Landmarks {
         };
         let nape_z = -middle_extreme(&trunk_section(level(Level::Nape)), -1.0);
         let spine = |y: f64| Vec3::new(0.0, y, middle_depth(&trunk_section(y)));
-        let tip = input.marks.tip_on.at(&mesh.positions);
-        let neck = input.marks.neck_side_on.at(&mesh.positions);
+        let tip = input.marks.shoulder.tip_on.at(&mesh.positions);
+        let neck = input.marks.neck.side_on.at(&mesh.positions);
         let bust_level = level(Level::Bust);
         let ends = trunk_section(bust_level);
         let section: Vec<[Vec2; 2]> = ends.chunks_exact(2).map(|s| [s[0], s[1]]).collect();
-        let point = warp.apply(input.marks.bust_point, Follow::default());
+        let point = warp.apply(input.marks.bust.point, Follow::default());
         let bust =
             outermost(&section, point.x).map_or(point, |on| Vec3::new(on.x, bust_level, on.y));
         let middle = |v: &usize| input.skin.mirror[*v] as usize == *v;

@@ -189,7 +189,7 @@ impl Mannequin {
             &template_body.skin.arm,
         );
         let form = (figure == Figure::DressForm).then(|| {
-            let neck = warp.apply(template_body.marks.neck, Follow::default());
+            let neck = warp.apply(template_body.marks.neck.middle, Follow::default());
             let (sin, cos) = NECK_TILT.sin_cos();
             DressForm::of(
                 (&skin, &template_body.skin.parts),

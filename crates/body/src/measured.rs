@@ -109,12 +109,12 @@ impl<'a> TapedSkin<'a> {
 
     /// The end of the left shoulder [m].
     pub(crate) fn tip(&self) -> Vec3 {
-        self.marks.tip_on.on(self.skinned)
+        self.marks.shoulder.tip_on.on(self.skinned)
     }
 
     /// The left side of the neck [m].
     pub(crate) fn neck_side(&self) -> Vec3 {
-        self.marks.neck_side_on.on(self.skinned)
+        self.marks.neck.side_on.on(self.skinned)
     }
 
     /// Height of a landmark on the skin [m].
@@ -165,7 +165,10 @@ impl<'a> TapedSkin<'a> {
             let crotch = self.height(Level::Crotch);
             let stature = self.levels.at(Level::Crown);
             let heights = self.armpit.iter().map(|&v| self.skinned.at(v).y);
-            let arm = [self.armpit_fold(), self.skinned.at(self.marks.finger_tip)];
+            let arm = [
+                self.armpit_fold(),
+                self.skinned.at(self.marks.arm.finger_tip),
+            ];
             BodyMarks {
                 stature,
                 crotch,
@@ -296,7 +299,7 @@ impl<'a> TapedSkin<'a> {
     fn taken_bust_point(&self) -> Option<Vec3> {
         let y = self.levels.at(Level::Bust);
         let level = [Vec3::y() * y, Vec3::y()];
-        let x = self.warp.apply(self.marks.bust_point, Follow::default()).x;
+        let x = self.warp.apply(self.marks.bust.point, Follow::default()).x;
         let section = self
             .skinned
             .section(&[Part::Trunk], level, self.around(y))
@@ -438,8 +441,8 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Depth of the middle of the crotch at which the part before it has a length [m].
-    pub(crate) fn fork_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
+    /// Depth of the crotch point at which the part before it has a length [m].
+    pub(crate) fn crotch_point_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
         let around = self.crotch_lengths()?;
         let (mut low, mut high) = (low, high);
         for _ in 0..HALVINGS {
@@ -513,9 +516,9 @@ impl<'a> TapedSkin<'a> {
             "shoulder_incl" => (neck.y - tip.y).atan2(tip.x - neck.x),
             "shoulder_length" => (tip - neck).norm(),
             "shoulder_to_shoulder" => self.across_shoulders(),
-            "arm_length" => on_arm(self.marks.wrist) - from_tip,
-            "shoulder_to_elbow" => on_arm(self.marks.elbow) - from_tip,
-            "elbow_to_wrist" => on_arm(self.marks.wrist) - on_arm(self.marks.elbow),
+            "arm_length" => on_arm(self.marks.arm.wrist) - from_tip,
+            "shoulder_to_elbow" => on_arm(self.marks.arm.elbow) - from_tip,
+            "elbow_to_wrist" => on_arm(self.marks.arm.wrist) - on_arm(self.marks.arm.elbow),
             "arm_pose_angle" => (-along.y).atan2(along.x),
             "front_width" => part(Girth::Bust, 1.0),
             "back_width" => part(Girth::Bust, -1.0),
@@ -544,7 +547,7 @@ impl<'a> TapedSkin<'a> {
                 FRAC_PI_2 - (high - low).atan2(hips - waist)
             }
             "crotch_length" => self.crotch_lengths()?.length,
-            "crotch_length_front" => self.crotch_lengths()?.before(self.warp.fork_depth()),
+            "crotch_length_front" => self.crotch_lengths()?.before(self.warp.crotch_point()),
             _ => return None,
         })
     }
@@ -552,7 +555,7 @@ impl<'a> TapedSkin<'a> {
     /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie [m]:
     /// before the muscles that run on into arm and back.
     pub(crate) fn between_folds(&self) -> Option<f64> {
-        let fold = self.skinned.at(self.marks.fold);
+        let fold = self.skinned.at(self.marks.armpit.front_fold);
         breadth_at(&self.hull(Girth::Bust), fold.z)
     }
 

@@ -64,8 +64,8 @@ impl Scales {
             seat: 1.0,
             shoulder: global,
             neck: global,
-            elbow: global * marks.elbow,
-            wrist: global * marks.wrist,
+            elbow: global * marks.arm.elbow,
+            wrist: global * marks.arm.wrist,
             lean: 0.0,
             spread: 0.0,
             armpit: 0.0,
@@ -108,15 +108,18 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
     let mut heights = vec![
         [0.0, 0.0],
         [t.joints.ankle[1], ankle],
-        [m.knee, knee],
-        [m.crotch, levels.at(Level::Crotch)],
-        [m.bust, levels.at(Level::Bust)],
-        [m.neck_side.y, levels.at(Level::NeckSide)],
+        [m.leg.knee, knee],
+        [m.crotch.height, levels.at(Level::Crotch)],
+        [m.bust.height, levels.at(Level::Bust)],
+        [m.neck.side.y, levels.at(Level::NeckSide)],
         [m.crown, height],
     ];
     if q.follows_skin() {
         // The fold under the bust.
-        let fold = [m.bust - UNDERBUST * t.height, levels.at(Level::Underbust)];
+        let fold = [
+            m.bust.height - UNDERBUST * t.height,
+            levels.at(Level::Underbust),
+        ];
         heights.insert(4, fold);
     }
     if heights
@@ -130,20 +133,32 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         });
     }
     let curve = Monotone::new(heights.clone());
-    let shoulder_rise = levels.at(Level::Tip) - curve.at(m.tip.y);
+    let shoulder_rise = levels.at(Level::Tip) - curve.at(m.shoulder.tip.y);
     let [neck, head] = [t.joints.neck[2], t.joints.head[2]];
     let places = [
-        m.crotch,
-        m.bust,
-        m.tip.y,
-        m.neck_side.y,
+        m.crotch.height,
+        m.bust.height,
+        m.shoulder.tip.y,
+        m.neck.side.y,
         t.joints.head[1],
         m.crown,
     ];
-    let middle = [m.depth, m.depth, 0.5 * (m.depth + neck), neck, head, head];
+    let middle = [
+        m.trunk.middle_depth,
+        m.trunk.middle_depth,
+        0.5 * (m.trunk.middle_depth + neck),
+        neck,
+        head,
+        head,
+    ];
     let forward = [0.0, 0.0, 0.5 * s.lean, s.lean, s.lean, s.lean];
     let row = |k: usize| [places[k], middle[k]];
-    let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + forward[k]];
+    let row_to = |k: usize| {
+        [
+            places[k],
+            (middle[k] - m.trunk.middle_depth) * global + forward[k],
+        ]
+    };
     let on_template = |level: f64| curve.inverse(level);
     let sections = trunk(input, s, levels, &on_template);
     let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
@@ -159,9 +174,9 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         arm: arm(input, s, global),
         arm_length: vec![
             [0.0, 0.0],
-            [m.elbow, s.elbow.clamp(0.2 * s.wrist, 0.8 * s.wrist)],
-            [m.wrist, s.wrist],
-            [1.5 * m.wrist, s.wrist + 0.5 * m.wrist * global],
+            [m.arm.elbow, s.elbow.clamp(0.2 * s.wrist, 0.8 * s.wrist)],
+            [m.arm.wrist, s.wrist],
+            [1.5 * m.arm.wrist, s.wrist + 0.5 * m.arm.wrist * global],
         ],
         arm_angle: q.get("arm_pose_angle"),
         global,
@@ -172,7 +187,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         } else {
             aspect
         },
-        depth: m.depth,
+        depth: m.trunk.middle_depth,
         middle: (0..6).map(row).collect(),
         middle_to: (0..6).map(row_to).collect(),
         shoulder_rise,
@@ -229,7 +244,7 @@ fn trunk(
         let [front, back] = [1.0 + 2.0 * s.split[girth], 1.0 - 2.0 * s.split[girth]];
         [y, scale * form, frontal * front, frontal * back]
     };
-    let [y, crotch @ ..] = section(m.crotch, Girth::Hips);
+    let [y, crotch @ ..] = section(m.crotch.height, Girth::Hips);
     let [lateral, front, back] = crotch.map(|scale| scale * s.seat);
     let mut rows = vec![[y, lateral, front, back]];
     let ends = [Level::Crotch, Level::Crown].map(|level| levels.at(level));
@@ -257,18 +272,18 @@ fn trunk(
     }
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let top = rows[rows.len() - 1];
-    rows.retain(|row| row[0] < m.tip.y - APART * t.height);
+    rows.retain(|row| row[0] < m.shoulder.tip.y - APART * t.height);
     let global = input.request.get("height") / t.height;
     let (neck, head) = (s.girth[Girth::Neck], s.girth[Girth::Head]);
     let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
-    let tip = [m.tip.y, s.shoulder, front, back];
-    rows.extend(under_the_arm(&rows, tip, m.armpit, APART * t.height));
+    let tip = [m.shoulder.tip.y, s.shoulder, front, back];
+    rows.extend(under_the_arm(&rows, tip, m.armpit.height, APART * t.height));
     rows.push(tip);
     let between = 0.5 * (s.neck + neck);
-    rows.push([m.neck_side.y, s.neck, between, between]);
-    rows.push([m.neck.y.max(m.neck_side.y + 0.01), neck, neck, neck]);
-    let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
-    rows.push([chin.max(m.neck.y + 0.02), head, head, head]);
+    rows.push([m.neck.side.y, s.neck, between, between]);
+    rows.push([m.neck.middle.y.max(m.neck.side.y + 0.01), neck, neck, neck]);
+    let chin = m.neck.side.y + 0.35 * (m.crown - m.neck.side.y);
+    rows.push([chin.max(m.neck.middle.y + 0.02), head, head, head]);
     rows.push([m.crown, head, head, head]);
     rows
 }
@@ -282,14 +297,14 @@ fn corners(
 ) -> Vec<[f64; 2]> {
     let m = &input.marks;
     let apart = APART * input.template.height;
-    let mut rows = vec![[m.tip.y, 0.0]];
+    let mut rows = vec![[m.shoulder.tip.y, 0.0]];
     for (girth, level) in [
         (Girth::Hips, Level::Hips),
         (Girth::Waist, Level::Waist),
         (Girth::Bust, Level::Bust),
     ] {
         let y = on_template(levels.at(level));
-        if rows.iter().all(|row| (row[0] - y).abs() > apart) && y < m.tip.y {
+        if rows.iter().all(|row| (row[0] - y).abs() > apart) && y < m.shoulder.tip.y {
             rows.push([y, s.corners[girth]]);
         }
     }
@@ -311,8 +326,8 @@ fn folds(
     vec![
         [0.0, 0.0],
         [waist, 0.0],
-        [m.bust, s.folds],
-        [m.tip.y, 0.0],
+        [m.bust.height, s.folds],
+        [m.shoulder.tip.y, 0.0],
         [m.crown, 0.0],
     ]
 }
@@ -350,17 +365,20 @@ fn leg(
     let thigh = on_template(crotch - THIGH_DROP * levels.at(Level::Crown));
     let mut rows = vec![[0.0, foot], [0.8 * t.joints.ankle[1], foot]];
     for (girth, y) in [
-        (Girth::Ankle, m.ankle),
-        (Girth::Calf, m.calf),
-        (Girth::Knee, m.knee),
-        (Girth::LowerThigh, m.lower_thigh),
+        (Girth::Ankle, m.leg.ankle),
+        (Girth::Calf, m.leg.calf),
+        (Girth::Knee, m.leg.knee),
+        (Girth::LowerThigh, m.leg.lower_thigh),
     ] {
         if q.girth(girth).is_some() {
             rows.push([y, s.girth[girth]]);
         }
     }
     rows.push([thigh, s.girth[Girth::Thigh]]);
-    rows.push([thigh.max(m.crotch) + 0.05 * t.height, s.girth[Girth::Thigh]]);
+    rows.push([
+        thigh.max(m.crotch.height) + 0.05 * t.height,
+        s.girth[Girth::Thigh],
+    ]);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
     rows
@@ -371,17 +389,17 @@ fn arm(input: &SolveInput, s: &Scales, global: f64) -> Vec<[f64; 2]> {
     let (m, q) = (&input.marks, &input.request);
     let mut rows = vec![[0.0, 0.5 * (global + s.girth[Girth::UpperArm])]];
     for (girth, distance) in [
-        (Girth::UpperArm, m.upper_arm),
-        (Girth::Elbow, m.elbow),
-        (Girth::Forearm, m.forearm),
-        (Girth::Wrist, m.wrist),
+        (Girth::UpperArm, m.arm.upper_arm),
+        (Girth::Elbow, m.arm.elbow),
+        (Girth::Forearm, m.arm.forearm),
+        (Girth::Wrist, m.arm.wrist),
     ] {
         if q.girth(girth).is_some() {
             rows.push([distance, s.girth[girth]]);
         }
     }
-    rows.push([1.1 * m.wrist, s.girth[Girth::Wrist]]);
-    rows.push([1.3 * m.wrist, global]);
+    rows.push([1.1 * m.arm.wrist, s.girth[Girth::Wrist]]);
+    rows.push([1.3 * m.arm.wrist, global]);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
     rows

@@ -149,7 +149,7 @@ impl SolveInput<'_> {
         if q.is_asked("shoulder_to_elbow") {
             along("shoulder_to_elbow", &mut scales.elbow);
         } else if q.is_asked("elbow_to_wrist") {
-            let share = self.marks.elbow / self.marks.wrist;
+            let share = self.marks.arm.elbow / self.marks.arm.wrist;
             let asked = q
                 .get("elbow_to_wrist")
                 .clamp(0.3 * scales.wrist, 0.7 * scales.wrist);
@@ -159,7 +159,7 @@ impl SolveInput<'_> {
                 scales.elbow
             };
         } else {
-            scales.elbow = scales.wrist * self.marks.elbow / self.marks.wrist;
+            scales.elbow = scales.wrist * self.marks.arm.elbow / self.marks.arm.wrist;
         }
         offsets.run = Some(tip.x - neck.x);
         for level in [Level::Tip, Level::NeckSide, Level::Crotch] {
@@ -277,9 +277,9 @@ impl SolveInput<'_> {
             }
         }
         if q.is_asked("crotch_length_front") {
-            let now = taken.warp.fork_depth();
+            let now = taken.warp.crotch_point();
             let range = [-1.0, 1.0].map(|end| now - scales.fork + end * SIDES * height);
-            if let Some(at) = taken.fork_of(q.get("crotch_length_front"), range) {
+            if let Some(at) = taken.crotch_point_of(q.get("crotch_length_front"), range) {
                 scales.fork += at - now;
             }
         }

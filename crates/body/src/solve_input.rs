@@ -19,7 +19,7 @@ impl SolveInput<'_> {
         (0..self.skin.mirror.len() as u32)
             .filter(|&v| {
                 let y = self.skin.mesh.positions[v as usize].y;
-                self.skin.mirror[v as usize] == v && y < self.marks.crotch + 0.05
+                self.skin.mirror[v as usize] == v && y < self.marks.crotch.height + 0.05
             })
             .collect()
     }

@@ -9,7 +9,7 @@ use crate::curve::{Monotone, smooth_step};
 use crate::girths::{Girth, PerGirth};
 use crate::rings::at_length;
 use crate::template::Template;
-use crate::template_marks::{FORK, FORK_STEP, TemplateMarks};
+use crate::template_marks::{CROTCH_PLACES, TemplateMarks};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
@@ -84,8 +84,9 @@ pub(crate) struct Follow {
 
 /// Rises of the body's middle over the crotch by their depth [m].
 fn fork(marks: &TemplateMarks) -> Vec<[f64; 2]> {
-    let at = |k: usize| marks.fork_at + k as f64 * FORK_STEP * marks.crown;
-    (0..FORK).map(|k| [at(k), marks.fork[k]]).collect()
+    (0..CROTCH_PLACES)
+        .map(|k| [marks.crotch_depth(k), marks.crotch.rise[k]])
+        .collect()
 }
 
 /// The map, for points of the left half, x >= 0.
@@ -128,7 +129,7 @@ impl Warp {
             corners: Monotone::new(shape.corners.clone()),
             folds: Monotone::new(shape.folds.clone()),
             sections: [1, 2, 3]
-                .map(|k| Monotone::new(marks.sections.map(|row| [row[0], row[k]]).into())),
+                .map(|k| Monotone::new(marks.trunk.sections.map(|row| [row[0], row[k]]).into())),
             leg: Monotone::new(shape.leg.clone()),
             arm: Monotone::new(shape.arm.clone()),
             arm_length: Monotone::new(shape.arm_length.clone()),
@@ -211,8 +212,8 @@ impl Warp {
     fn bulge(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
         let [across, up, down] = BULGE.map(|reach| reach * m.crown);
-        let high = p.y - m.bust;
-        let u = ((p.x - m.bust_point.x) / across).powi(2);
+        let high = p.y - m.bust.height;
+        let u = ((p.x - m.bust.point.x) / across).powi(2);
         if self.shape.bust_bulge == 0.0 || u >= 1.0 || high >= up || high <= -down || depth <= 0.0 {
             return 0.0;
         }
@@ -230,14 +231,14 @@ impl Warp {
     /// direction t in a section brought to breadth and depth one, `1 + c sin^2(2 t)`, so that
     /// breadth and depth stay and the corners between them fill.
     fn fuller(&self, p: Vec3) -> f64 {
-        let depth = p.z - self.marks.depth;
+        let depth = p.z - self.marks.trunk.middle_depth;
         let [corners, folds] = [&self.corners, &self.folds].map(|curve| curve.at(p.y));
         let corners = corners + folds.copysign(depth * folds);
         if corners == 0.0 {
             return 1.0;
         }
         // Below and above the sections that are known, those at the ends.
-        let [first, last] = [self.marks.sections[0][0], self.marks.bust];
+        let [first, last] = [self.marks.trunk.sections[0][0], self.marks.bust.height];
         let y = p.y.clamp(first, last);
         let [breadth, front, back] = [0, 1, 2].map(|k| self.sections[k].at(y));
         let u = (p.x / breadth).powi(2);
@@ -249,9 +250,9 @@ impl Warp {
     /// there, nothing at the sides, above and below.
     fn spread(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
-        let half = 1.02 * m.tip.x;
+        let half = 1.02 * m.shoulder.tip.x;
         let u = (p.x / half).powi(2);
-        let v = ((p.y - m.bust) / (0.055 * m.crown)).powi(2);
+        let v = ((p.y - m.bust.height) / (0.055 * m.crown)).powi(2);
         if u >= 1.0 || v >= 1.0 || depth <= 0.0 {
             return 0.0;
         }
@@ -263,13 +264,14 @@ impl Warp {
     /// at the neck and at the bust.
     fn rise(&self, p: Vec3) -> [f64; 2] {
         let m = &self.marks;
-        let inner = 0.92 * m.neck_side.x;
+        let inner = 0.92 * m.neck.side.x;
         // Almost straight from the neck, level at the end.
-        let out = ((p.x - inner) / (m.tip.x - inner)).clamp(0.0, 1.0);
+        let out = ((p.x - inner) / (m.shoulder.tip.x - inner)).clamp(0.0, 1.0);
         let out = out * (1.5 - 0.5 * out * out);
-        let up = smooth_step((p.y - m.bust) / (m.tip.y - m.bust));
-        let to_armpit = smooth_step(1.0 - (m.armpit - p.y) / (0.06 * m.crown));
-        let from_armpit = smooth_step(1.0 - (p.y - m.armpit) / (m.tip.y - m.armpit));
+        let up = smooth_step((p.y - m.bust.height) / (m.shoulder.tip.y - m.bust.height));
+        let to_armpit = smooth_step(1.0 - (m.armpit.height - p.y) / (0.06 * m.crown));
+        let from_armpit =
+            smooth_step(1.0 - (p.y - m.armpit.height) / (m.shoulder.tip.y - m.armpit.height));
         let armpit = self.shape.armpit_rise * to_armpit.min(from_armpit);
         [self.shape.shoulder_rise * up * out, armpit * out]
     }
@@ -279,7 +281,7 @@ impl Warp {
     fn sunk(&self, p: Vec3) -> f64 {
         let m = &self.marks;
         let [side, up, down] = FLAT.map(|reach| reach * m.crown);
-        let high = p.y - m.crotch;
+        let high = p.y - m.crotch.height;
         if self.shape.flat == 0.0 || p.x >= side || high >= up || high <= -down {
             return 0.0;
         }
@@ -290,10 +292,7 @@ impl Warp {
             true => smooth_step((up - high) / (up - top)),
             false => smooth_step((down + high) / down),
         };
-        let ends = [
-            m.fork_at,
-            m.fork_at + (FORK - 1) as f64 * FORK_STEP * m.crown,
-        ];
+        let ends = [0, CROTCH_PLACES - 1].map(|k| m.crotch_depth(k));
         self.shape.flat * self.fork.at(p.z.clamp(ends[0], ends[1])) * beside * far
     }
 
@@ -314,7 +313,8 @@ impl Warp {
         let axis = self.leg_axis_at(p.y);
         let scale = self.leg.at(p.y);
         // From the hips' form at the crotch to none.
-        let top = smooth_step(1.0 - (self.marks.crotch - p.y) / (LEG_TOP * self.marks.crown));
+        let top =
+            smooth_step(1.0 - (self.marks.crotch.height - p.y) / (LEG_TOP * self.marks.crown));
         let form = 1.0 + (self.shape.leg_form - 1.0) * top;
         Vec3::new(
             axis.x * self.shape.stance + (p.x - axis.x) * scale * form,
@@ -354,10 +354,9 @@ impl Warp {
     }
 
     /// Depth of the middle of the crotch on the body [m].
-    pub(crate) fn fork_depth(&self) -> f64 {
+    pub(crate) fn crotch_point(&self) -> f64 {
         let m = &self.marks;
-        let half = 0.5 * (FORK - 1) as f64 * FORK_STEP * m.crown;
-        let lowest = Vec3::new(0.0, m.crotch, m.fork_at + half);
+        let lowest = Vec3::new(0.0, m.crotch.height, m.crotch_depth(CROTCH_PLACES / 2));
         self.apply(lowest, Follow::default()).z + self.shape.fork
     }
 
@@ -392,8 +391,13 @@ impl Warp {
         let mut up: f64 = moved.iter().map(|r| r.max(0.0)).sum();
         let mut down: f64 = moved.iter().map(|r| (-r).max(0.0)).sum();
         let at = self.template_level(height);
-        if at < self.marks.crotch + FLAT[1] * self.marks.crown {
-            let most = self.marks.fork.iter().fold(0.0, |a: f64, &b| a.max(b));
+        if at < self.marks.crotch.height + FLAT[1] * self.marks.crown {
+            let most = self
+                .marks
+                .crotch
+                .rise
+                .iter()
+                .fold(0.0, |a: f64, &b| a.max(b));
             down += self.shape.flat.max(0.0) * most;
             up += (-self.shape.flat).max(0.0) * most;
         }
