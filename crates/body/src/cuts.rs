@@ -69,7 +69,7 @@ impl CutPlane {
             Cut::Arm => {
                 let distance = warp.arm_distance(place);
                 let [from, to] = [-ARM_WAY, ARM_WAY].map(|way| arm_middle(marks, distance + way));
-                let on_arm = |p: Vec3| warp.apply(p, Follow { arm: 1.0, leg: 0.0 });
+                let on_arm = |p: Vec3| warp.apply(p, Follow::ARM);
                 let middle = on_arm(arm_middle(marks, distance));
                 Self {
                     plane: [middle, (on_arm(to) - on_arm(from)).normalize()],
@@ -93,7 +93,7 @@ impl CutPlane {
         match girth {
             Girth::Elbow => Self::across_arm(marks.arm.elbow, warp),
             Girth::Heel => {
-                let on_leg = |p: Vec3| warp.apply(p, Follow { arm: 0.0, leg: 1.0 });
+                let on_leg = |p: Vec3| warp.apply(p, Follow::LEG);
                 let [a, b, c] = marks.leg.heel.map(on_leg);
                 let normal = (b - a).cross(&(c - a)).normalize();
                 let heights = marks.leg.heel.map(|p| p.y);

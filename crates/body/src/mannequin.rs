@@ -373,8 +373,8 @@ fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
 /// singular vectors and values are the new ones.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let follow = match primitive.part {
-        Part::LeftArm | Part::RightArm => Follow { arm: 1.0, leg: 0.0 },
-        Part::LeftLeg | Part::RightLeg => Follow { arm: 0.0, leg: 1.0 },
+        Part::LeftArm | Part::RightArm => Follow::ARM,
+        Part::LeftLeg | Part::RightLeg => Follow::LEG,
         Part::Trunk | Part::Head => Follow::default(),
     };
     let centre = Vec3::from(primitive.centre);

@@ -14,6 +14,11 @@ pub(crate) struct SolveInput<'a> {
 }
 
 impl SolveInput<'_> {
+    /// Ratio of statures, body to template.
+    pub(crate) fn stature_ratio(&self) -> f64 {
+        self.request.get("height") / self.template.height
+    }
+
     /// Middle vertices where the crotch may be lowest.
     pub(crate) fn crotch_vertices(&self) -> Vec<u32> {
         (0..self.skin.mirror.len() as u32)
