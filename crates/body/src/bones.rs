@@ -7,11 +7,10 @@ use toile_geometry::Vec3;
 
 /// The skeleton of the body a template is carried to.
 pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
-    let (arm, leg) = (Follow { arm: 1.0, leg: 0.0 }, Follow { arm: 0.0, leg: 1.0 });
     let carried = |joint: Joint| {
         let follow = match joint {
-            Joint::LShoulder | Joint::LElbow | Joint::LWrist => arm,
-            Joint::LHip | Joint::LKnee | Joint::LAnkle | Joint::LMidtarsal => leg,
+            Joint::LShoulder | Joint::LElbow | Joint::LWrist => Follow::ARM,
+            Joint::LHip | Joint::LKnee | Joint::LAnkle | Joint::LMidtarsal => Follow::LEG,
             _ => Follow::default(),
         };
         warp.apply(place(&template.joints, joint), follow)

@@ -34,9 +34,9 @@ const ARM_WAY: f64 = 0.065;
 
 /// The middle of the template's arm at a distance from the shoulder joint [m].
 fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
-    let place = (distance / marks.wrist - ARM_BEGINS) / ARM_STEP;
+    let place = (distance / marks.arm.wrist - ARM_BEGINS) / ARM_STEP;
     let before = (place.floor().max(0.0) as usize).min(ARM_MIDDLES - 2);
-    let [a, b] = [before, before + 1].map(|k| marks.arm_middle[k]);
+    let [a, b] = [before, before + 1].map(|k| marks.arm.middles[k]);
     a + (b - a) * (place - before as f64).clamp(0.0, 1.0)
 }
 
@@ -47,21 +47,21 @@ impl CutPlane {
             Cut::Trunk => Self::level(Part::Trunk, place, warp.near(place, REACH)),
             Cut::Head => Self::level(Part::Head, place, warp.near(place, HEAD)),
             Cut::Leg => {
-                let reach = match warp.template_level(place) < marks.lower_thigh {
+                let reach = match warp.template_level(place) < marks.leg.lower_thigh {
                     true => REACH,
                     false => FAR,
                 };
                 Self::level(Part::LeftLeg, place, warp.near(place, reach))
             }
             Cut::Neck => {
-                let middle = warp.apply(marks.neck, Follow::default()) + Vec3::y() * place;
+                let middle = warp.apply(marks.neck.middle, Follow::default()) + Vec3::y() * place;
                 let (sin, cos) = NECK_TILT.sin_cos();
                 Self {
                     part: Part::Head,
                     plane: [middle, Vec3::new(0.0, cos, sin)],
                     near: {
                         let level = warp.template_level(middle.y);
-                        let at = neck_height(Vec3::new(0.0, level, marks.neck.z));
+                        let at = neck_height(Vec3::new(0.0, level, marks.neck.middle.z));
                         Near::Neck([at - NECK, at + NECK])
                     },
                 }
@@ -69,7 +69,7 @@ impl CutPlane {
             Cut::Arm => {
                 let distance = warp.arm_distance(place);
                 let [from, to] = [-ARM_WAY, ARM_WAY].map(|way| arm_middle(marks, distance + way));
-                let on_arm = |p: Vec3| warp.apply(p, Follow { arm: 1.0, leg: 0.0 });
+                let on_arm = |p: Vec3| warp.apply(p, Follow::ARM);
                 let middle = on_arm(arm_middle(marks, distance));
                 Self {
                     plane: [middle, (on_arm(to) - on_arm(from)).normalize()],
@@ -91,12 +91,12 @@ impl CutPlane {
             Self::level(Part::Trunk, y, warp.near(y, FAR))
         };
         match girth {
-            Girth::Elbow => Self::across_arm(marks.elbow, warp),
+            Girth::Elbow => Self::across_arm(marks.arm.elbow, warp),
             Girth::Heel => {
-                let on_leg = |p: Vec3| warp.apply(p, Follow { arm: 0.0, leg: 1.0 });
-                let [a, b, c] = marks.heel.map(on_leg);
+                let on_leg = |p: Vec3| warp.apply(p, Follow::LEG);
+                let [a, b, c] = marks.leg.heel.map(on_leg);
                 let normal = (b - a).cross(&(c - a)).normalize();
-                let heights = marks.heel.map(|p| p.y);
+                let heights = marks.leg.heel.map(|p| p.y);
                 let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
                 let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 Self {

@@ -1,6 +1,7 @@
 //! The data from which a mannequin is made again.
 
 use crate::rigging::Rigging;
+use crate::sides::both_sides;
 use crate::template::Template;
 use crate::{BodyError, BodyFrame, Figure, Mannequin, Primitive};
 use serde::{Deserialize, Serialize};
@@ -59,7 +60,7 @@ impl Mannequin {
             frame: Some(BodyFrame {
                 height: template_body.template.height,
                 crotch: template_body.template.crotch,
-                armpit: template_body.marks.armpit,
+                armpit: template_body.marks.armpit.height,
                 hand: template_body.template.hand,
                 neck_radius: template_body.template.neck_radius,
                 joints: template_body.template.joints,
@@ -97,17 +98,6 @@ impl Mannequin {
         }
         Self::from_template(&description.measurements, description.figure, template)
     }
-}
-
-/// Primitives with the mirror images of those off the middle after them.
-pub(crate) fn both_sides(mut primitives: Vec<Primitive>) -> Vec<Primitive> {
-    let mirrored: Vec<Primitive> = primitives
-        .iter()
-        .filter(|p| !p.is_central())
-        .map(Primitive::mirrored)
-        .collect();
-    primitives.extend(mirrored);
-    primitives
 }
 
 /// Refuses a frame no body has.

@@ -1,6 +1,6 @@
 //! Fits our mannequin to a foreign closed mesh of a person.
 
-use crate::describe::{Description, both_sides};
+use crate::describe::Description;
 use crate::fit_check::{FitMisfit, misfit};
 use crate::fit_field::{self, Goal};
 use crate::fit_frame::{self, FoundFrame};
@@ -10,6 +10,7 @@ use crate::fit_start::start;
 use crate::request::Request;
 use crate::rigging::Rigging;
 use crate::rings::TemplateSkin;
+use crate::sides::both_sides;
 use crate::template::Template;
 use crate::{
     BodyError, BodyFrame, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin,

@@ -3,12 +3,11 @@
 
 use crate::fit_girths::GirthResidual;
 use crate::fit_samples::{DensityTarget, Sample};
+use crate::fit_surface::{Row, Surface, UNKNOWNS};
 use crate::{Part, Primitive, THRESHOLD};
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Rotation3};
+use nalgebra::{Cholesky, DMatrix, DVector, Rotation3};
 use toile_geometry::Vec3;
 
-/// Unknowns of a primitive: centre, logarithms of the semi-axes, turn, logarithm of the weight.
-const UNKNOWNS: usize = 10;
 /// Steps tried at the most.
 const STEPS: usize = 150;
 /// Of a stature: a residual from which on samples count less (Huber 1964).
@@ -17,27 +16,6 @@ const FAR: f64 = 0.004;
 const ROOM: [f64; 2] = [0.05, 0.03];
 /// Limits of the weight.
 const WEIGHT: [f64; 2] = [0.3, 3.0];
-
-/// A primitive made ready.
-struct Ready {
-    centre: Vec3,
-    turn: Matrix3<f64>,
-    inverse: Vec3,
-    weight: f64,
-    reach: f64,
-    /// Whether its mirror image adds to the same part.
-    twin: bool,
-    /// Whether it is its own mirror image: then it neither goes nor turns sideways.
-    central: bool,
-}
-
-/// The implicit surface of one part of the left side and the middle.
-pub(crate) struct Surface {
-    all: Vec<Ready>,
-}
-
-/// A primitive by its number with derivatives by its unknowns.
-pub(crate) type Row = (usize, [f64; UNKNOWNS]);
 
 /// What a part is fitted to.
 pub(crate) struct Goal<'a> {
@@ -123,109 +101,6 @@ fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
     }
 }
 
-fn ready(p: &Primitive) -> Ready {
-    Ready {
-        centre: Vec3::from(p.centre),
-        turn: *p.rotation().matrix(),
-        inverse: Vec3::from(p.radii).map(|r| 1.0 / r),
-        weight: p.weight,
-        reach: p.radii.iter().copied().fold(0.0, f64::max).powi(2),
-        twin: matches!(p.part, Part::Trunk | Part::Head) && !p.is_central(),
-        central: p.is_central(),
-    }
-}
-
-/// Density of a primitive at a place with its gradient by place and by the unknowns; the centre's
-/// derivative is the opposite of the place's.
-fn density(p: &Ready, place: Vec3) -> Option<(f64, Vec3, [f64; UNKNOWNS])> {
-    let offset = place - p.centre;
-    if offset.norm_squared() >= p.reach {
-        return None;
-    }
-    let unit = p.turn.tr_mul(&offset).component_mul(&p.inverse);
-    let q = unit.norm_squared();
-    if q >= 1.0 {
-        return None;
-    }
-    let value = p.weight * (1.0 - q) * (1.0 - q);
-    let slope = -2.0 * p.weight * (1.0 - q);
-    let toward = p.turn * unit.component_mul(&p.inverse);
-    let gradient = toward * (2.0 * slope);
-    // A turn of the ellipsoid by w turns the offset by -w.
-    let turned = toward.cross(&offset) * (2.0 * slope);
-    let sized = unit.component_mul(&unit) * (-2.0 * slope);
-    let row = [
-        -gradient.x,
-        -gradient.y,
-        -gradient.z,
-        sized.x,
-        sized.y,
-        sized.z,
-        turned.x,
-        turned.y,
-        turned.z,
-        value,
-    ];
-    Some((value, gradient, row))
-}
-
-impl Surface {
-    pub(crate) fn new(primitives: &[Primitive]) -> Self {
-        Self {
-            all: primitives.iter().map(ready).collect(),
-        }
-    }
-
-    /// Density at a place and its gradient; the rows of the primitives that reach there are put
-    /// into `touched`.
-    fn at(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, Vec3) {
-        touched.clear();
-        let (mut value, mut gradient) = (0.0, Vec3::zeros());
-        let image = Vec3::new(-place.x, place.y, place.z);
-        for (k, p) in self.all.iter().enumerate() {
-            let own = density(p, place);
-            let twin = if p.twin { density(p, image) } else { None };
-            let mut row = [0.0; UNKNOWNS];
-            if let Some((v, g, r)) = own {
-                value += v;
-                gradient += g;
-                row = r;
-            }
-            if let Some((v, g, r)) = twin {
-                value += v;
-                gradient += Vec3::new(-g.x, g.y, g.z);
-                row.iter_mut().zip(r).for_each(|(a, b)| *a += b);
-            }
-            if p.central {
-                [row[0], row[7], row[8]] = [0.0; 3];
-            }
-            if own.is_some() || twin.is_some() {
-                touched.push((k, row));
-            }
-        }
-        (value, gradient)
-    }
-
-    /// How far the surface lies beyond a place in its level plane, to first order [m], and the
-    /// density's slope that way [1/m].
-    pub(crate) fn beyond(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, f64) {
-        /// Of the slope: under it a surface is as good as level.
-        const LEVEL: f64 = 0.15;
-        let (value, gradient) = self.at(place, touched);
-        let steep = gradient.x.hypot(gradient.z).max(LEVEL * gradient.norm());
-        ((value - THRESHOLD) / steep.max(1e-6), steep.max(1e-6))
-    }
-
-    /// By how much a tape is longer for where the surface lies beyond its corners [m].
-    pub(crate) fn lengthening(&self, corners: &[(Vec3, f64)]) -> f64 {
-        let mut touched = Vec::new();
-        corners
-            .iter()
-            .map(|&(place, turn)| turn * self.beyond(place, &mut touched).0)
-            .sum()
-    }
-}
-
 fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> System {
     let height = goal.height;
     let surface = Surface::new(primitives);
@@ -293,7 +168,7 @@ impl System {
     /// less what is wanted.
     fn tape(&mut self, surface: &Surface, girth: &GirthResidual) {
         let mut touched = Vec::new();
-        let mut rows = vec![None; surface.all.len()];
+        let mut rows = vec![None; surface.count()];
         let mut long = -girth.target;
         for &(place, turn) in &girth.corners {
             let (beyond, steep) = surface.beyond(place, &mut touched);

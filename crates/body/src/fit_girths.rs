@@ -5,9 +5,9 @@
 //! So a girth is one more residual, linear in the surface's moves at the hull's corners.
 
 use crate::fit_check::{LevelPart, pairs, tape};
-use crate::fit_field::Surface;
 use crate::fit_frame::FoundFrame;
 use crate::fit_samples::PARTS;
+use crate::fit_surface::Surface;
 use crate::{Loop, Part, Primitive, Scan};
 use std::f64::consts::TAU;
 use toile_geometry::{Vec2, Vec3, convex_hull};

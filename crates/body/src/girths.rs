@@ -1,6 +1,7 @@
-//! Every girth a body is solved for.
+//! Every girth a body is solved for, and what is kept for each.
 
 use crate::landmark_level::Level;
+use std::ops::{Index, IndexMut};
 
 /// A girth, from the head down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub(crate) enum Girth {
 }
 
 impl Girth {
-    pub(crate) const COUNT: usize = 18;
+    const COUNT: usize = 18;
     pub(crate) const ALL: [Girth; Self::COUNT] = {
         use Girth::*;
         [
@@ -70,5 +71,35 @@ impl Girth {
             Girth::Hips => Some(Level::Hips),
             _ => None,
         }
+    }
+}
+
+/// A value for each girth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PerGirth<T>([T; Girth::COUNT]);
+
+impl<T> PerGirth<T> {
+    /// The values a function gives for the girths.
+    pub(crate) fn of(value: impl FnMut(Girth) -> T) -> Self {
+        Self(Girth::ALL.map(value))
+    }
+
+    /// The values, to be changed, in the order of [`Girth::ALL`].
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.0.iter_mut()
+    }
+}
+
+impl<T> Index<Girth> for PerGirth<T> {
+    type Output = T;
+
+    fn index(&self, girth: Girth) -> &T {
+        &self.0[girth as usize]
+    }
+}
+
+impl<T> IndexMut<Girth> for PerGirth<T> {
+    fn index_mut(&mut self, girth: Girth) -> &mut T {
+        &mut self.0[girth as usize]
     }
 }

@@ -1,15 +1,15 @@
-//! Named points of a body, its axes and its levels.
+//! Named points of a body.
 
+use crate::Part;
 use crate::levels::{Level, Levels};
-use crate::solve::SolveInput;
+use crate::solve_input::SolveInput;
 use crate::tape::outermost;
 use crate::template_marks::middle_depth;
 use crate::warp::{Follow, Warp};
-use crate::{Joint, Mannequin, Part};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
 /// Named points of a body [m], on its skin but for the middle of the trunk. Pairs are left, +X,
-/// then right. The joints are in [`Mannequin::skeleton`].
+/// then right. The joints are in [`crate::Mannequin::skeleton`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmarks {
     /// Top of the head.
@@ -33,35 +33,6 @@ pub struct Landmarks {
     pub crotch: Vec3,
     /// Middle of the trunk at crotch, hips, waist, bust and base of the neck, from below.
     pub spine: [Vec3; 5],
-}
-
-/// The axis of one part of the body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PartAxis {
-    /// Which part.
-    pub part: Part,
-    /// Points from the root outward: trunk from the crotch to the neck, head from the neck to the
-    /// crown, arm from the shoulder joint to the wrist, leg from the hip joint to the ankle [m].
-    pub axis: Vec<Vec3>,
-}
-
-/// Heights above the floor [m].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyLevels {
-    /// Top of the head.
-    pub crown: f64,
-    /// Side of the neck.
-    pub neck: f64,
-    /// Outer end of the shoulder.
-    pub shoulder: f64,
-    /// Fullest bust or chest.
-    pub chest: f64,
-    /// Natural waist.
-    pub waist: f64,
-    /// Fullest hip.
-    pub hip: f64,
-    /// Crotch.
-    pub crotch: f64,
 }
 
 fn pair(left: Vec3) -> [Vec3; 2] {
@@ -90,12 +61,12 @@ impl Landmarks {
         };
         let nape_z = -middle_extreme(&trunk_section(level(Level::Nape)), -1.0);
         let spine = |y: f64| Vec3::new(0.0, y, middle_depth(&trunk_section(y)));
-        let tip = input.marks.tip_on.at(&mesh.positions);
-        let neck = input.marks.neck_side_on.at(&mesh.positions);
+        let tip = input.marks.shoulder.tip_on.at(&mesh.positions);
+        let neck = input.marks.neck.side_on.at(&mesh.positions);
         let bust_level = level(Level::Bust);
         let ends = trunk_section(bust_level);
         let section: Vec<[Vec2; 2]> = ends.chunks_exact(2).map(|s| [s[0], s[1]]).collect();
-        let point = warp.apply(input.marks.bust_point, Follow::default());
+        let point = warp.apply(input.marks.bust.point, Follow::default());
         let bust =
             outermost(&section, point.x).map_or(point, |on| Vec3::new(on.x, bust_level, on.y));
         let middle = |v: &usize| input.skin.mirror[*v] as usize == *v;
@@ -159,48 +130,4 @@ fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
 fn middle_extreme(section: &[Vec2], side: f64) -> f64 {
     let near = section.iter().filter(|p| p.x.abs() < 0.012);
     near.map(|p| side * p.y).fold(f64::NEG_INFINITY, f64::max)
-}
-
-impl Mannequin {
-    /// The axes of the parts it has, in the order of [`Part::ALL`]: all six, but of a dress form trunk and
-    /// the root of the neck.
-    pub fn parts(&self) -> Vec<PartAxis> {
-        let l = &self.landmarks;
-        let form = self.form();
-        let has = |part: &Part| form.is_none() || matches!(part, Part::Trunk | Part::Head);
-        let at = |joint: Joint| self.skeleton.centre(joint);
-        let limb = |joints: [Joint; 3]| joints.map(at).to_vec();
-        let whole = |part: Part| match part {
-            Part::Trunk => l.spine.to_vec(),
-            Part::Head => vec![l.spine[4], at(Joint::Skullbase), l.crown],
-            Part::LeftArm => limb([Joint::LShoulder, Joint::LElbow, Joint::LWrist]),
-            Part::RightArm => limb([Joint::RShoulder, Joint::RElbow, Joint::RWrist]),
-            Part::LeftLeg => limb([Joint::LHip, Joint::LKnee, Joint::LAnkle]),
-            Part::RightLeg => limb([Joint::RHip, Joint::RKnee, Joint::RAnkle]),
-        };
-        let top = form.map(|form| Vec3::new(0.0, form.top, at(Joint::Skullbase).z));
-        (Part::ALL.into_iter().filter(has))
-            .map(|part| PartAxis {
-                part,
-                axis: match (part, top) {
-                    (Part::Head, Some(top)) => vec![l.spine[4], top],
-                    _ => whole(part),
-                },
-            })
-            .collect()
-    }
-
-    /// Heights of the levels garments hang on.
-    pub fn levels(&self) -> BodyLevels {
-        let l = &self.landmarks;
-        BodyLevels {
-            crown: self.form().map_or(l.crown.y, |form| form.top),
-            neck: l.neck_sides[0].y,
-            shoulder: l.shoulder_tips[0].y,
-            chest: self.levels.at(Level::Bust),
-            waist: self.levels.at(Level::Waist),
-            hip: self.levels.at(Level::Hips),
-            crotch: l.crotch.y,
-        }
-    }
 }

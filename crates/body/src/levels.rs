@@ -245,27 +245,28 @@ fn proportions(
         system.add(&[(NeckSide, 1.0), (Tip, -1.0)], value, deviation * h);
     }
     let t = marks;
+    let [bust, crotch] = [t.bust.height, t.crotch.height];
     let of_template = |a: f64| a / t.crown * h;
     let near = PROPORTION * h;
     system.add(&[(Bust, 1.0), (Underbust, -1.0)], UNDERBUST * h, near);
     system.add(&[(HighBust, 1.0), (Bust, -0.62), (Tip, -0.38)], 0.0, near);
     system.add(&[(HighHips, 1.0), (Waist, -0.5), (Hips, -0.5)], 0.0, near);
-    system.add(&[(Knee, 1.0), (Crotch, -t.knee / t.crotch)], 0.0, near);
+    system.add(&[(Knee, 1.0), (Crotch, -t.leg.knee / crotch)], 0.0, near);
     system.add(
         &[(Tip, 1.0), (Armpit, -1.0)],
-        of_template(t.tip.y - t.armpit),
+        of_template(t.shoulder.tip.y - t.armpit.height),
         PREDICTED * h,
     );
     // Weak ones, so that every level is determined.
     let weak = 0.05 * h;
     for (level, y) in [
         (Crown, t.crown),
-        (Nape, t.neck_side.y),
-        (Tip, t.tip.y),
-        (Bust, t.bust),
-        (Crotch, t.crotch),
-        (Waist, t.crotch + 0.6 * (t.bust - t.crotch)),
-        (Hips, t.crotch + 0.2 * (t.bust - t.crotch)),
+        (Nape, t.neck.side.y),
+        (Tip, t.shoulder.tip.y),
+        (Bust, bust),
+        (Crotch, crotch),
+        (Waist, crotch + 0.6 * (bust - crotch)),
+        (Hips, crotch + 0.2 * (bust - crotch)),
     ] {
         system.add(&[(level, 1.0)], of_template(y), weak);
     }

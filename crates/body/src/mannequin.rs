@@ -10,10 +10,11 @@ use crate::landmarks::Landmarks;
 use crate::levels::{self, Level, Levels, SkinOffsets};
 use crate::refit::refitted;
 use crate::request::Request;
-use crate::rigging::sources;
 use crate::rings::{self, TemplateSkin};
+use crate::sides::sources;
 use crate::skinning::Skinning;
-use crate::solve::{SolveInput, Solved};
+use crate::solve::Solved;
+use crate::solve_input::SolveInput;
 use crate::template::Template;
 use crate::template_marks::TemplateMarks;
 use crate::warp::{Follow, Warp};
@@ -188,7 +189,7 @@ impl Mannequin {
             &template_body.skin.arm,
         );
         let form = (figure == Figure::DressForm).then(|| {
-            let neck = warp.apply(template_body.marks.neck, Follow::default());
+            let neck = warp.apply(template_body.marks.neck.middle, Follow::default());
             let (sin, cos) = NECK_TILT.sin_cos();
             DressForm::of(
                 (&skin, &template_body.skin.parts),
@@ -264,9 +265,15 @@ impl Mannequin {
 
     /// How the skin hangs on the joints.
     pub(crate) fn skinning(&self) -> &Skinning {
-        let skin = &self.template_body.skin;
-        self.skinning
-            .get_or_init(|| Skinning::new(self, &skin.arm, &skin.leg))
+        self.skinning.get_or_init(|| {
+            let positions = &self.skin().positions;
+            if self.form.is_some() {
+                return Skinning::rigid(positions.len());
+            }
+            let follow = &self.template_body.skin;
+            let of_height = (&self.skeleton, self.landmarks.crown.y);
+            Skinning::new(of_height, positions, [&follow.arm, &follow.leg])
+        })
     }
 
     /// The figure it was grown from.
@@ -366,8 +373,8 @@ fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
 /// singular vectors and values are the new ones.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let follow = match primitive.part {
-        Part::LeftArm | Part::RightArm => Follow { arm: 1.0, leg: 0.0 },
-        Part::LeftLeg | Part::RightLeg => Follow { arm: 0.0, leg: 1.0 },
+        Part::LeftArm | Part::RightArm => Follow::ARM,
+        Part::LeftLeg | Part::RightLeg => Follow::LEG,
         Part::Trunk | Part::Head => Follow::default(),
     };
     let centre = Vec3::from(primitive.centre);

@@ -4,7 +4,7 @@ use crate::Part;
 use crate::bands::Near;
 use crate::cuts::CutPlane;
 use crate::definitions::{BodyMarks, KNEE, Taping};
-use crate::girths::Girth;
+use crate::girths::{Girth, PerGirth};
 use crate::levels::{Level, Levels, upright};
 use crate::tape::{
     Skinned, along, breadth_at, extent, fall, half_length, hanging, outermost, stretched,
@@ -28,22 +28,22 @@ pub(crate) struct TapedSkin<'a> {
     shares: Shares,
     body: OnceCell<BodyMarks>,
     /// Cache of places.
-    places: RefCell<[Option<f64>; Girth::COUNT]>,
+    places: RefCell<PerGirth<Option<f64>>>,
     /// Cache of hulls.
-    hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
+    hulls: RefCell<PerGirth<Option<Rc<[Vec2]>>>>,
     /// Cache of lengths.
     known: RefCell<Vec<(String, Option<f64>)>>,
     around: OnceCell<Option<Around>>,
     bust: OnceCell<Option<Vec3>>,
     /// Cache of girths round the trunk where they are found.
-    found: [OnceCell<f64>; Girth::COUNT],
+    found: PerGirth<OnceCell<f64>>,
     through_neck: OnceCell<Vec<[Vec3; 2]>>,
     /// Vertices in the left armpit from front to back.
     armpit: &'a [u32],
 }
 
 /// Shares of their ranges at which girths lie [1].
-pub(crate) type Shares = [Option<f64>; Girth::COUNT];
+pub(crate) type Shares = PerGirth<Option<f64>>;
 
 /// The tight way in the middle from the waist in front round the crotch to the waist behind.
 struct Around {
@@ -109,12 +109,12 @@ impl<'a> TapedSkin<'a> {
 
     /// The end of the left shoulder [m].
     pub(crate) fn tip(&self) -> Vec3 {
-        self.marks.tip_on.on(self.skinned)
+        self.marks.shoulder.tip_on.on(self.skinned)
     }
 
     /// The left side of the neck [m].
     pub(crate) fn neck_side(&self) -> Vec3 {
-        self.marks.neck_side_on.on(self.skinned)
+        self.marks.neck.side_on.on(self.skinned)
     }
 
     /// Height of a landmark on the skin [m].
@@ -139,11 +139,11 @@ impl<'a> TapedSkin<'a> {
 
     /// The hull of a girth's section: round the trunk at the level that lengths give it.
     pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
-        if let Some(known) = &self.hulls.borrow()[girth as usize] {
+        if let Some(known) = &self.hulls.borrow()[girth] {
             return known.clone();
         }
         let hull: Rc<[Vec2]> = self.taken_hull(girth).into();
-        self.hulls.borrow_mut()[girth as usize] = Some(hull.clone());
+        self.hulls.borrow_mut()[girth] = Some(hull.clone());
         hull
     }
 
@@ -165,7 +165,10 @@ impl<'a> TapedSkin<'a> {
             let crotch = self.height(Level::Crotch);
             let stature = self.levels.at(Level::Crown);
             let heights = self.armpit.iter().map(|&v| self.skinned.at(v).y);
-            let arm = [self.armpit_fold(), self.skinned.at(self.marks.finger_tip)];
+            let arm = [
+                self.armpit_fold(),
+                self.skinned.at(self.marks.arm.finger_tip),
+            ];
             BodyMarks {
                 stature,
                 crotch,
@@ -208,15 +211,15 @@ impl<'a> TapedSkin<'a> {
 
     /// The place of a girth [m]; none where lengths alone say it.
     fn place(&self, girth: Girth) -> Option<f64> {
-        if let Some(known) = self.places.borrow()[girth as usize] {
+        if let Some(known) = self.places.borrow()[girth] {
             return Some(known);
         }
         let taping = self.taping(girth)?;
-        let place = match self.shares[girth as usize] {
+        let place = match self.shares[girth] {
             Some(share) => taping.at(share),
             None => taping.find(|place| Some(self.taped(&taping, place)))?,
         };
-        self.places.borrow_mut()[girth as usize] = Some(place);
+        self.places.borrow_mut()[girth] = Some(place);
         Some(place)
     }
 
@@ -264,9 +267,9 @@ impl<'a> TapedSkin<'a> {
 
     /// The shares of their ranges at which girths lie, for the next body that is much the same.
     pub(crate) fn shares(&self) -> Shares {
-        Girth::ALL.map(|girth| {
+        Shares::of(|girth| {
             let taping = self.taping(girth)?;
-            let known = self.places.borrow()[girth as usize];
+            let known = self.places.borrow()[girth];
             known.map(|place| taping.share(place))
         })
     }
@@ -283,9 +286,7 @@ impl<'a> TapedSkin<'a> {
             .level()
             .and_then(|_| self.taping(girth).zip(self.place(girth)));
         match found {
-            Some((taping, place)) => {
-                *self.found[girth as usize].get_or_init(|| self.taped(&taping, place))
-            }
+            Some((taping, place)) => *self.found[girth].get_or_init(|| self.taped(&taping, place)),
             None => closed_length(&self.hull(girth)),
         }
     }
@@ -298,7 +299,7 @@ impl<'a> TapedSkin<'a> {
     fn taken_bust_point(&self) -> Option<Vec3> {
         let y = self.levels.at(Level::Bust);
         let level = [Vec3::y() * y, Vec3::y()];
-        let x = self.warp.apply(self.marks.bust_point, Follow::default()).x;
+        let x = self.warp.apply(self.marks.bust.point, Follow::default()).x;
         let section = self
             .skinned
             .section(&[Part::Trunk], level, self.around(y))
@@ -440,8 +441,8 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Depth of the middle of the crotch at which the part before it has a length [m].
-    pub(crate) fn fork_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
+    /// Depth of the crotch point at which the part before it has a length [m].
+    pub(crate) fn crotch_point_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
         let around = self.crotch_lengths()?;
         let (mut low, mut high) = (low, high);
         for _ in 0..HALVINGS {
@@ -515,9 +516,9 @@ impl<'a> TapedSkin<'a> {
             "shoulder_incl" => (neck.y - tip.y).atan2(tip.x - neck.x),
             "shoulder_length" => (tip - neck).norm(),
             "shoulder_to_shoulder" => self.across_shoulders(),
-            "arm_length" => on_arm(self.marks.wrist) - from_tip,
-            "shoulder_to_elbow" => on_arm(self.marks.elbow) - from_tip,
-            "elbow_to_wrist" => on_arm(self.marks.wrist) - on_arm(self.marks.elbow),
+            "arm_length" => on_arm(self.marks.arm.wrist) - from_tip,
+            "shoulder_to_elbow" => on_arm(self.marks.arm.elbow) - from_tip,
+            "elbow_to_wrist" => on_arm(self.marks.arm.wrist) - on_arm(self.marks.arm.elbow),
             "arm_pose_angle" => (-along.y).atan2(along.x),
             "front_width" => part(Girth::Bust, 1.0),
             "back_width" => part(Girth::Bust, -1.0),
@@ -546,7 +547,7 @@ impl<'a> TapedSkin<'a> {
                 FRAC_PI_2 - (high - low).atan2(hips - waist)
             }
             "crotch_length" => self.crotch_lengths()?.length,
-            "crotch_length_front" => self.crotch_lengths()?.before(self.warp.fork_depth()),
+            "crotch_length_front" => self.crotch_lengths()?.before(self.warp.crotch_point()),
             _ => return None,
         })
     }
@@ -554,7 +555,7 @@ impl<'a> TapedSkin<'a> {
     /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie [m]:
     /// before the muscles that run on into arm and back.
     pub(crate) fn between_folds(&self) -> Option<f64> {
-        let fold = self.skinned.at(self.marks.fold);
+        let fold = self.skinned.at(self.marks.armpit.front_fold);
         breadth_at(&self.hull(Girth::Bust), fold.z)
     }
 

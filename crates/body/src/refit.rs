@@ -1,6 +1,6 @@
 //! Fits primitives anew to the skin that was made from them.
 
-use crate::describe::both_sides;
+use crate::sides::both_sides;
 use crate::{Blend, Part, Primitive, THRESHOLD};
 use nalgebra::Matrix3;
 use toile_geometry::{TriangleMesh, Vec3};

@@ -2,7 +2,7 @@
 //! and groups of primitives.
 
 use crate::deform::Deformation;
-use crate::{BodyError, Joint, Primitive};
+use crate::{BodyError, Joint};
 use serde::{Deserialize, Serialize};
 
 /// What is particular about one primitive.
@@ -133,14 +133,4 @@ impl Rigging {
         }
         Ok(())
     }
-}
-
-/// For the primitives of both sides, in the order of [`crate::describe::both_sides`]: which of the
-/// left and the middle each stands for, and whether it is the mirror image.
-pub(crate) fn sources(left: &[Primitive]) -> Vec<(usize, bool)> {
-    let images = (0..left.len()).filter(|&k| !left[k].is_central());
-    (0..left.len())
-        .map(|k| (k, false))
-        .chain(images.map(|k| (k, true)))
-        .collect()
 }

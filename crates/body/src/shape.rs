@@ -1,393 +1,158 @@
-//! Builds the curves of the warp from scales and levels.
+//! What the shape of a body depends on, all for one template.
 
 use crate::BodyError;
-use crate::curve::Monotone;
-use crate::definitions::{THIGH_DROP, trunk_range};
-use crate::girths::Girth;
-use crate::levels::{Level, Levels};
-use crate::solve::SolveInput;
-use crate::template_marks::{TemplateMarks, UNDERBUST};
-use crate::warp::Shape;
+use crate::girths::PerGirth;
+use crate::template_marks::TemplateMarks;
 use std::cmp::Ordering;
 
-/// Scales that are solved for.
-#[derive(Clone, Debug)]
-pub(crate) struct Scales {
-    /// Of each girth.
-    pub(crate) girth: [f64; Girth::COUNT],
-    /// Square of lateral over frontal scale, of girths round the trunk.
-    pub(crate) aspect: [f64; Girth::COUNT],
-    /// How much fuller the corners of a section are, of girths round the trunk.
-    pub(crate) corners: [f64; Girth::COUNT],
-    /// How much fuller the front corners of the chest are, and the back ones emptier.
-    pub(crate) folds: f64,
-    /// Front over back: the front's share of the scale beyond one half.
-    pub(crate) split: [f64; Girth::COUNT],
-    /// How much narrower the trunk is at the crotch than at the hips, so that nothing there is larger
-    /// round than they are.
-    pub(crate) seat: f64,
-    /// Lateral, at the ends of the shoulders.
-    pub(crate) shoulder: f64,
-    /// Lateral, at the sides of the neck.
-    pub(crate) neck: f64,
-    /// Distances along the arm from the shoulder joint [m].
-    pub(crate) elbow: f64,
-    pub(crate) wrist: f64,
-    /// How far the neck stands forward of the template's [m].
-    pub(crate) lean: f64,
-    /// How far the bust points are apart over what the sections give them, less one.
-    pub(crate) spread: f64,
-    /// Rise of the armpits over what the levels give them [m].
-    pub(crate) armpit: f64,
-    /// How far the bust points stand forward of what the sections give them [m].
-    pub(crate) bulge: f64,
-    /// How flat the crotch lies from front to back.
-    pub(crate) flat: f64,
-    /// Depth of the sides of girths round the trunk [m].
-    pub(crate) sides: [f64; Girth::COUNT],
-    /// Depth of the middle of the crotch over the lowest place's [m].
-    pub(crate) fork: f64,
+/// Points of a curve from below: a place on the template [m] and the value there.
+pub(crate) type Curve = Vec<[f64; 2]>;
+
+/// A body over its template, by its parts.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Shape {
+    /// Ratio of statures, body to template.
+    pub(crate) stature_ratio: f64,
+    /// Heights on the body over those on the template, from the floor up [m].
+    pub(crate) heights: Curve,
+    pub(crate) trunk: TrunkShape,
+    pub(crate) shoulder: ShoulderShape,
+    pub(crate) bust: BustForm,
+    pub(crate) crotch: CrotchForm,
+    pub(crate) arm: ArmShape,
+    pub(crate) leg: LegShape,
 }
 
-/// How far apart the legs stand at least, over the scale of the thighs: thicker ones would meet.
-const ASTRIDE: f64 = 0.75;
+/// Sections of trunk, neck and head: curves over template height.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TrunkShape {
+    /// Lateral scale [1].
+    pub(crate) lateral: Curve,
+    /// Frontal scale before the plane z = 0 [1].
+    pub(crate) front: Curve,
+    /// The same behind it.
+    pub(crate) back: Curve,
+    /// How much farther out the corners of a section lie at equal breadth and depth [1].
+    pub(crate) corner_fullness: Curve,
+    /// By how much the corners before the middle are fuller than that, and those behind less full [1].
+    pub(crate) corner_asymmetry: Curve,
+    /// Depth on the template about which sections are scaled [m].
+    pub(crate) middle_on_template: Curve,
+    /// The same on the body.
+    pub(crate) middle_on_body: Curve,
+    /// Depth of the sides before which the front part of a girth lies [m].
+    pub(crate) side_depth: PerGirth<f64>,
+}
 
-impl Scales {
-    /// All the template's own, at a ratio of statures.
-    pub(crate) fn new(global: f64, marks: &TemplateMarks) -> Self {
+/// What rises at the shoulders over what the levels say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ShoulderShape {
+    /// Of the outer ends of the shoulders [m].
+    pub(crate) tip_rise: f64,
+    /// Of the armpits [m].
+    pub(crate) armpit_rise: f64,
+}
+
+/// The bust over what the sections of the trunk say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct BustForm {
+    /// By what share the bust points are farther apart [1].
+    pub(crate) spread: f64,
+    /// How far the bust points stand forward [m].
+    pub(crate) projection: f64,
+}
+
+/// The crotch over what the levels say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct CrotchForm {
+    /// How flat it lies from front to back: 0 is as on the template, 1 is level.
+    pub(crate) flatness: f64,
+    /// How far before its lowest place the crotch point lies, where the crotch length is parted
+    /// into front and back [m].
+    pub(crate) point_offset: f64,
+}
+
+/// The arm: curves over the distance from the shoulder joint on the template.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ArmShape {
+    /// Scale about the axis [1].
+    pub(crate) scale: Curve,
+    /// Distance from the shoulder joint on the body [m].
+    pub(crate) length: Curve,
+    /// Angle below the horizontal [rad].
+    pub(crate) angle: f64,
+}
+
+/// The leg.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LegShape {
+    /// Scale about the axis over template height [1].
+    pub(crate) scale: Curve,
+    /// Sideways scale of where the axis stands [1].
+    pub(crate) stance: f64,
+    /// How much broader the top is, and how much less deep [1].
+    pub(crate) top_breadth: f64,
+}
+
+impl Shape {
+    /// The template's own, with an arm of a length [m] at an angle below the horizontal [rad].
+    pub(crate) fn of_template(marks: &TemplateMarks, [length, angle]: [f64; 2]) -> Self {
+        let even = |value: f64| vec![[0.0, value], [marks.crown, value]];
+        let same = |end: f64| vec![[0.0, 0.0], [end, end]];
         Self {
-            girth: [global; Girth::COUNT],
-            aspect: [1.0; Girth::COUNT],
-            corners: [0.0; Girth::COUNT],
-            folds: 0.0,
-            split: [0.0; Girth::COUNT],
-            seat: 1.0,
-            shoulder: global,
-            neck: global,
-            elbow: global * marks.elbow,
-            wrist: global * marks.wrist,
-            lean: 0.0,
-            spread: 0.0,
-            armpit: 0.0,
-            bulge: 0.0,
-            flat: 0.0,
-            sides: [0.0; Girth::COUNT],
-            fork: 0.0,
+            stature_ratio: 1.0,
+            heights: same(marks.crown),
+            trunk: TrunkShape {
+                lateral: even(1.0),
+                front: even(1.0),
+                back: even(1.0),
+                corner_fullness: even(0.0),
+                corner_asymmetry: even(0.0),
+                middle_on_template: even(0.0),
+                middle_on_body: even(0.0),
+                side_depth: PerGirth::default(),
+            },
+            shoulder: ShoulderShape::default(),
+            bust: BustForm::default(),
+            crotch: CrotchForm::default(),
+            arm: ArmShape {
+                scale: even(1.0),
+                length: same(length),
+                angle,
+            },
+            leg: LegShape {
+                scale: even(1.0),
+                stance: 1.0,
+                top_breadth: 1.0,
+            },
         }
     }
 
-    /// What goes to its place together, slowest where one pulls at another.
-    pub(crate) fn coupled(&mut self) -> impl Iterator<Item = &mut f64> {
-        let single = [
-            &mut self.shoulder,
-            &mut self.neck,
-            &mut self.lean,
-            &mut self.spread,
-            &mut self.armpit,
-            &mut self.bulge,
-            &mut self.flat,
-            &mut self.seat,
-        ];
-        self.girth.iter_mut().chain(single)
+    /// Refuses a shape in which the places of a curve do not lie one above the other: landmarks of
+    /// a skin whose primitives were moved or deleted may not.
+    pub(crate) fn in_order(self) -> Result<Self, BodyError> {
+        let (trunk, arm) = (&self.trunk, &self.arm);
+        for curve in [
+            &trunk.lateral,
+            &trunk.front,
+            &trunk.back,
+            &trunk.corner_fullness,
+            &trunk.corner_asymmetry,
+            &self.leg.scale,
+            &arm.scale,
+            &arm.length,
+            &trunk.middle_on_template,
+            &trunk.middle_on_body,
+        ] {
+            if let Some(pair) = curve.windows(2).find(|w| !below(w[0][0], w[1][0])) {
+                return Err(BodyError::Disordered { level: pair[1][0] });
+            }
+        }
+        Ok(self)
     }
-
-    fn of(&self, girth: Girth) -> f64 {
-        self.girth[girth as usize]
-    }
-}
-
-/// Scales at one level of the trunk: height on the template [m], lateral, front, back.
-type Section = [f64; 4];
-
-/// Least distance between sections that are scaled apart, over stature.
-const APART: f64 = 0.006;
-
-/// The shape of given scales and levels.
-pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
-    let (m, q, t) = (&input.marks, &input.request, input.template);
-    let height = levels.at(Level::Crown);
-    let global = q.get("height") / t.height;
-    let knee = levels.at(Level::Knee);
-    let ankle = (t.joints.ankle[1] * global).min(0.4 * knee);
-    let mut heights = vec![
-        [0.0, 0.0],
-        [t.joints.ankle[1], ankle],
-        [m.knee, knee],
-        [m.crotch, levels.at(Level::Crotch)],
-        [m.bust, levels.at(Level::Bust)],
-        [m.neck_side.y, levels.at(Level::NeckSide)],
-        [m.crown, height],
-    ];
-    if q.follows_skin() {
-        // The fold under the bust.
-        let fold = [m.bust - UNDERBUST * t.height, levels.at(Level::Underbust)];
-        heights.insert(4, fold);
-    }
-    if heights
-        .windows(2)
-        .any(|w| !below(w[0][0], w[1][0]) || !below(w[0][1], w[1][1]))
-    {
-        return Err(BodyError::Contradiction {
-            first: "height",
-            second: "the lengths along it",
-            remedy: "they leave no room between the landmarks: lessen the longest of them",
-        });
-    }
-    let curve = Monotone::new(heights.clone());
-    let shoulder_rise = levels.at(Level::Tip) - curve.at(m.tip.y);
-    let [neck, head] = [t.joints.neck[2], t.joints.head[2]];
-    let places = [
-        m.crotch,
-        m.bust,
-        m.tip.y,
-        m.neck_side.y,
-        t.joints.head[1],
-        m.crown,
-    ];
-    let middle = [m.depth, m.depth, 0.5 * (m.depth + neck), neck, head, head];
-    let forward = [0.0, 0.0, 0.5 * s.lean, s.lean, s.lean, s.lean];
-    let row = |k: usize| [places[k], middle[k]];
-    let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + forward[k]];
-    let on_template = |level: f64| curve.inverse(level);
-    let sections = trunk(input, s, levels, &on_template);
-    let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
-    let aspect = s.aspect[Girth::Hips as usize].sqrt();
-    let shape = Shape {
-        levels: heights,
-        lateral: column(1),
-        front: column(2),
-        back: column(3),
-        corners: corners(input, s, levels, &on_template),
-        folds: folds(s, m, levels, &on_template),
-        leg: leg(input, s, levels, &on_template),
-        arm: arm(input, s, global),
-        arm_length: vec![
-            [0.0, 0.0],
-            [m.elbow, s.elbow.clamp(0.2 * s.wrist, 0.8 * s.wrist)],
-            [m.wrist, s.wrist],
-            [1.5 * m.wrist, s.wrist + 0.5 * m.wrist * global],
-        ],
-        arm_angle: q.get("arm_pose_angle"),
-        global,
-        stance: (s.of(Girth::Hips) * aspect).max(ASTRIDE * s.of(Girth::Thigh)),
-        // An asked crotch length says how deep the seat is.
-        leg_form: if q.is_asked("crotch_length") {
-            1.0
-        } else {
-            aspect
-        },
-        depth: m.depth,
-        middle: (0..6).map(row).collect(),
-        middle_to: (0..6).map(row_to).collect(),
-        shoulder_rise,
-        bust_spread: s.spread,
-        bust_bulge: s.bulge,
-        flat: s.flat,
-        sides: s.sides,
-        fork: s.fork,
-        armpit_rise: s.armpit,
-    };
-    in_order(&shape)?;
-    Ok(shape)
 }
 
 /// Whether a number is less than another, as no number is that is none.
-fn below(low: f64, high: f64) -> bool {
+pub(crate) fn below(low: f64, high: f64) -> bool {
     low.partial_cmp(&high) == Some(Ordering::Less)
-}
-
-/// Whether every form of a shape has its levels one above the other: landmarks of a skin whose
-/// primitives were moved or deleted may not.
-fn in_order(shape: &Shape) -> Result<(), BodyError> {
-    for form in [
-        &shape.lateral,
-        &shape.front,
-        &shape.back,
-        &shape.corners,
-        &shape.folds,
-        &shape.leg,
-        &shape.arm,
-        &shape.arm_length,
-        &shape.middle,
-        &shape.middle_to,
-    ] {
-        if let Some(pair) = form.windows(2).find(|w| !below(w[0][0], w[1][0])) {
-            return Err(BodyError::Disordered { level: pair[1][0] });
-        }
-    }
-    Ok(())
-}
-
-/// Sections of trunk, neck and head from below. Of two that lie too close, the more important
-/// one stands.
-fn trunk(
-    input: &SolveInput,
-    s: &Scales,
-    levels: &Levels,
-    on_template: &dyn Fn(f64) -> f64,
-) -> Vec<Section> {
-    let (m, t) = (&input.marks, input.template);
-    let section = |y: f64, girth: Girth| -> Section {
-        let k = girth as usize;
-        let (scale, form) = (s.girth[k], s.aspect[k].sqrt());
-        let frontal = scale / form;
-        let [front, back] = [1.0 + 2.0 * s.split[k], 1.0 - 2.0 * s.split[k]];
-        [y, scale * form, frontal * front, frontal * back]
-    };
-    let [y, crotch @ ..] = section(m.crotch, Girth::Hips);
-    let [lateral, front, back] = crotch.map(|scale| scale * s.seat);
-    let mut rows = vec![[y, lateral, front, back]];
-    let ends = [Level::Crotch, Level::Crown].map(|level| levels.at(level));
-    for girth in [
-        Girth::Hips,
-        Girth::Waist,
-        Girth::Bust,
-        Girth::Underbust,
-        Girth::HighBust,
-        Girth::HighHips,
-    ] {
-        if let (Some(_), Some(level)) = (input.request.girth(girth), girth.level()) {
-            // Hips have their girth wherever lengths put their level.
-            let range = match girth {
-                Girth::Hips => trunk_range(girth, ends),
-                _ => None,
-            };
-            let at = levels.at(level);
-            let at = range.map_or(at, |[low, high]| at.clamp(low, high));
-            let y = on_template(at);
-            if rows.iter().all(|row| (row[0] - y).abs() > APART * t.height) {
-                rows.push(section(y, girth));
-            }
-        }
-    }
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let top = rows[rows.len() - 1];
-    rows.retain(|row| row[0] < m.tip.y - APART * t.height);
-    let global = input.request.get("height") / t.height;
-    let (neck, head) = (s.of(Girth::Neck), s.of(Girth::Head));
-    let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
-    let tip = [m.tip.y, s.shoulder, front, back];
-    rows.extend(under_the_arm(&rows, tip, m.armpit, APART * t.height));
-    rows.push(tip);
-    let between = 0.5 * (s.neck + neck);
-    rows.push([m.neck_side.y, s.neck, between, between]);
-    rows.push([m.neck.y.max(m.neck_side.y + 0.01), neck, neck, neck]);
-    let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
-    rows.push([chin.max(m.neck.y + 0.02), head, head, head]);
-    rows.push([m.crown, head, head, head]);
-    rows
-}
-
-/// How much fuller the corners of the sections are over template height: nothing at the shoulders.
-fn corners(
-    input: &SolveInput,
-    s: &Scales,
-    levels: &Levels,
-    on_template: &dyn Fn(f64) -> f64,
-) -> Vec<[f64; 2]> {
-    let m = &input.marks;
-    let apart = APART * input.template.height;
-    let mut rows = vec![[m.tip.y, 0.0]];
-    for (girth, level) in [
-        (Girth::Hips, Level::Hips),
-        (Girth::Waist, Level::Waist),
-        (Girth::Bust, Level::Bust),
-    ] {
-        let y = on_template(levels.at(level));
-        if rows.iter().all(|row| (row[0] - y).abs() > apart) && y < m.tip.y {
-            rows.push([y, s.corners[girth as usize]]);
-        }
-    }
-    rows.push([0.0, s.corners[Girth::Hips as usize]]);
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    rows.dedup_by(|b, a| b[0] - a[0] < apart);
-    rows
-}
-
-/// How much fuller the front corners of the sections are than the back ones, over template height:
-/// nothing at the waist and at the shoulders.
-fn folds(
-    s: &Scales,
-    m: &TemplateMarks,
-    levels: &Levels,
-    on_template: &dyn Fn(f64) -> f64,
-) -> Vec<[f64; 2]> {
-    let waist = on_template(levels.at(Level::Waist));
-    vec![
-        [0.0, 0.0],
-        [waist, 0.0],
-        [m.bust, s.folds],
-        [m.tip.y, 0.0],
-        [m.crown, 0.0],
-    ]
-}
-
-/// At the armpits the trunk is as broad in proportion as at its highest section below, so that a
-/// broad chest does not lie under the arms like a ledge.
-fn under_the_arm(rows: &[Section], tip: Section, armpit: f64, apart: f64) -> Option<Section> {
-    let below = rows.iter().rev().find(|row| row[0] < armpit - apart)?;
-    let between = rows
-        .iter()
-        .any(|row| row[0] >= armpit - apart && row[0] < tip[0]);
-    if between || armpit > tip[0] - apart {
-        return None;
-    }
-    let share = (armpit - below[0]) / (tip[0] - below[0]);
-    let even = |k: usize| below[k] + (tip[k] - below[k]) * share;
-    Some([armpit, even(1).max(below[1]), even(2), even(3)])
-}
-
-/// Scales of the leg over template height.
-fn leg(
-    input: &SolveInput,
-    s: &Scales,
-    levels: &Levels,
-    on_template: &dyn Fn(f64) -> f64,
-) -> Vec<[f64; 2]> {
-    let (m, t, q) = (&input.marks, input.template, &input.request);
-    let global = q.get("height") / t.height;
-    let foot = if q.girth(Girth::Heel).is_some() {
-        s.of(Girth::Heel)
-    } else {
-        global
-    };
-    let crotch = levels.at(Level::Crotch);
-    let thigh = on_template(crotch - THIGH_DROP * levels.at(Level::Crown));
-    let mut rows = vec![[0.0, foot], [0.8 * t.joints.ankle[1], foot]];
-    for (girth, y) in [
-        (Girth::Ankle, m.ankle),
-        (Girth::Calf, m.calf),
-        (Girth::Knee, m.knee),
-        (Girth::LowerThigh, m.lower_thigh),
-    ] {
-        if q.girth(girth).is_some() {
-            rows.push([y, s.of(girth)]);
-        }
-    }
-    rows.push([thigh, s.of(Girth::Thigh)]);
-    rows.push([thigh.max(m.crotch) + 0.05 * t.height, s.of(Girth::Thigh)]);
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
-    rows
-}
-
-/// Scales of the arm over template distance from the shoulder joint.
-fn arm(input: &SolveInput, s: &Scales, global: f64) -> Vec<[f64; 2]> {
-    let (m, q) = (&input.marks, &input.request);
-    let mut rows = vec![[0.0, 0.5 * (global + s.of(Girth::UpperArm))]];
-    for (girth, distance) in [
-        (Girth::UpperArm, m.upper_arm),
-        (Girth::Elbow, m.elbow),
-        (Girth::Forearm, m.forearm),
-        (Girth::Wrist, m.wrist),
-    ] {
-        if q.girth(girth).is_some() {
-            rows.push([distance, s.of(girth)]);
-        }
-    }
-    rows.push([1.1 * m.wrist, s.of(Girth::Wrist)]);
-    rows.push([1.3 * m.wrist, global]);
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
-    rows
 }

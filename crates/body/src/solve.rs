@@ -4,22 +4,13 @@ use crate::BodyError;
 use crate::girths::Girth;
 use crate::levels::{self, Level, Levels, OVER, SkinOffsets};
 use crate::measured::{Shares, TapedSkin};
-use crate::request::Request;
-use crate::rings::TemplateSkin;
-use crate::shape::{Scales, shape};
+use crate::scales::Scales;
+use crate::shape::Shape;
+use crate::shape_from_scales::shape;
+use crate::solve_input::SolveInput;
 use crate::tape::{Skinned, extent, half_length};
-use crate::template::Template;
-use crate::template_marks::TemplateMarks;
-use crate::warp::{Follow, Shape, Warp};
+use crate::warp::{Follow, Warp};
 use toile_geometry::{TriangleMesh, Vec3, closed_length};
-
-/// Input of the solution: a template with its skin and marks, and the measurements asked for.
-pub(crate) struct SolveInput<'a> {
-    pub(crate) template: &'a Template,
-    pub(crate) skin: &'a TemplateSkin,
-    pub(crate) marks: TemplateMarks,
-    pub(crate) request: Request,
-}
 
 /// The solution.
 pub(crate) struct Solved {
@@ -47,12 +38,11 @@ impl SolveInput<'_> {
     /// the last round is over.
     pub(crate) fn solve(&self) -> Result<Solved, BodyError> {
         let height = self.request.get("height");
-        let global = height / self.template.height;
-        let mut scales = Scales::new(global, &self.marks);
+        let mut scales = Scales::new(self.stature_ratio(), &self.marks);
         let mut offsets = SkinOffsets::default();
         let crotch = self.crotch_vertices();
         let mut before: Option<[Scales; 2]> = None;
-        let mut known: Option<Shares> = Some([Some(0.5); Girth::COUNT]);
+        let mut known: Option<Shares> = Some(Shares::of(|_| Some(0.5)));
         let slow = self.request.follows_skin();
         let forming = FORMING[usize::from(!slow)];
         let extrapolating = if slow { forming } else { forming + LAST };
@@ -105,16 +95,6 @@ impl SolveInput<'_> {
         })
     }
 
-    /// Middle vertices where the crotch may be lowest.
-    pub(crate) fn crotch_vertices(&self) -> Vec<u32> {
-        (0..self.skin.mirror.len() as u32)
-            .filter(|&v| {
-                let y = self.skin.mesh.positions[v as usize].y;
-                self.skin.mirror[v as usize] == v && y < self.marks.crotch + 0.05
-            })
-            .collect()
-    }
-
     pub(crate) fn taken<'a>(
         &'a self,
         skinned: &'a Skinned<'a>,
@@ -132,7 +112,7 @@ impl SolveInput<'_> {
             if let Some(asked) = q.girth(girth) {
                 let got = taken.girth(girth);
                 miss = miss.max((asked - got).abs());
-                scales.girth[girth as usize] *= match taken.at_section(girth) {
+                scales.girth[girth] *= match taken.at_section(girth) {
                     Some(there) => {
                         let [low, high] = BESIDE.map(|share| share * asked / there);
                         ratio(asked, got).clamp(low.min(1.0), high.max(1.0))
@@ -150,11 +130,11 @@ impl SolveInput<'_> {
             .unwrap_or("shoulder_w");
         let widths = [
             (
-                &mut scales.shoulder,
+                &mut scales.shoulder.breadth,
                 name,
                 taken.value(name).unwrap_or(2.0 * tip.x),
             ),
-            (&mut scales.neck, "neck_w", 2.0 * neck.x),
+            (&mut scales.neck.breadth, "neck_w", 2.0 * neck.x),
         ];
         for (scale, name, got) in widths {
             miss = miss.max((q.get(name) - got).abs());
@@ -166,21 +146,21 @@ impl SolveInput<'_> {
                 *scale += q.get(name) - got;
             }
         };
-        along("arm_length", &mut scales.wrist);
+        along("arm_length", &mut scales.arm.wrist);
         if q.is_asked("shoulder_to_elbow") {
-            along("shoulder_to_elbow", &mut scales.elbow);
+            along("shoulder_to_elbow", &mut scales.arm.elbow);
         } else if q.is_asked("elbow_to_wrist") {
-            let share = self.marks.elbow / self.marks.wrist;
+            let share = self.marks.arm.elbow / self.marks.arm.wrist;
             let asked = q
                 .get("elbow_to_wrist")
-                .clamp(0.3 * scales.wrist, 0.7 * scales.wrist);
-            scales.elbow = if share > 0.0 {
-                scales.wrist - asked
+                .clamp(0.3 * scales.arm.wrist, 0.7 * scales.arm.wrist);
+            scales.arm.elbow = if share > 0.0 {
+                scales.arm.wrist - asked
             } else {
-                scales.elbow
+                scales.arm.elbow
             };
         } else {
-            scales.elbow = scales.wrist * self.marks.elbow / self.marks.wrist;
+            scales.arm.elbow = scales.arm.wrist * self.marks.arm.elbow / self.marks.arm.wrist;
         }
         offsets.run = Some(tip.x - neck.x);
         for level in [Level::Tip, Level::NeckSide, Level::Crotch] {
@@ -214,9 +194,9 @@ impl SolveInput<'_> {
             let asked = q.is_asked(breadth) && q.is_asked(depth);
             let hull = taken.hull(girth);
             let [x, z] = extent(&hull);
-            let form = &mut scales.aspect[girth as usize];
-            *form *= ratio(q.get(breadth) * z, q.get(depth) * x);
-            *form = form.clamp(ASPECT[0], ASPECT[1]);
+            let form = &mut scales.trunk.section[girth];
+            let aspect = form.aspect * ratio(q.get(breadth) * z, q.get(depth) * x);
+            form.aspect = aspect.clamp(ASPECT[0], ASPECT[1]);
             // The girth over breadth and depth: how full the corners are. The survey's waist is
             // the navel's.
             let around = match girth {
@@ -225,15 +205,15 @@ impl SolveInput<'_> {
             };
             let wanted = around / (q.get(breadth) + q.get(depth));
             let found = closed_length(&hull) / (x + z);
-            let corners = &mut scales.corners[girth as usize];
-            *corners = (*corners + 2.0 * ratio(wanted, found).ln()).clamp(CORNERS[0], CORNERS[1]);
+            let fullness = form.corner_fullness + 2.0 * ratio(wanted, found).ln();
+            form.corner_fullness = fullness.clamp(CORNERS[0], CORNERS[1]);
         }
         // The chest's breadth is taken between the front folds of the armpits: at its girth and
         // depth the front corners against the back ones decide it.
         let [_, z] = extent(&taken.hull(Girth::Bust));
-        let form = &mut scales.aspect[Girth::Bust as usize];
-        *form *= ratio(z, q.get("chest_depth"));
-        *form = form.clamp(ASPECT[0], ASPECT[1]);
+        let form = &mut scales.trunk.section[Girth::Bust];
+        let aspect = form.aspect * ratio(z, q.get("chest_depth"));
+        form.aspect = aspect.clamp(ASPECT[0], ASPECT[1]);
         // Asked widths of front or back have said that already.
         let is_said = ["front_width", "back_width"]
             .iter()
@@ -243,7 +223,8 @@ impl SolveInput<'_> {
             taken.between_folds(),
         ) {
             let fuller = ratio(q.get("chest_breadth"), found).ln();
-            scales.folds = (scales.folds + fuller).clamp(FOLDS[0], FOLDS[1]);
+            let asymmetry = &mut scales.trunk.chest_asymmetry;
+            *asymmetry = (*asymmetry + fuller).clamp(ASYMMETRY[0], ASYMMETRY[1]);
         }
         for (girth, name, side) in PARTS {
             if !q.is_asked(name) {
@@ -252,14 +233,14 @@ impl SolveInput<'_> {
             let hull = taken.hull(girth);
             let [own, other] = [side, -side].map(|side| half_length(&hull, side));
             let asked = (q.get(name) / (own + other)).clamp(0.3, 0.7);
-            let split = &mut scales.split[girth as usize];
-            *split += side * (asked - own / (own + other));
-            *split = split.clamp(-SPLIT, SPLIT);
+            let share = &mut scales.trunk.section[girth].front_share;
+            *share += side * (asked - own / (own + other));
+            *share = share.clamp(-FRONT_SHARE, FRONT_SHARE);
         }
     }
 
     /// Corrects where the neck stands between front and back lengths, where side lines, armpits and
-    /// the middle of the crotch lie, how flat that is, and how far the bust points stand out and are
+    /// the crotch point lie, how flat the crotch is, and how far the bust points stand out and are
     /// apart. Returns the largest miss that can still be corrected [m].
     fn posture(&self, scales: &mut Scales, taken: &TapedSkin, round: usize) -> f64 {
         let q = &self.request;
@@ -279,35 +260,43 @@ impl SolveInput<'_> {
         for (girth, name, side) in PARTS {
             if q.is_asked(name) {
                 let at = taken.sides_of(girth, side, q.get(name), SIDES * height);
-                scales.sides[girth as usize] = at;
+                scales.trunk.section[girth].side_depth = at;
             }
         }
         if let (true, Some(longer)) = (q.follows_skin(), gap("bust_to_underbust")) {
-            step(&mut scales.bulge, longer, of_height(BULGE), 1.0);
+            step(
+                &mut scales.bust.projection,
+                longer,
+                of_height(PROJECTION),
+                1.0,
+            );
         }
         if let Some(longer) = gap("crotch_length") {
             let more = longer / (LEVELLED * height);
-            step(&mut scales.flat, 0.6 * more, FLAT, LEVELLED * height);
+            let flatness = &mut scales.crotch.flatness;
+            step(flatness, 0.6 * more, FLATNESS, LEVELLED * height);
             // Where a level one is not enough hips nobody gave a form are deeper.
             let is_said = q.is_asked("hip_depth") || q.is_asked("hip_breadth");
-            if scales.flat == FLAT[1] && round >= SHAPING && !is_said {
-                let form = &mut scales.aspect[Girth::Hips as usize];
+            if *flatness == FLATNESS[1] && round >= SHAPING && !is_said {
+                let aspect = &mut scales.trunk.section[Girth::Hips].aspect;
                 let depth = q.get("hip_depth");
-                let by = *form * (-1.4 * longer / depth).exp_m1();
-                step(form, by, ASPECT, depth);
+                let by = *aspect * (-1.4 * longer / depth).exp_m1();
+                step(aspect, by, ASPECT, depth);
             }
         }
         if q.is_asked("crotch_length_front") {
-            let now = taken.warp.fork_depth();
-            let range = [-1.0, 1.0].map(|end| now - scales.fork + end * SIDES * height);
-            if let Some(at) = taken.fork_of(q.get("crotch_length_front"), range) {
-                scales.fork += at - now;
+            let now = taken.warp.crotch_point();
+            let range =
+                [-1.0, 1.0].map(|end| now - scales.crotch.point_offset + end * SIDES * height);
+            if let Some(at) = taken.crotch_point_of(q.get("crotch_length_front"), range) {
+                scales.crotch.point_offset += at - now;
             }
         }
         let ways = ["hps_to_waist_front", "hps_to_waist_back"].map(gap);
         if let [Some(front), Some(back)] = ways {
             let by = 0.8 * (back - front);
-            step(&mut scales.lean, by, of_height([-LEAN, LEAN]), 1.0);
+            let limits = of_height([-NECK_FORWARD, NECK_FORWARD]);
+            step(&mut scales.neck.forward, by, limits, 1.0);
         }
         if let Some(asked) = q.girth(Girth::Hips) {
             // Nothing below the hips is larger round than they are at their level.
@@ -316,12 +305,13 @@ impl SolveInput<'_> {
                 Some(there) if taken.hips_lie_below() => (there / most + AS_LARGE).min(1.0),
                 _ => 1.0,
             };
-            let by = scales.seat * (share.powf(SEAT_GAIN) - 1.0);
-            step(&mut scales.seat, by, SEAT, asked);
+            let crotch = &mut scales.trunk.crotch_to_hips;
+            let by = *crotch * (share.powf(CROTCH_GAIN) - 1.0);
+            step(crotch, by, CROTCH_TO_HIPS, asked);
         }
         let higher = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
         step(
-            &mut scales.armpit,
+            &mut scales.shoulder.armpit_rise,
             higher,
             of_height([-ARMPIT, ARMPIT]),
             1.0,
@@ -330,7 +320,7 @@ impl SolveInput<'_> {
             let got = q.get("bust_points") - wider;
             let gain = if q.follows_skin() { 1.1 } else { 0.6 };
             let more = gain * (ratio(q.get("bust_points"), got) - 1.0);
-            step(&mut scales.spread, more, SPREAD, got);
+            step(&mut scales.bust.spread, more, SPREAD, got);
         }
         miss
     }
@@ -398,42 +388,42 @@ const ASPECT: [f64; 2] = [0.7, 1.3];
 const CORNERS: [f64; 2] = [-0.3, 0.3];
 
 /// How much fuller a chest's front corners may be than the mean of front and back.
-const FOLDS: [f64; 2] = [-0.25, 0.25];
+const ASYMMETRY: [f64; 2] = [-0.25, 0.25];
 
 /// How far a neck may stand from the template's place, over stature.
-const LEAN: f64 = 0.05;
+const NECK_FORWARD: f64 = 0.05;
 
 /// What a girth of the trunk may be where its scale is set, over itself where its tape lies.
 const BESIDE: [f64; 2] = [0.7, 1.5];
 
 /// How much narrower the trunk may be at the crotch than at the hips.
-const SEAT: [f64; 2] = [0.85, 1.0];
+const CROTCH_TO_HIPS: [f64; 2] = [0.85, 1.0];
 
 /// What share of the hips' girth their level may lack.
 const AS_LARGE: f64 = 0.002;
 
 /// How much more than in proportion it is made narrower there: it is the section above that is meant.
-const SEAT_GAIN: f64 = 1.7;
+const CROTCH_GAIN: f64 = 1.7;
 
 /// How far an armpit may lie from the template's place, over stature.
 const ARMPIT: f64 = 0.035;
 
 /// How far the front may be scaled apart from the back; the rest of a part of a girth is where its
 /// sides are taken to lie.
-const SPLIT: f64 = 0.05;
+const FRONT_SHARE: f64 = 0.05;
 
-/// How far from the middle the sides of a girth may lie, and the middle of the crotch from its
-/// lowest place, over stature.
+/// How far from the middle the sides of a girth may lie, and the crotch point from the
+/// crotch's lowest place, over stature.
 const SIDES: f64 = 0.045;
 
 /// How much farther apart the bust points may lie than the sections have them, less one.
 const SPREAD: [f64; 2] = [-0.4, 1.0];
 
 /// How far the bust points may stand out or lie back, over stature.
-const BULGE: [f64; 2] = [-0.02, 0.085];
+const PROJECTION: [f64; 2] = [-0.02, 0.085];
 
 /// How flat a crotch may lie, and how much longer a level one makes the way round it, over stature.
-const FLAT: [f64; 2] = [-0.3, 0.97];
+const FLATNESS: [f64; 2] = [-0.3, 0.97];
 const LEVELLED: f64 = 0.05;
 
 /// Half the least gap between the legs, over stature: cloth must pass.

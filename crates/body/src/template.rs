@@ -8,6 +8,7 @@ mod mean;
 mod woman;
 
 use crate::rigging::Rigging;
+use crate::sides::both_sides;
 use crate::{Part, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_measure::{Build, Measurements};
@@ -241,7 +242,7 @@ impl Template {
             hand: HAND * scale,
             neck_radius: NECK_RADIUS * scale,
             features: Some(Features { thumb: table.thumb }),
-            primitives: crate::describe::both_sides(primitives),
+            primitives: both_sides(primitives),
             rigging: Rigging::default(),
         }
     }

@@ -11,53 +11,101 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 /// Three points of a plane of a template [m].
 pub(crate) type Plane = [Vec3; 3];
 
-/// Levels [m], distances from the shoulder joint along the arm [m] and places of a template.
+/// Places of a template by the parts of its body [m]: of pairs the left one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TemplateMarks {
-    /// Top of the head.
+    /// Height of the top of the head.
     pub(crate) crown: f64,
-    pub(crate) armpit: f64,
-    pub(crate) crotch: f64,
-    pub(crate) bust: f64,
-    /// The point of the bust, left.
-    pub(crate) bust_point: Vec3,
-    /// Rise of the body's middle over the crotch, before and behind it, at even depths from
-    /// [`TemplateMarks::fork_at`] on [m].
-    pub(crate) fork: [f64; FORK],
-    /// Depth of the first of them [m].
-    pub(crate) fork_at: f64,
-    /// Where the neck meets the shoulder, left.
-    pub(crate) neck_side: Vec3,
+    pub(crate) neck: NeckMarks,
+    pub(crate) shoulder: ShoulderMarks,
+    pub(crate) armpit: ArmpitMarks,
+    pub(crate) bust: BustMarks,
+    pub(crate) trunk: TrunkMarks,
+    pub(crate) crotch: CrotchMarks,
+    pub(crate) arm: ArmMarks,
+    pub(crate) leg: LegMarks,
+}
+
+/// The neck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NeckMarks {
+    /// Its middle [m].
+    pub(crate) middle: Vec3,
+    /// Where it meets the shoulder [m].
+    pub(crate) side: Vec3,
     /// The same on the skin.
-    pub(crate) neck_side_on: OnEdge,
-    /// Outer end of the shoulder, left.
+    pub(crate) side_on: OnEdge,
+}
+
+/// The shoulder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ShoulderMarks {
+    /// Its outer end [m].
     pub(crate) tip: Vec3,
     /// The same on the skin.
     pub(crate) tip_on: OnEdge,
-    /// Middles of the left arm at even distances from the shoulder joint, from
-    /// [`ARM_BEGINS`] of the wrist's on [m].
-    pub(crate) arm_middle: [Vec3; ARM_MIDDLES],
-    /// Vertex of the skin at the tip of the left hand.
-    pub(crate) finger_tip: u32,
-    /// Vertex of the skin at the front fold of the left armpit.
-    pub(crate) fold: u32,
-    /// Depth of the middle of the trunk [m].
-    pub(crate) depth: f64,
-    /// Sections of the trunk from crotch to bust: height, half the breadth, depth before and behind
-    /// the middle [m].
+}
+
+/// The armpit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ArmpitMarks {
+    /// Its height [m].
+    pub(crate) height: f64,
+    /// Vertex of the skin at its front fold.
+    pub(crate) front_fold: u32,
+}
+
+/// The bust.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BustMarks {
+    /// Its height [m].
+    pub(crate) height: f64,
+    /// The bust point [m].
+    pub(crate) point: Vec3,
+}
+
+/// The trunk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TrunkMarks {
+    /// Depth of its middle [m].
+    pub(crate) middle_depth: f64,
+    /// Sections from crotch to bust: height, half the breadth, depth before and behind the middle [m].
     pub(crate) sections: [[f64; 4]; SECTIONS],
-    /// Middle of the neck.
-    pub(crate) neck: Vec3,
-    /// Plane of the heel's girth, over heel and instep.
-    pub(crate) heel: Plane,
-    pub(crate) lower_thigh: f64,
-    pub(crate) knee: f64,
-    pub(crate) calf: f64,
-    pub(crate) ankle: f64,
+}
+
+/// The crotch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CrotchMarks {
+    /// Its height [m].
+    pub(crate) height: f64,
+    /// Rise of the body's middle over it, at [`CROTCH_PLACES`] even depths from back to front [m].
+    pub(crate) rise: [f64; CROTCH_PLACES],
+    /// Depth of the hindmost of them [m].
+    pub(crate) hindmost: f64,
+}
+
+/// The arm: distances from the shoulder joint along it [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ArmMarks {
+    /// Middles at even distances from the shoulder joint, from [`ARM_BEGINS`] of the wrist's on [m].
+    pub(crate) middles: [Vec3; ARM_MIDDLES],
     pub(crate) upper_arm: f64,
     pub(crate) elbow: f64,
     pub(crate) forearm: f64,
     pub(crate) wrist: f64,
+    /// Vertex of the skin at the tip of the hand.
+    pub(crate) finger_tip: u32,
+}
+
+/// The leg: heights [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LegMarks {
+    pub(crate) lower_thigh: f64,
+    pub(crate) knee: f64,
+    pub(crate) calf: f64,
+    pub(crate) ankle: f64,
+    /// Plane of the heel's girth, over heel and instep.
+    pub(crate) heel: Plane,
 }
 
 /// Middles of the arm that are kept: the first, and how far they are apart, over the wrist's distance
@@ -67,11 +115,11 @@ pub(crate) const ARM_BEGINS: f64 = 0.2;
 pub(crate) const ARM_STEP: f64 = 0.05;
 
 /// Places of the crotch's line that are kept.
-pub(crate) const FORK: usize = 21;
+pub(crate) const CROTCH_PLACES: usize = 21;
 
 /// Distance of these places, and the largest rise that is kept, over stature.
-pub(crate) const FORK_STEP: f64 = 0.01;
-const FORK_RISE: f64 = 0.045;
+const CROTCH_STEP: f64 = 0.01;
+const CROTCH_RISE: f64 = 0.045;
 
 /// Sections of the trunk that are kept.
 pub(crate) const SECTIONS: usize = 9;
@@ -121,7 +169,6 @@ impl TemplateMarks {
         let [neck, head] = [j.neck, j.head].map(Vec3::from);
         let neck = neck + (head - neck) * NECK;
         let depth = depth(skin, [crotch + 0.05 * h, bust]);
-        let (fork_at, fork) = fork(skin, crotch, h);
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         let finger_tip = finger_tip(skin, [shoulder, along]);
         let armpit = lowest(&skin.mesh, &skin.armpit);
@@ -137,32 +184,46 @@ impl TemplateMarks {
         let forearm = Taping::of(Girth::Forearm, &body).map(|taping| taping.range);
         Ok(Self {
             crown,
-            armpit,
-            crotch,
-            bust,
-            bust_point: bust_point(skin, bust, tip.x),
-            fork,
-            fork_at,
-            neck_side: neck_side_on.at(&skin.mesh.positions),
-            neck_side_on,
-            tip,
-            tip_on,
-            arm_middle: arm_middle(&skinned, [shoulder, along], wrist),
-            finger_tip,
-            fold: skin.fold,
-            depth,
-            sections: sections(skin, [crotch + 0.03 * h, bust], depth),
-            neck,
-            heel: heel_plane(template, &skinned),
-            lower_thigh: knee + 0.15 * (crotch - knee),
-            knee,
-            calf,
-            ankle: extreme([j.ankle[1] + 0.005 * h, 0.6 * calf], |y| -leg(y)),
-            upper_arm: extreme([0.45 * elbow, 0.75 * elbow], arm),
-            elbow,
-            forearm: extreme(forearm.unwrap_or([elbow, wrist]), arm),
-            wrist,
+            neck: NeckMarks {
+                middle: neck,
+                side: neck_side_on.at(&skin.mesh.positions),
+                side_on: neck_side_on,
+            },
+            shoulder: ShoulderMarks { tip, tip_on },
+            armpit: ArmpitMarks {
+                height: armpit,
+                front_fold: skin.fold,
+            },
+            bust: BustMarks {
+                height: bust,
+                point: bust_point(skin, bust, tip.x),
+            },
+            trunk: TrunkMarks {
+                middle_depth: depth,
+                sections: sections(skin, [crotch + 0.03 * h, bust], depth),
+            },
+            crotch: crotch_marks(skin, crotch, h),
+            arm: ArmMarks {
+                middles: arm_middles(&skinned, [shoulder, along], wrist),
+                upper_arm: extreme([0.45 * elbow, 0.75 * elbow], arm),
+                elbow,
+                forearm: extreme(forearm.unwrap_or([elbow, wrist]), arm),
+                wrist,
+                finger_tip,
+            },
+            leg: LegMarks {
+                lower_thigh: knee + 0.15 * (crotch - knee),
+                knee,
+                calf,
+                ankle: extreme([j.ankle[1] + 0.005 * h, 0.6 * calf], |y| -leg(y)),
+                heel: heel_plane(template, &skinned),
+            },
         })
+    }
+
+    /// Depth of one of the [`CROTCH_PLACES`] [m].
+    pub(crate) fn crotch_depth(&self, k: usize) -> f64 {
+        self.crotch.hindmost + k as f64 * CROTCH_STEP * self.crown
     }
 }
 
@@ -195,10 +256,9 @@ fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     Vec3::new(x, y, near.map_or(0.0, |p| p.y))
 }
 
-/// How much higher than the crotch the body's middle is before and behind it [m], and the depth
-/// of the first place [m].
-fn fork(skin: &TemplateSkin, crotch: f64, height: f64) -> (f64, [f64; FORK]) {
-    let most = FORK_RISE * height;
+/// How the body's middle rises behind and before a crotch at a height, on a body of a stature [m].
+fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
+    let most = CROTCH_RISE * stature;
     let is_middle = |v: u32| skin.mirror[v as usize] == v;
     let mut line: Vec<[Vec3; 2]> = Vec::new();
     for t in &skin.mesh.triangles {
@@ -210,8 +270,8 @@ fn fork(skin: &TemplateSkin, crotch: f64, height: f64) -> (f64, [f64; FORK]) {
         }
     }
     let lowest = line.iter().flatten().min_by(|a, b| a.y.total_cmp(&b.y));
-    let step = FORK_STEP * height;
-    let first = lowest.map_or(0.0, |p| p.z) - 0.5 * (FORK - 1) as f64 * step;
+    let step = CROTCH_STEP * stature;
+    let hindmost = lowest.map_or(0.0, |p| p.z) - 0.5 * (CROTCH_PLACES - 1) as f64 * step;
     let rise = |z: f64| {
         line.iter()
             .filter(|[a, b]| (a.z - z) * (b.z - z) <= 0.0 && a.z != b.z)
@@ -219,8 +279,11 @@ fn fork(skin: &TemplateSkin, crotch: f64, height: f64) -> (f64, [f64; FORK]) {
             .fold(most, f64::min)
             .max(0.0)
     };
-    let rises = std::array::from_fn(|k| rise(first + k as f64 * step));
-    (first, rises)
+    CrotchMarks {
+        height: crotch,
+        rise: std::array::from_fn(|k| rise(hindmost + k as f64 * step)),
+        hindmost,
+    }
 }
 
 /// Extents of the trunk at even heights about a depth [m].
@@ -250,7 +313,7 @@ fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
 }
 
 /// Middles of the left arm along its axis from the shoulder; on the axis where it has no section.
-fn arm_middle(skinned: &Skinned, [shoulder, along]: [Vec3; 2], wrist: f64) -> [Vec3; ARM_MIDDLES] {
+fn arm_middles(skinned: &Skinned, [shoulder, along]: [Vec3; 2], wrist: f64) -> [Vec3; ARM_MIDDLES] {
     std::array::from_fn(|k| {
         let on_axis = shoulder + along * ((ARM_BEGINS + ARM_STEP * k as f64) * wrist);
         let points = skinned.section(&[Part::LeftArm], [on_axis, along], None);
@@ -341,7 +404,7 @@ mod tests {
         for figure in [Figure::Woman, Figure::Man, Figure::Mean] {
             let body = Mannequin::framed(figure).unwrap();
             let body = Mannequin::from_description(&body).unwrap();
-            let m = &body.template_body.marks;
+            let m = &body.template_body.marks.arm;
             let rows = [m.upper_arm, m.elbow, m.forearm, m.wrist];
             let apart = rows.windows(2).all(|w| w[1] - w[0] > 0.07 * m.wrist);
             assert!(apart, "{figure:?}: {rows:?}");

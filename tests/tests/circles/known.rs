@@ -7,30 +7,6 @@ pub type Known = (&'static str, &'static [&'static [&'static str]]);
 pub const KNOWN: &[Known] = &[
     ("crates/assembly/src", &[&["refinement.rs", "smoothing.rs"]]),
     (
-        "crates/body/src",
-        &[
-            &[
-                "bones.rs",
-                "cuts.rs",
-                "describe.rs",
-                "landmarks.rs",
-                "levels.rs",
-                "mannequin.rs",
-                "measured.rs",
-                "refit.rs",
-                "request.rs",
-                "rings.rs",
-                "shape.rs",
-                "skinning.rs",
-                "solve.rs",
-                "template.rs",
-                "template_marks.rs",
-                "warp.rs",
-            ],
-            &["fit_field.rs", "fit_girths.rs"],
-        ],
-    ),
-    (
         "crates/interchange/src",
         &[
             &["native/migrate/read.rs", "native/migrate/read_panel.rs"],

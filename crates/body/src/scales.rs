@@ -1,0 +1,117 @@
+//! The scales a body is solved by.
+
+use crate::girths::PerGirth;
+use crate::shape::{BustForm, CrotchForm};
+use crate::template_marks::TemplateMarks;
+
+/// Unknowns of the solution, by the parts of the body.
+#[derive(Clone, Debug)]
+pub(crate) struct Scales {
+    /// Of each girth.
+    pub(crate) girth: PerGirth<f64>,
+    pub(crate) trunk: TrunkScales,
+    pub(crate) neck: NeckScales,
+    pub(crate) shoulder: ShoulderScales,
+    pub(crate) bust: BustForm,
+    pub(crate) crotch: CrotchForm,
+    pub(crate) arm: ArmScales,
+}
+
+/// Sections of the trunk at equal girth.
+#[derive(Clone, Debug)]
+pub(crate) struct TrunkScales {
+    /// Of girths round the trunk.
+    pub(crate) section: PerGirth<SectionForm>,
+    /// How much fuller the front corners of the chest are, and how much less full the back ones [1].
+    pub(crate) chest_asymmetry: f64,
+    /// Scale at the crotch over that at the hips: less than 1 so that nothing there is larger round
+    /// than they are.
+    pub(crate) crotch_to_hips: f64,
+}
+
+/// The form of a section of the trunk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SectionForm {
+    /// Square of lateral over frontal scale.
+    pub(crate) aspect: f64,
+    /// How much fuller the corners are [1].
+    pub(crate) corner_fullness: f64,
+    /// The front's share of the frontal scale beyond one half.
+    pub(crate) front_share: f64,
+    /// Depth of the sides, before which the front part of the girth lies [m].
+    pub(crate) side_depth: f64,
+}
+
+/// The neck.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NeckScales {
+    /// Lateral scale at the sides of the neck.
+    pub(crate) breadth: f64,
+    /// How far it stands forward of the template's [m].
+    pub(crate) forward: f64,
+}
+
+/// The shoulders.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShoulderScales {
+    /// Lateral scale at their outer ends.
+    pub(crate) breadth: f64,
+    /// Rise of the armpits over what the levels say [m].
+    pub(crate) armpit_rise: f64,
+}
+
+/// Distances along the arm from the shoulder joint [m].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ArmScales {
+    pub(crate) elbow: f64,
+    pub(crate) wrist: f64,
+}
+
+impl Scales {
+    /// All the template's own, at a ratio of statures.
+    pub(crate) fn new(stature_ratio: f64, marks: &TemplateMarks) -> Self {
+        let section = SectionForm {
+            aspect: 1.0,
+            corner_fullness: 0.0,
+            front_share: 0.0,
+            side_depth: 0.0,
+        };
+        Self {
+            girth: PerGirth::of(|_| stature_ratio),
+            trunk: TrunkScales {
+                section: PerGirth::of(|_| section),
+                chest_asymmetry: 0.0,
+                crotch_to_hips: 1.0,
+            },
+            neck: NeckScales {
+                breadth: stature_ratio,
+                forward: 0.0,
+            },
+            shoulder: ShoulderScales {
+                breadth: stature_ratio,
+                armpit_rise: 0.0,
+            },
+            bust: BustForm::default(),
+            crotch: CrotchForm::default(),
+            arm: ArmScales {
+                elbow: stature_ratio * marks.arm.elbow,
+                wrist: stature_ratio * marks.arm.wrist,
+            },
+        }
+    }
+
+    /// What goes to its place together, slowest where one pulls at another.
+    pub(crate) fn coupled(&mut self) -> impl Iterator<Item = &mut f64> {
+        let single = [
+            &mut self.shoulder.breadth,
+            &mut self.neck.breadth,
+            &mut self.neck.forward,
+            &mut self.bust.spread,
+            &mut self.shoulder.armpit_rise,
+            &mut self.bust.projection,
+            &mut self.crotch.flatness,
+            &mut self.trunk.crotch_to_hips,
+        ];
+        self.girth.iter_mut().chain(single)
+    }
+}

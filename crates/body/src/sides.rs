@@ -1,0 +1,24 @@
+//! Primitives of the left side and the middle, and those of both sides that they stand for.
+
+use crate::Primitive;
+
+/// Primitives with the mirror images of those off the middle after them.
+pub(crate) fn both_sides(mut primitives: Vec<Primitive>) -> Vec<Primitive> {
+    let mirrored: Vec<Primitive> = primitives
+        .iter()
+        .filter(|p| !p.is_central())
+        .map(Primitive::mirrored)
+        .collect();
+    primitives.extend(mirrored);
+    primitives
+}
+
+/// For the primitives of both sides, in the order of [`both_sides`]: which of the
+/// left and the middle each stands for, and whether it is the mirror image.
+pub(crate) fn sources(left: &[Primitive]) -> Vec<(usize, bool)> {
+    let images = (0..left.len()).filter(|&k| !left[k].is_central());
+    (0..left.len())
+        .map(|k| (k, false))
+        .chain(images.map(|k| (k, true)))
+        .collect()
+}
