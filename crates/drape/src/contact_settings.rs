@@ -1,5 +1,6 @@
 //! Settings of contact with solids and of cloth with cloth: offsets, stiffness, friction.
 
+use crate::laws::contact::{ContactLaw, TANGENTIAL_RATIO};
 use crate::{DrapeError, Material};
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +60,22 @@ impl ContactSettings {
             },
             ..self
         }
+    }
+
+    /// The laws of contact of an area of cloth [m2] with a coefficient of friction, soft at any depth.
+    pub fn law(&self, area: f64, friction: f64) -> ContactLaw {
+        let normal = self.stiffness * area;
+        ContactLaw {
+            normal,
+            tangential: TANGENTIAL_RATIO * normal,
+            friction: self.friction_of(friction),
+            hard_from: f64::INFINITY,
+        }
+    }
+
+    /// The coefficient of friction that acts: that of the cloth, or zero without friction.
+    pub fn friction_of(&self, friction: f64) -> f64 {
+        if self.friction { friction } else { 0.0 }
     }
 
     /// Refuses an offset that exceeds the extent of distance fields.

@@ -282,7 +282,7 @@ fn find(
             .filter(|_| depth > 0.0)
             .and_then(|placed| placed.curvature(position))
             .map_or([Matrix3::zeros(); 2], split_by_sign);
-        let law = law_of(model, sample);
+        let law = model.contact.law(sample.area, sample.friction);
         let memory = SolidFriction::find(&state.solid_friction, at as u32, solid as u32);
         let (anchor, force) = match (memory, step_start) {
             (Some(memory), _) => (memory.anchor, memory.force),
@@ -316,21 +316,6 @@ fn find(
         position,
         distance: nearest,
     };
-}
-
-/// The laws of contact of a sample with a solid.
-fn law_of(model: &Model, sample: &ContactSample) -> ContactLaw {
-    let normal = model.contact.stiffness * sample.area;
-    ContactLaw {
-        normal,
-        tangential: 0.5 * normal,
-        friction: if model.contact.friction {
-            sample.friction
-        } else {
-            0.0
-        },
-        hard_from: f64::INFINITY,
-    }
 }
 
 /// The negative and the positive part of a symmetric matrix, both positive semidefinite: it is the second minus the

@@ -3,6 +3,7 @@
 //! A point is four floats in memory (x, y, z and its inverse mass), so that one load fetches it; shuffles in registers
 //! transpose sixteen points to four vectors.
 
+use crate::lane_arithmetic::{F32s, Triple};
 use pulp::Simd;
 use pulp::bytemuck::cast;
 
@@ -25,15 +26,38 @@ impl Row {
 
     /// The lanes of one lane group: a group is as wide as the processor's vectors.
     #[inline(always)]
-    pub fn lane_group<S: Simd>(&self, lane_group: usize) -> S::f32s {
-        S::as_simd_f32s(&self.0).0[lane_group]
+    pub fn lane_group<S: Simd>(&self, simd: S, lane_group: usize) -> F32s<S> {
+        F32s::new(simd, S::as_simd_f32s(&self.0).0[lane_group])
     }
 
     /// Sets the lanes of one lane group.
     #[inline(always)]
-    pub fn set_lane_group<S: Simd>(&mut self, lane_group: usize, value: S::f32s) {
-        S::as_mut_simd_f32s(&mut self.0).0[lane_group] = value;
+    pub fn set_lane_group<S: Simd>(&mut self, lane_group: usize, value: F32s<S>) {
+        S::as_mut_simd_f32s(&mut self.0).0[lane_group] = value.vector;
     }
+}
+
+/// The lanes of one lane group of several rows.
+#[inline(always)]
+pub fn lane_group_of<S: Simd, const N: usize>(
+    simd: S,
+    rows: &[Row; N],
+    lane_group: usize,
+) -> [F32s<S>; N] {
+    let mut all = [rows[0].lane_group(simd, lane_group); N];
+    for (lanes, row) in all.iter_mut().zip(rows) {
+        *lanes = row.lane_group(simd, lane_group);
+    }
+    all
+}
+
+/// Sets the lanes of one lane group of the rows of x, y and z.
+#[inline(always)]
+pub fn set_lane_group_of<S: Simd>(rows: &mut [Row; 3], lane_group: usize, values: Triple<F32s<S>>) {
+    let [x, y, z] = rows;
+    x.set_lane_group(lane_group, values.0[0]);
+    y.set_lane_group(lane_group, values.0[1]);
+    z.set_lane_group(lane_group, values.0[2]);
 }
 
 /// Indices of one corner of each constraint of a batch.
@@ -56,7 +80,10 @@ fn at<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, lane: usize
     points[corner.0[lane_group * S::F32_LANES + lane] as usize]
 }
 
-/// Loads the points of one corner for one lane group: x, y, z and inverse mass.
+/// Points of one lane group: their positions, and their inverse masses where they have any.
+pub type PointLanes<S> = (Triple<F32s<S>>, F32s<S>);
+
+/// Loads the points of one corner for one lane group.
 ///
 /// All functions on vectors are inlined by force, without closures: a function that is not inlined into the one compiled
 /// for the processor's instruction set is compiled for the baseline set.
@@ -66,9 +93,9 @@ pub fn gather<S: Simd>(
     points: &[Point],
     corner: &Corner,
     lane_group: usize,
-) -> [S::f32s; 4] {
+) -> PointLanes<S> {
     // Slot l of register r holds lane 4 l + r: the shuffle then leaves lanes in their order.
-    if S::F32_LANES == 16 {
+    let [x, y, z, w] = if S::F32_LANES == 16 {
         simd.deinterleave_shfl_f32s([
             four::<S>(points, corner, lane_group, 0),
             four::<S>(points, corner, lane_group, 1),
@@ -97,7 +124,9 @@ pub fn gather<S: Simd>(
             simd.splat_f32s(z),
             simd.splat_f32s(w),
         ]
-    }
+    };
+    let position = Triple([F32s::new(simd, x), F32s::new(simd, y), F32s::new(simd, z)]);
+    (position, F32s::new(simd, w))
 }
 
 /// Register `r` of sixteen lanes.
@@ -122,30 +151,26 @@ fn two<S: Simd>(points: &[Point], corner: &Corner, lane_group: usize, r: usize) 
 
 /// Loads one lane group of sixteen consecutive points.
 #[inline(always)]
-pub fn load<S: Simd>(simd: S, points: &[Point; LANES], lane_group: usize) -> [S::f32s; 4] {
+pub fn load<S: Simd>(simd: S, points: &[Point; LANES], lane_group: usize) -> PointLanes<S> {
     gather(simd, points, &SIDE_BY_SIDE, lane_group)
 }
 
 /// Stores one part of sixteen consecutive points.
 #[inline(always)]
-pub fn store<S: Simd>(
-    simd: S,
-    points: &mut [Point; LANES],
-    lane_group: usize,
-    values: [S::f32s; 4],
-) {
-    scatter(simd, points, &SIDE_BY_SIDE, lane_group, values);
+pub fn store<S: Simd>(points: &mut [Point; LANES], lane_group: usize, values: PointLanes<S>) {
+    scatter(points, &SIDE_BY_SIDE, lane_group, values);
 }
 
 /// Stores the points of one corner for one lane group.
 #[inline(always)]
 pub fn scatter<S: Simd>(
-    simd: S,
     points: &mut [Point],
     corner: &Corner,
     lane_group: usize,
-    values: [S::f32s; 4],
+    (Triple([x, y, z]), w): PointLanes<S>,
 ) {
+    let simd = w.simd;
+    let values = [x.vector, y.vector, z.vector, w.vector];
     let first = lane_group * S::F32_LANES;
     if S::F32_LANES == 16 {
         let registers = simd.interleave_shfl_f32s(values);
@@ -178,73 +203,6 @@ pub fn scatter<S: Simd>(
     }
 }
 
-/// Three vectors: a vector of R3 in every lane.
-pub type Triple<F> = [F; 3];
-
-/// a - b.
-#[inline(always)]
-pub fn sub<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> Triple<S::f32s> {
-    [
-        simd.sub_f32s(a[0], b[0]),
-        simd.sub_f32s(a[1], b[1]),
-        simd.sub_f32s(a[2], b[2]),
-    ]
-}
-
-/// a . b.
-#[inline(always)]
-pub fn dot<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> S::f32s {
-    let sum = simd.mul_f32s(a[0], b[0]);
-    let sum = simd.mul_add_e_f32s(a[1], b[1], sum);
-    simd.mul_add_e_f32s(a[2], b[2], sum)
-}
-
-/// a x b.
-#[inline(always)]
-pub fn cross<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> Triple<S::f32s> {
-    let [x, y, z] = [
-        simd.mul_f32s(a[1], b[2]),
-        simd.mul_f32s(a[2], b[0]),
-        simd.mul_f32s(a[0], b[1]),
-    ];
-    [
-        simd.negate_mul_add_e_f32s(a[2], b[1], x),
-        simd.negate_mul_add_e_f32s(a[0], b[2], y),
-        simd.negate_mul_add_e_f32s(a[1], b[0], z),
-    ]
-}
-
-/// a s + b t.
-#[inline(always)]
-pub fn blend<S: Simd>(
-    simd: S,
-    a: Triple<S::f32s>,
-    s: S::f32s,
-    b: Triple<S::f32s>,
-    t: S::f32s,
-) -> Triple<S::f32s> {
-    [
-        simd.mul_add_e_f32s(b[0], t, simd.mul_f32s(a[0], s)),
-        simd.mul_add_e_f32s(b[1], t, simd.mul_f32s(a[1], s)),
-        simd.mul_add_e_f32s(b[2], t, simd.mul_f32s(a[2], s)),
-    ]
-}
-
-/// a + b s.
-#[inline(always)]
-pub fn add_scaled<S: Simd>(
-    simd: S,
-    a: Triple<S::f32s>,
-    b: Triple<S::f32s>,
-    s: S::f32s,
-) -> Triple<S::f32s> {
-    [
-        simd.mul_add_e_f32s(b[0], s, a[0]),
-        simd.mul_add_e_f32s(b[1], s, a[1]),
-        simd.mul_add_e_f32s(b[2], s, a[2]),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -262,10 +220,10 @@ mod tests {
         fn with_simd<S: Simd>(self, simd: S) {
             for lane_group in 0..lane_groups::<S>() {
                 let point = gather(simd, self.from, self.corner, lane_group);
-                let [x, y, z, w] = point;
-                let sum = simd.add_f32s(simd.add_f32s(x, y), simd.add_f32s(z, w));
-                self.sums.set_lane_group::<S>(lane_group, sum);
-                scatter(simd, self.to, self.corner, lane_group, point);
+                let (Triple([x, y, z]), w) = point;
+                let sum = (x + y) + (z + w);
+                self.sums.set_lane_group(lane_group, sum);
+                scatter(self.to, self.corner, lane_group, point);
             }
         }
     }

@@ -31,6 +31,7 @@ mod incremental_potential;
 mod internal_strain;
 pub mod kes;
 mod kinetic_damping;
+mod lane_arithmetic;
 mod lanes;
 pub mod laws;
 mod material;

@@ -2,7 +2,7 @@
 //! Sixteen pairs are computed in lanes, in single precision: the vectors are approximate. A separation along any vector
 //! is a proof all the same, which [`super::separation_filter`] makes use of.
 
-use crate::lanes::{Triple, add_scaled, dot, sub};
+use crate::lane_arithmetic::{F32s, Mask, Number, Triple};
 use pulp::Simd;
 
 /// Bound of the error of a distance in single precision, as a share of the largest coordinate. In units of the machine
@@ -14,115 +14,66 @@ const MIN_DIVISOR: f32 = 1e-30;
 
 /// The quotient a / b, clamped to 0..=1.
 #[inline(always)]
-fn clamped_quotient<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
-    let quotient = simd.div_f32s(a, simd.max_f32s(b, simd.splat_f32s(MIN_DIVISOR)));
-    let quotient = simd.max_f32s(quotient, simd.splat_f32s(0.0));
-    simd.min_f32s(quotient, simd.splat_f32s(1.0))
-}
-
-/// The determinant a b - c d.
-#[inline(always)]
-fn determinant<S: Simd>(simd: S, [a, b]: [S::f32s; 2], [c, d]: [S::f32s; 2]) -> S::f32s {
-    simd.sub_f32s(simd.mul_f32s(a, b), simd.mul_f32s(c, d))
+fn clamped_quotient<S: Simd>(a: F32s<S>, b: F32s<S>) -> F32s<S> {
+    let simd = a.simd;
+    let quotient = a / b.max(F32s::splat(simd, MIN_DIVISOR));
+    let quotient = quotient.max(F32s::splat(simd, 0.0));
+    quotient.min(F32s::splat(simd, 1.0))
 }
 
 /// Whether every corner of a face lies more than `gap` beyond the vertex along n. `gap` is the distance times |n|.
 #[inline(always)]
 pub fn face_is_beyond<S: Simd>(
-    simd: S,
-    [p, a, b, c]: &[Triple<S::f32s>; 4],
-    n: Triple<S::f32s>,
-    gap: S::f32s,
-) -> S::m32s {
-    let a = simd.greater_than_f32s(dot(simd, sub(simd, *a, *p), n), gap);
-    let b = simd.greater_than_f32s(dot(simd, sub(simd, *b, *p), n), gap);
-    let c = simd.greater_than_f32s(dot(simd, sub(simd, *c, *p), n), gap);
-    simd.and_m32s(a, simd.and_m32s(b, c))
+    &[p, a, b, c]: &[Triple<F32s<S>>; 4],
+    n: Triple<F32s<S>>,
+    gap: F32s<S>,
+) -> Mask<S> {
+    let a = (a - p).dot(n).greater_than(gap);
+    let b = (b - p).dot(n).greater_than(gap);
+    let c = (c - p).dot(n).greater_than(gap);
+    a & (b & c)
 }
 
 /// Whether both ends of the second edge lie more than `gap` beyond both ends of the first along n. `gap` is the
 /// distance times |n|.
 #[inline(always)]
 pub fn edge_is_beyond<S: Simd>(
-    simd: S,
-    [a, b, c, d]: &[Triple<S::f32s>; 4],
-    n: Triple<S::f32s>,
-    gap: S::f32s,
-) -> S::m32s {
-    let ac = dot(simd, sub(simd, *c, *a), n);
-    let ad = dot(simd, sub(simd, *d, *a), n);
-    let ab = dot(simd, sub(simd, *b, *a), n);
-    let from_a = simd.and_m32s(
-        simd.greater_than_f32s(ac, gap),
-        simd.greater_than_f32s(ad, gap),
-    );
-    let gap = simd.add_f32s(gap, ab);
-    let from_b = simd.and_m32s(
-        simd.greater_than_f32s(ac, gap),
-        simd.greater_than_f32s(ad, gap),
-    );
-    simd.and_m32s(from_a, from_b)
+    &[a, b, c, d]: &[Triple<F32s<S>>; 4],
+    n: Triple<F32s<S>>,
+    gap: F32s<S>,
+) -> Mask<S> {
+    let (ac, ad, ab) = ((c - a).dot(n), (d - a).dot(n), (b - a).dot(n));
+    let from_a = ac.greater_than(gap) & ad.greater_than(gap);
+    let gap = gap + ab;
+    let from_b = ac.greater_than(gap) & ad.greater_than(gap);
+    from_a & from_b
 }
 
 /// Vector from a vertex to the closest point of a face: to the foot of the perpendicular where it lies inside, else to
 /// the closest point of the three sides. Approximate.
 #[inline(always)]
-pub fn vertex_to_face<S: Simd>(simd: S, [p, a, b, c]: &[Triple<S::f32s>; 4]) -> Triple<S::f32s> {
-    let zero = simd.splat_f32s(0.0);
-    let (u, v, w) = (sub(simd, *b, *a), sub(simd, *c, *a), sub(simd, *a, *p));
-    let (uu, vv, uv) = (dot(simd, u, u), dot(simd, v, v), dot(simd, u, v));
-    let (uw, vw) = (dot(simd, u, w), dot(simd, v, w));
-    let on_u = add_scaled(simd, w, u, clamped_quotient(simd, simd.neg_f32s(uw), uu));
-    let on_v = add_scaled(simd, w, v, clamped_quotient(simd, simd.neg_f32s(vw), vv));
-    let (e, f) = (sub(simd, v, u), sub(simd, *b, *p));
-    let on_e = add_scaled(
-        simd,
-        f,
-        e,
-        clamped_quotient(simd, simd.neg_f32s(dot(simd, e, f)), dot(simd, e, e)),
-    );
-    let nearest = shorter(simd, shorter(simd, on_u, on_v), on_e);
-    let square = determinant(simd, [uu, vv], [uv, uv]);
-    let (s, t) = (
-        determinant(simd, [uv, vw], [vv, uw]),
-        determinant(simd, [uv, uw], [uu, vw]),
-    );
-    let inside = simd.and_m32s(
-        simd.greater_than_f32s(s, zero),
-        simd.and_m32s(
-            simd.greater_than_f32s(t, zero),
-            simd.greater_than_f32s(square, simd.add_f32s(s, t)),
-        ),
-    );
-    let foot = add_scaled(
-        simd,
-        add_scaled(simd, w, u, clamped_quotient(simd, s, square)),
-        v,
-        clamped_quotient(simd, t, square),
-    );
-    select(simd, inside, foot, nearest)
+pub fn vertex_to_face<S: Simd>(&[p, a, b, c]: &[Triple<F32s<S>>; 4]) -> Triple<F32s<S>> {
+    let (u, v, w) = (b - a, c - a, a - p);
+    let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
+    let (uw, vw) = (u.dot(w), v.dot(w));
+    let on_u = w.add_scaled(u, clamped_quotient(-uw, uu));
+    let on_v = w.add_scaled(v, clamped_quotient(-vw, vv));
+    let (e, f) = (v - u, b - p);
+    let on_e = f.add_scaled(e, clamped_quotient(-e.dot(f), e.dot(e)));
+    let nearest = shorter(shorter(on_u, on_v), on_e);
+    let square = uu * vv - uv * uv;
+    let (s, t) = (uv * vw - vv * uw, uv * uw - uu * vw);
+    let zero = F32s::splat(square.simd, 0.0);
+    let inside = s.greater_than(zero) & (t.greater_than(zero) & square.greater_than(s + t));
+    let foot = w.add_scaled(u, clamped_quotient(s, square));
+    let foot = foot.add_scaled(v, clamped_quotient(t, square));
+    inside.select_triple(foot, nearest)
 }
 
 /// The shorter of two vectors.
 #[inline(always)]
-fn shorter<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> Triple<S::f32s> {
-    let is_shorter = simd.less_than_f32s(dot(simd, a, a), dot(simd, b, b));
-    select(simd, is_shorter, a, b)
-}
-
-/// The first of two vectors in the lanes that are set, else the second.
-#[inline(always)]
-fn select<S: Simd>(
-    simd: S,
-    mask: S::m32s,
-    a: Triple<S::f32s>,
-    b: Triple<S::f32s>,
-) -> Triple<S::f32s> {
-    [
-        simd.select_f32s(mask, a[0], b[0]),
-        simd.select_f32s(mask, a[1], b[1]),
-        simd.select_f32s(mask, a[2], b[2]),
-    ]
+fn shorter<S: Simd>(a: Triple<F32s<S>>, b: Triple<F32s<S>>) -> Triple<F32s<S>> {
+    a.dot(a).less_than(b.dot(b)).select_triple(a, b)
 }
 
 /// Approximate vector from the closest point of the first edge to that of the second (Ericson 2005, section 5.1.9), and
@@ -132,40 +83,30 @@ fn select<S: Simd>(
 /// coordinate [m], from which d follows.
 #[inline(always)]
 pub fn edge_to_edge<S: Simd>(
-    simd: S,
-    [a, b, c, d]: &[Triple<S::f32s>; 4],
+    &[a, b, c, d]: &[Triple<F32s<S>>; 4],
     farthest: f32,
-) -> (Triple<S::f32s>, S::m32s) {
-    let (u, v, w) = (sub(simd, *b, *a), sub(simd, *d, *c), sub(simd, *a, *c));
-    let (uu, vv, uv) = (dot(simd, u, u), dot(simd, v, v), dot(simd, u, v));
-    let (uw, vw, ww) = (dot(simd, u, w), dot(simd, v, w), dot(simd, w, w));
-    let square = determinant(simd, [uu, vv], [uv, uv]);
-    let (s, t) = (
-        determinant(simd, [uv, vw], [uw, vv]),
-        determinant(simd, [uu, vw], [uv, uw]),
-    );
+) -> (Triple<F32s<S>>, Mask<S>) {
+    let (u, v, w) = (b - a, d - c, a - c);
+    let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
+    let (uw, vw, ww) = (u.dot(w), v.dot(w), w.dot(w));
+    let square = uu * vv - uv * uv;
+    let (s, t) = (uv * vw - uw * vv, uu * vw - uv * uw);
     // For parallel edges any first point will do: the two below follow from it.
-    let on_first = clamped_quotient(simd, s, square);
-    let on_second = clamped_quotient(simd, simd.mul_add_e_f32s(uv, on_first, vw), vv);
-    let on_first = clamped_quotient(simd, simd.sub_f32s(simd.mul_f32s(uv, on_second), uw), uu);
-    let second = add_scaled(simd, sub(simd, *c, *a), v, on_second);
-    let n = add_scaled(simd, second, u, simd.neg_f32s(on_first));
+    let on_first = clamped_quotient(s, square);
+    let on_second = clamped_quotient(uv.mul_add(on_first, vw), vv);
+    let on_first = clamped_quotient(uv * on_second - uw, uu);
+    let second = (c - a).add_scaled(v, on_second);
+    let n = second.add_scaled(u, -on_first);
 
-    let longest = simd.max_f32s(ww, simd.max_f32s(uu, vv));
-    let error = simd.mul_f32s(longest, simd.sqrt_f32s(longest));
-    let error = simd.mul_f32s(error, simd.splat_f32s(8.0 * ROUNDING * farthest));
-    let is_known = simd.greater_than_f32s(square, simd.add_f32s(error, error));
-    let outside = simd.or_m32s(
-        is_outside(simd, s, square, error),
-        is_outside(simd, t, square, error),
-    );
-    (n, simd.and_m32s(is_known, outside))
+    let longest = ww.max(uu.max(vv));
+    let error = longest * longest.sqrt() * (8.0 * ROUNDING * farthest);
+    let is_known = square.greater_than(error + error);
+    let outside = is_outside(s, square, error) | is_outside(t, square, error);
+    (n, is_known & outside)
 }
 
 /// Whether the quotient a / b is certainly below 0 or above 1, where a and b have this error.
 #[inline(always)]
-fn is_outside<S: Simd>(simd: S, a: S::f32s, b: S::f32s, error: S::f32s) -> S::m32s {
-    let below = simd.greater_than_f32s(simd.neg_f32s(a), error);
-    let above = simd.greater_than_f32s(simd.sub_f32s(a, b), simd.add_f32s(error, error));
-    simd.or_m32s(below, above)
+fn is_outside<S: Simd>(a: F32s<S>, b: F32s<S>, error: F32s<S>) -> Mask<S> {
+    (-a).greater_than(error) | (a - b).greater_than(error + error)
 }

@@ -19,7 +19,7 @@ use super::step_truncation::truncate_moves;
 use super::surface::ClothSurface;
 use super::trajectories::LinearTrajectories;
 use crate::Model;
-use crate::laws::contact::{ContactLaw, ContactPlane, normal_spring};
+use crate::laws::contact::{ContactLaw, ContactPlane, TANGENTIAL_RATIO};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -157,22 +157,20 @@ impl ContactDetector {
             .surface
             .contact_offset(near.pair, near.neighbours, offset);
         // Vertices of both sides make contacts with faces of the other side, so each contact has half of the area.
-        let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
+        let area = 0.5 * of(&self.surface.area);
+        let law = ContactLaw {
+            hard_from: HARD_FROM * offset,
+            ..model.contact.law(area, of(&self.surface.friction))
+        };
         let between = near.normal * near.distance;
-        let hard_from = HARD_FROM * offset;
         let remembered = friction_memory::anchor(memory, near, x);
         let (anchor, force) = remembered.unwrap_or_else(|| match &self.step_start {
             Some(from) => {
-                let [_, force, _] = normal_spring(normal, hard_from, offset - near.distance);
+                let [_, force, _] = law.normal_spring(offset - near.distance);
                 (between - near.slid(from, x), force)
             }
             None => (between, 0.0),
         });
-        let friction = if model.contact.friction {
-            of(&self.surface.friction)
-        } else {
-            0.0
-        };
         ClothContact {
             vertices,
             weights: near.weights,
@@ -189,12 +187,10 @@ impl ContactDetector {
                 landing: false,
             },
             law: ContactLaw {
-                normal,
                 // The tangential stiffness grows with the force, so that the slip at which cloth begins to slide is no
                 // longer in the hard range of a contact than at the end of the soft range.
-                tangential: 0.5 * normal.max(force / offset),
-                friction,
-                hard_from,
+                tangential: TANGENTIAL_RATIO * law.normal.max(force / offset),
+                ..law
             },
             restitution: self.restitution(vertices, near.weights),
             pair: Some(near.pair),

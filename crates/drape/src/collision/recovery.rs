@@ -8,7 +8,7 @@ use super::layers::{LayerViolation, layer_crossings};
 use super::memory::RecoveryDirection;
 use super::surface::ClothSurface;
 use crate::Model;
-use crate::laws::contact::{ContactLaw, ContactPlane};
+use crate::laws::contact::ContactPlane;
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
@@ -166,7 +166,6 @@ impl Puller<'_> {
         }
         let four = vertices.into_iter().zip(weights);
         let point = four.map(|(v, w)| self.x[v as usize] * w).sum();
-        let stiffness = 0.25 * self.model.contact.stiffness * area;
         Some(ClothContact {
             vertices,
             weights,
@@ -182,12 +181,7 @@ impl Puller<'_> {
                 returning: false,
                 landing: false,
             },
-            law: ContactLaw {
-                normal: stiffness,
-                tangential: stiffness,
-                friction: 0.0,
-                hard_from: f64::INFINITY,
-            },
+            law: self.model.contact.law(0.25 * area, 0.0),
             restitution: None,
             pair: None,
         })

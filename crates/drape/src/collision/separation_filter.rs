@@ -14,7 +14,8 @@ use super::closest_vectors::{
 };
 use super::leaf_aabbs::{Hits, origin};
 use super::surface_view::SurfaceView;
-use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, lane_groups};
+use crate::lane_arithmetic::{F32s, Triple};
+use crate::lanes::{Corner, LANES, Point, Row, gather, lane_groups};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -174,7 +175,7 @@ impl WithSimd for FilterRun<'_> {
                     for lane_group in 0..lane_groups::<S>() {
                         let flags = (self.filter)
                             .separated_vertex_faces(simd, &corners, &distance, lane_group);
-                        separated.set_lane_group::<S>(lane_group, flags);
+                        separated.set_lane_group(lane_group, flags);
                     }
                 }
                 PairKind::EdgeEdge(edges) => {
@@ -183,7 +184,7 @@ impl WithSimd for FilterRun<'_> {
                         let flags = self
                             .filter
                             .separated_edges(simd, &corners, &distance, lane_group);
-                        separated.set_lane_group::<S>(lane_group, flags);
+                        separated.set_lane_group(lane_group, flags);
                     }
                 }
             }
@@ -230,25 +231,14 @@ fn positions<S: Simd>(
     points: &[Point],
     corners: &[Corner; 4],
     lane_group: usize,
-) -> [Triple<S::f32s>; 4] {
+) -> [Triple<F32s<S>>; 4] {
     let [a, b, c, d] = corners;
     [
-        xyz(gather(simd, points, a, lane_group)),
-        xyz(gather(simd, points, b, lane_group)),
-        xyz(gather(simd, points, c, lane_group)),
-        xyz(gather(simd, points, d, lane_group)),
+        gather(simd, points, a, lane_group).0,
+        gather(simd, points, b, lane_group).0,
+        gather(simd, points, c, lane_group).0,
+        gather(simd, points, d, lane_group).0,
     ]
-}
-
-#[inline(always)]
-fn xyz<F>([x, y, z, _]: [F; 4]) -> Triple<F> {
-    [x, y, z]
-}
-
-/// 1 in the lanes that are set, else 0.
-#[inline(always)]
-fn flag<S: Simd>(simd: S, mask: S::m32s) -> S::f32s {
-    simd.select_f32s(mask, simd.splat_f32s(1.0), simd.splat_f32s(0.0))
 }
 
 impl SeparationFilter {
@@ -260,19 +250,16 @@ impl SeparationFilter {
         corners: &[Corner; 4],
         distance: &Row,
         lane_group: usize,
-    ) -> S::f32s {
+    ) -> F32s<S> {
         let p = positions(simd, &self.from, corners, lane_group);
-        let n = vertex_to_face(simd, &p);
-        let gap = simd.mul_f32s(
-            distance.lane_group::<S>(lane_group),
-            simd.sqrt_f32s(dot(simd, n, n)),
-        );
-        let mut separated = face_is_beyond(simd, &p, n, gap);
+        let n = vertex_to_face(&p);
+        let gap = distance.lane_group(simd, lane_group) * n.norm();
+        let mut separated = face_is_beyond(&p, n, gap);
         if let Some(to) = &self.to {
             let p = positions(simd, to, corners, lane_group);
-            separated = simd.and_m32s(separated, face_is_beyond(simd, &p, n, gap));
+            separated = separated & face_is_beyond(&p, n, gap);
         }
-        flag(simd, separated)
+        separated.flags()
     }
 
     /// 1 for two edges that are separated by more than `distance` [m] or, where nothing moves, pass by each other;
@@ -284,22 +271,19 @@ impl SeparationFilter {
         corners: &[Corner; 4],
         distance: &Row,
         lane_group: usize,
-    ) -> S::f32s {
+    ) -> F32s<S> {
         let p = positions(simd, &self.from, corners, lane_group);
-        let (n, passing) = edge_to_edge(simd, &p, self.farthest);
-        let gap = simd.mul_f32s(
-            distance.lane_group::<S>(lane_group),
-            simd.sqrt_f32s(dot(simd, n, n)),
-        );
-        let separated = edge_is_beyond(simd, &p, n, gap);
+        let (n, passing) = edge_to_edge(&p, self.farthest);
+        let gap = distance.lane_group(simd, lane_group) * n.norm();
+        let separated = edge_is_beyond(&p, n, gap);
         let discarded = match &self.to {
             Some(to) => {
                 let p = positions(simd, to, corners, lane_group);
-                simd.and_m32s(separated, edge_is_beyond(simd, &p, n, gap))
+                separated & edge_is_beyond(&p, n, gap)
             }
-            None => simd.or_m32s(separated, passing),
+            None => separated | passing,
         };
-        flag(simd, discarded)
+        discarded.flags()
     }
 }
 

@@ -18,6 +18,9 @@ pub struct ContactLaw {
     pub hard_from: f64,
 }
 
+/// Ratio of the tangential to the normal stiffness of a contact.
+pub const TANGENTIAL_RATIO: f64 = 0.5;
+
 /// Factor of the additional stiffness of a contact beyond its hard depth. A linear spring between two cloths has its
 /// largest force when they touch: under a greater load only step truncation would keep them apart, and no method would
 /// reach equilibrium.
@@ -82,21 +85,17 @@ pub fn damped_push(elastic: f64, normal: f64, mass: f64, leaving: f64) -> f64 {
 /// just at the limit and must not be treated as sticking.
 const AT_LIMIT: f64 = 0.99;
 
-/// Energy [J], force \[N\] and stiffness [N/m] of the normal spring of a stiffness `normal` [N/m], harder from a depth
-/// `hard_from` [m], at a depth [m].
-pub fn normal_spring(normal: f64, hard_from: f64, depth: f64) -> [f64; 3] {
-    let (soft, hard) = (depth.max(0.0), (depth - hard_from).max(0.0));
-    let harder = HARDER * normal;
-    [
-        0.5 * (normal * soft * soft + harder * hard * hard),
-        normal * soft + harder * hard,
-        normal + if hard > 0.0 { harder } else { 0.0 },
-    ]
-}
-
 impl ContactLaw {
-    fn normal_spring(&self, depth: f64) -> [f64; 3] {
-        normal_spring(self.normal, self.hard_from, depth)
+    /// Energy [J], force \[N\] and stiffness [N/m] of the normal spring at a depth [m].
+    pub fn normal_spring(&self, depth: f64) -> [f64; 3] {
+        let normal = self.normal;
+        let (soft, hard) = (depth.max(0.0), (depth - self.hard_from).max(0.0));
+        let harder = HARDER * normal;
+        [
+            0.5 * (normal * soft * soft + harder * hard * hard),
+            normal * soft + harder * hard,
+            normal + if hard > 0.0 { harder } else { 0.0 },
+        ]
     }
 
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.

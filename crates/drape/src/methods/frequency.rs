@@ -53,8 +53,9 @@ pub fn contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
     }
     let mut stiffness = vec![0.0; system.vertex_count()];
     for sample in samples {
+        let law = system.contact.law(sample.area, sample.friction);
         for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
-            stiffness[v as usize] += w * system.contact.stiffness * sample.area;
+            stiffness[v as usize] += w * law.normal;
         }
     }
     stiffness

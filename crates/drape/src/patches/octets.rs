@@ -2,6 +2,7 @@
 //! each one vector.
 
 use super::Lane;
+use crate::lane_arithmetic::{F64s, Triple};
 use pulp::Simd;
 
 /// Numbers in a group.
@@ -19,8 +20,8 @@ pub struct Octet(pub [f64; WIDTH]);
 impl Octet {
     /// The numbers of one lane group: it is as wide as the processor's vectors.
     #[inline(always)]
-    pub fn lane_group<S: Simd>(&self, lane_group: usize) -> S::f64s {
-        S::as_simd_f64s(&self.0).0[lane_group]
+    pub fn lane_group<S: Simd>(&self, simd: S, lane_group: usize) -> F64s<S> {
+        F64s::new(simd, S::as_simd_f64s(&self.0).0[lane_group])
     }
 }
 
@@ -48,14 +49,14 @@ pub fn lane_group_start<S: Simd>(group: usize, lane_group: usize) -> usize {
 
 /// Loads consecutive numbers from index `at` on.
 #[inline(always)]
-pub fn load<S: Simd>(from: &[f64], at: usize) -> S::f64s {
-    S::as_simd_f64s(&from[at..at + S::F64_LANES]).0[0]
+pub fn load<S: Simd>(simd: S, from: &[f64], at: usize) -> F64s<S> {
+    F64s::new(simd, S::as_simd_f64s(&from[at..at + S::F64_LANES]).0[0])
 }
 
 /// Stores consecutive numbers from index `at` on.
 #[inline(always)]
-pub fn store<S: Simd>(to: &mut [f64], at: usize, values: S::f64s) {
-    S::as_mut_simd_f64s(&mut to[at..at + S::F64_LANES]).0[0] = values;
+pub fn store<S: Simd>(to: &mut [f64], at: usize, values: F64s<S>) {
+    S::as_mut_simd_f64s(&mut to[at..at + S::F64_LANES]).0[0] = values.vector;
 }
 
 /// Indices of the eight operands of a group in a padded array.
@@ -63,44 +64,33 @@ pub type Indices = [u32; WIDTH];
 
 /// Loads the operands of one lane group by their indices.
 #[inline(always)]
-pub fn gather<S: Simd>(from: &[f64], indices: &Indices, lane_group: usize) -> S::f64s {
+pub fn gather<S: Simd>(simd: S, from: &[f64], indices: &Indices, lane_group: usize) -> F64s<S> {
     let mut lanes = Octet::default();
     for k in 0..S::F64_LANES {
         lanes.0[k] = from[indices[lane_group * S::F64_LANES + k] as usize];
     }
-    lanes.lane_group::<S>(0)
+    lanes.lane_group(simd, 0)
 }
 
 /// Loads consecutive points from index `at` on.
 #[inline(always)]
-pub fn load_points<S: Simd>(from: [&[f64]; 3], at: usize) -> [S::f64s; 3] {
-    [
-        load::<S>(from[0], at),
-        load::<S>(from[1], at),
-        load::<S>(from[2], at),
-    ]
+pub fn load_points<S: Simd>(simd: S, [x, y, z]: [&[f64]; 3], at: usize) -> Triple<F64s<S>> {
+    Triple([load(simd, x, at), load(simd, y, at), load(simd, z, at)])
 }
 
 /// Loads the points of one lane group by their indices.
 #[inline(always)]
 pub fn gather_points<S: Simd>(
+    simd: S,
     from: [&[f64]; 3],
     indices: &Indices,
     lane_group: usize,
-) -> [S::f64s; 3] {
-    [
-        gather::<S>(from[0], indices, lane_group),
-        gather::<S>(from[1], indices, lane_group),
-        gather::<S>(from[2], indices, lane_group),
-    ]
-}
-
-/// sum += by * points.
-#[inline(always)]
-pub fn add_scaled<S: Simd>(simd: S, sum: &mut [S::f64s; 3], by: S::f64s, points: [S::f64s; 3]) {
-    for (sum, x) in sum.iter_mut().zip(points) {
-        *sum = simd.mul_add_f64s(by, x, *sum);
-    }
+) -> Triple<F64s<S>> {
+    Triple([
+        gather(simd, from[0], indices, lane_group),
+        gather(simd, from[1], indices, lane_group),
+        gather(simd, from[2], indices, lane_group),
+    ])
 }
 
 /// The eight operands of a group in a padded array.
@@ -129,10 +119,16 @@ impl Operands {
 
     /// Loads the numbers of one lane group.
     #[inline(always)]
-    pub fn load<S: Simd>(self, from: &[f64], scattered: &[Indices], lane_group: usize) -> S::f64s {
+    pub fn load<S: Simd>(
+        self,
+        simd: S,
+        from: &[f64],
+        scattered: &[Indices],
+        lane_group: usize,
+    ) -> F64s<S> {
         match self {
-            Self::Run(start) => load::<S>(from, start as usize + lane_group * S::F64_LANES),
-            Self::Scattered(entry) => gather::<S>(from, &scattered[entry as usize], lane_group),
+            Self::Run(start) => load(simd, from, start as usize + lane_group * S::F64_LANES),
+            Self::Scattered(entry) => gather(simd, from, &scattered[entry as usize], lane_group),
         }
     }
 
@@ -140,14 +136,15 @@ impl Operands {
     #[inline(always)]
     pub fn points<S: Simd>(
         self,
+        simd: S,
         from: [&[f64]; 3],
         scattered: &[Indices],
         lane_group: usize,
-    ) -> [S::f64s; 3] {
+    ) -> Triple<F64s<S>> {
         match self {
-            Self::Run(start) => load_points::<S>(from, start as usize + lane_group * S::F64_LANES),
+            Self::Run(start) => load_points(simd, from, start as usize + lane_group * S::F64_LANES),
             Self::Scattered(entry) => {
-                gather_points::<S>(from, &scattered[entry as usize], lane_group)
+                gather_points(simd, from, &scattered[entry as usize], lane_group)
             }
         }
     }

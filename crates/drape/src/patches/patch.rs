@@ -11,6 +11,7 @@ use super::octets::{PAD, Points, lane_group_start, lane_groups, load, padded, st
 use super::patch_contacts::PatchContact;
 use super::rows::{Rows, rounding};
 use super::tensions::{PatchTopology, Tensions, groups_by_ring};
+use crate::lane_arithmetic::{F64s, Number, Triple};
 use crate::{Elastic, ElasticEnd, System};
 use pulp::Simd;
 
@@ -299,13 +300,14 @@ impl Patch {
 
     #[inline(always)]
     fn drift<S: Simd>(&mut self, simd: S, h: f64) {
-        let h = simd.splat_f64s(h);
+        let h = F64s::splat(simd, h);
         let (x, v) = (self.positions.axes_mut(), self.velocities.axes());
         for (x, v) in x.into_iter().zip(v) {
             // Padded arrays are whole groups.
             let (x, v) = (S::as_mut_simd_f64s(x).0, S::as_simd_f64s(v).0);
             for (x, v) in x.iter_mut().zip(v) {
-                *x = simd.mul_add_f64s(*v, h, *x);
+                let (start, v) = (F64s::new(simd, *x), F64s::new(simd, *v));
+                *x = v.mul_add(h, start).vector;
             }
         }
     }
@@ -346,8 +348,7 @@ impl Patch {
         let half = 0.5 * substeps.drag * substeps.h;
         let (decay, gain) = ((1.0 - half) / (1.0 + half), substeps.h / (1.0 + half));
         let gravity = substeps.gravity.scaled(gain).coordinates();
-        let gravity = [0, 1, 2].map(|axis| simd.splat_f64s(gravity[axis]));
-        let [decay, gain, drift] = [decay, -gain, drift].map(|k| simd.splat_f64s(k));
+        let drift = F64s::splat(simd, drift);
         let x = self.positions.axes();
         let (v, g) = (self.velocities.axes_mut(), self.gradient.axes_mut());
         let next_x = self.next_positions.axes_mut();
@@ -355,20 +356,17 @@ impl Patch {
             for lane_group in 0..lane_groups::<S>() {
                 let at = lane_group_start::<S>(group as usize, lane_group);
                 let force = self.forces.gradient(simd, group as usize, lane_group, x);
-                let inverse_mass = load::<S>(&self.inverse_mass, at);
-                let (gravity_factor, gain) = (
-                    load::<S>(&self.gravity_factor, at),
-                    simd.mul_f64s(gain, inverse_mass),
-                );
+                let gravity_factor = load(simd, &self.gravity_factor, at);
+                let gain = -gain * load(simd, &self.inverse_mass, at);
                 for axis in 0..3 {
-                    let force = simd.add_f64s(force[axis], load::<S>(g[axis], at));
-                    let v_new = simd.mul_f64s(load::<S>(v[axis], at), decay);
-                    let v_new = simd.mul_add_f64s(gravity[axis], gravity_factor, v_new);
-                    let v_new = simd.mul_add_f64s(gain, force, v_new);
-                    store::<S>(v[axis], at, v_new);
-                    let x_new = simd.mul_add_f64s(v_new, drift, load::<S>(x[axis], at));
-                    store::<S>(next_x[axis], at, x_new);
-                    store::<S>(g[axis], at, simd.splat_f64s(0.0));
+                    let force = force.0[axis] + load(simd, g[axis], at);
+                    let v_new = load(simd, v[axis], at) * decay;
+                    let v_new = F64s::splat(simd, gravity[axis]).mul_add(gravity_factor, v_new);
+                    let v_new = gain.mul_add(force, v_new);
+                    store(v[axis], at, v_new);
+                    let x_new = v_new.mul_add(drift, load(simd, x[axis], at));
+                    store(next_x[axis], at, x_new);
+                    store(g[axis], at, F64s::splat(simd, 0.0));
                 }
             }
         }
@@ -390,14 +388,9 @@ impl Forces {
         group: usize,
         lane_group: usize,
         x: [&[f64]; 3],
-    ) -> [S::f64s; 3] {
+    ) -> Triple<F64s<S>> {
         let bending = self.bending.product_points(simd, group, lane_group, x);
-        let membrane = self.membrane.gradient(simd, group, lane_group, x);
-        [
-            simd.add_f64s(bending[0], membrane[0]),
-            simd.add_f64s(bending[1], membrane[1]),
-            simd.add_f64s(bending[2], membrane[2]),
-        ]
+        bending + self.membrane.gradient(simd, group, lane_group, x)
     }
 }
 
@@ -548,8 +541,8 @@ impl pulp::WithSimd for MeasureEnergy<'_> {
                         .forces
                         .bending
                         .product_points(simd, group as usize, lane_group, x);
-                for (axis, bending) in patch.gradient.axes_mut().into_iter().zip(bending) {
-                    store::<S>(axis, at, bending);
+                for (axis, bending) in patch.gradient.axes_mut().into_iter().zip(bending.0) {
+                    store(axis, at, bending);
                 }
             }
         }

@@ -3,7 +3,7 @@
 
 use super::Lane;
 use crate::contact_settings::FIELD_REACH;
-use crate::laws::contact::{damped_push, gentle_push};
+use crate::laws::contact::{TANGENTIAL_RATIO, damped_push, gentle_push};
 use crate::memory::Memory;
 use crate::{SolidFriction, State, System};
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ pub struct PatchContact {
     normal: Lane,
     /// The plane n . x = level of the offset surface [m].
     level: f64,
-    /// Normal stiffness k [N/m]; the tangential one is half of it.
+    /// Normal stiffness k [N/m]; the tangential one is [`TANGENTIAL_RATIO`] of it.
     stiffness: f64,
     /// Friction coefficient.
     friction: f64,
@@ -37,9 +37,6 @@ pub struct PatchContact {
     /// Whether the vertex was that deep and has not left the offset surface since.
     buried: bool,
 }
-
-/// Ratio of the tangential to the normal stiffness, as for every other method.
-const TANGENTIAL_RATIO: f64 = 0.5;
 
 impl PatchContact {
     /// The contact force on the vertex at `position` [m] and `velocity` [m/s]: normal force and friction [N].
@@ -211,16 +208,13 @@ impl PatchContacts {
                 continue;
             }
             let memory = SolidFriction::find(&state.solid_friction, number, solid);
+            let law = system.contact.law(sample.area, sample.friction);
             self.samples.push(SurfaceSample {
                 vertex,
                 number,
                 solid,
-                stiffness: system.contact.stiffness * sample.area,
-                friction: if system.contact.friction {
-                    sample.friction
-                } else {
-                    0.0
-                },
+                stiffness: law.normal,
+                friction: law.friction,
                 offset: system.contact.offset + sample.extra_offset,
                 last: Vec3::repeat(f64::INFINITY),
                 clearance: 0.0,

@@ -1,8 +1,7 @@
 //! Sparse constant matrices stored by groups of eight rows; groups with equal values share them.
 
-use super::octets::{
-    Indices, Octet, PAD, WIDTH, add_scaled, gather, gather_points, load, load_points,
-};
+use super::octets::{Indices, Octet, PAD, WIDTH, gather, gather_points, load, load_points};
+use crate::lane_arithmetic::{F64s, Number, Triple};
 use pulp::Simd;
 use std::collections::BTreeMap;
 
@@ -115,18 +114,18 @@ impl Rows {
 
     /// The product of one lane group of rows with a vector of numbers.
     #[inline(always)]
-    pub fn product<S: Simd>(&self, simd: S, group: usize, lane_group: usize, x: &[f64]) -> S::f64s {
+    pub fn product<S: Simd>(&self, simd: S, group: usize, lane_group: usize, x: &[f64]) -> F64s<S> {
         let (runs, scattered, values) = self.entries(group);
         let (run_values, values) = values.split_at(runs.len());
         let first = lane_group * S::F64_LANES;
-        let mut sum = simd.splat_f64s(0.0);
+        let mut sum = F64s::splat(simd, 0.0);
         for (start, value) in runs.iter().zip(run_values) {
-            let x = load::<S>(x, *start as usize + first);
-            sum = simd.mul_add_f64s(value.lane_group::<S>(lane_group), x, sum);
+            let x = load(simd, x, *start as usize + first);
+            sum = value.lane_group(simd, lane_group).mul_add(x, sum);
         }
         for (indices, value) in scattered.iter().zip(values) {
-            let x = gather::<S>(x, indices, lane_group);
-            sum = simd.mul_add_f64s(value.lane_group::<S>(lane_group), x, sum);
+            let x = gather(simd, x, indices, lane_group);
+            sum = value.lane_group(simd, lane_group).mul_add(x, sum);
         }
         sum
     }
@@ -139,18 +138,18 @@ impl Rows {
         group: usize,
         lane_group: usize,
         x: [&[f64]; 3],
-    ) -> [S::f64s; 3] {
+    ) -> Triple<F64s<S>> {
         let (runs, scattered, values) = self.entries(group);
         let (run_values, values) = values.split_at(runs.len());
         let first = lane_group * S::F64_LANES;
-        let mut sum = [simd.splat_f64s(0.0); 3];
+        let mut sum = Triple::repeat(F64s::splat(simd, 0.0));
         for (start, value) in runs.iter().zip(run_values) {
-            let x = load_points::<S>(x, *start as usize + first);
-            add_scaled(simd, &mut sum, value.lane_group::<S>(lane_group), x);
+            let x = load_points(simd, x, *start as usize + first);
+            sum = sum.add_scaled(x, value.lane_group(simd, lane_group));
         }
         for (indices, value) in scattered.iter().zip(values) {
-            let x = gather_points::<S>(x, indices, lane_group);
-            add_scaled(simd, &mut sum, value.lane_group::<S>(lane_group), x);
+            let x = gather_points(simd, x, indices, lane_group);
+            sum = sum.add_scaled(x, value.lane_group(simd, lane_group));
         }
         sum
     }
@@ -205,7 +204,7 @@ mod tests {
             for group in 0..groups(self.count) {
                 for lane_group in 0..lane_groups::<S>() {
                     let values = self.rows.product(simd, group, lane_group, self.x);
-                    super::super::octets::store::<S>(
+                    super::super::octets::store(
                         &mut to,
                         lane_group_start::<S>(group, lane_group),
                         values,

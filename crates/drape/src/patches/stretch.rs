@@ -1,6 +1,7 @@
 //! Principal stretches of triangles from the strains of their edges.
 
 use super::octets::{Indices, Octet, Operands, PAD, WIDTH, lane_groups};
+use crate::lane_arithmetic::{F64s, Number};
 use pulp::Simd;
 use std::collections::BTreeMap;
 
@@ -86,36 +87,34 @@ impl Stretches {
     /// to 2.
     #[inline(always)]
     pub fn extremes<S: Simd>(&self, simd: S, strain: &[f64]) -> [f64; 2] {
-        let (zero, quarter) = (simd.splat_f64s(0.0), simd.splat_f64s(0.25));
+        let zero = F64s::splat(simd, 0.0);
         let (mut largest, mut smallest, mut nan) = (zero, zero, zero);
         for (strains, shape) in &self.groups {
             let shape = &self.shapes[*shape as usize];
             for lane_group in 0..lane_groups::<S>() {
-                let q = [
-                    strains[0].load::<S>(strain, &self.scattered, lane_group),
-                    strains[1].load::<S>(strain, &self.scattered, lane_group),
-                    strains[2].load::<S>(strain, &self.scattered, lane_group),
+                let [a, b, c] = [
+                    strains[0].load(simd, strain, &self.scattered, lane_group),
+                    strains[1].load(simd, strain, &self.scattered, lane_group),
+                    strains[2].load(simd, strain, &self.scattered, lane_group),
                 ];
-                let u = simd.mul_f64s(q[0], shape[0].lane_group::<S>(lane_group));
-                let u = simd.mul_add_f64s(q[1], shape[1].lane_group::<S>(lane_group), u);
-                let u = simd.mul_add_f64s(q[2], shape[2].lane_group::<S>(lane_group), u);
+                let u = a * shape[0].lane_group(simd, lane_group);
+                let u = b.mul_add(shape[1].lane_group(simd, lane_group), u);
+                let u = c.mul_add(shape[2].lane_group(simd, lane_group), u);
                 // Twice the change of d1.d2.
-                let mixed = simd.sub_f64s(simd.add_f64s(q[0], q[1]), q[2]);
-                let mixed = simd.mul_f64s(quarter, simd.mul_f64s(mixed, mixed));
-                let det = simd.sub_f64s(simd.mul_f64s(q[0], q[1]), mixed);
-                let det = simd.mul_f64s(det, shape[3].lane_group::<S>(lane_group));
-                let root = simd.sub_f64s(simd.mul_f64s(u, u), det);
-                let root = simd.sqrt_f64s(simd.max_f64s(root, zero));
-                largest = simd.max_f64s(largest, simd.add_f64s(u, root));
-                smallest = simd.min_f64s(smallest, simd.sub_f64s(u, root));
-                nan = simd.add_f64s(nan, simd.mul_f64s(u, zero));
+                let mixed = a + b - c;
+                let det = a * b - 0.25 * (mixed * mixed);
+                let det = det * shape[3].lane_group(simd, lane_group);
+                let root = (u * u - det).max(zero).sqrt();
+                largest = largest.max(u + root);
+                smallest = smallest.min(u - root);
+                nan = nan + u * zero;
             }
         }
         // Zero, or NaN where a strain is: maxima and minima ignore NaN.
-        let nan = simd.reduce_sum_f64s(nan);
+        let nan = nan.reduce_sum();
         [
-            1.0 + nan + simd.reduce_max_f64s(largest),
-            1.0 + nan + simd.reduce_min_f64s(smallest),
+            1.0 + nan + largest.reduce_max(),
+            1.0 + nan + smallest.reduce_min(),
         ]
     }
 }

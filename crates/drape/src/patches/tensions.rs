@@ -6,12 +6,13 @@
 use super::edges::Edges;
 use super::membrane::EdgeMembrane;
 use super::octets::{
-    Indices, Operands, PAD, Points, WIDTH, add_scaled, gather, gather_points, lane_group_start,
-    lane_groups, load, load_points, padded, store,
+    Indices, Operands, PAD, Points, WIDTH, gather, gather_points, lane_group_start, lane_groups,
+    load, load_points, padded, store,
 };
 use super::rows::{Rows, cheapest_min_run, rounding};
 use super::stretch::Stretches;
 use crate::System;
+use crate::lane_arithmetic::{F64s, Triple};
 use pulp::Simd;
 use std::collections::BTreeMap;
 
@@ -212,19 +213,12 @@ impl Tensions {
         for &group in &self.strain_groups[ring] {
             let [a, b] = self.ends[group as usize];
             for lane_group in 0..lane_groups::<S>() {
-                let a = a.points::<S>(x, &self.scattered, lane_group);
-                let b = b.points::<S>(x, &self.scattered, lane_group);
-                let d = [
-                    simd.sub_f64s(b[0], a[0]),
-                    simd.sub_f64s(b[1], a[1]),
-                    simd.sub_f64s(b[2], a[2]),
-                ];
+                let a = a.points(simd, x, &self.scattered, lane_group);
+                let b = b.points(simd, x, &self.scattered, lane_group);
+                let d = b - a;
                 let at = lane_group_start::<S>(group as usize, lane_group);
-                let sum = simd.mul_f64s(d[0], d[0]);
-                let sum = simd.mul_add_f64s(d[1], d[1], sum);
-                let sum = simd.mul_add_f64s(d[2], d[2], sum);
-                let strain = simd.sub_f64s(sum, load::<S>(&self.rest, at));
-                store::<S>(&mut self.strain, at, strain);
+                let strain = d.dot(d) - load(simd, &self.rest, at);
+                store(&mut self.strain, at, strain);
             }
         }
     }
@@ -237,7 +231,7 @@ impl Tensions {
                 let sum = self
                     .stiffness
                     .product(simd, group as usize, lane_group, &self.strain);
-                store::<S>(
+                store(
                     &mut self.tension,
                     lane_group_start::<S>(group as usize, lane_group),
                     sum,
@@ -254,29 +248,25 @@ impl Tensions {
         group: usize,
         lane_group: usize,
         x: [&[f64]; 3],
-    ) -> [S::f64s; 3] {
-        let mut sum = [simd.splat_f64s(0.0); 3];
-        let mut total = simd.splat_f64s(0.0);
+    ) -> Triple<F64s<S>> {
+        let mut total = F64s::splat(simd, 0.0);
+        let mut sum = Triple::repeat(total);
         let [[runs, others], [end, others_end]] = [self.start[group], self.start[group + 1]];
         let first = lane_group * S::F64_LANES;
         for [other, edge] in &self.runs[runs as usize..end as usize] {
-            let t = load::<S>(&self.tension, *edge as usize + first);
-            let other = load_points::<S>(x, *other as usize + first);
-            add_scaled(simd, &mut sum, t, other);
-            total = simd.add_f64s(total, t);
+            let t = load(simd, &self.tension, *edge as usize + first);
+            let other = load_points(simd, x, *other as usize + first);
+            sum = sum.add_scaled(other, t);
+            total = total + t;
         }
         for [other, edge] in &self.others[others as usize..others_end as usize] {
-            let t = gather::<S>(&self.tension, edge, lane_group);
-            let other = gather_points::<S>(x, other, lane_group);
-            add_scaled(simd, &mut sum, t, other);
-            total = simd.add_f64s(total, t);
+            let t = gather(simd, &self.tension, edge, lane_group);
+            let other = gather_points(simd, x, other, lane_group);
+            sum = sum.add_scaled(other, t);
+            total = total + t;
         }
         let at = lane_group_start::<S>(group, lane_group);
-        [
-            simd.sub_f64s(simd.mul_f64s(total, load::<S>(x[0], at)), sum[0]),
-            simd.sub_f64s(simd.mul_f64s(total, load::<S>(x[1], at)), sum[1]),
-            simd.sub_f64s(simd.mul_f64s(total, load::<S>(x[2], at)), sum[2]),
-        ]
+        load_points(simd, x, at) * total - sum
     }
 
     /// Largest and smallest principal squared stretch of the triangles at vertices that the patch owns.

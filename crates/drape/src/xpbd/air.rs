@@ -13,7 +13,8 @@
 
 use super::membrane::MembraneBatch;
 use crate::System;
-use crate::lanes::{Point, Triple, add_scaled, cross, dot, gather, lane_groups, scatter, sub};
+use crate::lane_arithmetic::{F32s, Number, Triple};
+use crate::lanes::{Point, gather, lane_groups, scatter};
 use pulp::{Simd, WithSimd};
 
 /// Least twice the area of a triangle by which its normal is divided [m2]: that of edges of 30 nm. Smaller ones have
@@ -91,46 +92,33 @@ fn impulse<S: Simd>(
     starts: &[Point],
     velocities: &[Point],
     air: &AirStep,
-) -> Triple<S::f32s> {
-    let [x0, y0, z0, _] = gather(simd, starts, &batch.corners[0], lane_group);
-    let [x1, y1, z1, _] = gather(simd, starts, &batch.corners[1], lane_group);
-    let [x2, y2, z2, _] = gather(simd, starts, &batch.corners[2], lane_group);
-    let d1 = sub(simd, [x1, y1, z1], [x0, y0, z0]);
-    let d2 = sub(simd, [x2, y2, z2], [x0, y0, z0]);
-    let normal = cross(simd, d1, d2);
-    // Twice the area; a triangle without area has no normal and no force.
-    let size = simd.sqrt_f32s(dot(simd, normal, normal));
-    let size = simd.max_f32s(size, simd.splat_f32s(LEAST_SIZE));
+) -> Triple<F32s<S>> {
     let [a, b, c] = &batch.corners;
-    let v0 = gather(simd, velocities, a, lane_group);
-    let v1 = gather(simd, velocities, b, lane_group);
-    let v2 = gather(simd, velocities, c, lane_group);
-    let third = simd.splat_f32s(1.0 / 3.0);
-    let mut w = [third; 3];
+    let (x0, _) = gather(simd, starts, a, lane_group);
+    let (x1, _) = gather(simd, starts, b, lane_group);
+    let (x2, _) = gather(simd, starts, c, lane_group);
+    let normal = (x1 - x0).cross(x2 - x0);
+    // Twice the area; a triangle without area has no normal and no force.
+    let size = normal.norm().max(F32s::splat(simd, LEAST_SIZE));
+    let (v0, _) = gather(simd, velocities, a, lane_group);
+    let (v1, _) = gather(simd, velocities, b, lane_group);
+    let (v2, _) = gather(simd, velocities, c, lane_group);
+    let third = F32s::splat(simd, 1.0 / 3.0);
+    let mut w = v0 + v1 + v2;
     for k in 0..3 {
-        let sum = simd.add_f32s(simd.add_f32s(v0[k], v1[k]), v2[k]);
-        w[k] = simd.mul_add_e_f32s(sum, third, simd.splat_f32s(-air.wind[k]));
+        w.0[k] = w.0[k].mul_add(third, F32s::splat(simd, -air.wind[k]));
     }
-    let across = simd.div_f32s(dot(simd, w, normal), size);
-    let zero = simd.splat_f32s(0.0);
-    let part = simd.div_f32s(across, size);
-    let along = add_scaled(simd, w, normal, simd.sub_f32s(zero, part));
-    let speed = simd.sqrt_f32s(dot(simd, along, along));
-    let mass = simd.mul_f32s(batch.rest_area(simd, lane_group), simd.splat_f32s(density));
-    let most = simd.mul_f32s(mass, simd.splat_f32s(0.5));
-    let of_normal = simd.mul_f32s(simd.splat_f32s(air.across), simd.abs_f32s(across));
-    let of_normal = simd.min_f32s(simd.mul_f32s(size, of_normal), most);
-    let of_normal = simd.mul_f32s(of_normal, part);
-    let of_plane = simd.mul_f32s(simd.splat_f32s(air.along), speed);
-    let of_plane = simd.min_f32s(simd.mul_f32s(size, of_plane), most);
-    let minus_third = simd.splat_f32s(-1.0 / 3.0);
-    let sum = add_scaled(
-        simd,
-        [zero; 3],
-        normal,
-        simd.mul_f32s(of_normal, minus_third),
-    );
-    add_scaled(simd, sum, along, simd.mul_f32s(of_plane, minus_third))
+    let across = w.dot(normal) / size;
+    let zero = F32s::splat(simd, 0.0);
+    let part = across / size;
+    let along = w.add_scaled(normal, zero - part);
+    let most = batch.rest_area(simd, lane_group) * density * 0.5;
+    let of_normal = (size * (air.across * across.abs())).min(most) * part;
+    let of_plane = (size * (air.along * along.norm())).min(most);
+    let minus_third = F32s::splat(simd, -1.0 / 3.0);
+    Triple::repeat(zero)
+        .add_scaled(normal, of_normal * minus_third)
+        .add_scaled(along, of_plane * minus_third)
 }
 
 /// Adds the same vector to the sums of the three corners.
@@ -139,15 +127,12 @@ fn add_to_corners<S: Simd>(
     simd: S,
     batch: &MembraneBatch,
     lane_group: usize,
-    add: Triple<S::f32s>,
+    add: Triple<F32s<S>>,
     sums: &mut [Point],
 ) {
     for k in 0..3 {
         let corner = &batch.corners[k];
-        let [x, y, z, w] = gather(simd, sums, corner, lane_group);
-        let x = simd.add_f32s(x, add[0]);
-        let y = simd.add_f32s(y, add[1]);
-        let z = simd.add_f32s(z, add[2]);
-        scatter(simd, sums, corner, lane_group, [x, y, z, w]);
+        let (sum, w) = gather(simd, sums, corner, lane_group);
+        scatter(sums, corner, lane_group, (sum + add, w));
     }
 }

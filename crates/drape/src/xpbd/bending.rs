@@ -8,8 +8,9 @@
 //! inverted before the run (Macklin, Müller and Chentanez 2016, equation 18, for the block).
 
 use super::membrane::inverse_mass;
+use crate::lane_arithmetic::{F32s, Triple};
 use crate::lanes::{
-    Corner, LANES, Point, Row, Triple, add_scaled, gather, lane_groups, scatter, sub,
+    Corner, LANES, Point, Row, gather, lane_group_of, lane_groups, scatter, set_lane_group_of,
 };
 use crate::laws::bending::BendingMatrix;
 use crate::{Material, System};
@@ -73,27 +74,25 @@ impl BendingForce {
     }
 
     /// The product K x for the rows of one lane group from `slot` on, a multiple of sixteen [N]: summed over
-    /// differences from `here`, the points of the rows themselves, since the rows of K sum to zero.
+    /// differences from `here`, the positions of the rows themselves, since the rows of K sum to zero.
     #[inline(always)]
     pub fn times<S: Simd>(
         &self,
         simd: S,
         slot: usize,
         points: &[Point],
-        here: [S::f32s; 4],
+        here: Triple<F32s<S>>,
         lane_group: usize,
-    ) -> Triple<S::f32s> {
-        let [x, y, z, _] = here;
-        let mut sum = [simd.splat_f32s(0.0); 3];
+    ) -> Triple<F32s<S>> {
+        let mut sum = Triple::repeat(F32s::splat(simd, 0.0));
         let block = slot / LANES;
         let entries = self.start[block] as usize..self.start[block + 1] as usize;
         for (column, value) in self.columns[entries.clone()]
             .iter()
             .zip(&self.values[entries])
         {
-            let there = gather(simd, points, column, lane_group);
-            let d = sub(simd, [there[0], there[1], there[2]], [x, y, z]);
-            sum = add_scaled(simd, sum, d, value.lane_group::<S>(lane_group));
+            let (there, _) = gather(simd, points, column, lane_group);
+            sum = sum.add_scaled(there - here, value.lane_group(simd, lane_group));
         }
         sum
     }
@@ -250,7 +249,7 @@ pub struct BendingBatch {
 }
 
 /// XPBD multipliers of a batch over the substep: of three curvatures, for x, y and z each.
-pub type Multipliers = [Triple<Row>; 3];
+pub type Multipliers = [[Row; 3]; 3];
 
 impl BendingBatch {
     /// A batch of up to sixteen stencils; `local` as for membranes.
@@ -334,88 +333,54 @@ fn solve_lane_group<S: Simd>(
     let Some(first) = batch.corners.first() else {
         return;
     };
-    let zero = simd.splat_f32s(0.0);
-    let mut curvature = [[zero; 3]; 3];
-    let [x, y, z, _] = gather(simd, points, first, lane_group);
-    let origin = [x, y, z];
+    let zero = F32s::splat(simd, 0.0);
+    let mut curvature = [Triple::repeat(zero); 3];
+    let (origin, _) = gather(simd, points, first, lane_group);
     for (corner, weights) in batch.corners.iter().zip(&batch.weights).skip(1) {
-        let [x, y, z, _] = gather(simd, points, corner, lane_group);
-        let d = sub(simd, [x, y, z], origin);
+        let (point, _) = gather(simd, points, corner, lane_group);
+        let d = point - origin;
         for k in 0..3 {
-            curvature[k] = add_scaled(
-                simd,
-                curvature[k],
-                d,
-                weights[k].lane_group::<S>(lane_group),
-            );
+            curvature[k] = curvature[k].add_scaled(d, weights[k].lane_group(simd, lane_group));
         }
     }
     if let Some(multipliers) = &multipliers {
         for k in 0..3 {
-            let soft = simd.mul_f32s(
-                batch.compliance[k].lane_group::<S>(lane_group),
-                simd.splat_f32s(kappa),
-            );
-            let sum = triple::<S>(&multipliers[k], lane_group);
-            curvature[k] = add_scaled(simd, curvature[k], sum, soft);
+            let soft = batch.compliance[k].lane_group(simd, lane_group) * kappa;
+            let sum = Triple(lane_group_of(simd, &multipliers[k], lane_group));
+            curvature[k] = curvature[k].add_scaled(sum, soft);
         }
     }
-    let t11 = batch.inverse[0].lane_group::<S>(lane_group);
-    let t22 = batch.inverse[1].lane_group::<S>(lane_group);
-    let t33 = batch.inverse[2].lane_group::<S>(lane_group);
-    let t12 = batch.inverse[3].lane_group::<S>(lane_group);
-    let t13 = batch.inverse[4].lane_group::<S>(lane_group);
-    let t23 = batch.inverse[5].lane_group::<S>(lane_group);
+    let [t11, t22, t33, t12, t13, t23] = lane_group_of(simd, &batch.inverse, lane_group);
     let change = [
-        mixed(simd, &curvature, [t11, t12, t13]),
-        mixed(simd, &curvature, [t12, t22, t23]),
-        mixed(simd, &curvature, [t13, t23, t33]),
+        mixed(&curvature, [t11, t12, t13]),
+        mixed(&curvature, [t12, t22, t23]),
+        mixed(&curvature, [t13, t23, t33]),
     ];
     if let Some(multipliers) = &mut multipliers {
         for k in 0..3 {
-            for axis in 0..3 {
-                let sum = simd.sub_f32s(
-                    multipliers[k][axis].lane_group::<S>(lane_group),
-                    change[k][axis],
-                );
-                multipliers[k][axis].set_lane_group::<S>(lane_group, sum);
-            }
+            let sum = Triple(lane_group_of(simd, &multipliers[k], lane_group));
+            set_lane_group_of(&mut multipliers[k], lane_group, sum - change[k]);
         }
     }
     for (corner, weights) in batch.corners.iter().zip(&batch.weights) {
-        let [x, y, z, w] = gather(simd, points, corner, lane_group);
-        let share = simd.sub_f32s(zero, w);
-        let mut p = [x, y, z];
+        let (mut point, w) = gather(simd, points, corner, lane_group);
+        let share = zero - w;
         for k in 0..3 {
-            let weight = simd.mul_f32s(share, weights[k].lane_group::<S>(lane_group));
-            p = add_scaled(simd, p, change[k], weight);
+            let weight = share * weights[k].lane_group(simd, lane_group);
+            point = point.add_scaled(change[k], weight);
         }
-        let [x, y, z] = p;
-        scatter(simd, points, corner, lane_group, [x, y, z, w]);
+        scatter(points, corner, lane_group, (point, w));
     }
-}
-
-/// The rows of x, y and z of one lane group.
-#[inline(always)]
-fn triple<S: Simd>(rows: &Triple<Row>, lane_group: usize) -> Triple<S::f32s> {
-    [
-        rows[0].lane_group::<S>(lane_group),
-        rows[1].lane_group::<S>(lane_group),
-        rows[2].lane_group::<S>(lane_group),
-    ]
 }
 
 /// The weighted sum of three vectors.
 #[inline(always)]
-fn mixed<S: Simd>(
-    simd: S,
-    vectors: &[Triple<S::f32s>; 3],
-    weights: [S::f32s; 3],
-) -> Triple<S::f32s> {
-    let zero = simd.splat_f32s(0.0);
-    let sum = add_scaled(simd, [zero; 3], vectors[0], weights[0]);
-    let sum = add_scaled(simd, sum, vectors[1], weights[1]);
-    add_scaled(simd, sum, vectors[2], weights[2])
+fn mixed<S: Simd>(vectors: &[Triple<F32s<S>>; 3], weights: [F32s<S>; 3]) -> Triple<F32s<S>> {
+    let zero = F32s::splat(weights[0].simd, 0.0);
+    Triple::repeat(zero)
+        .add_scaled(vectors[0], weights[0])
+        .add_scaled(vectors[1], weights[1])
+        .add_scaled(vectors[2], weights[2])
 }
 
 #[cfg(test)]

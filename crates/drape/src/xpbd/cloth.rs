@@ -1,6 +1,6 @@
 //! Contact of cloth with cloth in substeps: detected once in a few substeps, with fixed contact planes in between.
 
-use super::contact::{ContactConstraint, ContactStencil};
+use super::contact::{ContactConstraint, ContactStencil, compliance_of};
 use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{
     Ahead, ClothContact, ContactDetector, ContactFrictionState, ContactSet, FeaturePair,
@@ -289,8 +289,8 @@ impl Xpbd {
                 constraint: ContactConstraint {
                     normal: [0, 1, 2].map(|k| plane.normal[k] as f32),
                     level: (plane.depth + plane.normal.dot(&plane.point)) as f32,
-                    compliance: (1.0 / law.normal).min(1e30) as f32,
-                    tangential_compliance: (1.0 / law.tangential).min(1e30) as f32,
+                    compliance: compliance_of(law.normal),
+                    tangential_compliance: compliance_of(law.tangential),
                     hard_from: law.hard_from as f32,
                     friction: law.friction as f32,
                     slip: [0, 1, 2].map(|k| slip[k] as f32),

@@ -10,7 +10,7 @@
 use super::carried_plane::{CarriedMotion, CarriedPlane, kept_offset};
 use super::moving_solids::MovingSolids;
 use crate::lanes::Point;
-use crate::laws::contact::HARDER;
+use crate::laws::contact::{HARDER, TANGENTIAL_RATIO};
 use crate::{ContactSample, SolidFriction, State, System};
 use toile_geometry::{MovingSurface, Vec3};
 
@@ -53,8 +53,8 @@ pub struct ContactConstraint {
 /// In place of a sample's number: the contact does not belong to a sample of the model.
 pub const NO_SAMPLE: u32 = u32::MAX;
 
-/// Ratio of the tangential to the normal compliance of contact with solids, as for every other method.
-pub const TANGENTIAL_SOFTNESS: f32 = 2.0;
+/// Ratio of the tangential to the normal compliance of contact with solids.
+pub const TANGENTIAL_SOFTNESS: f32 = (1.0 / TANGENTIAL_RATIO) as f32;
 
 /// How many times stiffer contact is with a solid that moves. Tight cloth of 200 N/m over a bent knee of 40 mm presses with
 /// 5 kPa, more than the stiffness of contact at rest bears within the offset.
@@ -74,6 +74,11 @@ const REACH_IN_OFFSETS: f64 = 2.0;
 /// outward normal.
 const FLAT_SLOPE: f64 = 0.05;
 
+/// The compliance of a spring of a stiffness [N/m] in single precision, finite without stiffness [m/N].
+pub fn compliance_of(stiffness: f64) -> f32 {
+    (1.0 / stiffness).min(1e30) as f32
+}
+
 impl ContactConstraint {
     /// The contact of a sample with a solid, to be queried before its first use; with no surface where the two ignore
     /// each other.
@@ -86,12 +91,8 @@ impl ContactConstraint {
         if system.policies.ignores_solid(object, solid) {
             return Self::none();
         }
-        let friction = if system.contact.friction {
-            found.friction
-        } else {
-            0.0
-        };
-        let soft = (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32;
+        let law = system.contact.law(found.area, found.friction);
+        let soft = compliance_of(law.normal);
         let compliance = match system.colliders[solid].is_moving() {
             true => soft / MOVING_STIFFNESS,
             false => soft,
@@ -99,7 +100,7 @@ impl ContactConstraint {
         Self {
             compliance,
             tangential_compliance: TANGENTIAL_SOFTNESS * soft,
-            friction: friction as f32,
+            friction: law.friction as f32,
             offset: (system.contact.offset + found.extra_offset) as f32,
             sample: number as u32,
             solid: solid as u32,

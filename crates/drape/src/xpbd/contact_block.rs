@@ -3,7 +3,8 @@
 use super::carried_plane::CarriedPlane;
 use super::contact::{ContactConstraint, ContactStep, NO_SAMPLE, Solid, TANGENTIAL_SOFTNESS};
 use crate::State;
-use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
+use crate::lane_arithmetic::{F32s, Mask, Number, Triple};
+use crate::lanes::{LANES, Point, Row, lane_group_of, load, set_lane_group_of, store};
 use pulp::Simd;
 
 /// The contacts of sixteen vertices with one solid, a lane each; fields as in [`ContactConstraint`].
@@ -142,22 +143,13 @@ impl ContactBlock {
 
     /// Whether a point of a lane group is below the surface or was pushed by it.
     #[inline(always)]
-    pub fn touches<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> S::m32s {
-        let [x, y, z, weight] = load(simd, points, lane_group);
-        let n = [
-            self.normal[0].lane_group::<S>(lane_group),
-            self.normal[1].lane_group::<S>(lane_group),
-            self.normal[2].lane_group::<S>(lane_group),
-        ];
-        let zero = simd.splat_f32s(0.0);
-        let lambda_normal = self.lambda_normal.lane_group::<S>(lane_group);
-        let level = self.level.lane_group::<S>(lane_group);
-        let depth = simd.sub_f32s(dot(simd, n, [x, y, z]), level);
-        let touching = simd.or_m32s(
-            simd.less_than_f32s(depth, zero),
-            simd.less_than_f32s(zero, lambda_normal),
-        );
-        simd.and_m32s(touching, simd.less_than_f32s(zero, weight))
+    pub fn touches<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> Mask<S> {
+        let (point, weight) = load(simd, points, lane_group);
+        let n = Triple(lane_group_of(simd, &self.normal, lane_group));
+        let zero = F32s::splat(simd, 0.0);
+        let lambda_normal = self.lambda_normal.lane_group(simd, lane_group);
+        let depth = n.dot(point) - self.level.lane_group(simd, lane_group);
+        (depth.less_than(zero) | zero.less_than(lambda_normal)) & zero.less_than(weight)
     }
 
     /// [`ContactConstraint::end_substep`] for all lanes.
@@ -194,15 +186,10 @@ impl ContactBlock {
     /// Whether the surface has to be queried again for one of the points of a lane group.
     #[inline(always)]
     pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> bool {
-        let [x, y, z, _] = load(simd, points, lane_group);
-        let queried_at = [
-            self.queried_at[0].lane_group::<S>(lane_group),
-            self.queried_at[1].lane_group::<S>(lane_group),
-            self.queried_at[2].lane_group::<S>(lane_group),
-        ];
-        let d = sub(simd, [x, y, z], queried_at);
-        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.lane_group::<S>(lane_group));
-        simd.reduce_max_f32s(beyond) > 0.0
+        let (point, _) = load(simd, points, lane_group);
+        let d = point - Triple(lane_group_of(simd, &self.queried_at, lane_group));
+        let beyond = d.dot(d) - self.radius2.lane_group(simd, lane_group);
+        beyond.reduce_max() > 0.0
     }
 
     /// Queries the surfaces again for the lanes of a range whose planes are stale.
@@ -241,85 +228,43 @@ pub fn solve_block<S: Simd>(
     step: &ContactStep,
     lane_group: usize,
 ) {
-    let [x, y, z, weight] = load(simd, points, lane_group);
-    let [x0, y0, z0, _] = load(simd, starts, lane_group);
-    let n = [
-        contact.normal[0].lane_group::<S>(lane_group),
-        contact.normal[1].lane_group::<S>(lane_group),
-        contact.normal[2].lane_group::<S>(lane_group),
-    ];
-    let zero = simd.splat_f32s(0.0);
-    let lambda_normal = contact.lambda_normal.lane_group::<S>(lane_group);
-    let depth = simd.sub_f32s(
-        dot(simd, n, [x, y, z]),
-        contact.level.lane_group::<S>(lane_group),
-    );
+    let (point, weight) = load(simd, points, lane_group);
+    let (start, _) = load(simd, starts, lane_group);
+    let n = Triple(lane_group_of(simd, &contact.normal, lane_group));
+    let zero = F32s::splat(simd, 0.0);
+    let lambda_normal = contact.lambda_normal.lane_group(simd, lane_group);
+    let depth = n.dot(point) - contact.level.lane_group(simd, lane_group);
     let active = contact.touches(simd, points, lane_group);
-    let flag = simd.select_f32s(active, simd.splat_f32s(1.0), zero);
-    if simd.reduce_max_f32s(flag) == 0.0 {
+    if !active.any() {
         return;
     }
-    let surface_displacement = [
-        contact.surface_displacement[0].lane_group::<S>(lane_group),
-        contact.surface_displacement[1].lane_group::<S>(lane_group),
-        contact.surface_displacement[2].lane_group::<S>(lane_group),
-    ];
-    let moved = sub(
-        simd,
-        sub(simd, [x, y, z], [x0, y0, z0]),
-        surface_displacement,
-    );
-    let compliance = simd.mul_f32s(
-        contact.compliance.lane_group::<S>(lane_group),
-        simd.splat_f32s(step.kappa),
-    );
-    let per_weight = simd.div_f32s(simd.splat_f32s(1.0), weight);
-    let violation = simd.mul_add_e_f32s(compliance, lambda_normal, depth);
-    let change = simd.div_f32s(
-        simd.sub_f32s(zero, violation),
-        simd.add_f32s(weight, compliance),
-    );
-    let outward = dot(simd, n, moved);
-    let limit = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
-    let limit = simd.mul_f32s(simd.max_f32s(limit, zero), per_weight);
-    let change = simd.max_f32s(
-        simd.min_f32s(change, limit),
-        simd.sub_f32s(zero, lambda_normal),
-    );
-    let change = simd.select_f32s(active, change, zero);
-    let lambda_normal = simd.add_f32s(lambda_normal, change);
+    let surface_displacement = lane_group_of(simd, &contact.surface_displacement, lane_group);
+    let moved = (point - start) - Triple(surface_displacement);
+    let compliance = contact.compliance.lane_group(simd, lane_group) * step.kappa;
+    let per_weight = 1.0 / weight;
+    let violation = compliance.mul_add(lambda_normal, depth);
+    let change = (zero - violation) / (weight + compliance);
+    let limit = (step.outward - n.dot(moved)).max(zero) * per_weight;
+    let change = change.min(limit).max(zero - lambda_normal);
+    let change = active.select(change, zero);
+    let lambda_normal = lambda_normal + change;
     contact
         .lambda_normal
-        .set_lane_group::<S>(lane_group, lambda_normal);
-    let slip =
-        [0, 1, 2].map(|k| simd.add_f32s(contact.slip[k].lane_group::<S>(lane_group), moved[k]));
-    let along = dot(simd, n, slip);
-    let slip = add_scaled(simd, slip, n, simd.sub_f32s(zero, along));
-    let lambda_tangent = [
-        contact.lambda_tangent[0].lane_group::<S>(lane_group),
-        contact.lambda_tangent[1].lane_group::<S>(lane_group),
-        contact.lambda_tangent[2].lane_group::<S>(lane_group),
-    ];
-    let compliance = simd.mul_f32s(compliance, simd.splat_f32s(TANGENTIAL_SOFTNESS));
-    let compliance = simd.min_f32s(compliance, weight);
-    let violation = add_scaled(simd, slip, lambda_tangent, compliance);
-    let softness = simd.add_f32s(weight, compliance);
-    let per_softness = simd.div_f32s(simd.splat_f32s(-1.0), softness);
-    let free = add_scaled(simd, lambda_tangent, violation, per_softness);
-    let length = simd.sqrt_f32s(dot(simd, free, free));
-    let limit = simd.mul_f32s(contact.friction.lane_group::<S>(lane_group), lambda_normal);
-    let share = simd.select_f32s(
-        simd.less_than_f32s(limit, length),
-        simd.div_f32s(limit, length),
-        simd.splat_f32s(1.0),
-    );
-    let mut out = [x, y, z];
-    for k in 0..3 {
-        let new = simd.mul_f32s(free[k], share);
-        let new = simd.select_f32s(active, new, lambda_tangent[k]);
-        contact.lambda_tangent[k].set_lane_group::<S>(lane_group, new);
-        let total = simd.mul_add_e_f32s(n[k], change, simd.sub_f32s(new, lambda_tangent[k]));
-        out[k] = simd.mul_add_e_f32s(weight, total, out[k]);
-    }
-    store(simd, points, lane_group, [out[0], out[1], out[2], weight]);
+        .set_lane_group(lane_group, lambda_normal);
+    let slip = Triple(lane_group_of(simd, &contact.slip, lane_group)) + moved;
+    let slip = slip.add_scaled(n, zero - n.dot(slip));
+    let lambda_tangent = Triple(lane_group_of(simd, &contact.lambda_tangent, lane_group));
+    let compliance = (compliance * TANGENTIAL_SOFTNESS).min(weight);
+    let violation = slip.add_scaled(lambda_tangent, compliance);
+    let free = lambda_tangent.add_scaled(violation, -1.0 / (weight + compliance));
+    let length = free.norm();
+    let limit = contact.friction.lane_group(simd, lane_group) * lambda_normal;
+    let share = limit
+        .less_than(length)
+        .select(limit / length, F32s::splat(simd, 1.0));
+    let new = active.select_triple(free * share, lambda_tangent);
+    set_lane_group_of(&mut contact.lambda_tangent, lane_group, new);
+    let total = (new - lambda_tangent).add_scaled(n, change);
+    let point = point.add_scaled(total, weight);
+    store(points, lane_group, (point, weight));
 }

@@ -16,9 +16,8 @@
 //! S becomes D.
 
 use crate::System;
-use crate::lanes::{
-    Corner, LANES, Point, Row, add_scaled, blend, dot, gather, lane_groups, scatter, sub,
-};
+use crate::lane_arithmetic::{F32s, Number};
+use crate::lanes::{Corner, LANES, Point, Row, gather, lane_group_of, lane_groups, scatter};
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
 use pulp::Simd;
 
@@ -126,11 +125,9 @@ impl MembraneBatch {
 
     /// Areas of the rest shapes of one lane group; zero in unused lanes [m2].
     #[inline(always)]
-    pub fn rest_area<S: Simd>(&self, simd: S, lane_group: usize) -> S::f32s {
-        simd.div_f32s(
-            self.scale.lane_group::<S>(lane_group),
-            self.compliance_scale.lane_group::<S>(lane_group),
-        )
+    pub fn rest_area<S: Simd>(&self, simd: S, lane_group: usize) -> F32s<S> {
+        let compliance_scale = self.compliance_scale.lane_group(simd, lane_group);
+        self.scale.lane_group(simd, lane_group) / compliance_scale
     }
 }
 
@@ -177,93 +174,73 @@ fn solve_lane_group<S: Simd>(
     kappa: f32,
     points: &mut [Point],
 ) {
-    let [x0, y0, z0, w0] = gather(simd, points, &batch.corners[0], lane_group);
-    let [x1, y1, z1, w1] = gather(simd, points, &batch.corners[1], lane_group);
-    let [x2, y2, z2, w2] = gather(simd, points, &batch.corners[2], lane_group);
-    let (p0, p1, p2) = ([x0, y0, z0], [x1, y1, z1], [x2, y2, z2]);
-    let (d1, d2) = (sub(simd, p1, p0), sub(simd, p2, p0));
-    let [a1, a2] = [
-        batch.warp[0].lane_group::<S>(lane_group),
-        batch.warp[1].lane_group::<S>(lane_group),
-    ];
-    let [b1, b2] = [
-        batch.weft[0].lane_group::<S>(lane_group),
-        batch.weft[1].lane_group::<S>(lane_group),
-    ];
-    let fu = blend(simd, d1, a1, d2, a2);
-    let fv = blend(simd, d1, b1, d2, b2);
-    let (uu, vv, uv) = (dot(simd, fu, fu), dot(simd, fv, fv), dot(simd, fu, fv));
-    let half = simd.splat_f32s(0.5);
+    let (p0, w0) = gather(simd, points, &batch.corners[0], lane_group);
+    let (p1, w1) = gather(simd, points, &batch.corners[1], lane_group);
+    let (p2, w2) = gather(simd, points, &batch.corners[2], lane_group);
+    let (d1, d2) = (p1 - p0, p2 - p0);
+    let [a1, a2] = lane_group_of(simd, &batch.warp, lane_group);
+    let [b1, b2] = lane_group_of(simd, &batch.weft, lane_group);
+    let fu = (d1 * a1).add_scaled(d2, a2);
+    let fv = (d1 * b1).add_scaled(d2, b2);
+    let (uu, vv, uv) = (fu.dot(fu), fv.dot(fv), fu.dot(fv));
+    let (half, minus_half) = (F32s::splat(simd, 0.5), F32s::splat(simd, -0.5));
     let strain = [
-        simd.mul_add_e_f32s(uu, half, simd.splat_f32s(-0.5)),
-        simd.mul_add_e_f32s(vv, half, simd.splat_f32s(-0.5)),
+        uu.mul_add(half, minus_half),
+        vv.mul_add(half, minus_half),
         uv,
     ];
     let (target, compliance) = linearise(simd, law, strain);
-    let compliance_scale = simd.mul_f32s(
-        batch.compliance_scale.lane_group::<S>(lane_group),
-        simd.splat_f32s(kappa),
-    );
+    let compliance_scale = batch.compliance_scale.lane_group(simd, lane_group) * kappa;
     let soft = [
-        simd.mul_f32s(compliance_scale, compliance[0]),
-        simd.mul_f32s(compliance_scale, compliance[1]),
-        simd.mul_f32s(compliance_scale, compliance[2]),
-        simd.mul_f32s(compliance_scale, compliance[3]),
+        compliance_scale * compliance[0],
+        compliance_scale * compliance[1],
+        compliance_scale * compliance[2],
+        compliance_scale * compliance[3],
     ];
-    let products = [
-        batch.products[0].lane_group::<S>(lane_group),
-        batch.products[1].lane_group::<S>(lane_group),
-        batch.products[2].lane_group::<S>(lane_group),
-    ];
-    let matrix = system(simd, products, [uu, vv, uv], soft);
+    let products = lane_group_of(simd, &batch.products, lane_group);
+    let matrix = system(products, [uu, vv, uv], soft);
     let mut residual = target;
     if let Some(multipliers) = &multipliers {
-        let [l0, l1, l2] = [
-            multipliers[0].lane_group::<S>(lane_group),
-            multipliers[1].lane_group::<S>(lane_group),
-            multipliers[2].lane_group::<S>(lane_group),
-        ];
-        residual[0] = simd.mul_add_e_f32s(soft[0], l0, residual[0]);
-        residual[0] = simd.mul_add_e_f32s(soft[2], l1, residual[0]);
-        residual[1] = simd.mul_add_e_f32s(soft[1], l1, residual[1]);
-        residual[1] = simd.mul_add_e_f32s(soft[2], l0, residual[1]);
-        residual[2] = simd.mul_add_e_f32s(soft[3], l2, residual[2]);
+        let [l0, l1, l2] = lane_group_of(simd, multipliers, lane_group);
+        residual[0] = soft[0].mul_add(l0, residual[0]);
+        residual[0] = soft[2].mul_add(l1, residual[0]);
+        residual[1] = soft[1].mul_add(l1, residual[1]);
+        residual[1] = soft[2].mul_add(l0, residual[1]);
+        residual[2] = soft[3].mul_add(l2, residual[2]);
     }
-    let z = solve_system(simd, matrix, residual);
+    let z = solve_system(matrix, residual);
     if let Some(multipliers) = multipliers {
         for k in 0..3 {
-            let sum = simd.sub_f32s(multipliers[k].lane_group::<S>(lane_group), z[k]);
-            multipliers[k].set_lane_group::<S>(lane_group, sum);
+            let sum = multipliers[k].lane_group(simd, lane_group) - z[k];
+            multipliers[k].set_lane_group(lane_group, sum);
         }
     }
     // dx_i = -w_i sigma (a_i (f_u z_0 + f_v z_2) + b_i (f_v z_1 + f_u z_2)).
-    let by_u = blend(simd, fu, z[0], fv, z[2]);
-    let by_v = blend(simd, fv, z[1], fu, z[2]);
-    let scale = batch.scale.lane_group::<S>(lane_group);
-    let zero = simd.splat_f32s(0.0);
-    let a0 = simd.sub_f32s(simd.sub_f32s(zero, a1), a2);
-    let b0 = simd.sub_f32s(simd.sub_f32s(zero, b1), b2);
+    let by_u = (fu * z[0]).add_scaled(fv, z[2]);
+    let by_v = (fv * z[1]).add_scaled(fu, z[2]);
+    let scale = batch.scale.lane_group(simd, lane_group);
+    let zero = F32s::splat(simd, 0.0);
+    let (a0, b0) = (zero - a1 - a2, zero - b1 - b2);
     let corners = [(p0, w0, a0, b0), (p1, w1, a1, b1), (p2, w2, a2, b2)];
     for k in 0..3 {
         let (p, w, a, b) = corners[k];
-        let share = simd.sub_f32s(zero, simd.mul_f32s(w, scale));
-        let p = add_scaled(simd, p, by_u, simd.mul_f32s(share, a));
-        let [x, y, z] = add_scaled(simd, p, by_v, simd.mul_f32s(share, b));
-        scatter(simd, points, &batch.corners[k], lane_group, [x, y, z, w]);
+        let share = zero - w * scale;
+        let p = p.add_scaled(by_u, share * a).add_scaled(by_v, share * b);
+        scatter(points, &batch.corners[k], lane_group, (p, w));
     }
 }
 
 /// The strain at which a linear law of the tangent stiffness has the stress of the law, and the compliance 11, 22,
 /// 12, 33.
 #[inline(always)]
-fn linearise<S: Simd>(simd: S, law: &LawRow, strain: [S::f32s; 3]) -> ([S::f32s; 3], [S::f32s; 4]) {
+fn linearise<S: Simd>(simd: S, law: &LawRow, strain: [F32s<S>; 3]) -> ([F32s<S>; 3], [F32s<S>; 4]) {
     let Some(curve) = &law.curve else {
         let [c11, c22, c12, c33] = law.compliance;
         let compliance = [
-            simd.splat_f32s(c11),
-            simd.splat_f32s(c22),
-            simd.splat_f32s(c12),
-            simd.splat_f32s(c33),
+            F32s::splat(simd, c11),
+            F32s::splat(simd, c22),
+            F32s::splat(simd, c12),
+            F32s::splat(simd, c33),
         ];
         return (strain, compliance);
     };
@@ -276,12 +253,11 @@ fn curve_of<S: Simd>(
     simd: S,
     law: &LawRow,
     curve: &MembraneLaw,
-    strain: [S::f32s; 3],
-) -> ([S::f32s; 3], [S::f32s; 4]) {
-    let _ = simd;
+    strain: [F32s<S>; 3],
+) -> ([F32s<S>; 3], [F32s<S>; 4]) {
     let mut rows = [Row::splat(0.0); 3];
     for (row, strain) in rows.iter_mut().zip(strain) {
-        row.set_lane_group::<S>(0, strain);
+        row.set_lane_group(0, strain);
     }
     let mut target = [Row::splat(0.0); 3];
     let mut compliance = [Row::splat(0.0); 4];
@@ -316,71 +292,50 @@ fn curve_of<S: Simd>(
         }
     }
     (
-        target.map(|row| row.lane_group::<S>(0)),
-        compliance.map(|row| row.lane_group::<S>(0)),
+        lane_group_of(simd, &target, 0),
+        lane_group_of(simd, &compliance, 0),
     )
 }
 
 /// The matrix J W J^T + alpha / h^2, scaled by sigma: 11, 22, 33, 12, 13, 23.
 #[inline(always)]
 fn system<S: Simd>(
-    simd: S,
-    [p, q, r]: [S::f32s; 3],
-    [uu, vv, uv]: [S::f32s; 3],
-    soft: [S::f32s; 4],
-) -> [S::f32s; 6] {
-    let (p_uv, r_uv, q_uv) = (
-        simd.mul_f32s(p, uv),
-        simd.mul_f32s(r, uv),
-        simd.mul_f32s(q, uv),
-    );
-    let m33 = simd.mul_add_e_f32s(p, vv, soft[3]);
-    let m33 = simd.mul_add_e_f32s(q, uu, m33);
+    [p, q, r]: [F32s<S>; 3],
+    [uu, vv, uv]: [F32s<S>; 3],
+    soft: [F32s<S>; 4],
+) -> [F32s<S>; 6] {
+    let r_uv = r * uv;
+    let m33 = q.mul_add(uu, p.mul_add(vv, soft[3]));
     [
-        simd.mul_add_e_f32s(p, uu, soft[0]),
-        simd.mul_add_e_f32s(q, vv, soft[1]),
-        simd.add_f32s(m33, simd.add_f32s(r_uv, r_uv)),
-        simd.add_f32s(r_uv, soft[2]),
-        simd.mul_add_e_f32s(r, uu, p_uv),
-        simd.mul_add_e_f32s(r, vv, q_uv),
+        p.mul_add(uu, soft[0]),
+        q.mul_add(vv, soft[1]),
+        m33 + (r_uv + r_uv),
+        r_uv + soft[2],
+        r.mul_add(uu, p * uv),
+        r.mul_add(vv, q * uv),
     ]
 }
 
 /// Solves the symmetric positive definite system by L D L^T.
 #[inline(always)]
 fn solve_system<S: Simd>(
-    simd: S,
-    [m11, m22, m33, m12, m13, m23]: [S::f32s; 6],
-    [c1, c2, c3]: [S::f32s; 3],
-) -> [S::f32s; 3] {
-    let one = simd.splat_f32s(1.0);
-    let min_ratio = simd.splat_f32s(MIN_PIVOT_RATIO);
-    let i1 = simd.div_f32s(one, m11);
-    let (l21, l31) = (simd.mul_f32s(m12, i1), simd.mul_f32s(m13, i1));
-    let d2 = simd.max_f32s(
-        subtract_product(simd, m22, l21, m12),
-        simd.mul_f32s(min_ratio, m22),
-    );
-    let t = subtract_product(simd, m23, l31, m12);
-    let i2 = simd.div_f32s(one, d2);
-    let l32 = simd.mul_f32s(t, i2);
-    let d3 = subtract_product(simd, subtract_product(simd, m33, l31, m13), l32, t);
-    let d3 = simd.max_f32s(d3, simd.mul_f32s(min_ratio, m33));
-    let y2 = subtract_product(simd, c2, l21, c1);
-    let y3 = subtract_product(simd, subtract_product(simd, c3, l31, c1), l32, y2);
-    let z3 = simd.div_f32s(y3, d3);
-    let z2 = subtract_product(simd, simd.mul_f32s(y2, i2), l32, z3);
-    let z1 = subtract_product(
-        simd,
-        subtract_product(simd, simd.mul_f32s(c1, i1), l21, z2),
-        l31,
-        z3,
-    );
+    [m11, m22, m33, m12, m13, m23]: [F32s<S>; 6],
+    [c1, c2, c3]: [F32s<S>; 3],
+) -> [F32s<S>; 3] {
+    let i1 = 1.0 / m11;
+    let (l21, l31) = (m12 * i1, m13 * i1);
+    let d2 = (m22.subtract_product(l21, m12)).max(MIN_PIVOT_RATIO * m22);
+    let t = m23.subtract_product(l31, m12);
+    let i2 = 1.0 / d2;
+    let l32 = t * i2;
+    let d3 = m33.subtract_product(l31, m13).subtract_product(l32, t);
+    let d3 = d3.max(MIN_PIVOT_RATIO * m33);
+    let y2 = c2.subtract_product(l21, c1);
+    let y3 = c3.subtract_product(l31, c1).subtract_product(l32, y2);
+    let z3 = y3 / d3;
+    let z2 = (y2 * i2).subtract_product(l32, z3);
+    let z1 = (c1 * i1)
+        .subtract_product(l21, z2)
+        .subtract_product(l31, z3);
     [z1, z2, z3]
-}
-
-/// a - b c.
-#[inline(always)]
-fn subtract_product<S: Simd>(simd: S, a: S::f32s, b: S::f32s, c: S::f32s) -> S::f32s {
-    simd.negate_mul_add_e_f32s(b, c, a)
 }

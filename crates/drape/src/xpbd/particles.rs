@@ -4,7 +4,8 @@ use super::bending::{BendingForce, Filter};
 use super::contact::{ContactStep, Solid};
 use super::contact_block::{ContactBlock, solve_block};
 use super::several_solids::solve_several;
-use crate::lanes::{LANES, Point, Triple, add_scaled, lane_groups, load, store};
+use crate::lane_arithmetic::{F32s, Number, Triple};
+use crate::lanes::{LANES, Point, PointLanes, lane_groups, load, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
 
@@ -133,13 +134,12 @@ impl WithSimd for Predict<'_, '_> {
                 let mut gain = self
                     .bending
                     .gain(simd, first + b, lane_group, self.step.step);
+                let start = load(simd, &starts[first + b], lane_group);
                 if let Some(impulses) = impulses.get(first + b) {
-                    let [x, y, z, _] = load(simd, impulses, lane_group);
-                    let weight = load(simd, &starts[first + b], lane_group)[3];
-                    gain = add_scaled(simd, gain, [x, y, z], weight);
+                    let (impulse, _) = load(simd, impulses, lane_group);
+                    gain = gain.add_scaled(impulse, start.1);
                 }
-                self.step
-                    .predict(simd, &starts[first + b], block, lane_group, gain);
+                self.step.predict(simd, start, block, lane_group, gain);
             }
         }
     }
@@ -148,74 +148,58 @@ impl WithSimd for Predict<'_, '_> {
 impl FreeBending<'_> {
     /// The velocity change by bending of one lane group of a block in a substep of h [s].
     #[inline(always)]
-    fn gain<S: Simd>(&self, simd: S, block: usize, lane_group: usize, h: f32) -> Triple<S::f32s> {
+    fn gain<S: Simd>(&self, simd: S, block: usize, lane_group: usize, h: f32) -> Triple<F32s<S>> {
         match self {
-            Self::None => [simd.splat_f32s(0.0); 3],
+            Self::None => Triple::repeat(F32s::splat(simd, 0.0)),
             Self::Force(force, ahead) => {
                 let (positions, _) = ahead.as_chunks::<LANES>();
-                let here = load(simd, &positions[block], lane_group);
+                let (here, weight) = load(simd, &positions[block], lane_group);
                 let sum = force.times(simd, LANES * block, ahead, here, lane_group);
-                let scale = simd.mul_f32s(here[3], simd.splat_f32s(-h));
-                scaled(simd, sum, scale)
+                sum * (weight * -h)
             }
             Self::Filtered(filtered, factor) => {
                 let (filtered, _) = filtered.as_chunks::<LANES>();
-                let [x, y, z, _] = load(simd, &filtered[block], lane_group);
-                scaled(simd, [x, y, z], simd.splat_f32s(factor / h))
+                let (displacement, _) = load(simd, &filtered[block], lane_group);
+                displacement * F32s::splat(simd, factor / h)
             }
         }
     }
 }
 
-#[inline(always)]
-fn scaled<S: Simd>(simd: S, a: [S::f32s; 3], s: S::f32s) -> [S::f32s; 3] {
-    [
-        simd.mul_f32s(a[0], s),
-        simd.mul_f32s(a[1], s),
-        simd.mul_f32s(a[2], s),
-    ]
-}
-
 impl MotionStep {
-    /// Predicts one lane group; `gain` is the velocity change by bending [m/s].
+    /// Predicts one lane group from the points at the start; `gain` is the velocity change by bending [m/s].
     #[inline(always)]
     fn predict<S: Simd>(
         &self,
         simd: S,
-        start: &[Point; LANES],
+        (here, weight): PointLanes<S>,
         block: [&mut [Point; LANES]; 4],
         lane_group: usize,
-        gain: [S::f32s; 3],
+        gain: Triple<F32s<S>>,
     ) {
         let [now, free, low, velocity] = block;
-        let (h, drag_factor) = (
-            simd.splat_f32s(self.step),
-            simd.splat_f32s(self.drag_factor),
-        );
-        let zero = simd.splat_f32s(0.0);
-        let here = load(simd, start, lane_group);
-        let weight = here[3];
-        let is_free = simd.less_than_f32s(zero, weight);
-        let mut speed = load(simd, velocity, lane_group);
-        let mut error = load(simd, low, lane_group);
-        let mut there = here;
-        for k in 0..3 {
-            let fall = simd.splat_f32s(self.step * self.gravity[k]);
-            let gained = simd.add_f32s(simd.add_f32s(speed[k], fall), gain[k]);
-            let v = simd.select_f32s(is_free, simd.mul_f32s(gained, drag_factor), speed[k]);
-            // The sum and its rounding error (Knuth's two-sum).
-            let d = simd.mul_add_e_f32s(h, v, error[k]);
-            let sum = simd.add_f32s(here[k], d);
-            let added = simd.sub_f32s(sum, here[k]);
-            let lost = simd.sub_f32s(here[k], simd.sub_f32s(sum, added));
-            error[k] = simd.add_f32s(lost, simd.sub_f32s(d, added));
-            speed[k] = v;
-            there[k] = sum;
-        }
-        store(simd, now, lane_group, there);
-        store(simd, free, lane_group, there);
-        store(simd, low, lane_group, error);
-        store(simd, velocity, lane_group, speed);
+        let h = F32s::splat(simd, self.step);
+        let is_free = F32s::splat(simd, 0.0).less_than(weight);
+        let (speed, fourth) = load(simd, velocity, lane_group);
+        let (error, rest) = load(simd, low, lane_group);
+        let fall = Triple([
+            F32s::splat(simd, self.step * self.gravity[0]),
+            F32s::splat(simd, self.step * self.gravity[1]),
+            F32s::splat(simd, self.step * self.gravity[2]),
+        ]);
+        let drag_factor = F32s::splat(simd, self.drag_factor);
+        let gained = speed + fall + gain;
+        let speed = is_free.select_triple(gained * drag_factor, speed);
+        // The sum and its rounding error (Knuth's two-sum).
+        let d = error.add_scaled(speed, h);
+        let there = here + d;
+        let added = there - here;
+        let lost = here - (there - added);
+        let error = lost + (d - added);
+        store(now, lane_group, (there, weight));
+        store(free, lane_group, (there, weight));
+        store(low, lane_group, (error, rest));
+        store(velocity, lane_group, (speed, fourth));
     }
 }
 
@@ -254,42 +238,35 @@ impl WithSimd for FilterStage<'_, '_> {
         let (positions, _) = self.ahead.as_chunks::<LANES>();
         let (unfiltered, _) = self.fields.unfiltered.as_chunks_mut::<LANES>();
         let (filtered, _) = self.fields.filtered.as_chunks_mut::<LANES>();
-        let [mu, nu, kappa] = self.coefficients.map(|x| simd.splat_f32s(x));
-        let zero = simd.splat_f32s(0.0);
+        let [mu, nu, kappa] = self.coefficients;
+        let (mu, nu) = (F32s::splat(simd, mu), F32s::splat(simd, nu));
+        let kappa = F32s::splat(simd, kappa);
+        let zero = F32s::splat(simd, 0.0);
         for b in 0..unfiltered.len() {
             let slot = LANES * (first + b);
             for lane_group in 0..lane_groups::<S>() {
-                let here = load(simd, &positions[first + b], lane_group);
-                let scale = simd.mul_f32s(here[3], simd.splat_f32s(self.step2));
+                let (here, weight) = load(simd, &positions[first + b], lane_group);
+                let scale = weight * self.step2;
                 let new = match self.last {
                     None => {
                         let sum = self.force.times(simd, slot, self.ahead, here, lane_group);
-                        let [x, y, z] = scaled(simd, sum, scale);
-                        store(simd, &mut unfiltered[b], lane_group, [x, y, z, zero]);
-                        scaled(simd, [x, y, z], simd.sub_f32s(zero, kappa))
+                        let all = sum * scale;
+                        store(&mut unfiltered[b], lane_group, (all, zero));
+                        all * (zero - kappa)
                     }
                     Some(last) => {
                         let (lasts, _) = last.as_chunks::<LANES>();
-                        let d = load(simd, &lasts[first + b], lane_group);
-                        let before = load(simd, &filtered[b], lane_group);
-                        let constant = load(simd, &unfiltered[b], lane_group);
+                        let (d, _) = load(simd, &lasts[first + b], lane_group);
+                        let (before, _) = load(simd, &filtered[b], lane_group);
+                        let (constant, _) = load(simd, &unfiltered[b], lane_group);
                         let sum = self.force.times(simd, slot, last, d, lane_group);
-                        let mut new = [zero; 3];
-                        for k in 0..3 {
-                            let all = simd.mul_add_e_f32s(sum[k], scale, constant[k]);
-                            let recursion = simd.mul_f32s(mu, d[k]);
-                            let recursion = simd.negate_mul_add_e_f32s(nu, before[k], recursion);
-                            new[k] = simd.negate_mul_add_e_f32s(kappa, all, recursion);
-                        }
-                        new
+                        let all = constant.add_scaled(sum, scale);
+                        (d * mu)
+                            .subtract_scaled(before, nu)
+                            .subtract_scaled(all, kappa)
                     }
                 };
-                store(
-                    simd,
-                    &mut filtered[b],
-                    lane_group,
-                    [new[0], new[1], new[2], zero],
-                );
+                store(&mut filtered[b], lane_group, (new, zero));
             }
         }
     }
@@ -381,18 +358,18 @@ fn solve_contacts<S: Simd>(
 ) {
     let first = lane_group * S::F32_LANES;
     let lanes = first..first + S::F32_LANES;
-    let mut any = simd.less_than_f32s(simd.splat_f32s(0.0), simd.splat_f32s(0.0));
+    let zero = F32s::splat(simd, 0.0);
+    let mut any = zero.less_than(zero);
     let mut several = any;
     for contact in &mut *contacts {
         if contact.is_stale(simd, now, lane_group) {
             contact.query_surfaces(solid, now, lanes.clone());
         }
         let touches = contact.touches(simd, now, lane_group);
-        several = simd.or_m32s(several, simd.and_m32s(any, touches));
-        any = simd.or_m32s(any, touches);
+        several = several | (any & touches);
+        any = any | touches;
     }
-    let [zero, one] = [0.0, 1.0].map(|x| simd.splat_f32s(x));
-    if simd.reduce_max_f32s(simd.select_f32s(several, one, zero)) > 0.0 {
+    if several.any() {
         return solve_several(contacts, now, start, step, lanes);
     }
     for contact in contacts {
@@ -420,22 +397,23 @@ impl MotionStep {
         free: &[Point; LANES],
         velocity: &mut [Point; LANES],
     ) {
-        let per_step = simd.splat_f32s(1.0 / self.step);
+        let per_step = F32s::splat(simd, 1.0 / self.step);
         let (now, _) = S::as_simd_f32s(cast_slice(&now[..]));
         let (free, _) = S::as_simd_f32s(cast_slice(&free[..]));
-        let mut largest = simd.splat_f32s(0.0);
+        let mut largest = F32s::splat(simd, 0.0);
         {
             let flat = pulp::bytemuck::cast_slice_mut(&mut velocity[..]);
             let (velocity, _) = S::as_mut_simd_f32s(flat);
             for k in 0..velocity.len() {
-                let moved = simd.sub_f32s(now[k], free[k]);
-                velocity[k] = simd.mul_add_e_f32s(moved, per_step, velocity[k]);
-                largest = simd.max_f32s(largest, simd.mul_f32s(velocity[k], velocity[k]));
+                let (now, free) = (F32s::new(simd, now[k]), F32s::new(simd, free[k]));
+                let v = (now - free).mul_add(per_step, F32s::new(simd, velocity[k]));
+                velocity[k] = v.vector;
+                largest = largest.max(v * v);
             }
         }
         // Only a component beyond limit / 2 can belong to a speed beyond the limit.
         let limit = self.speed_limit.min(MAX_DISPLACEMENT / self.step);
-        if simd.reduce_max_f32s(largest) > 0.25 * limit * limit {
+        if largest.reduce_max() > 0.25 * limit * limit {
             self.limit(velocity);
         }
     }

@@ -8,7 +8,7 @@
 
 use super::Xpbd;
 use super::carried_plane::CarriedPlane;
-use super::contact::{ContactConstraint, ContactStencil, Solid};
+use super::contact::{ContactConstraint, ContactStencil, Solid, compliance_of};
 use super::moving_solids::MovingSolids;
 use super::skin_edges::{Ridges, edges_near};
 use super::skin_look::{Look, Near, REACH, StepStart};
@@ -186,8 +186,7 @@ impl Xpbd {
         let moving = &self.moving;
         let contact = |near: &Near, start: u32| {
             let [a, b, c] = near.weights.map(|w| w as f32);
-            let stiffness = HARDER * system.contact.stiffness * near.area;
-            let compliance = (1.0 / stiffness).min(1e30) as f32;
+            let law = system.contact.law(near.area, 0.0);
             let carried = moving
                 .surface(near.solid)
                 .map(|surface| CarriedPlane::new(surface, (&near.place, 0.0), near.offset));
@@ -197,7 +196,7 @@ impl Xpbd {
                     weights: [a, b, c, 0.0],
                     constraint: ContactConstraint {
                         normal: [0, 1, 2].map(|k| near.place.normal[k] as f32),
-                        compliance,
+                        compliance: compliance_of(HARDER * law.normal),
                         solid: near.solid,
                         ..ContactConstraint::none()
                     },

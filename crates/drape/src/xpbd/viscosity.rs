@@ -17,10 +17,8 @@
 
 use super::bending::{Filter, FilterBounds, Stencil, stencils};
 use super::membrane::MembraneBatch;
-use crate::lanes::{
-    Corner, LANES, Point, Row, Triple, add_scaled, blend, cross, dot, gather, lane_groups, scatter,
-    sub,
-};
+use crate::lane_arithmetic::{F32s, Number, Triple};
+use crate::lanes::{Corner, LANES, Point, Row, gather, lane_group_of, lane_groups, scatter};
 use crate::{DrapeError, Material, System};
 use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};
@@ -280,27 +278,18 @@ fn sides<S: Simd>(
     corners: &[Corner; 3],
     points: &[Point],
     lane_group: usize,
-) -> [Triple<S::f32s>; 2] {
-    let [x0, y0, z0, _] = gather(simd, points, &corners[0], lane_group);
-    let [x1, y1, z1, _] = gather(simd, points, &corners[1], lane_group);
-    let [x2, y2, z2, _] = gather(simd, points, &corners[2], lane_group);
-    [
-        sub(simd, [x1, y1, z1], [x0, y0, z0]),
-        sub(simd, [x2, y2, z2], [x0, y0, z0]),
-    ]
+) -> [Triple<F32s<S>>; 2] {
+    let (p0, _) = gather(simd, points, &corners[0], lane_group);
+    let (p1, _) = gather(simd, points, &corners[1], lane_group);
+    let (p2, _) = gather(simd, points, &corners[2], lane_group);
+    [p1 - p0, p2 - p0]
 }
 
 /// f shortened to [`STRETCHED`].
 #[inline(always)]
-fn bounded<S: Simd>(simd: S, f: Triple<S::f32s>) -> Triple<S::f32s> {
-    let most = simd.splat_f32s(STRETCHED);
-    let length = simd.sqrt_f32s(dot(simd, f, f));
-    let share = simd.div_f32s(most, simd.max_f32s(length, most));
-    [
-        simd.mul_f32s(f[0], share),
-        simd.mul_f32s(f[1], share),
-        simd.mul_f32s(f[2], share),
-    ]
+fn bounded<S: Simd>(simd: S, f: Triple<F32s<S>>) -> Triple<F32s<S>> {
+    let most = F32s::splat(simd, STRETCHED);
+    f * (most / f.norm().max(most))
 }
 
 #[inline(always)]
@@ -311,46 +300,38 @@ fn add_stretch<S: Simd>(
     velocities: &[Point],
     sums: &mut [Point],
 ) {
-    let [a1, a2] = [
-        batch.warp[0].lane_group::<S>(lane_group),
-        batch.warp[1].lane_group::<S>(lane_group),
-    ];
-    let [b1, b2] = [
-        batch.weft[0].lane_group::<S>(lane_group),
-        batch.weft[1].lane_group::<S>(lane_group),
-    ];
+    let [a1, a2] = lane_group_of(simd, &batch.warp, lane_group);
+    let [b1, b2] = lane_group_of(simd, &batch.weft, lane_group);
     let [d1, d2] = sides(simd, &batch.corners, starts, lane_group);
-    let fu = bounded(simd, blend(simd, d1, a1, d2, a2));
-    let fv = bounded(simd, blend(simd, d1, b1, d2, b2));
+    let fu = bounded(simd, (d1 * a1).add_scaled(d2, a2));
+    let fv = bounded(simd, (d1 * b1).add_scaled(d2, b2));
     let [e1, e2] = sides(simd, &batch.corners, velocities, lane_group);
-    let (gu, gv) = (blend(simd, e1, a1, e2, a2), blend(simd, e1, b1, e2, b2));
+    let gu = (e1 * a1).add_scaled(e2, a2);
+    let gv = (e1 * b1).add_scaled(e2, b2);
     let area = batch.rest_area(simd, lane_group);
     let rates = [
-        simd.mul_f32s(area, dot(simd, fu, gu)),
-        simd.mul_f32s(area, dot(simd, fv, gv)),
-        simd.mul_f32s(area, simd.add_f32s(dot(simd, fu, gv), dot(simd, fv, gu))),
+        area * fu.dot(gu),
+        area * fv.dot(gv),
+        area * (fu.dot(gv) + fv.dot(gu)),
     ];
     let [uu, vv, uv, gg] = [
-        simd.splat_f32s(viscous[0]),
-        simd.splat_f32s(viscous[1]),
-        simd.splat_f32s(viscous[2]),
-        simd.splat_f32s(viscous[3]),
+        F32s::splat(simd, viscous[0]),
+        F32s::splat(simd, viscous[1]),
+        F32s::splat(simd, viscous[2]),
+        F32s::splat(simd, viscous[3]),
     ];
-    let stress_u = simd.mul_add_e_f32s(uu, rates[0], simd.mul_f32s(uv, rates[1]));
-    let stress_v = simd.mul_add_e_f32s(vv, rates[1], simd.mul_f32s(uv, rates[0]));
-    let stress_g = simd.mul_f32s(gg, rates[2]);
-    let by_a = blend(simd, fu, stress_u, fv, stress_g);
-    let by_b = blend(simd, fv, stress_v, fu, stress_g);
-    let zero = simd.splat_f32s(0.0);
-    let a0 = simd.sub_f32s(simd.sub_f32s(zero, a1), a2);
-    let b0 = simd.sub_f32s(simd.sub_f32s(zero, b1), b2);
-    let corners = [(a0, b0), (a1, b1), (a2, b2)];
+    let stress_u = uu.mul_add(rates[0], uv * rates[1]);
+    let stress_v = vv.mul_add(rates[1], uv * rates[0]);
+    let stress_g = gg * rates[2];
+    let by_a = (fu * stress_u).add_scaled(fv, stress_g);
+    let by_b = (fv * stress_v).add_scaled(fu, stress_g);
+    let zero = F32s::splat(simd, 0.0);
+    let corners = [(zero - a1 - a2, zero - b1 - b2), (a1, b1), (a2, b2)];
     for k in 0..3 {
         let (a, b) = corners[k];
-        let [x, y, z, w] = gather(simd, sums, &batch.corners[k], lane_group);
-        let sum = add_scaled(simd, [x, y, z], by_a, a);
-        let [x, y, z] = add_scaled(simd, sum, by_b, b);
-        scatter(simd, sums, &batch.corners[k], lane_group, [x, y, z, w]);
+        let (sum, w) = gather(simd, sums, &batch.corners[k], lane_group);
+        let sum = sum.add_scaled(by_a, a).add_scaled(by_b, b);
+        scatter(sums, &batch.corners[k], lane_group, (sum, w));
     }
 }
 
@@ -369,36 +350,30 @@ fn add_bending<S: Simd>(
         return;
     };
     let [d1, d2] = sides(simd, &batch.triangles, starts, lane_group);
-    let normal = cross(simd, d1, d2);
-    let size = simd.sqrt_f32s(dot(simd, normal, normal));
-    let share = simd.div_f32s(
-        simd.splat_f32s(1.0),
-        simd.max_f32s(size, simd.splat_f32s(LEAST_SIZE)),
-    );
-    let zero = simd.splat_f32s(0.0);
-    let normal = add_scaled(simd, [zero; 3], normal, share);
-    let [x, y, z, _] = gather(simd, velocities, first, lane_group);
-    let origin = [x, y, z];
+    let normal = d1.cross(d2);
+    let share = 1.0 / normal.norm().max(F32s::splat(simd, LEAST_SIZE));
+    let zero = F32s::splat(simd, 0.0);
+    let normal = Triple::repeat(zero).add_scaled(normal, share);
+    let (origin, _) = gather(simd, velocities, first, lane_group);
     let mut moments = [zero; 3];
     for (corner, weights) in batch.corners.iter().zip(&batch.weights).skip(1) {
-        let [x, y, z, _] = gather(simd, velocities, corner, lane_group);
-        let speed = dot(simd, normal, sub(simd, [x, y, z], origin));
+        let (velocity, _) = gather(simd, velocities, corner, lane_group);
+        let speed = normal.dot(velocity - origin);
         for k in 0..3 {
-            let weight = weights[k].lane_group::<S>(lane_group);
-            moments[k] = simd.mul_add_e_f32s(weight, speed, moments[k]);
+            let weight = weights[k].lane_group(simd, lane_group);
+            moments[k] = weight.mul_add(speed, moments[k]);
         }
     }
     for k in 0..3 {
-        moments[k] = simd.mul_f32s(moments[k], batch.viscous[k].lane_group::<S>(lane_group));
+        moments[k] = moments[k] * batch.viscous[k].lane_group(simd, lane_group);
     }
     for (corner, weights) in batch.corners.iter().zip(&batch.weights) {
         let mut force = zero;
         for k in 0..3 {
-            let weight = weights[k].lane_group::<S>(lane_group);
-            force = simd.mul_add_e_f32s(weight, moments[k], force);
+            let weight = weights[k].lane_group(simd, lane_group);
+            force = weight.mul_add(moments[k], force);
         }
-        let [x, y, z, w] = gather(simd, sums, corner, lane_group);
-        let [x, y, z] = add_scaled(simd, [x, y, z], normal, force);
-        scatter(simd, sums, corner, lane_group, [x, y, z, w]);
+        let (sum, w) = gather(simd, sums, corner, lane_group);
+        scatter(sums, corner, lane_group, (sum.add_scaled(normal, force), w));
     }
 }
