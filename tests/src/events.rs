@@ -403,7 +403,7 @@ impl Run {
             0..5 => {
                 let entries = plan::numbers_of(&evaluation, part);
                 let entry = self.random.one_of(&entries)?;
-                let want = entry.place.want();
+                let want = entry.want;
                 match self.random.below(6) {
                     0 => plan::clear_number(&evaluation, &entry.place),
                     1 => plan::adjust_number(

@@ -7,12 +7,8 @@ pub mod events;
 pub mod losses;
 pub mod random;
 
-use std::path::{Path, PathBuf};
-
-/// The project's root folder.
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
+use std::path::PathBuf;
+pub use toile_house::{files_below, root};
 
 /// The folder of shared test material, when it stands beside the project; says so when not.
 pub fn shared_data() -> Option<PathBuf> {
@@ -24,29 +20,4 @@ pub fn shared_data() -> Option<PathBuf> {
     }
     println!("skipped: no shared test data at {}", place.display());
     None
-}
-
-/// Every file below a folder with an ending, sorted, but for build output and hidden folders.
-pub fn files_below(folder: &Path, ending: &str) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(folder) = open.pop() {
-        let Ok(entries) = std::fs::read_dir(&folder) else {
-            continue;
-        };
-        for entry in entries.flatten() {
-            let path = entry.path();
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            if path.is_dir() {
-                if !name.starts_with('.') && name != "target" && name != "out" {
-                    open.push(path);
-                }
-            } else if name.ends_with(ending) {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
 }

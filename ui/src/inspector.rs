@@ -283,7 +283,7 @@ impl ToileApp {
             let planned = match text.is_empty() {
                 true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),
                 false => number::parse(&text, want, &self.base).and_then(|number: Number| {
-                    let kept = arcs::kept(&self.base, &entry.place, number);
+                    let kept = arcs::kept(&self.base, entry, number);
                     let edits = kept.and_then(|n| plan::set_number(&self.base, &entry.place, n));
                     edits.map_err(|error| error.to_string())
                 }),

@@ -385,8 +385,7 @@ fn what_is_dragged_lands_on_round_numbers_unless_ctrl_is_held() {
             .unwrap()
             .rule
             .clone();
-        let numbers: Vec<f64> = rule
-            .numbers()
+        let numbers: Vec<f64> = toile_pattern::fields::numbers(rule)
             .into_iter()
             .filter_map(Number::value)
             .collect();

@@ -7,25 +7,7 @@ use common::{patterns, toile, words};
 use serde_json::Value;
 
 /// A rectangle of 40 x 10 cm with a hem of 3 cm, a dart, a notch and a hole, cut as a pair.
-const PLAIN: &str = r#"{
- "toile": 1, "kind": "pattern", "name": "Plain", "unit": "cm", "base_size": "M",
- "sizes": { "M": { "waist": 84 } },
- "fabrics": { "poplin": {
-   "density_kg_per_m2": 0.12, "thickness_m": 0.0004, "stretch_N_per_m": [1500, 1200],
-   "shear_N_per_m": 120, "poisson": 0.2, "bend_N_m": [1e-5, 8e-6, 7e-6], "friction": 0.4,
-   "width_m": 1.5, "nap": false, "colour": [0.5, 0.6, 0.8] } },
- "panels": {
-  "plain": { "fabric": "poplin", "seam_allowance": 1, "cut": "pair",
-   "points": { "a": [0, 0], "b": [40, 0], "c": [40, 10], "d": [0, 10],
-     "p": [5, 2], "q": [5, 6], "r": [9, 6], "s": [9, 2] },
-   "outline": [ { "edge": "hem", "from": "a", "seam_allowance": 3 }, { "edge": "right", "from": "b" },
-                { "edge": "top", "from": "c" }, { "edge": "left", "from": "d" } ],
-   "holes": [ [ { "edge": "h1", "from": "p", "seam_allowance": 0 }, { "edge": "h2", "from": "q", "seam_allowance": 0 },
-                { "edge": "h3", "from": "r", "seam_allowance": 0 }, { "edge": "h4", "from": "s", "seam_allowance": 0 } ] ],
-   "darts": { "tuck": { "edge": "top", "at": 0.5, "width": 2, "depth": 4 } },
-   "notches": { "hip": { "edge": "right", "at": 0.5 } } } },
- "seams": [] }
-"#;
+const PLAIN: &str = include_str!("common/plain.toile.json");
 
 fn report(output: &std::process::Output) -> Value {
     let text = words(&output.stdout);
@@ -109,7 +91,7 @@ fn check_json_gives_every_piece_and_seam_in_numbers() {
 #[test]
 fn check_json_of_a_pattern_with_errors_has_no_pieces() {
     let folder = tempfile::tempdir().unwrap();
-    let crossed = PLAIN.replace("\"b\": [40, 0]", "\"b\": [40, 25]");
+    let crossed = PLAIN.replace("[40, 0]", "[40, 25]");
     std::fs::write(folder.path().join("crossed.json"), crossed).unwrap();
     let output = toile(folder.path(), &["check", "crossed.json", "--json"]);
     assert_eq!(output.status.code(), Some(2));

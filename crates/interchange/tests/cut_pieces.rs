@@ -153,26 +153,7 @@ fn one_drawing_serves_every_file() {
 }
 
 /// A folded panel with every kind of corner, notch and allowance, two darts, one inside, and a hole.
-const EVERYTHING: &str = r#"{
- "toile": 1, "kind": "pattern", "name": "Everything", "unit": "cm", "base_size": "M",
- "sizes": { "M": { "waist": 84 } },
- "fabrics": { "poplin": {
-   "density_kg_per_m2": 0.12, "thickness_m": 0.0004, "stretch_N_per_m": [1500, 1200],
-   "shear_N_per_m": 120, "poisson": 0.2, "bend_N_m": [1e-5, 8e-6, 7e-6], "friction": 0.4,
-   "width_m": 1.5, "nap": false, "colour": [0.5, 0.6, 0.8] } },
- "panels": {
-  "front": { "fabric": "poplin", "seam_allowance": 1, "cut": "pair", "fold": "middle",
-   "points": { "a": [0, 0], "b": [20, 0], "c": [24, 40], "d": [0, 42],
-     "p": [5, 4], "q": [5, 8], "r": [9, 8], "s": [9, 4], "t": [12, 12], "u": [12, 24] },
-   "outline": [ { "edge": "hem", "from": "a", "seam_allowance": 4 }, { "edge": "side", "from": "b" },
-                { "edge": "top", "from": "c" }, { "edge": "middle", "from": "d" } ],
-   "holes": [ [ { "edge": "h1", "from": "p" }, { "edge": "h2", "from": "q" },
-                { "edge": "h3", "from": "r" }, { "edge": "h4", "from": "s" } ] ],
-   "darts": { "waist": { "edge": "top", "at": 0.5, "width": 2, "depth": 10 },
-              "inner": { "ends": ["t", "u"], "at": 0.5, "width": 1.5 } },
-   "notches": { "hip": { "edge": "side", "at": 0.5 } } } },
- "seams": [] }
-"#;
+const EVERYTHING: &str = include_str!("cut_piece/everything.toile.json");
 
 fn everything() -> (Pattern, Draft) {
     let (mut pattern, _) = read_pattern(EVERYTHING).unwrap();
@@ -322,8 +303,12 @@ fn halves_and_copies_are_mirror_images() {
 fn darts_are_folded_to_the_leg_they_are_pressed_to_on_both_halves() {
     // A slanting dart: of one that is the same on both sides the mouth is the same either way.
     let slanting = EVERYTHING
-        .replace("\"depth\": 10", "\"apex\": \"v\"")
-        .replace("\"p\": [5, 4]", "\"v\": [14.5, 30], \"p\": [5, 4]");
+        .replace("\"depth\": 10", "\"apex\": 36")
+        .replace(
+            "\"points\": [",
+            "\"points\": [{\"id\": 36, \"name\": \"v\", \"at\": [14.5, 30]}, ",
+        )
+        .replace("\"next_id\": 36", "\"next_id\": 37");
     let (pattern, _) = read_pattern(&slanting).unwrap();
     let drafted = |pressed: Pressed| {
         let mut pattern = pattern.clone();
@@ -440,7 +425,7 @@ fn cloth_that_shrinks_is_cut_larger_along_and_across_the_grain() {
 
 #[test]
 fn findings_name_their_edges_in_millimetres() {
-    let sharp = EVERYTHING.replace("\"c\": [24, 40]", "\"c\": [90, 41]");
+    let sharp = EVERYTHING.replace("[24, 40]", "[90, 41]");
     let (pattern, _) = read_pattern(&sharp).unwrap();
     let (draft, _) = pattern.resolve(&Measurements::adult());
     let found = cut_diagnostics(&pattern, &draft);
@@ -455,10 +440,9 @@ fn findings_name_their_edges_in_millimetres() {
         "{corner}"
     );
     assert!(corner.message.contains(" mm"), "{corner}");
-    let shut = EVERYTHING.replace(
-        "\"r\": [9, 8], \"s\": [9, 4]",
-        "\"r\": [6, 8], \"s\": [6, 4]",
-    );
+    let shut = EVERYTHING
+        .replace("[9, 8]", "[6, 8]")
+        .replace("[9, 4]", "[6, 4]");
     let (pattern, _) = read_pattern(&shut).unwrap();
     let (draft, _) = pattern.resolve(&Measurements::adult());
     let found = cut_diagnostics(&pattern, &draft);

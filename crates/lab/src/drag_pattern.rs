@@ -226,7 +226,7 @@ mod tests {
             .unwrap();
         }
         let points = pattern.sheets.iter().flat_map(|sheet| &sheet.points);
-        let numbers = points.flat_map(|point| point.rule.numbers());
+        let numbers = points.flat_map(|point| toile_pattern::fields::numbers(&point.rule));
         let mut measured: Vec<_> = numbers
             .filter_map(Number::as_formula)
             .flat_map(Formula::references)

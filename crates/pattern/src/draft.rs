@@ -2,10 +2,9 @@
 
 use crate::stage::StageDart;
 use crate::{
-    EdgeCorner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId, Role,
-    SeamId,
+    BodyPart, EdgeCorner, EdgeName, Fabric, Facing, LineName, Name, NotchId, NotchKind,
+    OperationId, PanelId, Role, SeamId,
 };
-use serde::{Deserialize, Serialize};
 use toile_geometry::{Curve, Rigid, Vec2, Vec3};
 
 /// A pattern resolved: pieces of cloth to cut, and how they are sewn.
@@ -183,44 +182,6 @@ pub enum SeamOrigin {
     },
 }
 
-/// The part of the body a piece is worn on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyPart {
-    /// Chest, waist and hips.
-    #[default]
-    Trunk,
-    /// Neck and head (collars, hoods).
-    Head,
-    /// The wearer's left arm (at +x).
-    LeftArm,
-    /// The wearer's right arm (at -x).
-    RightArm,
-    /// The wearer's left leg (at +x).
-    LeftLeg,
-    /// The wearer's right leg (at -x).
-    RightLeg,
-}
-
-/// The side of the body part a piece faces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Facing {
-    /// In front of it (+z).
-    #[default]
-    Front,
-    /// Behind it (-z).
-    Back,
-    /// On the wearer's left of it (+x; above an arm).
-    Left,
-    /// On the wearer's right of it (-x; below an arm).
-    Right,
-    /// All round it, closed by a seam with itself at the back (or under the arm, inside the leg).
-    Around,
-    /// Over the top of it: laid on horizontally, as a poncho is.
-    Over,
-}
-
 /// Where a piece goes before it is sewn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Worn {
@@ -281,89 +242,6 @@ impl Worn {
 /// Whether left and right of that part are the wearer's own. Of an arm they are above and below.
 fn is_middle(part: BodyPart) -> bool {
     !matches!(part, BodyPart::LeftArm | BodyPart::RightArm)
-}
-
-/// Properties of a fabric, in SI units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fabric {
-    /// The fabric of the document.
-    pub id: FabricId,
-    /// Name to show.
-    pub name: String,
-    /// Mass per area [kg/m2].
-    pub density: f64,
-    /// Thickness [m].
-    pub thickness: f64,
-    /// Stretch stiffness along warp and weft [N/m].
-    pub stretch: [f64; 2],
-    /// Shear stiffness [N/m].
-    pub shear: f64,
-    /// Poisson ratio of warp to weft.
-    pub poisson: f64,
-    /// Bending stiffness along warp, weft and bias [N m].
-    pub bend: [f64; 3],
-    /// Coulomb friction coefficient against skin.
-    pub friction: f64,
-    /// Width of the roll [m].
-    pub width: f64,
-    /// Whether the cloth has a nap, so that all pieces must point one way.
-    pub nap: bool,
-    /// Base colour, sRGB 0..=1.
-    pub colour: [f64; 3],
-    /// What its stress depends on besides the strain of the moment.
-    #[serde(default)]
-    pub rheology: Rheology,
-}
-
-/// How a cloth hardens, damps and keeps folds. All zero: linear and elastic.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Rheology {
-    /// Hardening k of warp and weft: stress C (E + k E^3) in tension [1].
-    pub hardening: [f64; 2],
-    /// Viscosity of stretch and shear (Kelvin-Voigt) [N s/m].
-    pub viscosity: f64,
-    /// Viscosity of bending (Kelvin-Voigt) [N m s].
-    pub bend_viscosity: f64,
-    /// Share of a stretch and of a fold that is kept when held for long, 0 to 0.95 [1].
-    pub kept: [f64; 2],
-    /// Time in which the kept share settles [s].
-    pub relaxation_time: f64,
-}
-
-impl Default for Rheology {
-    fn default() -> Self {
-        Self {
-            hardening: [0.0; 2],
-            viscosity: 0.0,
-            bend_viscosity: 0.0,
-            kept: [0.0; 2],
-            relaxation_time: 10.0,
-        }
-    }
-}
-
-impl Rheology {
-    /// Whether the stress depends on time: on speeds, or on what was held before.
-    pub fn acts_in_time(&self) -> bool {
-        self.viscosity > 0.0 || self.bend_viscosity > 0.0 || self.kept != [0.0; 2]
-    }
-
-    /// What no cloth has, in words; nothing where all is in order.
-    pub fn defect(&self) -> Option<&'static str> {
-        let good = |x: f64| x.is_finite() && x >= 0.0;
-        if !self.hardening.iter().all(|&k| good(k)) {
-            Some("its hardening is not two numbers of 0 or more")
-        } else if !(good(self.viscosity) && good(self.bend_viscosity)) {
-            Some("its viscosity is not 0 or more")
-        } else if !self.kept.iter().all(|k| (0.0..=0.95).contains(k)) {
-            Some("its kept shares are not from 0 to 0.95")
-        } else if !(good(self.relaxation_time) && self.relaxation_time > 0.0) {
-            Some("its relaxation time is not above 0")
-        } else {
-            None
-        }
-    }
 }
 
 /// Which way a dart or a pleat is pressed: an arrow in the plane of its panel.

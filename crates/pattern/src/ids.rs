@@ -3,6 +3,14 @@
 
 use serde::{Deserialize, Serialize};
 
+/// An id of a part of any kind.
+pub trait AnyId {
+    /// The part.
+    fn part(&self) -> PartId;
+    /// Makes it the id with another number.
+    fn set_number(&mut self, number: u32);
+}
+
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident $variant:ident $words:literal),* $(,)?) => {
         $(
@@ -19,9 +27,25 @@ macro_rules! ids {
                 }
             }
 
+            impl From<FreshId> for $name {
+                fn from(id: FreshId) -> Self {
+                    Self(id.0)
+                }
+            }
+
             impl From<u32> for $name {
                 fn from(number: u32) -> Self {
                     Self(number)
+                }
+            }
+
+            impl AnyId for $name {
+                fn part(&self) -> PartId {
+                    (*self).into()
+                }
+
+                fn set_number(&mut self, number: u32) {
+                    self.0 = number;
                 }
             }
 
@@ -113,30 +137,3 @@ impl Ids {
 
 /// A number that was just given, on its way to becoming an id.
 pub struct FreshId(u32);
-
-macro_rules! fresh {
-    ($($name:ident),*) => {
-        $(impl From<FreshId> for $name {
-            fn from(id: FreshId) -> Self {
-                Self(id.0)
-            }
-        })*
-    };
-}
-
-fresh!(
-    SizeId,
-    VariableId,
-    FabricId,
-    SheetId,
-    PointId,
-    CurveId,
-    PanelId,
-    LineId,
-    EdgeId,
-    NotchId,
-    OperationId,
-    SeamId,
-    MarkerId,
-    GuideId
-);

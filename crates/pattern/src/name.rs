@@ -1,8 +1,8 @@
-//! Names of places that survive edits: corners and lines by the part that was drawn, or by the
-//! operation that made them; places along a line by these.
+//! Names of corners and lines that survive edits: by the part that was drawn, or by the operation that made them.
 
-use crate::{CurveId, EdgeId, LineId, Number, OperationId, PanelId, PartId, PointId};
+use crate::{CurveId, EdgeId, LineId, OperationId, PanelId, PartId, PointId};
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
 
 /// A corner, edge or line of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -19,6 +19,12 @@ pub enum Name<Id> {
         /// Which of several, from 0 in the order of the outline.
         index: u16,
     },
+}
+
+impl<Id: Default> Default for Name<Id> {
+    fn default() -> Self {
+        Self::Drawn(Id::default())
+    }
 }
 
 impl<Id> Name<Id> {
@@ -47,10 +53,28 @@ pub type EdgeName = Name<EdgeId>;
 pub type LineName = Name<LineId>;
 
 /// What a made corner, edge or line is in its operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+    VariantNames,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Role {
     /// A leg of a dart: 0 before the apex along the outline, 1 after it; of a diamond 0 to 3.
+    #[default]
     Leg,
     /// The apex of a dart.
     Apex,
@@ -75,84 +99,14 @@ pub enum Role {
 }
 
 impl Role {
-    const WORDS: [(Self, &'static str); 9] = [
-        (Self::Leg, "leg"),
-        (Self::Apex, "apex"),
-        (Self::Mouth, "mouth"),
-        (Self::Diamond, "diamond"),
-        (Self::Opening, "opening"),
-        (Self::Split, "split"),
-        (Self::Underlay, "underlay"),
-        (Self::Crease, "crease"),
-        (Self::Placement, "placement"),
-    ];
-
     /// What it is called.
     pub fn word(self) -> &'static str {
-        let found = Self::WORDS.iter().find(|(role, _)| *role == self);
-        found.map_or("", |(_, word)| word)
+        self.into()
     }
 
     /// The role that is called so.
     pub fn of_word(word: &str) -> Option<Self> {
-        let found = Self::WORDS.iter().find(|(_, known)| *known == word);
-        found.map(|(role, _)| *role)
-    }
-}
-
-/// A place on a line of a panel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Mark {
-    /// A corner.
-    Corner(CornerName),
-    /// Where a notch of the panel is.
-    Notch(crate::NotchId),
-    /// At a distance from a corner along the line, against it if negative [m].
-    Along {
-        /// The corner.
-        from: CornerName,
-        /// How far [m].
-        distance: Number,
-    },
-    /// A share of the way along the line from a corner to one that follows.
-    Between {
-        /// The corners.
-        ends: [CornerName; 2],
-        /// Plain share of the arc length.
-        share: Number,
-    },
-}
-
-impl Mark {
-    /// At a drawn point.
-    pub fn corner(point: PointId) -> Self {
-        Self::Corner(Name::Drawn(point))
-    }
-
-    /// A share of the way between two drawn points.
-    pub fn between(ends: [PointId; 2], share: impl Into<Number>) -> Self {
-        Self::Between {
-            ends: ends.map(Name::Drawn),
-            share: share.into(),
-        }
-    }
-
-    /// The corners it is placed by.
-    pub fn corners(&self) -> Vec<CornerName> {
-        match self {
-            Self::Corner(corner) | Self::Along { from: corner, .. } => vec![*corner],
-            Self::Between { ends, .. } => ends.to_vec(),
-            Self::Notch(_) => Vec::new(),
-        }
-    }
-
-    /// Its number, if it has one.
-    pub fn number(&self) -> Option<&Number> {
-        match self {
-            Self::Along { distance, .. } => Some(distance),
-            Self::Between { share, .. } => Some(share),
-            Self::Corner(_) | Self::Notch(_) => None,
-        }
+        word.parse().ok()
     }
 }
 

@@ -6,22 +6,7 @@ use toile_session::{Budget, Command, Event, NestOptions, Session, Silent, nest_p
 
 /// A folded panel whose point is too sharp for a mitre, with a hole narrower than its allowances on
 /// either side.
-const PENNANT: &str = r#"{
- "toile": 1, "kind": "pattern", "name": "Pennant", "unit": "cm",
- "fabrics": { "poplin": {
-   "density_kg_per_m2": 0.12, "thickness_m": 0.0004, "stretch_N_per_m": [1500, 1200],
-   "shear_N_per_m": 120, "poisson": 0.2, "bend_N_m": [1e-5, 8e-6, 7e-6], "friction": 0.4,
-   "width_m": 1.5, "nap": false, "colour": [0.5, 0.6, 0.8] } },
- "panels": {
-  "pennant": { "fabric": "poplin", "seam_allowance": 1, "cut": "pair", "fold": "middle",
-   "points": { "a": [0, 0], "b": [60, 0], "c": [0, 15],
-     "p": [5, 4], "q": [5, 8], "r": [6.5, 8], "s": [6.5, 4] },
-   "outline": [ { "edge": "middle", "from": "a" }, { "edge": "slant", "from": "b" },
-                { "edge": "hoist", "from": "c" } ],
-   "holes": [ [ { "edge": "h1", "from": "p" }, { "edge": "h2", "from": "q" },
-                { "edge": "h3", "from": "r" }, { "edge": "h4", "from": "s" } ] ] } },
- "seams": [] }
-"#;
+const PENNANT: &str = include_str!("support/pennant.toile.json");
 
 fn pennant(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("pennant.toile.json");
@@ -66,10 +51,11 @@ fn warned(events: &[Event]) -> Vec<&str> {
 fn a_check_tells_of_a_corner_cut_off_and_of_a_hole_filled_by_its_allowance() {
     let folder = tempfile::tempdir().unwrap();
     // Drawn from the right side of the cloth, and from its wrong side.
-    let wrong_side = PENNANT.replace("[60, 0]", "[-60, 0]").replace(
-        "\"p\": [5, 4], \"q\": [5, 8], \"r\": [6.5, 8], \"s\": [6.5, 4]",
-        "\"p\": [-5, 4], \"q\": [-5, 8], \"r\": [-6.5, 8], \"s\": [-6.5, 4]",
-    );
+    let wrong_side = ["[60, ", "[5, ", "[6.5, "]
+        .iter()
+        .fold(PENNANT.to_owned(), |text, x| {
+            text.replace(x, &x.replace('[', "[-"))
+        });
     for text in [PENNANT, &wrong_side] {
         let path = pennant(folder.path(), text);
         let (mut session, events) = done(&path, vec![Command::Check]);
@@ -83,7 +69,7 @@ fn a_check_tells_of_a_corner_cut_off_and_of_a_hole_filled_by_its_allowance() {
         );
     }
     // Without an allowance nothing is cut off and nothing filled.
-    let bare = PENNANT.replace("\"seam_allowance\": 1", "\"seam_allowance\": 0");
+    let bare = PENNANT.replace("\"allowance\": 1", "\"allowance\": 0");
     let path = pennant(folder.path(), &bare);
     let (_, events) = done(&path, vec![Command::Check]);
     assert_eq!(told(warned(&events)), [0, 0], "{events:?}");

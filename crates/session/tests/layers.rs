@@ -130,7 +130,11 @@ fn layers_that_cannot_be_worn_are_refused_and_nothing_changes() {
             .contains("gone.json")
     );
     let other_sizes = folder.path().join("sizes.toile.json");
-    std::fs::write(&other_sizes, BAND.replace("\"L\": {", "\"XL\": {")).unwrap();
+    std::fs::write(
+        &other_sizes,
+        BAND.replace("\"name\": \"L\"", "\"name\": \"XL\""),
+    )
+    .unwrap();
     let size = Command::SetSize {
         size: Some("L".into()),
     };

@@ -205,7 +205,10 @@ fn the_finest_quality_swings_on_a_coarser_mesh_of_the_same_panels_first_unless_c
         first.cloth.panel.iter().max()
     );
 
-    let gathered = BAND.replace(r#""name": "left","#, r#""name": "left", "gathered": true,"#);
+    let gathered = BAND.replace(
+        "\"name\": \"left\",\n",
+        "\"name\": \"left\",\n\"gathered\": true,\n",
+    );
     std::fs::write(&path, gathered).unwrap();
     assert_eq!(levels(Quality::Final).len(), 1);
 }

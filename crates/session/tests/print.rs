@@ -14,18 +14,7 @@ use toile_session::{
     print_job, print_pattern,
 };
 
-const SAIL: &str = r#"{
- "toile": 1, "kind": "pattern", "name": "Sail", "unit": "m",
- "fabrics": { "poplin": {
-   "density_kg_per_m2": 0.12, "thickness_m": 0.0004, "stretch_N_per_m": [1500, 1200],
-   "shear_N_per_m": 120, "poisson": 0.2, "bend_N_m": [1e-5, 8e-6, 7e-6], "friction": 0.4,
-   "width_m": 1.5, "nap": false, "colour": [0.5, 0.6, 0.8] } },
- "panels": {
-  "sail": { "fabric": "poplin",
-   "points": { "a": [0, 0], "b": [40, 0], "c": [40, 40], "d": [0, 40] },
-   "outline": [ { "edge": "foot", "from": "a" }, { "edge": "leech", "from": "b" },
-                { "edge": "head", "from": "c" }, { "edge": "luff", "from": "d" } ] } },
- "seams": [] }"#;
+const SAIL: &str = include_str!("support/sail.toile.json");
 
 /// 0.01 mm.
 const FINE: f64 = 1e-5;

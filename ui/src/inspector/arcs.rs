@@ -14,14 +14,14 @@ use toile_pattern::{
 /// The numbers of a part as they are shown: of an arc the angle it sweeps.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     let entries = plan::numbers_of(evaluation, part).into_iter();
-    let seen = entries.map(|entry| match entry.place {
-        NumberAddress::Bulge(_) => NumberEntry {
+    let seen = entries.map(|entry| match is_bulge(&entry) {
+        true => NumberEntry {
             label: "angle",
             want: Want::Angle,
             number: entry.number.map(|n| plan::angle_of(evaluation, &n)),
             ..entry
         },
-        _ => mark_words::shown(evaluation, entry),
+        false => mark_words::shown(evaluation, entry),
     });
     seen.collect()
 }
@@ -32,14 +32,21 @@ pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
 /// An arc cannot sweep such an angle.
 pub fn kept(
     evaluation: &Evaluation,
-    place: &NumberAddress,
+    entry: &NumberEntry,
     number: Number,
 ) -> Result<Number, EditError> {
-    match place {
-        NumberAddress::Bulge(_) => plan::bulge_of(evaluation, &number),
-        _ => mark_words::kept(evaluation, place, number),
+    match is_bulge(entry) {
+        true => plan::bulge_of(evaluation, &number),
+        false => mark_words::kept(evaluation, entry, number),
     }
 }
+
+fn is_bulge(entry: &NumberEntry) -> bool {
+    matches!(entry.place.part, PartId::Curve(_)) && entry.place.path == BULGE
+}
+
+/// The path of an arc's number.
+const BULGE: &str = "bulge";
 
 impl ToileApp {
     /// The field of an arc's radius; nothing of another curve.
@@ -68,8 +75,9 @@ impl ToileApp {
         let planned = number::parse(&text, Want::Length, &base)
             .and_then(|radius| arc.angle(&radius))
             .and_then(|angle| {
-                let made = plan::bulge_of(&base, &angle)
-                    .and_then(|bulge| plan::set_number(&base, &NumberAddress::Bulge(id), bulge));
+                let made = plan::bulge_of(&base, &angle).and_then(|bulge| {
+                    plan::set_number(&base, &NumberAddress::new(id, BULGE), bulge)
+                });
                 made.map_err(|error| error.to_string())
             });
         match planned {

@@ -1,64 +1,42 @@
 //! Where something is on an edge, in words: so far from a corner, or from the centre.
 
 use crate::tools::{corner_words, is_on_fold, number, scaled};
-use toile_pattern::plan::{MarkNumber, NumberAddress, NumberEntry, OperationNumber, SpanEnd};
-use toile_pattern::{
-    EditError, Evaluation, Mark, Name, Number, Operation, OperationKind, Panel, Pattern, Want,
-};
+use toile_pattern::plan::NumberEntry;
+use toile_pattern::{EditError, Evaluation, Mark, Name, Number, Panel, PartId, Pattern, Want};
 
 /// What a number is called beside its field.
 pub fn label(evaluation: &Evaluation, entry: &NumberEntry) -> String {
     let pattern = evaluation.pattern();
     let usual = || entry.label.to_owned();
-    match entry.place {
-        NumberAddress::Operation(panel, step, number) => {
-            let panel = pattern.panel(panel);
-            let found = panel.and_then(|panel| Some((panel, pattern.operation_of(panel, step)?)));
-            let Some((panel, step)) = found else {
-                return usual();
-            };
-            let what = match step.kind {
-                OperationKind::Pleat { .. } => "pleat",
-                _ => "cut",
-            };
-            match number {
-                OperationNumber::Cut(k, _, MarkNumber::Distance) => {
-                    let along = edge_along(evaluation, panel, mark_of(step, number));
-                    let from = from(pattern, panel, mark_of(step, number));
-                    match (along, from) {
-                        (Some(edge), Some(from)) => format!("{what} {} on {edge} {from}", k + 1),
-                        _ => format!("{what} {} at", k + 1),
-                    }
-                }
-                OperationNumber::Cut(k, SpanEnd::From, _) => format!("{what} {} at", k + 1),
-                OperationNumber::Cut(k, SpanEnd::To, _) => {
-                    format!("{what} {}, other edge", k + 1)
-                }
-                OperationNumber::Opening(k, SpanEnd::From) => format!("{what} {} opens", k + 1),
-                OperationNumber::Opening(k, SpanEnd::To) => {
-                    format!("{what} {} opens, other edge", k + 1)
-                }
-                OperationNumber::Mouth(MarkNumber::Distance) => {
-                    from(pattern, panel, mark_of(step, number)).unwrap_or_else(usual)
-                }
-                _ => usual(),
-            }
+    let found = mark_at(pattern, entry);
+    let from = found.and_then(|(panel, mark)| from(pattern, panel, mark));
+    let Some(k) = entry
+        .item
+        .filter(|_| matches!(entry.place.part, PartId::Operation(_)))
+    else {
+        return from.unwrap_or_else(usual);
+    };
+    let what = match entry.place.path.starts_with("pleat") {
+        true => "pleat",
+        false => "cut",
+    };
+    let number = k + 1;
+    let edge = found.and_then(|(panel, mark)| edge_along(evaluation, panel, mark));
+    match (entry.label, &entry.mark, edge, from) {
+        (_, Some(Mark::Along { .. }), Some(edge), Some(from)) => {
+            format!("{what} {number} on {edge} {from}")
         }
-        NumberAddress::Notch(panel, notch, MarkNumber::Distance) => {
-            let panel = pattern.panel(panel);
-            let found = panel.and_then(|panel| {
-                let notch = panel.notches.iter().find(|own| own.id == notch)?;
-                from(pattern, panel, Some(&notch.at))
-            });
-            found.unwrap_or_else(usual)
-        }
+        (_, Some(Mark::Along { .. }), ..) | ("cut from", ..) => format!("{what} {number} at"),
+        ("cut to", ..) => format!("{what} {number}, other edge"),
+        ("opening at start", ..) => format!("{what} {number} opens"),
+        ("opening at end", ..) => format!("{what} {number} opens, other edge"),
         _ => usual(),
     }
 }
 
 /// A number as it is shown: a distance from the end of an edge without the sign that says that it leads back.
 pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
-    let leads_back = leads_back(evaluation, &entry.place);
+    let leads_back = leads_back(evaluation, &entry);
     let turned = |number: &Number| scaled(evaluation, number, -1.0).ok();
     match entry
         .number
@@ -80,17 +58,17 @@ pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
 /// A formula would be too long.
 pub fn kept(
     evaluation: &Evaluation,
-    place: &NumberAddress,
+    entry: &NumberEntry,
     number: Number,
 ) -> Result<Number, EditError> {
-    match leads_back(evaluation, place) {
+    match leads_back(evaluation, entry) {
         true => scaled(evaluation, &number, -1.0),
         false => Ok(number),
     }
 }
 
 /// Whether a number is a distance along an edge from its end, against it.
-fn leads_back(evaluation: &Evaluation, place: &NumberAddress) -> bool {
+fn leads_back(evaluation: &Evaluation, entry: &NumberEntry) -> bool {
     let is_back = |(_, mark): (&Panel, &Mark)| {
         let Mark::Along { distance, .. } = mark else {
             return false;
@@ -100,12 +78,12 @@ fn leads_back(evaluation: &Evaluation, place: &NumberAddress) -> bool {
             // Of a distance of nothing the sign tells it, too.
             .is_some_and(f64::is_sign_negative)
     };
-    mark_at(evaluation.pattern(), place).is_some_and(is_back)
+    mark_at(evaluation.pattern(), entry).is_some_and(is_back)
 }
 
 /// The edge that a mark lies on, counted from one of its corners.
-fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: Option<&Mark>) -> Option<String> {
-    let Some(Mark::Along { from, distance }) = mark else {
+fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<String> {
+    let Mark::Along { from, distance } = mark else {
         return None;
     };
     let back = evaluation
@@ -119,7 +97,7 @@ fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: Option<&Mark>) -> Op
 /// How far along its edge a place is that is given as a part of it.
 pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> {
     let pattern = evaluation.pattern();
-    let (panel, mark) = mark_at(pattern, &entry.place)?;
+    let (panel, mark) = mark_at(pattern, entry)?;
     let Mark::Between { ends, share } = mark else {
         return None;
     };
@@ -143,44 +121,24 @@ pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> 
     ))
 }
 
-/// The mark that a number is of, and its panel.
-fn mark_at<'p>(pattern: &'p Pattern, place: &NumberAddress) -> Option<(&'p Panel, &'p Mark)> {
-    match *place {
-        NumberAddress::Operation(panel, step, number) => {
-            let panel = pattern.panel(panel)?;
-            Some((panel, mark_of(pattern.operation_of(panel, step)?, number)?))
+/// The mark that a number is of, and its panel: where a notch is, a dart's mouth, a cut or a pleat.
+fn mark_at<'p>(pattern: &'p Pattern, entry: &'p NumberEntry) -> Option<(&'p Panel, &'p Mark)> {
+    let owns = |panel: &Panel| match entry.place.part {
+        PartId::Notch(id) => panel.notch(id).is_some(),
+        // What is held, and both ends of a fold, are told by their own labels.
+        PartId::Operation(id) if !matches!(entry.label, "held at" | "start" | "end") => {
+            panel.step_of(id).is_some()
         }
-        NumberAddress::Notch(panel, notch, _) => {
-            let panel = pattern.panel(panel)?;
-            let notch = panel.notches.iter().find(|own| own.id == notch)?;
-            Some((panel, &notch.at))
-        }
-        _ => None,
-    }
-}
-
-fn mark_of(step: &Operation, number: OperationNumber) -> Option<&Mark> {
-    match (number, &step.kind) {
-        (
-            OperationNumber::Mouth(_),
-            OperationKind::Dart { mouth, .. } | OperationKind::Pivot { mouth, .. },
-        ) => Some(mouth),
-        (OperationNumber::Cut(k, end, _), OperationKind::Spread { cuts, .. }) => {
-            Some(&cuts.get(k)?.ends[usize::from(end == SpanEnd::To)])
-        }
-        (OperationNumber::Cut(k, end, _), OperationKind::Pleat { pleats, .. }) => {
-            Some(&pleats.get(k)?.ends[usize::from(end == SpanEnd::To)])
-        }
-        _ => None,
-    }
+        _ => false,
+    };
+    let panel = pattern.panels.iter().find(|panel| owns(panel))?;
+    Some((panel, entry.mark.as_ref()?))
 }
 
 /// From which corner a distance counts.
-fn from(pattern: &Pattern, panel: &Panel, mark: Option<&Mark>) -> Option<String> {
+fn from(pattern: &Pattern, panel: &Panel, mark: &Mark) -> Option<String> {
     match mark {
-        Some(Mark::Along { from, .. }) => {
-            Some(format!("from {}", corner_words(pattern, panel, *from)?))
-        }
-        _ => None,
+        Mark::Along { from, .. } => Some(format!("from {}", corner_words(pattern, panel, *from)?)),
+        Mark::Notch(_) | Mark::Between { .. } | Mark::Corner(_) => None,
     }
 }

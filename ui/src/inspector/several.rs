@@ -105,7 +105,7 @@ impl ToileApp {
                             hint: "type another".into(),
                         }
                     })?;
-                    let number = kept(evaluation, &entry.place, number)?;
+                    let number = kept(evaluation, entry, number)?;
                     Ok((plan::set_number(evaluation, &entry.place, number)?, ()))
                 });
                 edits.map_err(|error| error.to_string())

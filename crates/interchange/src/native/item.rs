@@ -3,6 +3,7 @@
 use super::json::{Node, Value};
 use super::units;
 use crate::FormatError;
+use toile_pattern::fields::{Clash, Kind, Told};
 use toile_pattern::{
     Code, Diagnostic, DisplayUnit, Formula, Place, Severity, is_part_name, nearest,
 };
@@ -20,9 +21,6 @@ pub enum Written<'a> {
     Value(f64),
     Formula(&'a str),
 }
-
-/// The fields of one kind of several: how many of the first tell it, and all.
-pub type FieldsOfKind<'k> = (usize, &'k [&'k str]);
 
 /// The fields of an object.
 pub struct Object<'a> {
@@ -111,16 +109,16 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A list of exactly `N` items.
-    pub fn exactly<const N: usize>(&self) -> Result<[Item<'a>; N], FormatError> {
+    /// A list of exactly so many items.
+    pub fn exactly(&self, wanted: usize) -> Result<Vec<Item<'a>>, FormatError> {
         let items = self.list()?;
-        let count = items.len();
-        items.try_into().map_err(|_| {
-            self.error(
+        match items.len() {
+            count if count == wanted => Ok(items),
+            count => Err(self.error(
                 format!("the list has {count} items"),
-                format!("give it {N}"),
-            )
-        })
+                format!("give it {wanted}"),
+            )),
+        }
     }
 
     /// Every field as an item, in the order of the file.
@@ -140,8 +138,15 @@ impl<'a> Item<'a> {
         known: &[&str],
         notes: &mut Vec<Diagnostic>,
     ) -> Result<Object<'a>, FormatError> {
+        let object = self.fields()?;
+        self.note_unknown(known, notes);
+        Ok(object)
+    }
+
+    /// Notes the fields that are not among the known ones.
+    pub fn note_unknown(&self, known: &[&str], notes: &mut Vec<Diagnostic>) {
         let Value::Object(fields) = &self.node.value else {
-            return Err(self.wrong_kind("an object", "write it in { }"));
+            return;
         };
         for (name, node) in fields {
             if known.contains(&name.as_str()) {
@@ -164,10 +169,6 @@ impl<'a> Item<'a> {
                 hint,
             ));
         }
-        Ok(Object {
-            item: self.clone(),
-            fields,
-        })
     }
 
     /// The fields, whatever they are called.
@@ -261,15 +262,14 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// One of a closed list of words.
-    pub fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, FormatError> {
+    /// One of a closed list of words: its place in the list.
+    pub fn word(&self, words: &[&str]) -> Result<usize, FormatError> {
         let word = self.text()?;
-        let found = choices.iter().find(|(name, _)| *name == word);
-        found.map(|(_, choice)| *choice).ok_or_else(|| {
-            let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+        let found = words.iter().position(|known| *known == word);
+        found.ok_or_else(|| {
             self.error(
                 format!("{word:?} is not known here"),
-                format!("use one of {}", names.join(", ")),
+                format!("use one of {}", words.join(", ")),
             )
         })
     }
@@ -292,45 +292,46 @@ impl<'a> Object<'a> {
         })
     }
 
-    /// Refuses an object that has fields of two kinds, of which one would be lost. It is of the first
-    /// kind whose telling fields it has; every kind may have the `common` ones.
-    pub fn of_one_kind(
-        &self,
-        common: &[&str],
-        kinds: &[FieldsOfKind<'_>],
-    ) -> Result<(), FormatError> {
-        let tells = |(count, fields): &&FieldsOfKind<'_>| {
-            let mut telling = fields.iter().take(*count);
-            telling.all(|field| self.get(field).is_some())
+    /// The kind whose telling fields it has, the first of several. One that has fields of two kinds is refused, of which
+    /// one would be lost, and one of none where that is not one of the kinds.
+    pub fn kind(&self, kinds: &[Kind], clash: &Clash) -> Result<Option<usize>, FormatError> {
+        let tells = |kind: &Kind| match kind.told {
+            Told::Field(_) | Told::By(_) => {
+                kind.telling().iter().all(|field| self.get(field).is_some())
+            }
+            Told::Number | Told::Text | Told::Never => false,
         };
-        let Some((count, own)) = kinds.iter().find(tells) else {
-            return Ok(());
+        let Some(chosen) = kinds.iter().position(tells) else {
+            return match &clash.none {
+                Some([what, hint]) => Err(self.item.error(what, hint)),
+                None => Ok(None),
+            };
         };
+        let own = &kinds[chosen];
         for (name, node) in self.fields {
-            let is = |fields: &[&str]| fields.contains(&name.as_str());
-            if is(common) || is(own) || !kinds.iter().any(|(_, fields)| is(fields)) {
+            let is = |kind: &Kind| kind.keys.contains(&name.as_str());
+            if is(own) || !kinds.iter().any(is) {
                 continue;
             }
-            let telling = own.iter().take(*count).map(|field| format!("{field:?}"));
+            let place = self.item.child(node, name);
+            if let Some([what, hint]) = clash.two {
+                return Err(place.error(what, hint));
+            }
+            let telling = own.telling().iter().map(|field| format!("{field:?}"));
             let beside = match telling.collect::<Vec<_>>().join(" and ") {
                 none if none.is_empty() => "without the field that it belongs to".to_owned(),
                 fields => format!("beside {fields}, with which it does not go"),
             };
-            return Err(self.item.child(node, name).error(
+            return Err(place.error(
                 format!("the field {name:?} stands {beside}"),
                 "keep the fields of one kind",
             ));
         }
-        Ok(())
+        Ok(Some(chosen))
     }
 
     /// The items of a list; none if it is not there.
     pub fn items(&self, name: &str) -> Result<Vec<Item<'a>>, FormatError> {
         self.get(name).map_or(Ok(Vec::new()), |item| item.list())
-    }
-
-    /// A flag that is off unless it is there.
-    pub fn flag_or(&self, name: &str, default: bool) -> Result<bool, FormatError> {
-        self.get(name).map_or(Ok(default), |item| item.flag())
     }
 }

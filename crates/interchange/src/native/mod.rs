@@ -6,29 +6,25 @@
 mod fitting;
 mod item;
 mod json;
-mod migrate;
+mod measurements;
+mod part_reader;
+mod part_writer;
 mod read;
 mod read_fitting;
-mod read_marker;
-mod read_operation;
-mod read_panel;
-mod read_seam;
+mod reader;
 mod units;
-mod values;
-mod words;
 mod write;
 mod write_fitting;
-mod write_marker;
-mod write_operation;
-mod write_panel;
-mod write_seam;
+mod writer;
 
 pub use fitting::{FABRIC_WIDTHS, Fitting, FittingFabric, FittingLayer, FittingWearer};
 
 use crate::FormatError;
 use item::Item;
 use toile_pattern::{Diagnostic, Pattern};
-use words::VERSION;
+
+/// The version of the format.
+const VERSION: u32 = 2;
 
 /// A pattern's file: the pattern, and how its garment is tried on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,8 +37,7 @@ pub struct PatternFile {
     pub notes: Vec<Diagnostic>,
 }
 
-/// Reads the pattern of a file in the native format (`*.toile.json`), of this version or an earlier
-/// one.
+/// Reads the pattern of a file in the native format (`*.toile.json`).
 ///
 /// # Errors
 /// Those of [`read_document`].
@@ -69,24 +64,19 @@ pub fn write_document(pattern: &Pattern, tried_on: &Fitting) -> Result<String, F
     write::write(pattern, |writer| write_fitting::fitting(writer, tried_on))
 }
 
-/// Reads a file in the native format (`*.toile.json`), of this version or an earlier one.
+/// Reads a file in the native format (`*.toile.json`).
 ///
 /// Fields this version does not know are named in the diagnostics; everything else that is not
 /// understood is refused with its line, column, path and remedy.
 ///
 /// # Errors
-/// The text is not JSON, not a pattern of a known version, or refers to parts it does not have.
+/// The text is not JSON, not a pattern of this version, or refers to parts it does not have.
 pub fn read_document(text: &str) -> Result<PatternFile, FormatError> {
     let node = json::parse(text)?;
     let root = Item::root(&node);
     let mut notes = Vec::new();
-    let (pattern, fitting) = match version(&root)? {
-        1 => (
-            migrate::read_version_1(&root, &mut notes)?,
-            Fitting::default(),
-        ),
-        _ => read::read(&root, read_fitting::fitting, &mut notes)?,
-    };
+    check_version(&root)?;
+    let (pattern, fitting) = read::read(&root, read_fitting::fitting, &mut notes)?;
     Ok(PatternFile {
         pattern,
         fitting,
@@ -94,8 +84,8 @@ pub fn read_document(text: &str) -> Result<PatternFile, FormatError> {
     })
 }
 
-/// The version of a file that holds a pattern.
-fn version(root: &Item<'_>) -> Result<u32, FormatError> {
+/// Refuses a file that does not hold a pattern of this version.
+fn check_version(root: &Item<'_>) -> Result<(), FormatError> {
     let object = root.fields()?;
     let Some(version) = object.get("toile") else {
         return Err(root.error(
@@ -104,7 +94,13 @@ fn version(root: &Item<'_>) -> Result<u32, FormatError> {
         ));
     };
     let number = version.count()?;
-    if number == 0 || number > VERSION {
+    if number == 1 {
+        return Err(version.error(
+            "the file is of version 1, which was never released and is not read any more",
+            "convert it with the program that wrote it, or export it from there as GarmentCode",
+        ));
+    }
+    if number != VERSION {
         return Err(version.error(
             format!("the file is of version {number}, this program reads up to {VERSION}"),
             "use a newer program, or save the file for this version",
@@ -117,5 +113,5 @@ fn version(root: &Item<'_>) -> Result<u32, FormatError> {
             "give a file of kind \"pattern\"",
         ));
     }
-    Ok(number)
+    Ok(())
 }

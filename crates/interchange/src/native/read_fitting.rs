@@ -1,22 +1,14 @@
 //! Reads how a garment is tried on.
 
 use super::fitting::{FABRIC_WIDTHS, Fitting, FittingFabric, FittingLayer, FittingWearer};
-use super::item::{FieldsOfKind, Item};
-use super::read::{Measure, Reader};
+use super::item::Item;
+use super::reader::Reader;
 use crate::FormatError;
 use toile_body::Figure;
 use toile_drape::MOST_LAYER;
 use toile_measure::Measurements;
-
-/// Kinds of wearers, by the fields that tell them.
-const WEARERS: &[FieldsOfKind<'_>] = &[
-    (1, &["mannequin"]),
-    (1, &["measurements", "figure", "file"]),
-    (1, &["figure"]),
-];
-
-/// Kinds of fabrics.
-const FABRICS: &[FieldsOfKind<'_>] = &[(1, &["name"]), (1, &["file"])];
+use toile_pattern::fields::{Clash, Kind};
+use toile_pattern::{SizeId, Want};
 
 /// Reads how the garment is tried on.
 pub fn fitting<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Fitting, FormatError> {
@@ -26,14 +18,15 @@ pub fn fitting<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Fitting, 
     if let Some(item) = fields.get("wearer") {
         fitting.wearer = wearer(reader, &item)?;
     }
-    if let Some(size) = fields.get("size") {
-        fitting.size = Some(reader.reference(&size)?);
+    if let Some(item) = fields.get("size") {
+        let size = fitting.size.insert(SizeId::default());
+        reader.reference(&item, size)?;
     }
     if let Some(item) = fields.get("fabric") {
         fitting.fabric = Some(fabric(reader, &item)?);
     }
     if let Some(item) = fields.get("width") {
-        let width = reader.value(&item, Measure::Length)?;
+        let width = reader.value(&item, Want::Length)?;
         if !FABRIC_WIDTHS.contains(&width) {
             return Err(item.error(
                 format!("the fabric is {width} m wide"),
@@ -58,14 +51,19 @@ pub fn fitting<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Fitting, 
 fn wearer<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<FittingWearer, FormatError> {
     let known = &["figure", "measurements", "file", "mannequin"];
     let fields = item.object(known, &mut reader.notes)?;
-    fields.of_one_kind(&[], WEARERS)?;
+    let kinds = [
+        Kind::told_by("mannequin", &[]),
+        Kind::told_by("measurements", &["figure", "file"]),
+        Kind::told_by("figure", &[]),
+    ];
+    fields.kind(&kinds, &Clash::default())?;
     if let Some(mannequin) = fields.get("mannequin") {
         return Ok(FittingWearer::Mannequin {
             file: file(&mannequin)?,
         });
     }
-    let figures = Figure::ALL.map(|figure| (figure.name(), figure));
-    let figure = fields.need("figure")?.choice(&figures)?;
+    let names = Figure::ALL.map(Figure::name);
+    let figure = Figure::ALL[fields.need("figure")?.word(&names)?];
     let Some(table) = fields.get("measurements") else {
         return Ok(FittingWearer::Figure(figure));
     };
@@ -98,7 +96,8 @@ fn measurements<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Measurem
 
 fn fabric<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<FittingFabric, FormatError> {
     let fields = item.object(&["name", "file"], &mut reader.notes)?;
-    fields.of_one_kind(&[], FABRICS)?;
+    let kinds = [Kind::told_by("name", &[]), Kind::told_by("file", &[])];
+    fields.kind(&kinds, &Clash::default())?;
     match fields.get("file") {
         Some(item) => file(&item).map(FittingFabric::File),
         None => {

@@ -2,14 +2,6 @@
 
 use toile_pattern::DisplayUnit;
 
-/// Names of units in files.
-pub const UNITS: &[(&str, DisplayUnit)] = &[
-    ("mm", DisplayUnit::Millimetre),
-    ("cm", DisplayUnit::Centimetre),
-    ("m", DisplayUnit::Metre),
-    ("in", DisplayUnit::Inch),
-];
-
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
 

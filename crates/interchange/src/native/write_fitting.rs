@@ -2,20 +2,20 @@
 
 use super::fitting::{Fitting, FittingFabric, FittingWearer};
 use super::json::Value;
-use super::write::{Fields, Measure, Writer, count, text};
+use super::writer::{Object, Writer, count, text};
 use crate::FormatError;
-use toile_pattern::Number;
+use toile_pattern::{Number, Want};
 
 /// How the garment is tried on; nothing where all is as the pattern says.
-pub fn fitting(writer: &Writer<'_>, fitting: &Fitting) -> Result<Option<Value>, FormatError> {
+pub fn fitting(writer: &Writer, fitting: &Fitting) -> Result<Option<Value>, FormatError> {
     if *fitting == Fitting::default() {
         return Ok(None);
     }
-    let mut fields = Fields::default();
+    let mut fields = Object::default();
     fields.put_if("wearer", wearer(writer, &fitting.wearer));
     fields.put_if("size", fitting.size.map(|id| count(id.0)));
     if let Some(fabric) = &fitting.fabric {
-        let mut own = Fields::default();
+        let mut own = Object::default();
         match fabric {
             FittingFabric::Named(name) => own.put("name", text(name)),
             FittingFabric::File(file) => own.put("file", text(file)),
@@ -25,13 +25,13 @@ pub fn fitting(writer: &Writer<'_>, fitting: &Fitting) -> Result<Option<Value>, 
     if let Some(width) = fitting.width {
         let width = Number::Value(width);
         let place = "width of the fabric";
-        fields.put("width", writer.number(&width, Measure::Length, place)?);
+        fields.put("width", writer.number(&width, Want::Length, place)?);
     }
     if fitting.layer > 0 {
         fields.put("layer", count(fitting.layer.into()));
     }
     let worn = fitting.worn_with.iter().map(|worn| {
-        let mut own = Fields::default();
+        let mut own = Object::default();
         own.put("file", text(&worn.file));
         own.put("layer", count(worn.layer.into()));
         own.done()
@@ -40,8 +40,8 @@ pub fn fitting(writer: &Writer<'_>, fitting: &Fitting) -> Result<Option<Value>, 
     Ok(Some(fields.done()))
 }
 
-fn wearer(writer: &Writer<'_>, wearer: &FittingWearer) -> Option<Value> {
-    let mut fields = Fields::default();
+fn wearer(writer: &Writer, wearer: &FittingWearer) -> Option<Value> {
+    let mut fields = Object::default();
     match wearer {
         FittingWearer::OfPattern => return None,
         FittingWearer::Figure(figure) => fields.put("figure", text(figure.name())),

@@ -1,12 +1,14 @@
 //! Guides: lines across the table to draw against. They are no part of any piece.
 
 use super::Pattern;
-use crate::GuideId;
+use crate::fields::{Clash, Told, key};
+use crate::{GuideId, fields};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use strum::EnumIter;
 
 /// A line across the whole table, level or upright.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Guide {
     /// Its id.
     pub id: GuideId,
@@ -16,17 +18,44 @@ pub struct Guide {
     pub at: f64,
 }
 
+fields!(Guide, |self, v| {
+    let Self { id, runs, at } = self;
+    v.own(id);
+    v.flat(runs);
+    v.value(key(runs.key()).length(), at);
+});
+
 /// Which way a guide runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, EnumIter, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GuideRun {
     /// From left to right.
+    #[default]
     Horizontal,
     /// From below upward.
     Vertical,
 }
 
+// The field that says where the guide lies tells which way it runs: it is the guide's own.
+fields!(
+    GuideRun,
+    |self, _v| {},
+    kinds: |runs| Told::Field(runs.key()),
+    clash: Clash {
+        usual: Some(0),
+        ..Clash::default()
+    },
+);
+
 impl GuideRun {
+    /// The field of files that says where such a guide lies.
+    fn key(self) -> &'static str {
+        match self {
+            Self::Horizontal => "y",
+            Self::Vertical => "x",
+        }
+    }
+
     /// Which coordinate all places of such a guide share: 1 (y) if horizontal, 0 (x) if vertical.
     pub fn axis(self) -> usize {
         match self {

@@ -2,8 +2,9 @@
 //!
 //! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
 
-use super::Pattern;
-use crate::{Fabric, FabricId, MarkerId, PanelId, SizeId};
+use super::{Flaw, NapRule, Pattern, Print, Spread};
+use crate::fields::{FieldFault, ValueField, group, key};
+use crate::{Fabric, FabricId, MarkerId, PanelId, SizeId, fields};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ pub const USUAL_GAP: f64 = 0.002;
 pub const MOST_GARMENTS: u32 = 2_000;
 
 /// Pieces of one fabric, laid to be cut together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Marker {
     /// Its id.
     pub id: MarkerId,
@@ -30,6 +31,19 @@ pub struct Marker {
     /// The placements. Pieces of the order that are not here wait to be laid.
     pub placements: Vec<PiecePlacement>,
 }
+
+fields!(
+    Marker,
+    |self, v| {
+        let Self { id, name, cloth, order, placements } = self;
+        v.own(id);
+        v.value(ValueField::NAME, name);
+        v.flat(cloth);
+        v.each(group("order"), order);
+        v.each(group("placements"), placements);
+    },
+    fault: |self| Self::fault(self)
+);
 
 /// Fabric as a marker takes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,6 +81,85 @@ pub struct MarkerCloth {
     pub flaws: Vec<Flaw>,
 }
 
+impl Default for MarkerCloth {
+    fn default() -> Self {
+        Self::of(FabricId::default())
+    }
+}
+
+fields!(MarkerCloth, |self, v| {
+    let Self {
+        fabric,
+        keeps_fabric,
+        width,
+        length,
+        selvedge,
+        end_margin,
+        gap,
+        nap,
+        tilt,
+        spread,
+        plies,
+        price_per_metre,
+        currency,
+        print,
+        flaws,
+    } = self;
+    let same = |value: f64, usual: f64| value.to_bits() == usual.to_bits();
+    v.id("fabric", fabric);
+    v.value(
+        key("keeps_fabric").left_out_if(!*keeps_fabric),
+        keeps_fabric,
+    );
+    v.optional("width", width);
+    if let Some(width) = width {
+        v.value(key("width").length(), width);
+    }
+    v.optional("length", length);
+    if let Some(length) = length {
+        v.value(key("length").length(), length);
+    }
+    v.value(
+        key("selvedge")
+            .length()
+            .left_out_if(same(*selvedge, USUAL_SELVEDGE)),
+        selvedge,
+    );
+    v.value(
+        key("end_margin")
+            .length()
+            .left_out_if(same(*end_margin, 0.0)),
+        end_margin,
+    );
+    v.value(key("gap").length().left_out_if(same(*gap, USUAL_GAP)), gap);
+    v.optional("nap", nap);
+    if let Some(nap) = nap {
+        v.value(key("nap"), nap);
+    }
+    v.value(key("tilt").angle().left_out_if(same(*tilt, 0.0)), tilt);
+    v.value(
+        key("spread").left_out_if(*spread == Spread::default()),
+        spread,
+    );
+    let usual = spread.usual_plies();
+    v.value(
+        key("plies")
+            .left_out_if(*plies == usual)
+            .count_if_absent(usual),
+        plies,
+    );
+    v.optional("price_per_metre", price_per_metre);
+    if let Some(price) = price_per_metre {
+        v.value(key("price_per_metre"), price);
+    }
+    v.value(key("currency").left_out_if(currency.is_empty()), currency);
+    v.optional("print", print);
+    if let Some(print) = print {
+        v.part(group("print"), print);
+    }
+    v.each(group("flaws"), flaws);
+});
+
 /// What a whole garment is cut from, where that is chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GarmentCloth {
@@ -74,71 +167,6 @@ pub struct GarmentCloth {
     pub fabric: Option<Arc<Fabric>>,
     /// Width of the roll [m]; nothing means the fabric's own.
     pub width: Option<f64>,
-}
-
-/// Which way pieces may point along the warp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum NapRule {
-    /// Each either way.
-    None,
-    /// All one way.
-    OneWay,
-    /// All pieces of a garment one way.
-    PerGarment,
-}
-
-/// How fabric is spread on the table.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Spread {
-    /// Open, all plies with the right side up.
-    #[default]
-    Open,
-    /// Folded in two along the warp, selvedge on selvedge.
-    Folded,
-    /// A tube laid flat: a fold at both sides.
-    Tubular,
-    /// Open, every second ply turned over: what is cut comes in pairs.
-    FaceToFace,
-}
-
-impl Spread {
-    /// The numbers of plies that are right.
-    pub const PLIES: &'static str = "give 1 or more, face to face an even number";
-
-    /// Layers cut at once where nothing is said.
-    pub fn usual_plies(self) -> u32 {
-        match self {
-            Self::FaceToFace => 2,
-            Self::Open | Self::Folded | Self::Tubular => 1,
-        }
-    }
-
-    /// Whether fabric can be spread so in so many plies.
-    pub fn allows(self, plies: u32) -> bool {
-        plies > 0 && (self != Self::FaceToFace || plies.is_multiple_of(2))
-    }
-}
-
-/// A print that repeats.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Print {
-    /// Length of a repeat along the warp and across [m]; 0 where it does not repeat.
-    pub repeat: [f64; 2],
-    /// A point where lines of the print cross [m].
-    pub origin: [f64; 2],
-}
-
-/// A flaw: a rectangle of the fabric laid open.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Flaw {
-    /// Its corner nearest to the start: along the warp and across [m].
-    pub at: [f64; 2],
-    /// Its length and width [m].
-    pub size: [f64; 2],
-    /// Distance pieces keep from it [m].
-    pub clearance: f64,
 }
 
 /// Garments of one size, or of the wearer.
@@ -150,8 +178,28 @@ pub struct OrderedSize {
     pub quantity: u32,
 }
 
+impl Default for OrderedSize {
+    fn default() -> Self {
+        Self {
+            size: None,
+            quantity: 1,
+        }
+    }
+}
+
+fields!(OrderedSize, |self, v| {
+    let Self { size, quantity } = self;
+    v.optional("size", size);
+    if let Some(size) = size {
+        v.id("size", size);
+    }
+    v.value(key("quantity").may_lack(), quantity);
+});
+
 /// One piece that an order cuts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 pub struct OrderedPiece {
     /// The panel it is cut from.
     pub panel: PanelId,
@@ -163,9 +211,25 @@ pub struct OrderedPiece {
     pub garment: u32,
 }
 
+fields!(OrderedPiece, |self, v| {
+    let Self {
+        panel,
+        copy,
+        size,
+        garment,
+    } = self;
+    v.id("panel", panel);
+    v.value(key("copy").left_out_if(*copy == 0), copy);
+    v.optional("size", size);
+    if let Some(size) = size {
+        v.id("size", size);
+    }
+    v.value(key("garment").left_out_if(*garment == 0), garment);
+});
+
 /// Where a piece lies: its grain turned to +x, then turned over (y changes sign) if it is flipped,
 /// then turned, then moved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PiecePlacement {
     /// The piece.
     pub piece: OrderedPiece,
@@ -178,6 +242,24 @@ pub struct PiecePlacement {
     /// Whether it stays where it is while others are laid.
     pub locked: bool,
 }
+
+fields!(PiecePlacement, |self, v| {
+    let Self {
+        piece,
+        at: [x, y],
+        turn,
+        flipped,
+        locked,
+    } = self;
+    v.flat(piece);
+    v.list(group("at"), &mut |v| {
+        v.value(key("x").length(), x);
+        v.value(key("y").length(), y);
+    });
+    v.value(key("turn").angle().left_out_if(turn.to_bits() == 0), turn);
+    v.value(key("flipped").left_out_if(!*flipped), flipped);
+    v.value(key("locked").left_out_if(!*locked), locked);
+});
 
 /// What a marker keeps though the garment is cut otherwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,19 +278,6 @@ pub enum MarkerKeeps {
         /// That of what the garment is cut from [m].
         garments: f64,
     },
-}
-
-/// A fault that no marker may have, with its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MarkerFault {
-    /// The field of the file.
-    pub field: &'static str,
-    /// Which item of it, from 0, if it is a list.
-    pub item: Option<usize>,
-    /// What is wrong.
-    pub message: String,
-    /// What to do.
-    pub hint: &'static str,
 }
 
 impl MarkerCloth {
@@ -247,17 +316,17 @@ impl Marker {
     }
 
     /// The first thing that no marker may have.
-    pub fn fault(&self) -> Option<MarkerFault> {
+    pub fn fault(&self) -> Option<FieldFault> {
         self.cloth
             .fault()
             .or_else(|| self.order_fault())
             .or_else(|| self.placement_fault())
     }
 
-    fn order_fault(&self) -> Option<MarkerFault> {
+    fn order_fault(&self) -> Option<FieldFault> {
         let mut seen = HashSet::new();
         self.order.iter().enumerate().find_map(|(k, ordered)| {
-            let fault = |message: &str, hint| MarkerFault {
+            let fault = |message: &str, hint| FieldFault {
                 field: "order",
                 item: Some(k),
                 message: message.to_owned(),
@@ -278,10 +347,10 @@ impl Marker {
         })
     }
 
-    fn placement_fault(&self) -> Option<MarkerFault> {
+    fn placement_fault(&self) -> Option<FieldFault> {
         let mut seen = HashSet::new();
         self.placements.iter().enumerate().find_map(|(k, laid)| {
-            let fault = |message: &str, hint| MarkerFault {
+            let fault = |message: &str, hint| FieldFault {
                 field: "placements",
                 item: Some(k),
                 message: message.to_owned(),
@@ -301,7 +370,7 @@ impl Marker {
 }
 
 impl MarkerCloth {
-    fn fault(&self) -> Option<MarkerFault> {
+    fn fault(&self) -> Option<FieldFault> {
         let sound = |value: f64| value.is_finite() && value >= 0.0;
         let numbers = [
             ("width", self.width.unwrap_or_default()),
@@ -312,7 +381,7 @@ impl MarkerCloth {
             ("tilt", self.tilt),
             ("price_per_metre", self.price_per_metre.unwrap_or_default()),
         ];
-        let fault = |field, item, message: String, hint| MarkerFault {
+        let fault = |field, item, message: String, hint| FieldFault {
             field,
             item,
             message,

@@ -1,6 +1,7 @@
 //! The document: what is edited, saved and undone.
 
 mod builder;
+mod edge_corner;
 mod guide;
 mod lineage;
 mod marker;
@@ -8,29 +9,32 @@ mod operation;
 mod panel;
 mod seam;
 mod sheet;
+mod spread;
 
 pub use builder::PanelBuilder;
+pub use edge_corner::{Corner, EdgeCorner, MitreLimit};
 pub use guide::{Guide, GuideRun};
 pub(crate) use lineage::StageLineage;
 pub use marker::{
-    Flaw, GarmentCloth, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, MarkerKeeps, NapRule,
-    OrderedPiece, OrderedSize, PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,
+    GarmentCloth, MOST_GARMENTS, Marker, MarkerCloth, MarkerKeeps, OrderedPiece, OrderedSize,
+    PiecePlacement, USUAL_GAP, USUAL_SELVEDGE,
 };
 pub use operation::{
     Apex, Bridge, Operation, OperationKind, PleatKind, PleatLine, Pressed, Side, SpreadCut, Turned,
 };
-pub use panel::{
-    Corner, Cut, Edge, EdgeCorner, Line, LineKind, MitreLimit, Notch, NotchKind, Panel, Source,
-    WornRule,
-};
+pub use panel::{Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};
+pub use spread::{Flaw, NapRule, Print, Spread};
 
+use crate::fields::{Choice, ValueField, any, group, key};
 use crate::{
     CurveId, Fabric, FabricId, Ids, Number, PanelId, PointId, SeamId, SheetId, SizeId, VariableId,
+    fields,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use strum::{VariantArray, VariantNames};
 use toile_measure::Measurements;
 
 /// Longest name of a part [characters].
@@ -69,23 +73,74 @@ pub struct Pattern {
     pub ids: Ids,
 }
 
+fields!(Pattern, |self, v| {
+    let Self {
+        name,
+        unit,
+        sizes,
+        base_size,
+        variables,
+        fabrics,
+        sheets,
+        panels,
+        seams,
+        markers,
+        guides,
+        ids: Ids { next: next_id },
+    } = self;
+    v.value(key("name"), name);
+    // Before the first length, which is in it.
+    v.value(key("unit").may_lack(), unit);
+    v.optional("base_size", base_size);
+    if let Some(base_size) = base_size {
+        v.id("base_size", base_size);
+    }
+    v.each(group("sizes"), sizes);
+    v.each(group("variables"), variables);
+    v.each(group("fabrics"), fabrics);
+    v.each(group("sheets"), sheets);
+    v.each(group("panels"), panels);
+    v.each(group("seams"), seams);
+    v.each(group("markers"), markers);
+    v.each(group("guides"), guides);
+    v.value(key("next_id"), next_id);
+});
+
 /// The unit lengths are shown and written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayUnit {
     /// Millimetres.
+    #[strum(serialize = "mm")]
     Millimetre,
     /// Centimetres.
     #[default]
+    #[strum(serialize = "cm")]
     Centimetre,
     /// Metres.
+    #[strum(serialize = "m")]
     Metre,
     /// Inches.
+    #[strum(serialize = "in")]
     Inch,
 }
 
+impl Choice for DisplayUnit {}
+
 /// A named table of measurements.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Size {
     /// Its id.
     pub id: SizeId,
@@ -95,9 +150,20 @@ pub struct Size {
     pub measurements: Measurements,
 }
 
+fields!(Size, |self, v| {
+    let Self {
+        id,
+        name,
+        measurements,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.measurements("measurements", measurements);
+});
+
 /// A named number that formulas may use. A bare value is a plain number; a length is a formula
 /// with a unit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
     /// Its id.
     pub id: VariableId,
@@ -106,6 +172,13 @@ pub struct Variable {
     /// What it stands for.
     pub number: Number,
 }
+
+fields!(Variable, |self, v| {
+    let Self { id, name, number } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.number(any("value"), number);
+});
 
 impl Pattern {
     /// An empty pattern.

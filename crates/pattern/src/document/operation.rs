@@ -1,10 +1,12 @@
 //! Operations: steps that alter a panel (dart, fold, pleat, split), stored in order.
 
-use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId};
+use crate::fields::{Choice, Clash, Told, ValueField, group, key, length, plain};
+use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId, fields};
 use serde::{Deserialize, Serialize};
+use strum::{EnumIter, IntoStaticStr, VariantArray, VariantNames};
 
 /// A kept step of a panel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Operation {
     /// Its id.
     pub id: OperationId,
@@ -17,8 +19,24 @@ pub struct Operation {
     pub meant: bool,
 }
 
+fields!(Operation, |self, v| {
+    let Self {
+        id,
+        name,
+        kind,
+        meant,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.flat(kind);
+    v.value(key("meant").left_out_if(!*meant), meant);
+});
+
 /// The kinds of operations.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(
+    Clone, Debug, PartialEq, EnumIter, IntoStaticStr, VariantNames, Serialize, Deserialize,
+)]
+#[strum(serialize_all = "snake_case")]
 pub enum OperationKind {
     /// A dart taken out of a line, which is drawn with the dart's mouth in it.
     Dart {
@@ -95,6 +113,12 @@ pub enum OperationKind {
         /// The curve, from the line to the line.
         curve: CurveId,
     },
+    /// Lines of the panel that were drawn on a sheet which lies on the stage before this: holes and
+    /// internal lines that name this operation.
+    Insert {
+        /// The sheet.
+        sheet: SheetId,
+    },
     /// Pleats: the panel is cut along straight lines and cloth is put between that folds under it.
     Pleat {
         /// The line.
@@ -115,13 +139,84 @@ pub enum OperationKind {
         #[serde(default = "is_trued")]
         trued: bool,
     },
-    /// Lines of the panel that were drawn on a sheet which lies on the stage before this: holes and
-    /// internal lines that name this operation.
-    Insert {
-        /// The sheet.
-        sheet: SheetId,
-    },
 }
+
+impl Default for OperationKind {
+    fn default() -> Self {
+        Self::Insert {
+            sheet: SheetId::default(),
+        }
+    }
+}
+
+fields!(
+    OperationKind,
+    |self, v| {
+        let word: &'static str = (&*self).into();
+        let own = group(word);
+        match self {
+            Self::Dart { line, mouth, intake, apex, pressed, trued, keeps_length } => v.object(own, &mut |v| {
+                v.part(group("line"), line);
+                v.mark(group("mouth"), mouth);
+                v.number(length("intake"), intake);
+                v.flat(apex);
+                v.value(key("pressed").left_out_if(*pressed == Pressed::default()), pressed);
+                v.value(key("trued").left_out_if(!*trued), trued);
+                v.value(key("keeps_length").left_out_if(!*keeps_length), keeps_length);
+            }),
+            Self::Diamond { ends: [from, to], widest, intake } => v.object(own, &mut |v| {
+                v.list(group("ends"), &mut |v| {
+                    v.id("from", from);
+                    v.id("to", to);
+                });
+                v.number(plain("widest").label("widest at").shown_last(), widest);
+                v.number(length("intake"), intake);
+            }),
+            Self::Fold { line, ends: [from, to] } => v.object(own, &mut |v| {
+                v.part(group("line"), line);
+                v.mark(group("from").label("start"), from);
+                v.mark(group("to").label("end"), to);
+            }),
+            Self::Pivot { dart, line, mouth, share, back, turned, pressed } => v.object(own, &mut |v| {
+                v.id("dart", dart);
+                v.part(group("line"), line);
+                v.mark(group("mouth"), mouth);
+                v.number(plain("share").label("part moved").means(1.0), share);
+                v.number(length("back").label("set back").left_out_at(0.0), back);
+                v.value(key("turned").left_out_if(*turned == Turned::default()), turned);
+                v.value(key("pressed").left_out_if(*pressed == Pressed::default()), pressed);
+            }),
+            Self::Spread { line, held, cuts, bridge } => v.object(own, &mut |v| {
+                v.part(group("line"), line);
+                v.mark(group("held").label("held at"), held);
+                v.each(group("cuts"), cuts);
+                v.value(key("bridge").left_out_if(*bridge == Bridge::default()), bridge);
+            }),
+            Self::Split { line, curve } => v.object(own, &mut |v| {
+                v.part(group("line"), line);
+                v.id("curve", curve);
+            }),
+            Self::Insert { sheet } => v.object(own, &mut |v| v.id("sheet", sheet)),
+            Self::Pleat { line, held, pleats, depth, kind, pressed, trued } => v.object(own, &mut |v| {
+                v.part(group("line"), line);
+                v.mark(group("held").label("held at"), held);
+                v.each(group("pleats"), pleats);
+                v.number(length("depth").shown_first(), depth);
+                v.value(key("kind"), kind);
+                v.value(key("pressed").left_out_if(*pressed == Side::default()), pressed);
+                v.value(key("trued").left_out_if(*trued), trued);
+            }),
+        }
+    },
+    kinds: |kind| Told::Field(kind.into()),
+    clash: Clash {
+        none: Some([
+            "the operation is none that this version knows".into(),
+            format!("give it one of {}, or use a newer version", OperationKind::VARIANTS.join(", ")),
+        ]),
+        ..Clash::default()
+    },
+);
 
 /// Pleats of journals that do not say it are trued.
 fn is_trued() -> bool {
@@ -129,8 +224,21 @@ fn is_trued() -> bool {
 }
 
 /// Which part of a panel a pivot turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Turned {
     /// The part from the dart along the outline as drawn to the new mouth.
     #[default]
@@ -140,7 +248,7 @@ pub enum Turned {
 }
 
 /// A cut along which a panel is spread.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpreadCut {
     /// Its number in the operation, by which what it makes is named: no two have the same.
     pub number: u16,
@@ -150,14 +258,39 @@ pub struct SpreadCut {
     pub openings: [Number; 2],
 }
 
+fields!(SpreadCut, |self, v| {
+    let Self {
+        number,
+        ends: [from, to],
+        openings: [start, end],
+    } = self;
+    v.value(key("number").at_most(SpreadCut::LARGEST), number);
+    v.mark(group("from").label("cut from"), from);
+    v.mark(group("to").label("cut to"), to);
+    v.list(group("openings"), &mut |v| {
+        v.number(length("start").label("opening at start"), start);
+        v.number(length("end").label("opening at end"), end);
+    });
+});
+
 /// A line along which a panel is pleated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PleatLine {
     /// Its number in the operation, by which what it makes is named: no two have the same.
     pub number: u16,
     /// Where it starts and ends, both on the line.
     pub ends: [Mark; 2],
 }
+
+fields!(PleatLine, |self, v| {
+    let Self {
+        number,
+        ends: [from, to],
+    } = self;
+    v.value(key("number").at_most(PleatLine::LARGEST), number);
+    v.mark(group("from").label("cut from"), from);
+    v.mark(group("to").label("cut to"), to);
+});
 
 impl PleatLine {
     /// The largest number a pleat may have: the corners of its underlay are counted from ten times
@@ -166,8 +299,21 @@ impl PleatLine {
 }
 
 /// How a pleat is folded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum PleatKind {
     /// One fold, pressed to one side.
     #[default]
@@ -185,8 +331,21 @@ impl SpreadCut {
 }
 
 /// How an outline goes across an opening.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Bridge {
     /// Straight.
     #[default]
@@ -196,18 +355,45 @@ pub enum Bridge {
 }
 
 /// A side of a split panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Side {
     /// Left of the curve.
+    #[default]
     Left,
     /// Right of it.
     Right,
 }
 
 /// The leg a dart is pressed towards once it is sewn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Pressed {
     /// The leg before the apex along the outline as drawn.
     #[default]
@@ -227,84 +413,41 @@ impl Pressed {
 }
 
 /// Where a dart ends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum Apex {
-    /// So far from the middle of the mouth, square to it [m].
-    Depth(Number),
     /// At a point of the panel's sheet.
     Point(PointId),
+    /// So far from the middle of the mouth, square to it [m].
+    Depth(Number),
 }
 
+impl Default for Apex {
+    fn default() -> Self {
+        Self::Depth(Number::ZERO)
+    }
+}
+
+fields!(
+    Apex,
+    |self, v| {
+        match self {
+            Self::Point(point) => v.id("apex", point),
+            Self::Depth(depth) => v.number(length("depth"), depth),
+        }
+    },
+    kinds: |apex| match apex {
+        Apex::Point(_) => Told::Field("apex"),
+        Apex::Depth(_) => Told::Field("depth"),
+    }
+);
+
+impl Choice for Turned {}
+impl Choice for PleatKind {}
+impl Choice for Bridge {}
+impl Choice for Side {}
+impl Choice for Pressed {}
+
 impl OperationKind {
-    /// Its numbers.
-    pub fn numbers(&self) -> Vec<&Number> {
-        match self {
-            Self::Dart {
-                mouth,
-                intake,
-                apex,
-                ..
-            } => {
-                let depth = match apex {
-                    Apex::Depth(depth) => Some(depth),
-                    Apex::Point(_) => None,
-                };
-                mouth
-                    .number()
-                    .into_iter()
-                    .chain([intake])
-                    .chain(depth)
-                    .collect()
-            }
-            Self::Diamond { widest, intake, .. } => vec![widest, intake],
-            Self::Fold { ends, .. } => ends.iter().filter_map(Mark::number).collect(),
-            Self::Pivot {
-                mouth, share, back, ..
-            } => mouth.number().into_iter().chain([share, back]).collect(),
-            Self::Spread { held, cuts, .. } => {
-                let of_cuts = cuts.iter().flat_map(|cut| {
-                    let marks = cut.ends.iter().filter_map(Mark::number);
-                    marks.chain(&cut.openings)
-                });
-                held.number().into_iter().chain(of_cuts).collect()
-            }
-            Self::Pleat {
-                held,
-                pleats,
-                depth,
-                ..
-            } => {
-                let marks = pleats.iter().flat_map(|pleat| &pleat.ends);
-                let of_pleats = marks.filter_map(Mark::number);
-                held.number()
-                    .into_iter()
-                    .chain(of_pleats)
-                    .chain([depth])
-                    .collect()
-            }
-            Self::Split { .. } | Self::Insert { .. } => Vec::new(),
-        }
-    }
-
-    /// Places of lines it uses.
-    pub fn marks(&self) -> Vec<&Mark> {
-        match self {
-            Self::Dart { mouth, .. } => vec![mouth],
-            Self::Diamond { .. } => Vec::new(),
-            Self::Fold { ends, .. } => ends.iter().collect(),
-            Self::Pivot { mouth, .. } => vec![mouth],
-            Self::Spread { held, cuts, .. } => {
-                let of_cuts = cuts.iter().flat_map(|cut| &cut.ends);
-                std::iter::once(held).chain(of_cuts).collect()
-            }
-            Self::Pleat { held, pleats, .. } => {
-                let of_pleats = pleats.iter().flat_map(|pleat| &pleat.ends);
-                std::iter::once(held).chain(of_pleats).collect()
-            }
-            Self::Split { .. } | Self::Insert { .. } => Vec::new(),
-        }
-    }
-
     /// The line it is done on; nothing if it is inside.
     pub fn line(&self) -> Option<LineName> {
         match self {
@@ -318,39 +461,11 @@ impl OperationKind {
         }
     }
 
-    /// The operation whose work it alters.
-    pub fn altered(&self) -> Option<OperationId> {
-        match self {
-            Self::Pivot { dart, .. } => Some(*dart),
-            _ => None,
-        }
-    }
-
-    /// The curve it follows.
-    pub fn curve(&self) -> Option<CurveId> {
-        match self {
-            Self::Split { curve, .. } => Some(*curve),
-            _ => None,
-        }
-    }
-
     /// The sheet whose lines it brings in.
     pub fn sheet(&self) -> Option<SheetId> {
         match self {
             Self::Insert { sheet } => Some(*sheet),
             _ => None,
-        }
-    }
-
-    /// Points of the sheet it uses.
-    pub fn points(&self) -> Vec<PointId> {
-        match self {
-            Self::Dart {
-                apex: Apex::Point(point),
-                ..
-            } => vec![*point],
-            Self::Diamond { ends, .. } => ends.to_vec(),
-            _ => Vec::new(),
         }
     }
 }

@@ -1,11 +1,14 @@
 //! Panels: flat pieces of the garment, traced from a sheet.
 
+use crate::fields::{Choice, Clash, ITSELF, Told, ValueField, angle, group, key, length};
 use crate::{
-    BodyPart, CurveId, EdgeId, FabricId, Facing, LineId, Mark, NotchId, Number, Operation,
-    OperationId, PanelId, PointId, SheetId, Side,
+    BodyPart, CurveId, EdgeCorner, EdgeId, FabricId, Facing, LineId, Mark, NotchId, Number,
+    Operation, OperationId, PanelId, PointId, SheetId, Side, fields,
 };
 use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
+use strum::{EnumIter, IntoEnumIterator, VariantArray, VariantNames};
 
 /// One flat piece of the pattern.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,8 +40,60 @@ pub struct Panel {
     pub on_table: Option<[f64; 2]>,
 }
 
+impl Default for Panel {
+    fn default() -> Self {
+        Self::new(
+            PanelId::default(),
+            "",
+            SheetId::default(),
+            FabricId::default(),
+        )
+    }
+}
+
+fields!(Panel, |self, v| {
+    let Self {
+        id,
+        name,
+        source,
+        lines,
+        notches,
+        operations,
+        grain,
+        allowance,
+        cut,
+        fabric,
+        worn,
+        on_table,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.flat(source);
+    v.id("fabric", fabric);
+    v.part(group("cut").left_out_if(*cut == Cut::default()), cut);
+    v.number(angle("grain").left_out_at(FRAC_PI_2), grain);
+    v.number(
+        length("allowance").label("seam allowance").left_out_at(0.0),
+        allowance,
+    );
+    v.part(
+        group("worn").left_out_if(*worn == WornRule::Automatic),
+        worn,
+    );
+    v.optional("table", on_table);
+    if let Some([x, y]) = on_table {
+        v.list(group("table"), &mut |v| {
+            v.value(key("x").length(), x);
+            v.value(key("y").length(), y);
+        });
+    }
+    v.each(group("lines"), lines);
+    v.each(group("notches"), notches);
+    v.each(group("operations"), operations);
+});
+
 /// Where the shape of a panel comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumIter, Serialize, Deserialize)]
 pub enum Source {
     /// Its lines follow curves of a sheet.
     Traced(SheetId),
@@ -53,8 +108,39 @@ pub enum Source {
     },
 }
 
+impl Default for Source {
+    fn default() -> Self {
+        Self::Traced(SheetId::default())
+    }
+}
+
+fields!(
+    Source,
+    |self, v| {
+        match self {
+            Self::Traced(sheet) => v.id("sheet", sheet),
+            Self::Side { of, split, side } => v.object(group("side"), &mut |v| {
+                v.id("of", of);
+                v.id("split", split);
+                v.value(key("is"), side);
+            }),
+        }
+    },
+    kinds: |source| match source {
+        Source::Traced(_) => Told::By(&[]),
+        Source::Side { .. } => Told::Field("side"),
+    },
+    clash: Clash {
+        two: Some([
+            "a panel is traced from a sheet or a side of a panel, not both",
+            "keep sheet or side",
+        ]),
+        ..Clash::default()
+    },
+);
+
 /// A closed or open line of a panel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// Its id.
     pub id: LineId,
@@ -68,11 +154,43 @@ pub struct Line {
     pub edges: Vec<Edge>,
 }
 
+fields!(Line, |self, v| {
+    let Self {
+        id,
+        name,
+        kind,
+        by,
+        edges,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.value(key("kind"), kind);
+    v.optional("by", by);
+    if let Some(by) = by {
+        v.id("by", by);
+    }
+    v.each(group("edges"), edges);
+});
+
 /// The kinds of lines of a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum LineKind {
     /// The closed outline.
+    #[default]
     Outline,
     /// A closed hole.
     Hole,
@@ -81,7 +199,7 @@ pub enum LineKind {
 }
 
 /// A stretch of a curve, from a point on it to another.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
     /// Its id.
     pub id: EdgeId,
@@ -97,84 +215,26 @@ pub struct Edge {
     pub corner: EdgeCorner,
 }
 
-/// What is asked of a corner.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(from = "WrittenCorner")]
-pub struct EdgeCorner {
-    /// How the cut line turns it.
-    pub kind: Corner,
-    /// How far the cut line may reach there.
-    pub limit: MitreLimit,
-    /// Whether a kink of the line that goes on there across a seam is meant.
-    pub meant: bool,
-}
-
-/// A corner as a journal has it: of earlier versions its kind alone, or nothing.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum WrittenCorner {
-    Whole {
-        kind: Corner,
-        limit: MitreLimit,
-        meant: bool,
-    },
-    Kind(Option<Corner>),
-}
-
-impl From<WrittenCorner> for EdgeCorner {
-    fn from(written: WrittenCorner) -> Self {
-        match written {
-            WrittenCorner::Whole { kind, limit, meant } => Self { kind, limit, meant },
-            WrittenCorner::Kind(kind) => Self {
-                kind: kind.unwrap_or_default(),
-                ..Self::default()
-            },
-        }
-    }
-}
-
-/// How far from a corner its cut line may reach.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum MitreLimit {
-    /// So many times the wider of both allowances; beyond, it is cut off.
-    Widths(f64),
-    /// As far as both lines run.
-    None,
-}
-
-impl MitreLimit {
-    /// What is asked where nothing is: mitres down to 47 degrees are whole.
-    pub const USUAL: f64 = 2.5;
-    /// The least and the most that may be asked.
-    pub const RANGE: [f64; 2] = [1.0, 100.0];
-}
-
-impl Default for MitreLimit {
-    fn default() -> Self {
-        Self::Widths(Self::USUAL)
-    }
-}
-
-/// How a cut line turns a corner.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Corner {
-    /// Both lines run on until they meet.
-    #[default]
-    Mitre,
-    /// Cut off straight.
-    Bevel,
-    /// Square to the edge after the corner.
-    Square,
-    /// The seam lines run on into the allowances.
-    Extended,
-    /// The neighbour's cut line mirrored in the edge after the corner, as a hem needs.
-    Mirrored,
-}
+fields!(Edge, |self, v| {
+    let Self {
+        id,
+        name,
+        curve,
+        ends: [from, to],
+        allowance,
+        corner,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.id("curve", curve);
+    v.id("from", from);
+    v.id("to", to);
+    v.optional_number(length("allowance").label("seam allowance"), allowance);
+    v.flat(corner);
+});
 
 /// A notch of a panel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Notch {
     /// Its id.
     pub id: NotchId,
@@ -188,9 +248,37 @@ pub struct Notch {
     pub kind: NotchKind,
 }
 
+fields!(Notch, |self, v| {
+    let Self {
+        id,
+        name,
+        line,
+        at,
+        kind,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.id("line", line);
+    v.mark(group("at"), at);
+    v.value(key("kind").left_out_if(*kind == NotchKind::default()), kind);
+});
+
 /// The shape of a notch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    VariantArray,
+    VariantNames,
+    Serialize,
+    Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum NotchKind {
     /// A short cut square to the edge.
     #[default]
@@ -207,7 +295,6 @@ pub enum NotchKind {
 
 /// How often a panel is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-
 pub struct Cut {
     /// Number of pieces, copies 0 to `quantity - 1`.
     pub quantity: u32,
@@ -224,8 +311,42 @@ impl Default for Cut {
     }
 }
 
+/// One for each form in which it is written: a number, `"pair"`, both fields.
+impl IntoEnumIterator for Cut {
+    type Iterator = std::array::IntoIter<Self, 3>;
+
+    fn iter() -> Self::Iterator {
+        let forms = [(1, false), (2, true), (3, true)];
+        forms
+            .map(|(quantity, mirrored)| Self { quantity, mirrored })
+            .into_iter()
+    }
+}
+
+fields!(
+    Cut,
+    |self, v| {
+        match self {
+            Self { quantity: 2, mirrored: true } => v.word("pair"),
+            Self { quantity, mirrored: false } => v.value(key(ITSELF), quantity),
+            Self { quantity, mirrored } => {
+                v.value(key("quantity"), quantity);
+                v.value(key("mirrored").off_if_absent(), mirrored);
+            }
+        }
+    },
+    kinds: |cut| match cut {
+        Cut { mirrored: false, .. } => Told::Number,
+        Cut { quantity: 2, .. } => Told::Text,
+        Cut { .. } => Told::By(&[]),
+    }
+);
+
+impl Choice for LineKind {}
+impl Choice for NotchKind {}
+
 /// Where a panel goes before it is sewn.
-#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Default, EnumIter, Serialize, Deserialize)]
 pub enum WornRule {
     /// Nothing is known: the program decides from the seams.
     #[default]
@@ -247,6 +368,38 @@ pub enum WornRule {
         rotation: [f64; 4],
     },
 }
+
+fields!(
+    WornRule,
+    |self, v| {
+        match self {
+            Self::Automatic => {}
+            Self::Wrapped { part, facing, level } => {
+                v.value(key("part"), part);
+                v.value(key("facing"), facing);
+                v.optional_number(length("level").label("height on the body"), level);
+            }
+            Self::Placed { translation: [tx, ty, tz], rotation: [x, y, z, w] } => {
+                v.list(group("translation_m"), &mut |v| {
+                    v.value(key("x"), tx);
+                    v.value(key("y"), ty);
+                    v.value(key("z"), tz);
+                });
+                v.list(group("rotation_xyzw"), &mut |v| {
+                    v.value(key("x"), x);
+                    v.value(key("y"), y);
+                    v.value(key("z"), z);
+                    v.value(key("w"), w);
+                });
+            }
+        }
+    },
+    kinds: |worn| match worn {
+        WornRule::Automatic => Told::Never,
+        WornRule::Placed { .. } => Told::Field("translation_m"),
+        WornRule::Wrapped { .. } => Told::By(&[]),
+    }
+);
 
 impl Panel {
     /// The notch with that id.
@@ -316,21 +469,6 @@ impl Panel {
     pub fn line_of(&self, edge: EdgeId) -> Option<&Line> {
         let mut lines = self.lines.iter();
         lines.find(|line| line.edges.iter().any(|known| known.id == edge))
-    }
-
-    /// Every number of the panel, its operations included.
-    pub fn numbers(&self) -> Vec<&Number> {
-        let mut numbers = vec![&self.grain, &self.allowance];
-        numbers.extend(self.edges().filter_map(|edge| edge.allowance.as_ref()));
-        numbers.extend(self.notches.iter().filter_map(|notch| notch.at.number()));
-        numbers.extend(self.operations.iter().flat_map(|o| o.kind.numbers()));
-        if let WornRule::Wrapped {
-            level: Some(level), ..
-        } = &self.worn
-        {
-            numbers.push(level);
-        }
-        numbers
     }
 }
 

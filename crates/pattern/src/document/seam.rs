@@ -1,6 +1,7 @@
 //! Seams: which edges of panels are sewn to which.
 
-use crate::{LineName, Mark, Number, PanelId, SeamId};
+use crate::fields::{ValueField, group, key, length};
+use crate::{LineName, Mark, Number, PanelId, SeamId, fields};
 use serde::{Deserialize, Serialize};
 
 /// Two chains of spans that are sewn together, start to start.
@@ -22,6 +23,37 @@ pub struct Seam {
     pub multi_ply: bool,
 }
 
+impl Default for Seam {
+    fn default() -> Self {
+        Self::new(SeamId::default(), "", [Vec::new(), Vec::new()])
+    }
+}
+
+fields!(Seam, |self, v| {
+    let Self {
+        id,
+        name,
+        sides: [first, second],
+        ease,
+        gathered,
+        right_sides_together,
+        multi_ply,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.list(group("sides"), &mut |v| {
+        v.each(group("first"), first);
+        v.each(group("second"), second);
+    });
+    v.number(length("ease").left_out_at(0.0).shown_first(), ease);
+    v.value(key("gathered").left_out_if(!*gathered), gathered);
+    v.value(
+        key("right_sides_together").left_out_if(*right_sides_together),
+        right_sides_together,
+    );
+    v.value(key("multi_ply").left_out_if(!*multi_ply), multi_ply);
+});
+
 impl Seam {
     /// A usual seam without ease.
     pub fn new(id: SeamId, name: impl Into<String>, sides: [Vec<Span>; 2]) -> Self {
@@ -40,18 +72,10 @@ impl Seam {
     pub fn spans(&self) -> impl Iterator<Item = &Span> {
         self.sides.iter().flatten()
     }
-
-    /// Every number of the seam.
-    pub fn numbers(&self) -> Vec<&Number> {
-        let marks = self.spans().flat_map(|span| [&span.from, &span.to]);
-        std::iter::once(&self.ease)
-            .chain(marks.filter_map(Mark::number))
-            .collect()
-    }
 }
 
 /// A stretch of a line on one copy of a panel.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Span {
     /// The panel.
     pub panel: PanelId,
@@ -68,6 +92,26 @@ pub struct Span {
     /// Whether it walks against the line.
     pub backwards: bool,
 }
+
+fields!(Span, |self, v| {
+    let Self {
+        panel,
+        copy,
+        half,
+        line,
+        from,
+        to,
+        backwards,
+    } = self;
+    v.id("panel", panel);
+    v.part(group("line"), line);
+    v.mark(group("from").label("start"), from);
+    v.mark(group("to").label("end"), to);
+    v.value(key("copy").left_out_if(*copy == 0), copy);
+    let halves = key("half").beyond("there are not that many halves", "write 0 or 1");
+    v.value(halves.left_out_if(*half == 0), half);
+    v.value(key("backwards").left_out_if(!*backwards), backwards);
+});
 
 impl Span {
     /// The same span walked the other way.

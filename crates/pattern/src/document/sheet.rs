@@ -1,8 +1,10 @@
 //! Sheets: drafting planes with points and curves.
 
-use crate::{CurveId, LineName, Mark, Number, OperationId, PanelId, PointId, SheetId};
+use crate::fields::{Clash, ITSELF, Told, ValueField, angle, group, key, length, plain};
+use crate::{CurveId, LineName, Mark, Number, OperationId, PanelId, PointId, SheetId, fields};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use strum::EnumIter;
 
 /// A drafting plane.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -20,6 +22,38 @@ pub struct Sheet {
     /// Its curves.
     pub curves: Vec<Arc<Curve>>,
 }
+
+fields!(Sheet, |self, v| {
+    let Self {
+        id,
+        name,
+        on,
+        on_table: [x, y],
+        points,
+        curves,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.optional("on", on);
+    if let Some((panel, after)) = on {
+        v.object(group("on"), &mut |v| {
+            v.id("panel", panel);
+            v.optional("after", after);
+            if let Some(after) = after {
+                v.id("after", after);
+            }
+        });
+    }
+    v.list(
+        group("table").left_out_if(*x == 0.0 && *y == 0.0),
+        &mut |v| {
+            v.value(key("x").length(), x);
+            v.value(key("y").length(), y);
+        },
+    );
+    v.each(group("points"), points);
+    v.each(group("curves"), curves);
+});
 
 impl Sheet {
     /// The point with that id.
@@ -44,7 +78,7 @@ impl Sheet {
 }
 
 /// A point of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Its id.
     pub id: PointId,
@@ -54,8 +88,15 @@ pub struct Point {
     pub rule: PointRule,
 }
 
+fields!(Point, |self, v| {
+    let Self { id, name, rule } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.flat(rule);
+});
+
 /// Where a point is: its coordinates, or how it is constructed from other parts of its sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum PointRule {
     /// At coordinates of the sheet.
     At {
@@ -63,65 +104,6 @@ pub enum PointRule {
         x: Number,
         /// Upward [m].
         y: Number,
-    },
-    /// Beside another point.
-    Offset {
-        /// The other point.
-        base: PointId,
-        /// To the right of it [m].
-        x: Number,
-        /// Above it [m].
-        y: Number,
-    },
-    /// At a distance from another point.
-    Polar {
-        /// The other point.
-        base: PointId,
-        /// Direction [rad], from +x counter-clockwise.
-        angle: Number,
-        /// How far [m].
-        distance: Number,
-    },
-    /// In the frame of two points: `base + along (tip - base) + aside (tip - base turned left)`.
-    Between {
-        /// Origin of the frame.
-        base: PointId,
-        /// End of its unit axis.
-        tip: PointId,
-        /// Plain share of the way.
-        along: Number,
-        /// Plain share of the same length to the left of the way.
-        aside: Number,
-    },
-    /// On the line through two points, at a distance from the first.
-    Toward {
-        /// Where to start.
-        base: PointId,
-        /// Where to go.
-        tip: PointId,
-        /// How far [m].
-        distance: Number,
-    },
-    /// On a curve, at a share of its arc length.
-    OnCurve {
-        /// The curve.
-        curve: CurveId,
-        /// Plain share of its arc length.
-        share: Number,
-    },
-    /// On a curve, at a distance from its start, or from its end if negative.
-    AlongCurve {
-        /// The curve.
-        curve: CurveId,
-        /// How far [m].
-        distance: Number,
-    },
-    /// Where the lines through two pairs of points meet.
-    Crossing {
-        /// The first line.
-        first: [PointId; 2],
-        /// The second line.
-        second: [PointId; 2],
     },
     /// Where two curves cross.
     CurveCrossing {
@@ -138,6 +120,27 @@ pub enum PointRule {
         curve: CurveId,
         /// Which of several crossings, from 0 along the curve.
         index: u16,
+    },
+    /// On a curve, at a distance from its start, or from its end if negative.
+    AlongCurve {
+        /// The curve.
+        curve: CurveId,
+        /// How far [m].
+        distance: Number,
+    },
+    /// On a curve, at a share of its arc length.
+    OnCurve {
+        /// The curve.
+        curve: CurveId,
+        /// Plain share of its arc length.
+        share: Number,
+    },
+    /// Where the lines through two pairs of points meet.
+    Crossing {
+        /// The first line.
+        first: [PointId; 2],
+        /// The second line.
+        second: [PointId; 2],
     },
     /// The foot of the perpendicular from a point on the line through two others.
     Foot {
@@ -160,7 +163,164 @@ pub enum PointRule {
         /// Where on it.
         at: Mark,
     },
+    /// Beside another point.
+    Offset {
+        /// The other point.
+        base: PointId,
+        /// To the right of it [m].
+        x: Number,
+        /// Above it [m].
+        y: Number,
+    },
+    /// At a distance from another point.
+    Polar {
+        /// The other point.
+        base: PointId,
+        /// Direction [rad], from +x counter-clockwise.
+        angle: Number,
+        /// How far [m].
+        distance: Number,
+    },
+    /// On the line through two points, at a distance from the first.
+    Toward {
+        /// Where to start.
+        base: PointId,
+        /// Where to go.
+        tip: PointId,
+        /// How far [m].
+        distance: Number,
+    },
+    /// In the frame of two points: `base + along (tip - base) + aside (tip - base turned left)`.
+    Between {
+        /// Origin of the frame.
+        base: PointId,
+        /// End of its unit axis.
+        tip: PointId,
+        /// Plain share of the way.
+        along: Number,
+        /// Plain share of the same length to the left of the way.
+        aside: Number,
+    },
 }
+
+impl Default for PointRule {
+    fn default() -> Self {
+        Self::at(0.0, 0.0)
+    }
+}
+
+fields!(
+    PointRule,
+    |self, v| {
+        match self {
+            Self::At { x, y } => v.list(group("at"), &mut |v| {
+                v.number(length("x"), x);
+                v.number(length("y"), y);
+            }),
+            Self::CurveCrossing { curves: [first, second], index } => {
+                v.list(group("curves"), &mut |v| {
+                    v.id("first", first);
+                    v.id("second", second);
+                });
+                v.value(INDEX, index);
+            }
+            Self::LineCrossing { line: [from, to], curve, index } => {
+                v.list(group("line"), &mut |v| {
+                    v.id("from", from);
+                    v.id("to", to);
+                });
+                v.id("curve", curve);
+                v.value(INDEX, index);
+            }
+            Self::AlongCurve { curve, distance } => {
+                v.id("curve", curve);
+                v.number(length("distance"), distance);
+            }
+            Self::OnCurve { curve, share } => {
+                v.id("curve", curve);
+                v.number(plain("share").label("part of the way"), share);
+            }
+            Self::Crossing { first: [a, b], second: [c, d] } => v.list(group("crossing"), &mut |v| {
+                v.list(group("first"), &mut |v| {
+                    v.id("from", a);
+                    v.id("to", b);
+                });
+                v.list(group("second"), &mut |v| {
+                    v.id("from", c);
+                    v.id("to", d);
+                });
+            }),
+            Self::Foot { base, line: [from, to] } => {
+                v.id("foot", base);
+                v.list(group("in"), &mut |v| {
+                    v.id("from", from);
+                    v.id("to", to);
+                });
+            }
+            Self::Mirrored { base, line: [from, to] } => {
+                v.id("mirror", base);
+                v.list(group("in"), &mut |v| {
+                    v.id("from", from);
+                    v.id("to", to);
+                });
+            }
+            Self::Mark { line, at } => {
+                v.part(group("line"), line);
+                v.mark(group("mark").share_label("part of the way"), at);
+            }
+            Self::Offset { base, x, y } => {
+                v.id("from", base);
+                v.list(group("offset"), &mut |v| {
+                    v.number(length("x"), x);
+                    v.number(length("y"), y);
+                });
+            }
+            Self::Polar { base, angle: direction, distance } => {
+                v.id("from", base);
+                v.number(angle("angle"), direction);
+                v.number(length("distance"), distance);
+            }
+            Self::Toward { base, tip, distance } => {
+                v.id("from", base);
+                v.id("toward", tip);
+                v.number(length("distance"), distance);
+            }
+            Self::Between { base, tip, along, aside } => {
+                v.id("from", base);
+                v.id("to", tip);
+                v.number(plain("along"), along);
+                v.number(plain("aside").left_out_at(0.0), aside);
+            }
+        }
+    },
+    kinds: |rule| Told::By(match rule {
+        PointRule::At { .. } => &["at"],
+        PointRule::CurveCrossing { .. } => &["curves"],
+        PointRule::LineCrossing { .. } => &["curve", "line"],
+        PointRule::AlongCurve { .. } => &["curve", "distance"],
+        PointRule::OnCurve { .. } => &["curve"],
+        PointRule::Crossing { .. } => &["crossing"],
+        PointRule::Foot { .. } => &["foot"],
+        PointRule::Mirrored { .. } => &["mirror"],
+        PointRule::Mark { .. } => &["mark"],
+        PointRule::Offset { .. } => &["from", "offset"],
+        PointRule::Polar { .. } => &["from", "angle"],
+        PointRule::Toward { .. } => &["from", "toward"],
+        PointRule::Between { .. } => &["from"],
+    }),
+    clash: Clash {
+        none: Some([
+            "the point has no place".into(),
+            "give it at, from, curve, curves, crossing, foot, mirror or mark".into(),
+        ]),
+        ..Clash::default()
+    },
+);
+
+/// Which of several crossings.
+const INDEX: ValueField = key("index")
+    .may_lack()
+    .beyond("there are not that many crossings", "write 0 or more");
 
 impl PointRule {
     /// A point at fixed coordinates [m].
@@ -170,54 +330,10 @@ impl PointRule {
             y: y.into(),
         }
     }
-
-    /// Points it is constructed from.
-    pub fn points(&self) -> Vec<PointId> {
-        match *self {
-            Self::At { .. }
-            | Self::OnCurve { .. }
-            | Self::AlongCurve { .. }
-            | Self::CurveCrossing { .. }
-            | Self::Mark { .. } => vec![],
-            Self::Offset { base, .. } | Self::Polar { base, .. } => vec![base],
-            Self::Between { base, tip, .. } | Self::Toward { base, tip, .. } => vec![base, tip],
-            Self::Crossing { first, second } => [first, second].concat(),
-            Self::LineCrossing { line, .. } => line.to_vec(),
-            Self::Foot { base, line } | Self::Mirrored { base, line } => {
-                vec![base, line[0], line[1]]
-            }
-        }
-    }
-
-    /// Curves it is constructed from.
-    pub fn curves(&self) -> Vec<CurveId> {
-        match *self {
-            Self::OnCurve { curve, .. }
-            | Self::AlongCurve { curve, .. }
-            | Self::LineCrossing { curve, .. } => vec![curve],
-            Self::CurveCrossing { curves, .. } => curves.to_vec(),
-            _ => vec![],
-        }
-    }
-
-    /// Its numbers.
-    pub fn numbers(&self) -> Vec<&Number> {
-        match self {
-            Self::At { x, y } | Self::Offset { x, y, .. } => vec![x, y],
-            Self::Polar {
-                angle, distance, ..
-            } => vec![angle, distance],
-            Self::Between { along, aside, .. } => vec![along, aside],
-            Self::Toward { distance, .. } | Self::AlongCurve { distance, .. } => vec![distance],
-            Self::OnCurve { share, .. } => vec![share],
-            Self::Mark { at, .. } => at.number().into_iter().collect(),
-            _ => vec![],
-        }
-    }
 }
 
 /// A curve of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Its id.
     pub id: CurveId,
@@ -229,8 +345,22 @@ pub struct Curve {
     pub rule: CurveRule,
 }
 
+fields!(Curve, |self, v| {
+    let Self {
+        id,
+        name,
+        ends: [from, to],
+        rule,
+    } = self;
+    v.own(id);
+    v.value(ValueField::NAME, name);
+    v.id("from", from);
+    v.id("to", to);
+    v.flat(rule);
+});
+
 /// How a curve runs between its ends.
-#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Default, EnumIter, Serialize, Deserialize)]
 pub enum CurveRule {
     /// Straight.
     #[default]
@@ -265,8 +395,41 @@ pub enum CurveRule {
     },
 }
 
+fields!(
+    CurveRule,
+    |self, v| {
+        match self {
+            Self::Line => {}
+            Self::Arc { bulge } => v.number(plain("bulge"), bulge),
+            Self::Spline { handles: [start, end], knots, to_length } => {
+                v.list(group("handles"), &mut |v| {
+                    v.id("start", start);
+                    v.id("end", end);
+                });
+                v.each(group("knots"), knots);
+                v.optional_number(length("to_length").label("length"), to_length);
+            }
+            Self::Mirrored { of, line: [from, to] } => {
+                v.id("mirror", of);
+                v.list(group("in"), &mut |v| {
+                    v.id("from", from);
+                    v.id("to", to);
+                });
+            }
+            Self::Copy { of } => v.id("copy", of),
+        }
+    },
+    kinds: |rule| Told::By(match rule {
+        CurveRule::Line => &[],
+        CurveRule::Arc { .. } => &["bulge"],
+        CurveRule::Spline { .. } => &["handles"],
+        CurveRule::Mirrored { .. } => &["mirror"],
+        CurveRule::Copy { .. } => &["copy"],
+    }),
+);
+
 /// A point a spline goes through, with its handles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Knot {
     /// Handle before the point.
     pub before: PointId,
@@ -276,36 +439,15 @@ pub struct Knot {
     pub after: PointId,
 }
 
-impl CurveRule {
-    /// Points it is shaped by, its ends apart.
-    pub fn points(&self) -> Vec<PointId> {
-        match self {
-            Self::Line | Self::Arc { .. } | Self::Copy { .. } => Vec::new(),
-            Self::Spline { handles, knots, .. } => {
-                let inner = knots.iter().flat_map(|k| [k.before, k.point, k.after]);
-                std::iter::once(handles[0])
-                    .chain(inner)
-                    .chain([handles[1]])
-                    .collect()
-            }
-            Self::Mirrored { line, .. } => line.to_vec(),
-        }
-    }
-
-    /// The curve it is made from.
-    pub fn curve(&self) -> Option<CurveId> {
-        match self {
-            Self::Mirrored { of, .. } | Self::Copy { of } => Some(*of),
-            _ => None,
-        }
-    }
-
-    /// Its number, if it has one.
-    pub fn number(&self) -> Option<&Number> {
-        match self {
-            Self::Arc { bulge } => Some(bulge),
-            Self::Spline { to_length, .. } => to_length.as_ref(),
-            _ => None,
-        }
-    }
-}
+fields!(Knot, |self, v| {
+    let Self {
+        before,
+        point,
+        after,
+    } = self;
+    v.list(group(ITSELF), &mut |v| {
+        v.id("before", before);
+        v.id("point", point);
+        v.id("after", after);
+    });
+});

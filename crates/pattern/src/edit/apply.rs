@@ -37,7 +37,7 @@ impl Pattern {
         if !is_head && !is_part_name(entity.name()) {
             return Err(EditError::Name(entity.name().to_owned()));
         }
-        if !entity.numbers().iter().all(|number| number.is_finite()) {
+        if !entity.is_finite() {
             return Err(EditError::NotFinite(format!("{:?}", entity.name())));
         }
         if let Some(id) = entity.id() {

@@ -1,162 +1,140 @@
 //! References: the parts that each part refers to.
 
-use super::Entity;
-use crate::{
-    CornerName, LineName, Mark, Marker, Name, Names, Number, Panel, PartId, Pattern, Place,
-    PointRule, Source, Span,
-};
+use super::{Entity, Head, SheetHead};
+use crate::fields::{Fields, key};
+use crate::{Names, Number, PartId, Pattern, Place, Sheet, fields};
 use std::collections::BTreeSet;
 
-impl Entity {
-    /// Every part it refers to.
-    pub fn references(&self) -> Vec<PartId> {
-        let mut found = Vec::new();
-        match self {
-            Self::Head(head) => found.extend(head.base_size.map(PartId::from)),
-            Self::Size(_) | Self::Fabric(_) | Self::Guide(_) => {}
-            Self::Variable(variable) => number(&variable.number, &mut found),
-            Self::Sheet(sheet) => {
-                if let Some((panel, after)) = sheet.on {
-                    found.push(panel.into());
-                    found.extend(after.map(PartId::from));
-                }
-            }
-            Self::Point(sheet, point) => {
-                found.push((*sheet).into());
-                found.extend(point.rule.points().into_iter().map(PartId::from));
-                found.extend(point.rule.curves().into_iter().map(PartId::from));
-                if let PointRule::Mark { line: on, at } = &point.rule {
-                    line(*on, &mut found);
-                    mark(at, &mut found);
-                }
-                point
-                    .rule
-                    .numbers()
-                    .into_iter()
-                    .for_each(|n| number(n, &mut found));
-            }
-            Self::Curve(sheet, curve) => {
-                found.push((*sheet).into());
-                found.extend(curve.ends.map(PartId::from));
-                found.extend(curve.rule.points().into_iter().map(PartId::from));
-                found.extend(curve.rule.curve().map(PartId::from));
-                curve
-                    .rule
-                    .number()
-                    .into_iter()
-                    .for_each(|n| number(n, &mut found));
-            }
-            Self::Panel(panel) => panel_references(panel, &mut found),
-            Self::Seam(seam) => {
-                number(&seam.ease, &mut found);
-                for span in seam.spans() {
-                    span_references(span, &mut found);
-                }
-            }
-            Self::Marker(marker) => marker_references(marker, &mut found),
+fields!(Head, |self, v| {
+    let Self {
+        name,
+        unit,
+        base_size,
+    } = self;
+    v.value(key("name"), name);
+    v.value(key("unit"), unit);
+    v.optional("base_size", base_size);
+    if let Some(base_size) = base_size {
+        v.id("base_size", base_size);
+    }
+});
+
+impl From<SheetHead> for Sheet {
+    fn from(head: SheetHead) -> Self {
+        let SheetHead {
+            id,
+            name,
+            on,
+            on_table,
+        } = head;
+        Self {
+            id,
+            name,
+            on,
+            on_table,
+            ..Self::default()
         }
-        found
+    }
+}
+
+impl From<&Sheet> for SheetHead {
+    fn from(sheet: &Sheet) -> Self {
+        Self {
+            id: sheet.id,
+            name: sheet.name.clone(),
+            on: sheet.on,
+            on_table: sheet.on_table,
+        }
+    }
+}
+
+impl Entity {
+    /// Its part; of a sheet the fields that it has without its points and curves are in the sheet that is given.
+    fn part<'e>(&'e self, sheet: &'e mut Sheet) -> &'e dyn Fields {
+        match self {
+            Self::Head(head) => head,
+            Self::Size(size) => size,
+            Self::Variable(variable) => variable,
+            Self::Fabric(fabric) => fabric,
+            Self::Sheet(head) => {
+                *sheet = Sheet::from(head.clone());
+                sheet
+            }
+            Self::Point(_, point) => point,
+            Self::Curve(_, curve) => curve,
+            Self::Panel(panel) => panel,
+            Self::Seam(seam) => seam,
+            Self::Marker(marker) => marker,
+            Self::Guide(guide) => guide,
+        }
     }
 
-    /// Every number it has.
-    pub(crate) fn numbers(&self) -> Vec<&Number> {
+    /// Gives its part to be changed, with an id of the sheet that it is on.
+    pub(crate) fn change(&mut self, change: &mut dyn FnMut(&mut dyn Fields)) {
         match self {
+            Self::Head(head) => change(head),
+            Self::Size(size) => change(size),
+            Self::Variable(variable) => change(variable),
+            Self::Fabric(fabric) => change(fabric),
+            Self::Sheet(head) => {
+                let mut sheet = Sheet::from(head.clone());
+                change(&mut sheet);
+                *head = SheetHead::from(&sheet);
+            }
+            Self::Point(_, point) => change(point),
+            Self::Curve(_, curve) => change(curve),
+            Self::Panel(panel) => change(panel),
+            Self::Seam(seam) => change(seam),
+            Self::Marker(marker) => change(marker),
+            Self::Guide(guide) => change(guide),
+        }
+    }
+
+    /// The sheet that a point or a curve is on.
+    pub(crate) fn sheet_mut(&mut self) -> Option<&mut crate::SheetId> {
+        match self {
+            Self::Point(sheet, _) | Self::Curve(sheet, _) => Some(sheet),
             Self::Head(_)
             | Self::Size(_)
+            | Self::Variable(_)
             | Self::Fabric(_)
             | Self::Sheet(_)
+            | Self::Panel(_)
+            | Self::Seam(_)
             | Self::Marker(_)
-            | Self::Guide(_) => Vec::new(),
-            Self::Variable(variable) => vec![&variable.number],
-            Self::Point(_, point) => point.rule.numbers(),
-            Self::Curve(_, curve) => curve.rule.number().into_iter().collect(),
-            Self::Panel(panel) => panel.numbers(),
-            Self::Seam(seam) => seam.numbers(),
+            | Self::Guide(_) => None,
         }
     }
-}
 
-fn number(number: &Number, found: &mut Vec<PartId>) {
-    if let Number::PerSize { sizes, .. } = number {
-        found.extend(sizes.iter().map(|(size, _)| PartId::from(*size)));
-    }
-    if let Some(formula) = number.as_formula() {
-        found.extend(formula.references());
-    }
-}
-
-fn corner(name: CornerName, found: &mut Vec<PartId>) {
-    found.push(match name {
-        Name::Drawn(id) => id.into(),
-        Name::Made { by, .. } => by.into(),
-    });
-}
-
-fn line(name: LineName, found: &mut Vec<PartId>) {
-    found.push(match name {
-        Name::Drawn(id) => id.into(),
-        Name::Made { by, .. } => by.into(),
-    });
-}
-
-fn mark(mark: &Mark, found: &mut Vec<PartId>) {
-    mark.corners().into_iter().for_each(|c| corner(c, found));
-    if let Mark::Notch(id) = mark {
-        found.push((*id).into());
-    }
-    mark.number().into_iter().for_each(|n| number(n, found));
-}
-
-fn span_references(span: &Span, found: &mut Vec<PartId>) {
-    found.push(span.panel.into());
-    line(span.line, found);
-    mark(&span.from, found);
-    mark(&span.to, found);
-}
-
-/// Each part once, however many pieces name it.
-fn marker_references(marker: &Marker, found: &mut Vec<PartId>) {
-    let mut named: BTreeSet<PartId> = BTreeSet::new();
-    named.insert(marker.cloth.fabric.into());
-    let ordered = marker.order.iter().filter_map(|one| one.size);
-    named.extend(ordered.map(PartId::from));
-    for laid in &marker.placements {
-        named.insert(laid.piece.panel.into());
-        named.extend(laid.piece.size.map(PartId::from));
-    }
-    found.extend(named);
-}
-
-fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
-    match panel.source {
-        Source::Traced(sheet) => found.push(sheet.into()),
-        Source::Side { of, split, .. } => found.extend([of.into(), PartId::from(split)]),
-    }
-    found.push(panel.fabric.into());
-    found.extend(panel.lines.iter().filter_map(|l| l.by).map(PartId::from));
-    for edge in panel.edges() {
-        found.push(edge.curve.into());
-        found.extend(edge.ends.map(PartId::from));
-    }
-    for notch in &panel.notches {
-        found.push(notch.line.into());
-        mark(&notch.at, found);
-    }
-    for operation in &panel.operations {
-        found.extend(operation.kind.points().into_iter().map(PartId::from));
-        found.extend(operation.kind.altered().map(PartId::from));
-        found.extend(operation.kind.curve().map(PartId::from));
-        found.extend(operation.kind.sheet().map(PartId::from));
-        if let Some(on) = operation.kind.line() {
-            line(on, found);
+    /// Every part it refers to.
+    pub fn references(&self) -> Vec<PartId> {
+        let found = fields::references(self.part(&mut Sheet::default()));
+        match self {
+            Self::Point(sheet, _) | Self::Curve(sheet, _) => {
+                std::iter::once((*sheet).into()).chain(found).collect()
+            }
+            // However many pieces name a part.
+            Self::Marker(_) => found
+                .into_iter()
+                .collect::<BTreeSet<_>>()
+                .into_iter()
+                .collect(),
+            _ => found,
         }
-        operation
-            .kind
-            .marks()
+    }
+
+    /// Whether every number that is written in it is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let mut sheet = Sheet::default();
+        fields::numbers(self.part(&mut sheet))
             .into_iter()
-            .for_each(|at| mark(at, found));
+            .all(Number::is_finite)
     }
-    panel.numbers().into_iter().for_each(|n| number(n, found));
+
+    /// The numbers of all parts of it, or of one, in the order they are shown.
+    pub(crate) fn number_entries(&self, part: Option<PartId>) -> Vec<fields::NumberEntry> {
+        fields::number_entries(self.part(&mut Sheet::default()), part)
+    }
 }
 
 impl Pattern {
@@ -199,11 +177,48 @@ impl Pattern {
         all
     }
 
+    /// The entity that a part is, or stands in; nothing if it is not there.
+    pub(crate) fn entity_with(&self, part: PartId) -> Option<Entity> {
+        let panel = |owns: &dyn Fn(&crate::Panel) -> bool| {
+            let panel = self.panels.iter().find(|panel| owns(panel))?;
+            Some(Entity::Panel(panel.clone()))
+        };
+        match part {
+            PartId::Size(id) => {
+                let size = self.sizes.iter().find(|size| size.id == id)?;
+                Some(Entity::Size(size.clone()))
+            }
+            PartId::Variable(id) => {
+                let variable = self.variables.iter().find(|variable| variable.id == id)?;
+                Some(Entity::Variable(variable.clone()))
+            }
+            PartId::Fabric(id) => Some(Entity::Fabric(self.fabric(id)?.clone())),
+            PartId::Sheet(id) => Some(Entity::Sheet(SheetHead::from(&**self.sheet(id)?))),
+            PartId::Point(id) => {
+                let (sheet, point) = self.point(id)?;
+                Some(Entity::Point(sheet.id, point.clone()))
+            }
+            PartId::Curve(id) => {
+                let (sheet, curve) = self.curve(id)?;
+                Some(Entity::Curve(sheet.id, curve.clone()))
+            }
+            PartId::Panel(id) => panel(&|panel| panel.id == id),
+            PartId::Line(id) => panel(&|panel| panel.line(id).is_some()),
+            PartId::Edge(id) => panel(&|panel| panel.edge(id).is_some()),
+            PartId::Notch(id) => panel(&|panel| panel.notch(id).is_some()),
+            PartId::Operation(id) => panel(&|panel| panel.step_of(id).is_some()),
+            PartId::Seam(id) => Some(Entity::Seam(self.seam(id)?.clone())),
+            PartId::Marker(id) => Some(Entity::Marker(self.marker(id)?.clone())),
+            PartId::Guide(id) => Some(Entity::Guide(self.guide(id)?.clone())),
+        }
+    }
+
     /// The places of all parts that refer to a part, by its id or by its name.
     pub fn users(&self, part: PartId) -> Vec<Place> {
         let names = Names::new(self);
         let by_name = |entity: &Entity| {
-            let numbers = entity.numbers();
+            let mut sheet = Sheet::default();
+            let numbers = fields::numbers(entity.part(&mut sheet));
             let mut formulas = numbers.iter().filter_map(|number| number.as_formula());
             formulas.any(|formula| formula.found_by_name(&names).contains(&part))
         };

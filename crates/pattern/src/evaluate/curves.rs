@@ -1,7 +1,8 @@
 //! Computes curves, and the spans of them that panels follow.
 
 use super::node::{Definition, Node};
-use super::numbers::{Computation, Want};
+use super::numbers::Computation;
+use crate::Want;
 use crate::formula::Failure;
 use crate::{Code, Curve, CurveRule, Edge, Knot, Panel, Place, PointId, PointRule};
 use std::sync::Arc;

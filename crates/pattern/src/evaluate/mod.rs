@@ -24,7 +24,6 @@ mod wearer;
 
 pub use node::Node;
 pub(crate) use node::{SeamValue, SpanValue, Value};
-pub use numbers::Want;
 pub use wearer::Wearer;
 
 use crate::{Diagnostic, Pattern, PointId, SheetId};

@@ -1,6 +1,7 @@
 //! Dependencies: the nodes that the definition of a node needs.
 
 use super::node::{Definition, Node};
+use crate::fields::{self, Fields};
 use crate::formula::{Names, Use};
 use crate::{
     CornerName, Edge, Line, Mark, Name, Number, OperationId, Panel, PanelId, PartReference,
@@ -43,11 +44,8 @@ impl<'d> Needs<'d> {
             Definition::Variable(variable) => self.number(&variable.number),
             Definition::Point(point) => {
                 let rule = &point.rule;
-                self.nodes
-                    .extend(rule.points().into_iter().map(Node::Point));
-                self.nodes
-                    .extend(rule.curves().into_iter().map(Node::Curve));
-                self.numbers(rule.numbers());
+                self.sources(rule);
+                self.numbers(fields::numbers(rule));
                 if let PointRule::Mark { at, .. } = rule {
                     self.on_stage(point.id, at);
                 }
@@ -55,10 +53,8 @@ impl<'d> Needs<'d> {
             Definition::Curve(curve) => {
                 let rule = &curve.rule;
                 self.nodes.extend(curve.ends.map(Node::Point));
-                self.nodes
-                    .extend(rule.points().into_iter().map(Node::Point));
-                self.nodes.extend(rule.curve().map(Node::Curve));
-                self.numbers(rule.number());
+                self.sources(rule);
+                self.numbers(fields::numbers(rule));
             }
             Definition::Edge(panel, line, k) => {
                 let edge = &panel.lines[*line].edges[*k];
@@ -84,15 +80,13 @@ impl<'d> Needs<'d> {
                 self.nodes.push(Node::Stage(panel.id, before));
                 self.nodes.push(Node::Stage(panel.id, None));
                 let operation = &panel.operations[step - 1].kind;
-                self.numbers(operation.numbers());
-                self.nodes
-                    .extend(operation.points().into_iter().map(Node::Point));
-                self.nodes.extend(operation.curve().map(Node::Curve));
+                self.numbers(fields::numbers(operation));
+                self.sources(operation);
                 if operation.sheet().is_some() {
                     self.number(&panel.allowance);
                     self.lines(panel, Some(panel.operations[step - 1].id));
                 }
-                for mark in operation.marks() {
+                for mark in fields::marks(operation) {
                     self.mark(panel, mark, Some(*step));
                 }
                 self.notches(panel, *step);
@@ -106,9 +100,17 @@ impl<'d> Needs<'d> {
                         self.mark(panel, &span.to, None);
                     }
                 }
-                self.numbers(seam.numbers());
+                self.numbers(fields::numbers(&**seam));
             }
         }
+    }
+
+    /// The points and curves that a part is drawn from.
+    fn sources(&mut self, part: &dyn Fields) {
+        let points = fields::points(part).into_iter();
+        self.nodes.extend(points.map(Node::Point));
+        let curves = fields::curves(part).into_iter();
+        self.nodes.extend(curves.map(Node::Curve));
     }
 
     /// What the lines of a panel need that an operation inserts, or those that are drawn.

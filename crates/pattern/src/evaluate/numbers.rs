@@ -6,7 +6,7 @@ use super::node::{Definition, Node, Value};
 use crate::formula::{Environment, Failure, Kind, Quantity, compute, kind};
 use crate::stage::{MarkValue, is_sewn};
 use crate::{
-    Code, CornerName, Diagnostic, Name, Number, PartReference, Place, VariableId, nearest,
+    Code, CornerName, Diagnostic, Name, Number, PartReference, Place, VariableId, Want, nearest,
 };
 use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
@@ -15,19 +15,6 @@ use toile_geometry::{Path, Vec2};
 const LONGEST: f64 = 1000.0;
 /// No plain number of a pattern is as large as this.
 const LARGEST: f64 = 1e6;
-
-/// The kind of value that a number must have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Want {
-    /// A length [m].
-    Length,
-    /// A plain number.
-    Plain,
-    /// An angle [rad]: computed as a plain number, typed and shown in degrees.
-    Angle,
-    /// Anything, as a variable is: a bare value is a plain number.
-    Any,
-}
 
 /// The computation of one node: reads values, collects what is wrong.
 pub(crate) struct Computation<'e> {

@@ -1,8 +1,9 @@
 //! What is drawn on a stage of a panel: points at its marks, and lines that are inserted into it.
 
 use super::node::Node;
-use super::numbers::{Computation, Want};
+use super::numbers::Computation;
 use super::panels::{PanelEvaluation, has_made};
+use crate::Want;
 use crate::{
     Code, Diagnostic, LineKind, LineName, Mark, OperationId, Pattern, Place, Point, SheetId, Stage,
 };

@@ -1,8 +1,9 @@
 //! Stages of panels: as drawn, and after each operation.
 
 use super::node::Node;
-use super::numbers::{Computation, Want};
+use super::numbers::Computation;
 use super::panels::PanelEvaluation;
+use crate::Want;
 use crate::stage::{
     DartApex, DartError, DartMouth, FoldError, MOST_GROWTH, NotTrued, PlaceError, cut_dart,
     cut_diamond, true_darts, unfold, width_kept,

@@ -1,7 +1,8 @@
 //! Panels as drawn; places of marks and notches on their stages.
 
 use super::node::Node;
-use super::numbers::{Computation, Want};
+use super::numbers::Computation;
+use crate::Want;
 use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
     Code, Diagnostic, Edge, EdgeCorner, Line, LineKind, LineName, Mark, Name, Notch, OperationId,

@@ -1,8 +1,9 @@
 //! Computes the places of points.
 
 use super::node::Node;
-use super::numbers::{Computation, Want, bounded_place};
+use super::numbers::{Computation, bounded_place};
 use super::on_stage;
+use crate::Want;
 use crate::formula::Failure;
 use crate::{Code, Number, Place, Point, PointId, PointRule};
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! Operations that cut a panel apart: pivots, spreads and splits.
 
 use super::node::Node;
-use super::numbers::Want;
 use super::panels::PanelEvaluation;
+use crate::Want;
 use crate::stage::{
     CutError, MOST_CUTS, PivotError, Pivoting, Pleating, SplitError, SpreadAlong, SpreadError,
     Spreading, pivot_dart, pleat, split, spread,

@@ -1,8 +1,9 @@
 //! Seams: where their spans lie, and how long both sides are when all operations are done.
 
 use super::node::{Node, SeamValue, SpanValue};
-use super::numbers::{Computation, Want};
+use super::numbers::Computation;
 use super::panels::has_made;
+use crate::Want;
 use crate::stage::{MarkValue, PlaceError, Stretch, is_sewn, reversed};
 use crate::{Code, Diagnostic, Line, Mark, Name, Panel, Place, Seam, Span, Stage};
 use std::sync::Arc;

@@ -3,6 +3,7 @@
 use super::impossible;
 use super::lookup::sheet;
 use super::names::{curve_owner, letter_name, point_owner, wished};
+use crate::fields::{self, Fields};
 use crate::{
     Curve, CurveId, CurveRule, Edit, EditError, Entity, Ids, Number, Pattern, Point, PointId,
     PointRule, Sheet, SheetId,
@@ -36,13 +37,13 @@ impl Additions {
             None => letter_name(|name| self.sheet.point_named(name).is_some()),
         };
         let what = format!("point {name:?}");
-        for base in rule.points() {
+        for base in fields::points(&rule) {
             self.has_point(&what, base)?;
         }
-        for base in rule.curves() {
+        for base in fields::curves(&rule) {
             self.has_curve(&what, base)?;
         }
-        finite(&what, &rule.numbers())?;
+        finite(&what, &rule)?;
         let point = Arc::new(Point {
             id: self.ids.take(),
             name,
@@ -67,13 +68,13 @@ impl Additions {
             None => self.curve_name(ends),
         };
         let what = format!("curve {name:?}");
-        for base in ends.into_iter().chain(rule.points()) {
+        for base in ends.into_iter().chain(fields::points(&rule)) {
             self.has_point(&what, base)?;
         }
-        if let Some(of) = rule.curve() {
+        for of in fields::curves(&rule) {
             self.has_curve(&what, of)?;
         }
-        finite(&what, rule.number().as_slice())?;
+        finite(&what, &rule)?;
         let curve = Arc::new(Curve {
             id: self.ids.take(),
             name,
@@ -123,8 +124,8 @@ impl Additions {
     }
 }
 
-fn finite(what: &str, numbers: &[&Number]) -> Result<(), EditError> {
-    match numbers.iter().all(|number| number.is_finite()) {
+fn finite(what: &str, rule: &dyn Fields) -> Result<(), EditError> {
+    match fields::numbers(rule).into_iter().all(Number::is_finite) {
         true => Ok(()),
         false => Err(EditError::NotFinite(what.to_owned())),
     }

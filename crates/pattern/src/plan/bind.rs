@@ -1,37 +1,25 @@
 //! Binds names in formulas to parts once these exist.
 
-use super::number_address::Slot;
-use super::numbers::numbers_of;
-use crate::{Edit, Entity, Evaluation, Formula, Names, Number, PartReference, Token};
+use super::numbers::put_number;
+use crate::{Edit, Evaluation, Formula, Names, Number, PartReference, Token};
 
 /// The edits after which formulas that name what was not there mean what is called so now. Formulas
 /// that also speak of removed parts keep waiting for them.
 pub(super) fn bound(evaluation: &Evaluation) -> Vec<Edit> {
-    let pattern = evaluation.pattern();
     let names = evaluation.names();
-    let mut changed: Vec<Entity> = Vec::new();
-    for (part, _) in pattern.parts() {
-        for entry in numbers_of(evaluation, part) {
-            let Some(number) = entry.number.and_then(|number| bound_number(&number, names)) else {
-                continue;
-            };
-            let Some(entity) = entry.place.entity(pattern) else {
-                continue;
-            };
-            // A panel or seam may have several such numbers.
-            let known = changed.iter().position(|other| other.id() == entity.id());
-            let k = known.unwrap_or_else(|| {
-                changed.push(entity);
-                changed.len() - 1
-            });
-            match entry.place.slot(&mut changed[k]) {
-                Some(Slot::Always(old)) => *old = number,
-                Some(Slot::Optional(old)) => *old = Some(number),
-                None => {}
+    let mut edits = Vec::new();
+    for (mut entity, _) in evaluation.pattern().entities() {
+        let mut is_changed = false;
+        for entry in entity.number_entries(None) {
+            if let Some(number) = entry.number.and_then(|number| bound_number(&number, names)) {
+                is_changed |= put_number(&mut entity, &entry.place, &number);
             }
         }
+        if is_changed {
+            edits.push(Edit::Put(entity));
+        }
     }
-    changed.into_iter().map(Edit::Put).collect()
+    edits
 }
 
 /// The number with its names bound; nothing if nothing changes.

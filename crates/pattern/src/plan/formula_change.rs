@@ -3,8 +3,7 @@
 use super::impossible;
 use super::lookup::{after, place};
 use super::moving::{added, move_point};
-use super::number_address::Slot;
-use super::numbers::{number_at, numbers_of};
+use super::numbers::{numbers_of, put_number};
 use crate::formula::Token;
 use crate::{Edit, EditError, Entity, Evaluation, Number, PointId, Variable, VariableId};
 use std::sync::Arc;
@@ -71,20 +70,24 @@ pub fn move_point_by(
     let mut work = evaluation.clone();
     for entry in numbers_of(evaluation, point.into()) {
         let want = entry.want;
-        let old = number_at(evaluation.pattern(), &entry.place);
-        let (Some(old), Some(Slot::Always(new))) = (old, entry.place.slot(&mut moved)) else {
+        let moved_entries = moved.number_entries(Some(point.into()));
+        let moved_entry = moved_entries
+            .into_iter()
+            .find(|moved| moved.place == entry.place);
+        let (Some(old), Some(new)) = (entry.number, moved_entry.and_then(|moved| moved.number))
+        else {
             continue;
         };
-        if *new == old {
+        if new == old {
             continue;
         }
-        let value = evaluation.number(new, want).ok_or_else(|| {
+        let value = evaluation.number(&new, want).ok_or_else(|| {
             impossible(
                 "a number of the point has no value",
                 "mend its formula first",
             )
         })?;
-        *new = match change {
+        let new = match change {
             FormulaChange::Adjust | FormulaChange::Detach => Number::Value(value),
             FormulaChange::ThisSize => in_this_size(evaluation, old, value)?,
             // A value names no variable: it is changed itself.
@@ -98,6 +101,7 @@ pub fn move_point_by(
                 old
             }
         };
+        put_number(&mut moved, &entry.place, &new);
     }
     let variables = variables.into_iter().map(|found| found.1);
     let edits: Vec<Edit> = variables.chain([Edit::Put(moved)]).collect();

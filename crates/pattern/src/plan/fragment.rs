@@ -1,8 +1,8 @@
 //! Fragments: parts of a pattern as data, to be pasted into the same pattern or another.
 
 use super::impossible;
-use super::number_address::NumberAddress;
 use super::numbers::numbers_of;
+use crate::fields::NumberAddress;
 use crate::{
     EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, PointRule, Seam,
     Sheet, SheetHead, SheetId, Source, Variable, Want,
@@ -71,9 +71,8 @@ pub struct OutsideValue {
 /// Everything a number refers to.
 pub(super) fn references(number: &Number) -> Vec<PartId> {
     let speaks = Variable {
-        id: 0.into(),
-        name: String::new(),
         number: number.clone(),
+        ..Variable::default()
     };
     Entity::Variable(Arc::new(speaks)).references()
 }
@@ -203,7 +202,7 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
                 open.extend(seeds(pattern, sheet.into())?);
             }
         }
-        let (Some(sheet), Some(entity)) = (sheets(part), entity(pattern, part)) else {
+        let (Some(sheet), Some(entity)) = (sheets(part), pattern.entity_with(part)) else {
             continue;
         };
         let is_drawn = |other: &PartId| matches!(other, PartId::Point(_) | PartId::Curve(_));
@@ -271,22 +270,6 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
     })
 }
 
-/// A part that stands in a list of its own, as an entity.
-fn entity(pattern: &Pattern, part: PartId) -> Option<Entity> {
-    Some(match part {
-        PartId::Point(id) => {
-            let (sheet, point) = pattern.point(id)?;
-            Entity::Point(sheet.id, point.clone())
-        }
-        PartId::Curve(id) => {
-            let (sheet, curve) = pattern.curve(id)?;
-            Entity::Curve(sheet.id, curve.clone())
-        }
-        PartId::Panel(id) => Entity::Panel(pattern.panel(id)?.clone()),
-        _ => return None,
-    })
-}
-
 /// Notes what the numbers of a fragment speak of that it does not have, and what they come to.
 fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
     let pattern = evaluation.pattern();
@@ -304,8 +287,8 @@ fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
             if only_sizes {
                 continue;
             }
-            let (value, power) = match entry.place {
-                NumberAddress::Variable(id) => match evaluation.variable(id) {
+            let (value, power) = match entry.place.part {
+                PartId::Variable(id) => match evaluation.variable(id) {
                     Some((value, power)) => (Some(value), power),
                     None => (None, 0),
                 },

@@ -23,13 +23,11 @@ mod matched;
 mod moving;
 mod names;
 mod notch;
-mod number_address;
 mod numbers;
 mod on_panel;
 mod on_stage;
 mod operations;
 mod paste;
-mod remap;
 mod remove;
 mod rename;
 mod reshape;
@@ -42,6 +40,7 @@ mod trace;
 mod transform;
 mod typed;
 
+pub use crate::fields::{NumberAddress, NumberEntry};
 pub use align::{Alignment, Axis, align, distribute};
 pub use along::{FinishedEdge, finished_edge, mark_along};
 pub use chain::Chain;
@@ -64,9 +63,9 @@ pub use matched::{
 };
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
-pub use number_address::{MarkNumber, NumberAddress, OperationNumber, PointNumber, SpanEnd};
 pub use numbers::{
-    NumberEntry, adjust_number, clear_number, number_at, numbers_of, set_number, set_number_in_size,
+    adjust_number, clear_number, number_at, number_entry, numbers_of, set_number,
+    set_number_in_size,
 };
 pub use on_panel::{line_across, open_sheet};
 pub use on_stage::{EdgePart, edge_ends, edge_parts, outline_of};

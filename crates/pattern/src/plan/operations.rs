@@ -5,7 +5,7 @@ use super::lookup::{self, after, refuse_faults};
 use super::names::free_name;
 use crate::{
     Diagnostic, Edit, EditError, Entity, Evaluation, Operation, OperationId, OperationKind, Panel,
-    PanelId, Place, Severity, SheetId,
+    PanelId, Place, Severity, SheetId, fields,
 };
 use std::sync::Arc;
 
@@ -133,14 +133,18 @@ fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), Ed
     let own = pattern.sheet_of(panel);
     for (step, operation) in (1..).zip(&panel.operations) {
         // A part that is gone is told where it is missed.
-        let points = operation.kind.points().into_iter().filter_map(|id| {
-            let (sheet, point) = pattern.point(id)?;
-            Some((sheet, "point", &point.name))
-        });
-        let curves = operation.kind.curve().into_iter().filter_map(|id| {
-            let (sheet, curve) = pattern.curve(id)?;
-            Some((sheet, "curve", &curve.name))
-        });
+        let points = fields::points(&operation.kind)
+            .into_iter()
+            .filter_map(|id| {
+                let (sheet, point) = pattern.point(id)?;
+                Some((sheet, "point", &point.name))
+            });
+        let curves = fields::curves(&operation.kind)
+            .into_iter()
+            .filter_map(|id| {
+                let (sheet, curve) = pattern.curve(id)?;
+                Some((sheet, "curve", &curve.name))
+            });
         let is_foreign =
             |sheet: SheetId| own != Some(sheet) && !pattern.lies_before(sheet, panel, step);
         if let Some(sheet) = operation.kind.sheet()

@@ -4,9 +4,9 @@ use super::fragment::{Fragment, Outside, copy, copy_all, references};
 use super::impossible;
 use super::lookup::{after, finite, sheet};
 use super::names::{curve_owner, free_name, letter_name, panel_owner, sheet_owner};
-use super::number_address::{NumberAddress, Slot};
-use super::remap::Remap;
+use super::numbers::{number_entry, put_number};
 use super::transform::move_points;
+use crate::fields::{NumberAddress, Remap};
 use crate::{
     Edit, EditError, Entity, Evaluation, Fabric, Formula, FreshId, Ids, Number, PartId, Pattern,
     PointId, SheetId, SizeId, Token, Variable,
@@ -170,22 +170,22 @@ impl Pasting {
         let stays =
             |id: &PartId| mine.contains(id) || here.contains(id) || matches!(id, PartId::Size(_));
         for outside in &fragment.values {
-            let Some(mut entity) = outside.place.entity(&own) else {
+            let entity = own.entity_with(outside.place.part);
+            let entry = number_entry(&own, &outside.place);
+            let (Some(mut entity), Some(number)) = (entity, entry.and_then(|entry| entry.number))
+            else {
                 continue;
             };
-            let number = match outside.place.slot(&mut entity) {
-                Some(Slot::Always(number) | Slot::Optional(Some(number))) => number,
-                Some(Slot::Optional(None)) | None => continue,
-            };
-            if references(number).iter().all(stays) {
+            if references(&number).iter().all(stays) {
                 continue;
             }
-            self.result.loosened.push(outside.place);
+            self.result.loosened.push(outside.place.clone());
             if let Some(value) = outside.value {
-                *number = match outside.place {
-                    NumberAddress::Variable(_) if outside.power == 1 => length(value),
+                let number = match outside.place.part {
+                    PartId::Variable(_) if outside.power == 1 => length(value),
                     _ => Number::Value(value),
                 };
+                put_number(&mut entity, &outside.place, &number);
                 own.apply(&[Edit::Put(entity)])?;
             }
         }
@@ -327,10 +327,13 @@ impl Pasting {
 
     /// The result, its places by the new ids.
     fn finished(mut self, fragment: &Fragment) -> Pasted {
-        let places = fragment.values.iter().map(|value| value.place);
+        let places = fragment.values.iter().map(|value| &value.place);
         let loose: Vec<NumberAddress> = places
             .filter(|place| self.result.loosened.contains(place))
-            .map(|place| place.remapped(&self.remap))
+            .map(|place| {
+                let part = self.remap.ids.get(&place.part);
+                NumberAddress::new(*part.unwrap_or(&place.part), place.path.clone())
+            })
             .collect();
         self.result.loosened = loose;
         self.result

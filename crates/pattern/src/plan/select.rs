@@ -1,6 +1,6 @@
 //! The points that define the shape of a selection of parts.
 
-use crate::{Evaluation, OperationKind, Panel, PartId, Pattern, PointId};
+use crate::{Evaluation, Panel, PartId, Pattern, PointId, fields};
 use std::collections::BTreeSet;
 
 /// The points that parts are drawn by, each once, in the order of their sheets: a point itself; the
@@ -26,7 +26,7 @@ fn collect(pattern: &Pattern, part: PartId, found: &mut BTreeSet<PointId>) {
         PartId::Curve(id) => {
             if let Some((_, curve)) = pattern.curve(id) {
                 found.extend(curve.ends);
-                found.extend(curve.rule.points());
+                found.extend(fields::points(&curve.rule));
             }
         }
         PartId::Edge(id) => {
@@ -44,7 +44,7 @@ fn collect(pattern: &Pattern, part: PartId, found: &mut BTreeSet<PointId>) {
         PartId::Operation(id) => {
             let all = panels().flat_map(|panel| &panel.operations);
             let own = all.filter(|operation| operation.id == id);
-            found.extend(own.flat_map(|operation| operation.kind.points()));
+            found.extend(own.flat_map(|operation| fields::points(&operation.kind)));
         }
         PartId::Panel(id) => {
             let panel = pattern.panel(id);
@@ -71,5 +71,5 @@ fn collect(pattern: &Pattern, part: PartId, found: &mut BTreeSet<PointId>) {
 /// Points inside a panel that its operations end at.
 fn apexes(panel: &Panel) -> Vec<PointId> {
     let kinds = panel.operations.iter().map(|operation| &operation.kind);
-    kinds.flat_map(OperationKind::points).collect()
+    kinds.flat_map(|kind| fields::points(kind)).collect()
 }

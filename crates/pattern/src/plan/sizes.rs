@@ -3,9 +3,9 @@
 use super::bind::bound;
 use super::lookup::after;
 use super::names::{free_name, wished};
-use super::number_address::NumberAddress;
 use super::rename::variable_name;
 use super::{impossible, numbers, remove};
+use crate::fields::NumberAddress;
 use crate::{
     DisplayUnit, Edit, EditError, Entity, Evaluation, Head, Number, Size, SizeId, Variable,
     VariableId,
@@ -101,7 +101,7 @@ pub fn add_variable(
     let id: VariableId = ids.take();
     let variable = Arc::new(Variable { id, name, number });
     let mut edits = vec![Edit::Put(Entity::Variable(variable))];
-    numbers::refuse_valueless(evaluation, &edits, &NumberAddress::Variable(id))?;
+    numbers::refuse_valueless(evaluation, &edits, &NumberAddress::new(id, "value"))?;
     edits.extend(bound(&after(evaluation, &edits)?));
     Ok((edits, id))
 }

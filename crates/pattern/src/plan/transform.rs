@@ -3,7 +3,7 @@
 use super::impossible;
 use super::lookup;
 use super::moving::moved;
-use crate::{Edit, EditError, Entity, Evaluation, Node, Point, PointId};
+use crate::{Edit, EditError, Entity, Evaluation, Node, Number, Point, PointId, fields};
 use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -170,7 +170,7 @@ fn step(work: &Evaluation, id: PointId, goal: Vec2) -> Result<Option<Edit>, Edit
         return Ok(None);
     }
     let rule = moved(work, (sheet, &found.rule), now, goal)?;
-    if !rule.numbers().iter().all(|number| number.is_finite()) {
+    if !fields::numbers(&rule).into_iter().all(Number::is_finite) {
         return Err(impossible(
             format!("point {:?} would go too far", found.name),
             "move it less far",

@@ -6,7 +6,7 @@ use super::sample::{
 };
 use super::*;
 use std::sync::Arc;
-use toile_pattern::plan::{Fragment, NumberAddress, PasteTarget, PointNumber};
+use toile_pattern::plan::{Fragment, NumberAddress, PasteTarget};
 
 /// The sample with a dart, a notch, a variable and formulas that speak of the back.
 fn rich() -> Pattern {
@@ -151,7 +151,7 @@ fn in_another_pattern_references_become_values() {
     let p1 = after.sheets[0].point_named("p1").unwrap().id;
     assert_eq!(
         pasted.loosened,
-        [PointNumber::X, PointNumber::Y].map(|n| NumberAddress::Point(p1, n))
+        ["at.x", "at.y"].map(|path| NumberAddress::new(p1, path))
     );
     let bust = Measurements::adult().get("bust").unwrap();
     for body in bodies() {

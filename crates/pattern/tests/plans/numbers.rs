@@ -5,9 +5,7 @@ use super::sample::{
     put_variable, sample,
 };
 use super::*;
-use toile_pattern::plan::{
-    MarkNumber, NumberAddress, OperationNumber, PointNumber, SeamSide, SpanEnd,
-};
+use toile_pattern::plan::NumberAddress;
 
 fn read(pattern: &Pattern, text: &str, want: Want) -> Number {
     plan::read_number(&evaluated(pattern), text, want).unwrap()
@@ -262,7 +260,7 @@ fn every_number_is_listed_read_and_set() {
             "{part}"
         );
         for entry in entries {
-            assert_eq!(entry.place.part(), part);
+            assert_eq!(entry.place.part, part);
             assert_eq!(plan::number_at(&pattern, &entry.place), entry.number);
             labels.push(entry.label);
             let text = match entry.want {
@@ -318,7 +316,7 @@ fn every_number_is_listed_read_and_set() {
 fn a_number_moves_what_it_should_in_every_size() {
     let pattern = sample();
     let p1 = point(&pattern, "front", "p1");
-    let place = NumberAddress::Point(p1, PointNumber::X);
+    let place = NumberAddress::new(p1, "at.x");
     // Of which factor the unit is meant to be nobody can know.
     let number = read(&pattern, "bust / 2 + 2 * 3", Want::Length);
     let told = refusal(plan::set_number(&evaluated(&pattern), &place, number));
@@ -343,32 +341,30 @@ fn numbers_without_a_value_are_refused() {
     let p0 = point(&pattern, "front", "p0");
     let id = put_variable(&mut pattern, "v", formula("2cm"));
     let panel = pattern.panels[0].id;
-    let x = NumberAddress::Point(p0, PointNumber::X);
-    let variable = NumberAddress::Variable(id);
+    let x = NumberAddress::new(p0, "at.x");
+    let variable = NumberAddress::new(id, "value");
     let of_text =
         |text: &str| Number::Formula(Formula::parse(text, &Names::new(&pattern)).unwrap());
     let evaluation = evaluated(&pattern);
-    let gone = NumberAddress::Operation(panel, OperationId(9999), OperationNumber::Intake);
-    let mark = NumberAddress::Span(
-        pattern.seams[0].id,
-        SeamSide::First,
-        7,
-        SpanEnd::From,
-        MarkNumber::Share,
-    );
+    let gone = NumberAddress::new(OperationId(9999), "dart.intake");
+    let mark = NumberAddress::new(pattern.seams[0].id, "sides.first[7].from.share");
     for (place, number, says) in [
         (
-            x,
+            x.clone(),
             of_text("bus"),
             "there is no variable or measurement \"bus\"",
         ),
-        (x, of_text("2"), "should be a length"),
-        (x, of_text("x(front.p0) + 1cm"), "needs itself"),
-        (x, of_text("2000m"), "beyond"),
-        (variable, of_text("v + 1cm"), "needs itself"),
-        (variable, of_text("bus"), "there is no variable"),
-        (x, f64::NAN.into(), "not finite"),
-        (NumberAddress::Grain(panel), of_text("2cm"), "give an angle"),
+        (x.clone(), of_text("2"), "should be a length"),
+        (x.clone(), of_text("x(front.p0) + 1cm"), "needs itself"),
+        (x.clone(), of_text("2000m"), "beyond"),
+        (variable.clone(), of_text("v + 1cm"), "needs itself"),
+        (variable.clone(), of_text("bus"), "there is no variable"),
+        (x.clone(), f64::NAN.into(), "not finite"),
+        (
+            NumberAddress::new(panel, "grain"),
+            of_text("2cm"),
+            "give an angle",
+        ),
         (
             gone,
             0.1.into(),
@@ -376,9 +372,9 @@ fn numbers_without_a_value_are_refused() {
         ),
         (mark, 0.1.into(), "is not there"),
         (
-            NumberAddress::Point(p0, PointNumber::Share),
+            NumberAddress::new(p0, "share"),
             0.1.into(),
-            "the part of the way of point",
+            "the share of point",
         ),
     ] {
         let told = refusal(plan::set_number(&evaluation, &place, number));
@@ -401,7 +397,7 @@ fn formulas_are_adjusted_and_sizes_have_values_of_their_own() {
         plan::add_size(&evaluated(&sample()), None, Measurements::adult_woman()).unwrap();
     let pattern = done(&sample(), &edits);
     let p1 = point(&pattern, "front", "p1");
-    let place = NumberAddress::Point(p1, PointNumber::X);
+    let place = NumberAddress::new(p1, "at.x");
     let edits = plan::set_number(&evaluated(&pattern), &place, formula("bust / 2")).unwrap();
     let pattern = done(&pattern, &edits);
     let half = |body: &Measurements| body.get("bust").unwrap() / 2.0;
@@ -430,7 +426,7 @@ fn formulas_are_adjusted_and_sizes_have_values_of_their_own() {
     let edits = plan::adjust_number(&evaluated(&back), &place, wanted - 0.02).unwrap();
     assert_eq!(done(&back, &edits), pattern);
     let evaluation = evaluated(&pattern);
-    let lost = NumberAddress::Variable(VariableId(9999));
+    let lost = NumberAddress::new(VariableId(9999), "value");
     for (found, says) in [
         (
             plan::adjust_number(&evaluation, &place, f64::NAN),

@@ -515,9 +515,9 @@ fn numbers_of_pivots_and_spreads_are_shown_and_set() {
     let by = spread(&mut pattern, wish);
     let entries = plan::numbers_of(&evaluated(&pattern), by.into());
     let labels: Vec<&str> = entries.iter().map(|entry| entry.label).collect();
-    let cut = ["cut from", "opening at start", "cut to", "opening at end"];
+    let cut = ["cut from", "cut to", "opening at start", "opening at end"];
     assert_eq!(labels, [cut, cut].concat());
-    let edits = plan::set_number(&evaluated(&pattern), &entries[5].place, 0.07.into()).unwrap();
+    let edits = plan::set_number(&evaluated(&pattern), &entries[6].place, 0.07.into()).unwrap();
     let pattern = done(&pattern, &edits);
     let evaluation = evaluated(&pattern);
     let now = lengths(evaluation.last_stage(&pattern.panels[0]).unwrap());

@@ -2,7 +2,7 @@
 
 use super::sample::{formula, point, sample};
 use super::*;
-use toile_pattern::plan::{NumberAddress, PointNumber};
+use toile_pattern::plan::NumberAddress;
 
 #[test]
 fn sizes_come_and_go_with_their_measurements() {
@@ -81,7 +81,7 @@ fn variables_move_what_uses_them_in_every_size() {
     let p1 = point(&with, "front", "p1");
     let evaluation = evaluated(&with);
     let number = plan::read_number(&evaluation, "tenth * v1", Want::Length).unwrap();
-    let place = NumberAddress::Point(p1, PointNumber::X);
+    let place = NumberAddress::new(p1, "at.x");
     let edits = plan::set_number(&evaluation, &place, number).unwrap();
     let after = done(&with, &edits);
     for body in bodies() {
@@ -123,7 +123,7 @@ fn a_length_stays_a_length_in_sizes_with_their_own() {
     let number = formula("bust / 10");
     let (edits, tenth) = plan::add_variable(&evaluated(&pattern), None, number).unwrap();
     let pattern = done(&pattern, &edits);
-    let place = NumberAddress::Variable(tenth);
+    let place = NumberAddress::new(tenth, "value");
     let wish = (size, Some(0.07));
     let edits = plan::set_number_in_size(&evaluated(&pattern), &place, wish).unwrap();
     let pattern = done(&pattern, &edits);

@@ -1,0 +1,45 @@
+//! Tables of measurements.
+
+use super::item::Item;
+use super::json::Value;
+use crate::FormatError;
+use toile_measure::{Measurements, Origin, UnitKind, definition};
+use toile_pattern::{Diagnostic, DisplayUnit};
+
+/// A table of measurements.
+pub fn measurements(
+    item: &Item<'_>,
+    unit: DisplayUnit,
+    notes: &mut Vec<Diagnostic>,
+) -> Result<Measurements, FormatError> {
+    let mut table = Measurements::new();
+    for (name, entry) in item.entries()? {
+        let predicted = match &entry.node.value {
+            Value::Object(fields) => fields.iter().any(|(name, _)| name == "predicted"),
+            _ => false,
+        };
+        let (entry, origin) = if predicted {
+            let fields = entry.object(&["predicted"], notes)?;
+            (fields.need("predicted")?, Origin::Predicted)
+        } else {
+            (entry, Origin::Asked)
+        };
+        let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+        let number = if is_angle {
+            entry.angle()?
+        } else {
+            entry.length(unit)?
+        };
+        let value = entry.fixed(&number)?;
+        if table.contains(name) {
+            return Err(entry.error(
+                format!("the measurement {name:?} is given twice, once under another name"),
+                "remove one of them",
+            ));
+        }
+        table
+            .set(name, value, origin)
+            .map_err(|error| entry.error(error.to_string(), "change it"))?;
+    }
+    Ok(table)
+}

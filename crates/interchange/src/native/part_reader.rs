@@ -1,0 +1,407 @@
+//! Reads any part of the document by its fields.
+
+use super::item::{Item, Object};
+use super::json::Value as Json;
+use super::reader::Reader;
+use crate::FormatError;
+use toile_measure::Measurements;
+use toile_pattern::fields::{
+    Absent, Fields, Group, ITSELF, List, NumberField, Optional, Told, Value, ValueField, ValueMut,
+    VisitorMut,
+};
+use toile_pattern::{AnyId, Mark, Number, Want};
+
+/// Reads a part; what is wrong with it is the reader's fault then.
+pub fn read_part<'a>(reader: &mut Reader<'a>, item: Item<'a>, part: &mut dyn Fields) {
+    let mut own = PartReader::new(reader, item.clone(), Vec::new());
+    own.choose_kind(part);
+    part.visit_mut(&mut own);
+    own.note_unknown();
+    if reader.fault.is_some() {
+        return;
+    }
+    if let Some(fault) = part.fault() {
+        let object = item.fields().ok();
+        let field = object.and_then(|object| object.get(fault.field));
+        let field = field.unwrap_or_else(|| item.clone());
+        let listed = fault
+            .item
+            .and_then(|k| field.list().ok()?.into_iter().nth(k));
+        let place = listed.unwrap_or(field);
+        reader.fault = Some(place.error(fault.message, fault.hint));
+    }
+}
+
+/// Reads the whole document, of which some fields are read elsewhere.
+pub fn read_root<'a>(
+    reader: &mut Reader<'a>,
+    item: Item<'a>,
+    elsewhere: &[&'static str],
+    part: &mut dyn Fields,
+) {
+    let mut own = PartReader::new(reader, item, elsewhere.to_vec());
+    part.visit_mut(&mut own);
+    own.note_unknown();
+}
+
+/// Where the next field is looked for.
+enum Place<'a> {
+    /// In an object, or it is the item itself.
+    Part {
+        item: Item<'a>,
+        object: Option<Object<'a>>,
+        /// The fields that are known: those asked for, and those of other kinds.
+        known: Vec<&'static str>,
+    },
+    /// In a list: the next item of it.
+    List(std::vec::IntoIter<Item<'a>>),
+}
+
+struct PartReader<'r, 'a> {
+    reader: &'r mut Reader<'a>,
+    place: Place<'a>,
+}
+
+impl<'r, 'a> PartReader<'r, 'a> {
+    fn new(reader: &'r mut Reader<'a>, item: Item<'a>, known: Vec<&'static str>) -> Self {
+        let place = Place::Part {
+            item,
+            object: None,
+            known,
+        };
+        Self { reader, place }
+    }
+
+    /// Keeps the first thing that is wrong.
+    fn take<T>(&mut self, result: Result<T, FormatError>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(error) => {
+                self.reader.fault.get_or_insert(error);
+                None
+            }
+        }
+    }
+
+    /// The item at a field; nothing where it is left out, or something is wrong.
+    fn child(&mut self, key: &'static str, may_lack: bool) -> Option<Item<'a>> {
+        if self.reader.fault.is_some() {
+            return None;
+        }
+        let (item, object, known) = match &mut self.place {
+            Place::List(items) => return items.next(),
+            Place::Part { item, .. } if key == ITSELF => return Some(item.clone()),
+            Place::Part {
+                item,
+                object,
+                known,
+            } => (item, object, known),
+        };
+        known.push(key);
+        if object.is_none() {
+            match item.fields() {
+                Ok(fields) => *object = Some(fields),
+                Err(error) => {
+                    self.reader.fault = Some(error);
+                    return None;
+                }
+            }
+        }
+        let object = object.as_ref()?;
+        match may_lack {
+            true => object.get(key),
+            false => {
+                let found = object.need(key);
+                self.take(found)
+            }
+        }
+    }
+
+    /// Makes a part be of the kind that the present item tells, and knows the fields of all kinds.
+    fn choose_kind(&mut self, part: &mut dyn Fields) {
+        let kinds = part.kinds();
+        let Place::Part { item, known, .. } = &mut self.place else {
+            return;
+        };
+        if kinds.is_empty() || self.reader.fault.is_some() {
+            return;
+        }
+        known.extend(kinds.iter().flat_map(|kind| &kind.keys));
+        let bare = |told: Told| kinds.iter().position(|kind| kind.told == told);
+        let chosen = match &item.node.value {
+            Json::Number(_) => Ok(bare(Told::Number)),
+            Json::Text(_) => Ok(bare(Told::Text)),
+            Json::Object(_) => item
+                .fields()
+                .and_then(|object| object.kind(kinds, &part.clash())),
+            Json::Null | Json::Flag(_) | Json::List(_) => Ok(None),
+        };
+        if let Some(chosen) = self.take(chosen) {
+            let usual = part.clash().usual.unwrap_or(kinds.len() - 1);
+            part.become_kind(chosen.unwrap_or(usual));
+        }
+    }
+
+    /// Notes the fields of the present object that are not known.
+    fn note_unknown(self) {
+        let Place::Part { item, known, .. } = self.place else {
+            return;
+        };
+        if self.reader.fault.is_none() && matches!(item.node.value, Json::Object(_)) {
+            item.note_unknown(&known, &mut self.reader.notes);
+        }
+    }
+
+    /// Reads what stands within a field; all that is wrong with it may be said in its own words.
+    fn within(&mut self, group: Group, read: impl FnOnce(&mut Reader<'a>, Item<'a>)) {
+        let Some(item) = self.child(group.key, group.may_lack) else {
+            return;
+        };
+        read(self.reader, item.clone());
+        if let (Some([what, hint]), Some(fault)) = (group.refusal, &mut self.reader.fault) {
+            *fault = item.error(what, hint);
+        }
+    }
+}
+
+impl<'a> VisitorMut for PartReader<'_, 'a> {
+    fn own(&mut self, id: &mut dyn AnyId) {
+        if let Some(item) = self.child("id", false) {
+            let own = self.reader.own(&item, id);
+            self.take(own);
+        }
+    }
+
+    fn id(&mut self, key: &'static str, id: &mut dyn AnyId) {
+        if let Some(item) = self.child(key, false) {
+            let reference = self.reader.reference(&item, id);
+            self.take(reference);
+        }
+    }
+
+    fn number(&mut self, field: NumberField, number: &mut Number) {
+        match (
+            self.child(field.key, field.absent != Absent::Refused),
+            field.absent,
+        ) {
+            (Some(item), _) => {
+                let read = self.reader.number(&item, field.want);
+                if let Some(read) = self.take(read) {
+                    *number = read;
+                }
+            }
+            (None, Absent::Means(usual) | Absent::LeftOutAt(usual)) => *number = usual.into(),
+            (None, Absent::Refused) => {}
+        }
+    }
+
+    fn optional_number(&mut self, field: NumberField, number: &mut Option<Number>) {
+        *number = self.child(field.key, true).and_then(|item| {
+            let read = self.reader.number(&item, field.want);
+            self.take(read)
+        });
+    }
+
+    fn value(&mut self, field: ValueField, value: &mut dyn Value) {
+        let item = self.child(field.key, field.may_lack);
+        let is_sound = self.reader.fault.is_none();
+        let reader = &*self.reader;
+        let mut result = Ok(());
+        value.change(&mut |value| {
+            result = match &item {
+                Some(item) => set_value(reader, (item, field), value),
+                None if is_sound => {
+                    set_absent(field, value);
+                    Ok(())
+                }
+                None => Ok(()),
+            };
+        });
+        self.take(result);
+    }
+
+    fn word(&mut self, word: &'static str) {
+        if let Some(item) = self.child(ITSELF, false) {
+            let found = item.word(&[word]);
+            self.take(found);
+        }
+    }
+
+    fn measurements(&mut self, key: &'static str, table: &mut Measurements) {
+        if let Some(item) = self.child(key, false) {
+            let read = self.reader.measurements(&item);
+            if let Some(read) = self.take(read) {
+                *table = read;
+            }
+        }
+    }
+
+    fn optional(&mut self, key: &'static str, field: &mut dyn Optional) {
+        let is_there = self.child(key, true).is_some();
+        field.set(is_there);
+    }
+
+    fn mark(&mut self, group: Group, mark: &mut Mark) {
+        self.within(group, |reader, item| read_part(reader, item, mark));
+    }
+
+    fn part(&mut self, group: Group, part: &mut dyn Fields) {
+        self.within(group, |reader, item| read_part(reader, item, part));
+    }
+
+    fn flat(&mut self, part: &mut dyn Fields) {
+        self.choose_kind(part);
+        part.visit_mut(self);
+    }
+
+    fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut)) {
+        self.within(group, |reader, item| {
+            let mut own = PartReader::new(reader, item, Vec::new());
+            walk(&mut own);
+            own.note_unknown();
+        });
+    }
+
+    fn list(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut)) {
+        self.within(group, |reader, item| {
+            let mut count = Count(0);
+            walk(&mut count);
+            match item.exactly(count.0) {
+                Ok(items) => walk(&mut PartReader {
+                    reader,
+                    place: Place::List(items.into_iter()),
+                }),
+                Err(error) => reader.fault = Some(error),
+            }
+        });
+    }
+
+    fn each(&mut self, group: Group, parts: &mut dyn List) {
+        parts.resize(0);
+        let group = Group {
+            may_lack: true,
+            ..group
+        };
+        self.within(group, |reader, item| match item.list() {
+            Ok(items) => {
+                parts.resize(items.len());
+                for (k, item) in items.into_iter().enumerate() {
+                    if reader.fault.is_none() {
+                        read_part(reader, item, parts.get_mut(k));
+                    }
+                }
+            }
+            Err(error) => reader.fault = Some(error),
+        });
+    }
+}
+
+/// Sets a value to what an item says.
+fn set_value(
+    reader: &Reader<'_>,
+    (item, field): (&Item<'_>, ValueField),
+    value: ValueMut<'_>,
+) -> Result<(), FormatError> {
+    match value {
+        ValueMut::Flag(flag) => *flag = item.flag()?,
+        ValueMut::Count(largest, set) => {
+            let count = item.count()?;
+            if count > largest.min(field.largest) {
+                let [what, hint] = field.beyond;
+                return Err(item.error(what, hint));
+            }
+            set(count);
+        }
+        ValueMut::Real(real) => {
+            let read = match field.want {
+                Want::Length | Want::Angle => reader.value(item, field.want)?,
+                Want::Plain | Want::Any => item.plain_value()?,
+            };
+            if let Some([least, most]) = field.range
+                && !(least..=most).contains(&read)
+            {
+                let hint = format!("give a number from {least} to {most}");
+                return Err(item.error(format!("{read} is out of range"), hint));
+            }
+            *real = read;
+        }
+        ValueMut::Text(text) => {
+            let read = match field.is_name {
+                true => item.name()?,
+                false => item.text()?,
+            };
+            read.clone_into(text);
+        }
+        ValueMut::Word(words, choose) => choose(item.word(words)?),
+    }
+    Ok(())
+}
+
+/// Sets a value that a file leaves out, where that is not what an empty part has.
+fn set_absent(field: ValueField, value: ValueMut<'_>) {
+    match (value, field.absent_flag, field.absent_count) {
+        (ValueMut::Flag(flag), Some(absent), _) => *flag = absent,
+        (ValueMut::Count(_, set), _, Some(absent)) => set(absent),
+        _ => {}
+    }
+}
+
+/// Counts the fields of a list.
+struct Count(usize);
+
+impl VisitorMut for Count {
+    fn own(&mut self, _: &mut dyn AnyId) {
+        self.0 += 1;
+    }
+
+    fn id(&mut self, _: &'static str, _: &mut dyn AnyId) {
+        self.0 += 1;
+    }
+
+    fn number(&mut self, _: NumberField, _: &mut Number) {
+        self.0 += 1;
+    }
+
+    fn optional_number(&mut self, _: NumberField, _: &mut Option<Number>) {
+        self.0 += 1;
+    }
+
+    fn value(&mut self, _: ValueField, _: &mut dyn Value) {
+        self.0 += 1;
+    }
+
+    fn word(&mut self, _: &'static str) {
+        self.0 += 1;
+    }
+
+    fn measurements(&mut self, _: &'static str, _: &mut Measurements) {
+        self.0 += 1;
+    }
+
+    // What may be left out has no place in a list.
+    fn optional(&mut self, _: &'static str, _: &mut dyn Optional) {}
+
+    fn mark(&mut self, _: Group, _: &mut Mark) {
+        self.0 += 1;
+    }
+
+    fn part(&mut self, _: Group, _: &mut dyn Fields) {
+        self.0 += 1;
+    }
+
+    fn flat(&mut self, _: &mut dyn Fields) {
+        self.0 += 1;
+    }
+
+    fn object(&mut self, _: Group, _: &mut dyn FnMut(&mut dyn VisitorMut)) {
+        self.0 += 1;
+    }
+
+    fn list(&mut self, _: Group, _: &mut dyn FnMut(&mut dyn VisitorMut)) {
+        self.0 += 1;
+    }
+
+    fn each(&mut self, _: Group, _: &mut dyn List) {
+        self.0 += 1;
+    }
+}

@@ -1,0 +1,67 @@
+//! Places on a line of a panel that survive edits: at its corners and notches, and along it from these.
+
+use crate::{CornerName, Name, Number, PointId};
+use serde::{Deserialize, Serialize};
+use strum::EnumIter;
+
+/// A place on a line of a panel.
+#[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
+pub enum Mark {
+    /// Where a notch of the panel is.
+    Notch(crate::NotchId),
+    /// At a distance from a corner along the line, against it if negative [m].
+    Along {
+        /// The corner.
+        from: CornerName,
+        /// How far [m].
+        distance: Number,
+    },
+    /// A share of the way along the line from a corner to one that follows.
+    Between {
+        /// The corners.
+        ends: [CornerName; 2],
+        /// Plain share of the arc length.
+        share: Number,
+    },
+    /// A corner.
+    Corner(CornerName),
+}
+
+impl Default for Mark {
+    fn default() -> Self {
+        Self::Corner(CornerName::default())
+    }
+}
+
+impl Mark {
+    /// At a drawn point.
+    pub fn corner(point: PointId) -> Self {
+        Self::Corner(Name::Drawn(point))
+    }
+
+    /// A share of the way between two drawn points.
+    pub fn between(ends: [PointId; 2], share: impl Into<Number>) -> Self {
+        Self::Between {
+            ends: ends.map(Name::Drawn),
+            share: share.into(),
+        }
+    }
+
+    /// The corners it is placed by.
+    pub fn corners(&self) -> Vec<CornerName> {
+        match self {
+            Self::Corner(corner) | Self::Along { from: corner, .. } => vec![*corner],
+            Self::Between { ends, .. } => ends.to_vec(),
+            Self::Notch(_) => Vec::new(),
+        }
+    }
+
+    /// Its number, if it has one.
+    pub fn number(&self) -> Option<&Number> {
+        match self {
+            Self::Along { distance, .. } => Some(distance),
+            Self::Between { share, .. } => Some(share),
+            Self::Corner(_) | Self::Notch(_) => None,
+        }
+    }
+}
