@@ -3,6 +3,7 @@
 
 mod assemble;
 mod boundary;
+mod circumcircle;
 mod closing;
 mod creases;
 mod edges;

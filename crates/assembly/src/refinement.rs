@@ -1,6 +1,7 @@
 //! Interior vertices of a piece: seeded, added where triangles are too large, removed where
 //! they crowd, smoothed until triangles are nearly equilateral.
 
+use crate::circumcircle::circumcircle;
 use crate::planar::{Frame, NONE, Planar};
 use crate::size_field::SizeField;
 use crate::smoothing;
@@ -151,22 +152,6 @@ fn crossing_edge(
     let middle = (planar.points[b] + planar.points[c]) * 0.5;
     let length = (planar.points[b] - planar.points[c]).norm();
     (length > 0.85 * field.size(middle)).then_some(middle)
-}
-
-/// Centre and radius of the circle through three points [m].
-pub(crate) fn circumcircle(a: Vec2, b: Vec2, c: Vec2) -> Option<(Vec2, f64)> {
-    let (u, v) = (b - a, c - a);
-    let d = 2.0 * u.perp(&v);
-    if d == 0.0 {
-        return None;
-    }
-    let (uu, vv) = (u.norm_squared(), v.norm_squared());
-    let offset = Vec2::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / d;
-    let centre = a + offset;
-    centre
-        .iter()
-        .all(|x| x.is_finite())
-        .then(|| (centre, offset.norm()))
 }
 
 /// The triangle that holds a point, found by walking from `start` without crossing a locked

@@ -1,8 +1,8 @@
 //! Moving interior vertices to better places without moving the boundary.
 
+use crate::circumcircle::circumcircle;
 use crate::planar::{Frame, Planar};
 use crate::quality::smallest_angle;
-use crate::refinement::circumcircle;
 use crate::size_field::SizeField;
 use toile_geometry::{Vec2, orient2d};
 

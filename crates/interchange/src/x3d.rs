@@ -1,9 +1,9 @@
 //! Motions from VRML 97 and X3D files: OrientationInterpolators routed to H-Anim joints, mapped to the joints
 //! of `toile-body`.
 
-use crate::FormatError;
 use crate::bvh::{Bone, Carrier};
-use crate::x3d_nodes::{Node, Scene, read_scene};
+use crate::x3d_nodes::{Node, Scene};
+use crate::{FormatError, x3d_vrml, x3d_xml};
 use nalgebra::UnitQuaternion;
 use std::collections::BTreeMap;
 use toile_body::{Clip, Joint, Skeleton};
@@ -79,6 +79,22 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Clip, Vec<String>), 
         advance: Vec3::zeros(),
     };
     Ok((motion, clip.notes))
+}
+
+/// Reads either encoding, by how the file begins.
+fn read_scene(text: &str) -> Result<Scene, FormatError> {
+    let start = text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+    if start.starts_with('<') {
+        x3d_xml::read(text)
+    } else if start.starts_with("#VRML") || start.starts_with("#X3D") {
+        x3d_vrml::read(text.trim_start_matches('\u{feff}'))
+    } else {
+        Err(FormatError::new(
+            "line 1",
+            "the file begins neither as VRML (#VRML V2.0 utf8) nor as X3D (<X3D>)",
+            "export the motion again as VRML 97 or X3D",
+        ))
+    }
 }
 
 /// The rotations and translations of joints in one clip.

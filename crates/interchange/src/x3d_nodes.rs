@@ -1,7 +1,6 @@
 //! Nodes and routes of a VRML 97 or X3D file, as far as a motion needs them.
 
 use crate::FormatError;
-use crate::{x3d_vrml, x3d_xml};
 use std::collections::BTreeMap;
 
 /// A node: its type, DEF and the fields that hold numbers or words.
@@ -100,20 +99,4 @@ pub(crate) fn not_open(line: usize) -> FormatError {
         "what is closed here is not open",
         "export the motion again",
     )
-}
-
-/// Reads either encoding, by how the file begins.
-pub(crate) fn read_scene(text: &str) -> Result<Scene, FormatError> {
-    let start = text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
-    if start.starts_with('<') {
-        x3d_xml::read(text)
-    } else if start.starts_with("#VRML") || start.starts_with("#X3D") {
-        x3d_vrml::read(text.trim_start_matches('\u{feff}'))
-    } else {
-        Err(FormatError::new(
-            "line 1",
-            "the file begins neither as VRML (#VRML V2.0 utf8) nor as X3D (<X3D>)",
-            "export the motion again as VRML 97 or X3D",
-        ))
-    }
 }

@@ -1,119 +1,15 @@
 //! Speed against accuracy: every method at several steps on the standard scenes.
 
-use crate::chart_contact::{Touched, contact_chart};
+use crate::chart_contact::contact_chart;
+use crate::chart_data::{Agreement, ChartData, Point};
+use crate::chart_plan::ChartPlan;
 use crate::clock::Clock;
 use crate::scenes::{Card, Reference, SCENES, apart, card};
 use crate::{LabError, settle::TIGHT};
-use serde::Serialize;
 use std::ops::ControlFlow;
 use toile_drape::{MethodKind, MethodSettings, State, System};
 use toile_geometry::Vec3;
 use toile_session::Watcher;
-
-/// One run of one method.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Point {
-    /// The scene.
-    pub scene: String,
-    /// File of its cloth.
-    pub mesh: String,
-    /// Vertices of the cloth.
-    pub vertices: usize,
-    /// The method.
-    pub method: &'static str,
-    /// Step [s] for methods in time; net force over weight asked for by methods of rest.
-    pub step: f64,
-    /// Iterations it is given in a (sub)step at the most. None for explicit methods, which do not
-    /// iterate, and for methods of rest, which go on until they are done.
-    pub iterations: Option<usize>,
-    /// Wall time [ms]: a simulated second of motion, or the whole way to rest.
-    pub wall_ms: f64,
-    /// Processor time [ms], likewise.
-    pub cpu_ms: Option<f64>,
-    /// Root of the mean squared distance to the converged end [mm].
-    pub error_mm: Option<f64>,
-    /// Why there is no end, or why it is wrong.
-    pub failure: Option<String>,
-    /// Whether no other run of the scene and mesh took less processor time and is nearer.
-    pub best: bool,
-}
-
-impl Point {
-    /// What it costs [ms]: processor time where the system tells it, which a busy machine does
-    /// not falsify, else wall time.
-    pub fn cost(&self) -> f64 {
-        self.cpu_ms.unwrap_or(self.wall_ms)
-    }
-}
-
-/// The runs of a chart: steps, methods and scenes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChartPlan {
-    /// Steps [s] of methods in time.
-    pub steps: &'static [f64],
-    /// Steps [s] of the runs with contact of cloth with cloth.
-    pub contact_steps: &'static [f64],
-    /// Net forces over weight asked of methods of rest.
-    pub residuals: &'static [f64],
-    /// Resolutions of each scene at the most.
-    pub resolutions: usize,
-    /// Processor time after which a run is given up [s]; another program's load does not use it.
-    pub budget: f64,
-    /// Times each run is made; the fastest counts.
-    pub repeats: usize,
-}
-
-impl ChartPlan {
-    /// All steps and resolutions, three seconds a run at the most.
-    pub const FULL: Self = Self {
-        steps: &[
-            1.0 / 30.0,
-            1.0 / 60.0,
-            1.0 / 120.0,
-            1.0 / 240.0,
-            1.0 / 480.0,
-            1.0 / 960.0,
-        ],
-        contact_steps: &[1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0],
-        residuals: &[1e-1, 1e-2, 1e-3, 1e-4],
-        resolutions: 2,
-        budget: 3.0,
-        repeats: 1,
-    };
-    /// Two steps on the coarse meshes: under a minute on two cores.
-    pub const QUICK: Self = Self {
-        steps: &[1.0 / 60.0, 1.0 / 240.0],
-        contact_steps: &[1.0 / 60.0],
-        residuals: &[1e-2],
-        resolutions: 1,
-        budget: 0.4,
-        repeats: 1,
-    };
-}
-
-/// The runs, and how well the converged ends are known.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ChartData {
-    /// Motion: methods in time.
-    pub motion: Vec<Point>,
-    /// Rest: methods that look for it.
-    pub rest: Vec<Point>,
-    /// Contact of cloth with cloth.
-    pub contact: Vec<Touched>,
-    /// For each mesh: how far two unlike methods end apart [mm], and what they were.
-    pub agreement: Vec<Agreement>,
-}
-
-/// How well a converged end is known.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Agreement {
-    /// The mesh.
-    pub mesh: String,
-    /// Distance of the ends of two unlike methods at fine steps [mm].
-    pub apart_mm: Option<f64>,
-    /// The methods and their steps.
-    pub by: String,
-}
 
 struct Setting<'a> {
     card: &'a Card,

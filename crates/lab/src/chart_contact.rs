@@ -1,10 +1,10 @@
 //! Contact of cloth with cloth in the chart: scenes and steps with it and without, what it costs, and
 //! what passes through what where it is left out.
 
-use crate::chart::ChartPlan;
-use crate::chart_report::field;
+use crate::chart_plan::ChartPlan;
 use crate::check::significant;
 use crate::clock::Clock;
+use crate::csv::field;
 use crate::scenes::card;
 use crate::{LabError, MeshKind, rectangle};
 use serde::Serialize;

@@ -1,23 +1,15 @@
 //! The chart as files: CSV, SVG, and the table of which method to use when.
 
-use crate::chart::{ChartData, Point};
 use crate::chart_contact::{contact_files, contact_table};
+use crate::chart_data::{ChartData, Point};
 use crate::check::significant;
+use crate::csv::field;
 use crate::{LabError, Resolved};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use toile_drape::MethodKind;
 use toile_interchange::{read_text, write_all_atomically};
 use toile_picture::{Axis, Chart, Joined, Marker, Series, palette};
-
-/// A field of a CSV file.
-pub(crate) fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
-}
 
 fn csv(points: &[Point], step: &str, wall: &str) -> String {
     let mut text = format!(
@@ -421,11 +413,5 @@ mod tests {
         }
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "kept");
         std::fs::remove_dir_all(&folder).unwrap();
-    }
-
-    #[test]
-    fn fields_with_commas_are_quoted() {
-        assert_eq!(field("a,\"b\""), "\"a,\"\"b\"\"\"");
-        assert_eq!(field("a"), "a");
     }
 }

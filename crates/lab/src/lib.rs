@@ -6,9 +6,12 @@ mod accuracy;
 mod bench;
 mod chart;
 mod chart_contact;
+mod chart_data;
+mod chart_plan;
 mod chart_report;
 mod check;
 mod clock;
+mod csv;
 mod detect;
 mod drag;
 mod drag_pattern;
@@ -38,8 +41,10 @@ pub use accuracy::{
     Measured, SECTIONS, Section, charts_beside, page, provenance, sections_named, write_page,
 };
 pub use bench::{bench, bench_names, bench_report, bench_table};
-pub use chart::{Agreement, ChartData, ChartPlan, Point, chart};
+pub use chart::chart;
 pub use chart_contact::{Touched, contact_chart, contact_files, contact_table};
+pub use chart_data::{Agreement, ChartData, Point};
+pub use chart_plan::ChartPlan;
 pub use chart_report::{
     chart_files, locking_files, ready_to_write, when_to_use, with_section, write_files,
 };

@@ -1,6 +1,6 @@
 //! Stability as files: CSV, SVG maps with the theoretical limits, a table.
 
-use crate::chart_report::field;
+use crate::csv::field;
 use crate::stability::{Cell, Limit, Verdict};
 use crate::{HardRun, LabError, Outcome};
 use std::fmt::Write;

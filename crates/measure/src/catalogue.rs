@@ -1,30 +1,7 @@
 //! The catalogue: name, meaning and procedure of each measurement.
 
 use crate::further::FURTHER;
-
-/// The unit of a measurement's value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum UnitKind {
-    /// A length [m].
-    Length,
-    /// An angle [rad].
-    Angle,
-}
-
-/// One measurement of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Definition {
-    /// Name in tables and formulas.
-    pub name: &'static str,
-    /// Plain words for a screen.
-    pub label: &'static str,
-    /// Length or angle.
-    pub kind: UnitKind,
-    /// How it is taken on a standing body.
-    pub meaning: &'static str,
-    /// Other names for the same thing, in this and other programs.
-    pub aliases: &'static [&'static str],
-}
+use crate::measurement::{Definition, angle, length};
 
 /// The measurement of that name or alias, if the catalogue knows it.
 pub fn definition(name: &str) -> Option<&'static Definition> {
@@ -32,36 +9,6 @@ pub fn definition(name: &str) -> Option<&'static Definition> {
     all()
         .find(|known| known.name == name)
         .or_else(|| all().find(|known| known.aliases.contains(&name)))
-}
-
-pub(crate) const fn length(
-    name: &'static str,
-    label: &'static str,
-    meaning: &'static str,
-    aliases: &'static [&'static str],
-) -> Definition {
-    Definition {
-        name,
-        label,
-        kind: UnitKind::Length,
-        meaning,
-        aliases,
-    }
-}
-
-const fn angle(
-    name: &'static str,
-    label: &'static str,
-    meaning: &'static str,
-    aliases: &'static [&'static str],
-) -> Definition {
-    Definition {
-        name,
-        label,
-        kind: UnitKind::Angle,
-        meaning,
-        aliases,
-    }
 }
 
 /// Every measurement the program knows, from the head down. The first 26 are those of

@@ -1,7 +1,7 @@
 //! Measurements that bodies are not made by: levels, parts of girths, and those of surveys and other
 //! programs.
 
-use crate::catalogue::{Definition, length};
+use crate::measurement::{Definition, length};
 
 /// Measurements beside those of [`crate::CATALOGUE`].
 pub const FURTHER: &[Definition] = &[

@@ -8,13 +8,15 @@ mod catalogue;
 mod children;
 mod foreign;
 mod further;
+mod measurement;
 mod predict;
 mod samples;
 mod survey;
 mod table;
 
-pub use catalogue::{CATALOGUE, Definition, UnitKind, definition};
+pub use catalogue::{CATALOGUE, definition};
 pub use foreign::{FREESEWING, SEAMLY, translated};
 pub use further::FURTHER;
+pub use measurement::{Definition, UnitKind};
 pub use predict::Build;
 pub use table::{MeasureError, Measured, Measurements, Origin};

@@ -1,6 +1,7 @@
 //! A table of measurements: names to values, each asked for or predicted.
 
-use crate::catalogue::{UnitKind, definition};
+use crate::catalogue::definition;
+use crate::measurement::UnitKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,6 +1,7 @@
 //! A quick check, for pieces moved by hand: which overlap, and which reach beyond the fabric.
 
-use crate::referee::{beyond_limit, sides};
+use crate::referee::sides;
+use crate::violation::beyond_limit;
 use crate::{Item, Marker, PENETRATION_LIMIT, Side, Strip};
 use toile_geometry::{Polygon, PreparedPolygon, intersection, total_area};
 

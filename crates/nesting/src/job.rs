@@ -3,14 +3,13 @@
 //! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of the usable
 //! fabric: selvedges and end margins lie outside of all that is searched.
 
-use crate::check::NestingError;
+use crate::depth_raster::DepthRaster;
+use crate::error::NestingError;
 use crate::marker::{Phase, turned};
-use crate::nofit::NoFit;
+use crate::nofit::{NoFit, most_cells};
 use crate::pair::{Pair, PairQuery};
-use crate::raster::DepthRaster;
-use crate::shape::Shape;
+use crate::shape::{SNUG, Shape};
 use crate::side_by_side::side_by_side;
-use crate::tables::most_cells;
 use crate::turns::Fineness;
 use crate::{Item, Strip};
 use std::sync::OnceLock;
@@ -46,7 +45,7 @@ pub(crate) struct Piece {
 impl Piece {
     /// Whether some shape of it fits a strip of a length \[m\] by its box.
     pub fn fits(&self, job: &Job<'_>, length: f64) -> bool {
-        let snug = length + crate::check::SNUG;
+        let snug = length + SNUG;
         self.shapes.iter().any(|&s| job.shapes[s].size.x <= snug)
     }
 }
@@ -269,12 +268,6 @@ impl<'a> Job<'a> {
         Polygon::new(ring).translated(-shape.offset)
     }
 
-    /// The losses of a moving shape at regular moves from a fixed one.
-    pub fn raster(&self, fixed: usize, moving: usize) -> &DepthRaster {
-        let number = self.pairs[fixed * self.shapes.len() + moving].raster;
-        self.rasters[number as usize].get_or_init(|| DepthRaster::new(self, fixed, moving))
-    }
-
     /// Makes all no-fit polygons, on as many threads as asked, and says so now and then; stops
     /// early if `stop` says so: those left are made when they are needed.
     pub fn prepare(
@@ -301,7 +294,7 @@ impl<'a> Job<'a> {
     pub fn can_lie(&self, piece: usize, shape: usize, phases: &[Vec2]) -> bool {
         let room = Vec2::new(self.longest(), self.height) - self.shapes[shape].size;
         let axes = self.axes(piece, shape, phases);
-        let snug = -crate::check::SNUG;
+        let snug = -SNUG;
         (0..2).all(|k| room[k] >= snug && axes[k].nearest(0.0, room[k].max(0.0)).is_some())
     }
 

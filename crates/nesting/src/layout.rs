@@ -152,7 +152,7 @@ impl Layout {
     /// Greatest moves of a shape on this strip \[m\]; nothing if it does not fit.
     pub fn room(&self, job: &Job<'_>, shape: usize) -> Option<Vec2> {
         let room = Vec2::new(self.length, job.height) - job.shapes[shape].size;
-        let snug = -crate::check::SNUG;
+        let snug = -crate::shape::SNUG;
         (room.x >= snug && room.y >= snug).then(|| room.sup(&Vec2::zeros()))
     }
 

@@ -10,10 +10,13 @@
 
 mod check;
 mod clashes;
+mod depth_raster;
+mod error;
 mod explore;
 mod job;
 mod layout;
 mod layout_marker;
+mod maps;
 mod marker;
 mod nofit;
 mod pair;
@@ -34,15 +37,17 @@ mod slide;
 mod start;
 mod tables;
 mod turns;
+mod violation;
 mod words;
 
-pub use check::{ItemProblem, MOST_PIECES, NestingError, Refusal};
 pub use clashes::{Clashes, Outside, Overlap, clashes};
+pub use error::{ItemProblem, MOST_PIECES, NestingError, Refusal};
 pub use marker::{
     Allowed, Flaw, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase, Placement,
     Pose, Strip, Stripes, Unplaced,
 };
 pub use queries::{PairQueries, with_pair_queries};
-pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};
+pub use referee::{Verdict, judge};
 pub use rolls::{RollMarker, RolledOut, make_markers_on_rolls};
 pub use search::{Budget, Control, Progress, Search, improve_marker, make_marker};
+pub use violation::{PENETRATION_LIMIT, Side, Violation};

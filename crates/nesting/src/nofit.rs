@@ -11,6 +11,15 @@ const LEAST_CELLS: usize = 16;
 /// polygon operations leaves such pairs.
 const REPEATED: f64 = 8e-9;
 
+/// Most cells along the grids of so many no-fit polygons: together they stay under some 600 MB.
+pub(crate) fn most_cells(no_fits: usize) -> usize {
+    match no_fits {
+        0..=4_000 => 64,
+        4_001..=16_000 => 32,
+        _ => 16,
+    }
+}
+
 /// An edge with the region at its left, in one line of the processor's cache.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]

@@ -1,6 +1,7 @@
 //! Pair queries of the search, made public for benchmarks and for tests against exact ones.
 
-use crate::check::{NestingError, check};
+use crate::check::check;
+use crate::error::NestingError;
 use crate::job::Job;
 use crate::pair::PairQuery;
 use crate::random::SplitMix64;

@@ -1,85 +1,15 @@
 //! The weighted loss of a piece at all places at once, on a coarse grid (after Sato, Martins, Gomes
 //! and Tsuzuki 2019): rasters of the pairs' losses, computed once each, are added up.
 
-use crate::job::Job;
+use crate::depth_raster::{DepthRaster, LANES, padded};
 use crate::random::SplitMix64;
 use pulp::{Arch, Simd, WithSimd};
 use toile_geometry::Vec2;
 
 /// Side of the blocks of which each yields its best cell.
 const BLOCK: usize = 8;
-/// Numbers added at once: rows of rasters and maps are padded to whole groups.
-const LANES: usize = 16;
 /// Part by which chance may raise a cell's score.
 const CHANCE: f32 = 0.1;
-
-/// Losses of one shape at regular moves from another.
-#[derive(Clone, Debug)]
-pub(crate) struct DepthRaster {
-    /// First column and row, in cells from no move.
-    first: [i32; 2],
-    columns: usize,
-    /// Numbers from row to row: the columns, then zeros to at least one whole group more.
-    stride: usize,
-    values: Vec<f32>,
-}
-
-/// Length of a padded row.
-fn padded(columns: usize) -> usize {
-    columns.next_multiple_of(LANES) + LANES
-}
-
-impl DepthRaster {
-    /// First and last cell of a pair's raster along an axis.
-    fn ends(job: &Job<'_>, (fixed, moving): (usize, usize), axis: usize) -> [f64; 2] {
-        let (a, b) = (&job.shapes[fixed], &job.shapes[moving]);
-        let more = job.widest_gap + job.growth();
-        [
-            ((-b.size[axis] - more) / job.spacing).floor(),
-            ((a.size[axis] + more) / job.spacing).ceil(),
-        ]
-    }
-
-    /// First cell of a pair's raster, its columns and its rows.
-    fn extent(job: &Job<'_>, pair: (usize, usize)) -> ([i32; 2], usize, usize) {
-        let [x, y] = [0, 1].map(|axis| Self::ends(job, pair, axis));
-        let count = |[low, high]: [f64; 2]| (high - low + 1.0) as usize;
-        ([x[0] as i32, y[0] as i32], count(x), count(y))
-    }
-
-    /// Numbers that the raster of a pair holds, however many.
-    pub fn numbers(job: &Job<'_>, pair: (usize, usize)) -> f64 {
-        let count = |axis: usize| {
-            let [low, high] = Self::ends(job, pair, axis);
-            high - low + 1.0
-        };
-        let lanes = LANES as f64;
-        ((count(0) / lanes).ceil() + 1.0) * lanes * count(1)
-    }
-
-    /// Samples a pair of shapes at every cell where it may lose.
-    pub fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
-        let (first, columns, rows) = Self::extent(job, (fixed, moving));
-        let stride = padded(columns);
-        let mut values = Vec::with_capacity(stride * rows);
-        for row in 0..rows {
-            for column in 0..columns {
-                let cell = Vec2::new(
-                    f64::from(first[0] + column as i32),
-                    f64::from(first[1] + row as i32),
-                );
-                values.push(job.loss(fixed, moving, cell * job.spacing) as f32);
-            }
-            values.resize((row + 1) * stride, 0.0);
-        }
-        Self {
-            first,
-            columns,
-            stride,
-            values,
-        }
-    }
-}
 
 /// The weighted loss of a shape at every cell of the room it may move in.
 pub(crate) struct LossMap {

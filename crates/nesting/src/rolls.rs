@@ -1,6 +1,7 @@
 //! Several pieces of fabric of given width and length, filled one after another.
 
-use crate::check::{NestingError, Refusal, check_locks, check_numbered};
+use crate::check::{check_locks, check_numbered};
+use crate::error::{NestingError, Refusal};
 use crate::{
     Budget, Control, Item, ItemProblem, Marker, Mirror, Progress, Search, Strip, Unplaced,
     make_marker,

@@ -1,13 +1,16 @@
 //! The referee's rules of the trade: grain, nap, pairs, folds, print, flaws, locked pieces.
 
 use crate::marker::Phase;
-use crate::referee::{Laid, Violation, beyond_limit};
-use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, PENETRATION_LIMIT, Placement, Strip};
+use crate::violation::{PENETRATION_LIMIT, Violation, beyond_limit};
+use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, Placement, Strip};
 use std::collections::BTreeMap;
 use toile_geometry::{PreparedPolygon, Vec2, intersection, total_area};
 
 /// Angles that differ by less are the same \[rad\].
 const SAME_ANGLE: f64 = 1e-9;
+
+/// Index of a placement, its item, and its outline on the strip.
+pub(crate) type Laid<'a> = (usize, &'a Item, PreparedPolygon);
 
 /// Everything that has to do with one piece, the print, and garments that run one way.
 pub(crate) fn check_rules(

@@ -1,7 +1,8 @@
 //! The search within its budget: independent searches (islands) run in parallel and sometimes take over the
 //! best layout.
 
-use crate::check::{NestingError, check};
+use crate::check::check;
+use crate::error::NestingError;
 use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;

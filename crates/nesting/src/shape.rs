@@ -1,8 +1,10 @@
 //! A piece in one orientation.
 
-use crate::check::folds_up;
-use crate::{FoldEdge, Item, Pose, Strip};
+use crate::{Fold, FoldEdge, Item, Pose, Strip};
 use toile_geometry::{Polygon, Vec2};
+
+/// Rounding allowed when a piece is exactly as wide as the fabric \[m\].
+pub(crate) const SNUG: f64 = 1e-9;
 
 /// A piece in one orientation.
 #[derive(Clone, Debug)]
@@ -74,6 +76,34 @@ impl Shape {
         };
         pose.lay(&item.outline)
     }
+}
+
+/// Extent of an item in an orientation \[m\].
+pub(crate) fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
+    let pose = Pose {
+        grain: item.grain,
+        turn,
+        mirrored,
+        translation: Vec2::zeros(),
+    };
+    pose.lay(&item.outline).bounds().size()
+}
+
+/// Whether an orientation brings the fold edge of a piece to the lower or upper fold, if it has one
+/// and if there is such a fold: `Some(None)` if there is none.
+pub(crate) fn folds_up(
+    item: &Item,
+    strip: &Strip,
+    (turn, mirrored): (f64, bool),
+) -> Option<Option<FoldEdge>> {
+    let flipped = mirrored != (turn.cos() < 0.0);
+    let lower = (item.fold_edge? == FoldEdge::Lower) != flipped;
+    let along = turn.sin().abs() < 1e-9;
+    Some(match (strip.fold, lower) {
+        (Fold::Lower | Fold::Both, true) if along => Some(FoldEdge::Lower),
+        (Fold::Both, false) if along => Some(FoldEdge::Upper),
+        _ => None,
+    })
 }
 
 /// Whether two rings have the same corners, in whatever order, to a tolerance \[m\].

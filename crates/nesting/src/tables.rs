@@ -1,9 +1,10 @@
 //! No-fit polygons and depth rasters of all pairs of shapes, within limits of memory.
 
+use crate::depth_raster::{DepthRaster, LANES, padded};
 use crate::job::Job;
+use crate::maps::{Maps, RASTER_NUMBERS};
 use crate::marker::Pose;
 use crate::pair::Pair;
-use crate::raster::DepthRaster;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -13,46 +14,11 @@ use toile_geometry::Vec2;
 const MOST_PAIRS: usize = 4_000_000;
 /// Most rows of the loss maps.
 const ROWS: f64 = 64.0;
-/// Numbers in all depth rasters together, padding included, above which loss maps get fewer rows:
-/// 128 MB.
-const RASTER_NUMBERS: f64 = 32e6;
-
-/// Limits of the resolution of loss maps.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Maps {
-    /// Fewest rows.
-    rows: f64,
-    /// Most numbers in all depth rasters together.
-    numbers: f64,
-}
-
-impl Maps {
-    /// Maps that tell places of all but the smallest pieces apart, in 128 MB.
-    pub const FINE: Self = Self {
-        rows: 24.0,
-        numbers: RASTER_NUMBERS,
-    };
-    /// Maps that still mean something, in 512 MB.
-    pub const COARSE: Self = Self {
-        rows: 8.0,
-        numbers: 4.0 * RASTER_NUMBERS,
-    };
-}
-
 /// Fewest numbers a depth raster holds: three rows of two groups.
 const LEAST_NUMBERS: f64 = 96.0;
 
 /// Stands for the polygon of two shapes that may overlap.
 const NO_POLYGON: u32 = u32::MAX;
-
-/// Most cells along the grids of so many no-fit polygons: together they stay under some 600 MB.
-pub(crate) fn most_cells(no_fits: usize) -> usize {
-    match no_fits {
-        0..=4_000 => 64,
-        4_001..=16_000 => 32,
-        _ => 16,
-    }
-}
 
 impl Job<'_> {
     /// With N(a, b) = a + (-b) and an isometry Q: N(Qa, Qb) = Q N(a, b) and N(b, a) = -N(a, b), so
@@ -141,5 +107,63 @@ impl Job<'_> {
             sum = numbers(self);
         }
         sum <= maps.numbers
+    }
+
+    /// The losses of a moving shape at regular moves from a fixed one.
+    pub fn raster(&self, fixed: usize, moving: usize) -> &DepthRaster {
+        let number = self.pairs[fixed * self.shapes.len() + moving].raster;
+        self.rasters[number as usize].get_or_init(|| DepthRaster::new(self, fixed, moving))
+    }
+}
+
+impl DepthRaster {
+    /// First and last cell of a pair's raster along an axis.
+    fn ends(job: &Job<'_>, (fixed, moving): (usize, usize), axis: usize) -> [f64; 2] {
+        let (a, b) = (&job.shapes[fixed], &job.shapes[moving]);
+        let more = job.widest_gap + job.growth();
+        [
+            ((-b.size[axis] - more) / job.spacing).floor(),
+            ((a.size[axis] + more) / job.spacing).ceil(),
+        ]
+    }
+
+    /// First cell of a pair's raster, its columns and its rows.
+    fn extent(job: &Job<'_>, pair: (usize, usize)) -> ([i32; 2], usize, usize) {
+        let [x, y] = [0, 1].map(|axis| Self::ends(job, pair, axis));
+        let count = |[low, high]: [f64; 2]| (high - low + 1.0) as usize;
+        ([x[0] as i32, y[0] as i32], count(x), count(y))
+    }
+
+    /// Numbers that the raster of a pair holds, however many.
+    fn numbers(job: &Job<'_>, pair: (usize, usize)) -> f64 {
+        let count = |axis: usize| {
+            let [low, high] = Self::ends(job, pair, axis);
+            high - low + 1.0
+        };
+        let lanes = LANES as f64;
+        ((count(0) / lanes).ceil() + 1.0) * lanes * count(1)
+    }
+
+    /// Samples a pair of shapes at every cell where it may lose.
+    fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
+        let (first, columns, rows) = Self::extent(job, (fixed, moving));
+        let stride = padded(columns);
+        let mut values = Vec::with_capacity(stride * rows);
+        for row in 0..rows {
+            for column in 0..columns {
+                let cell = Vec2::new(
+                    f64::from(first[0] + column as i32),
+                    f64::from(first[1] + row as i32),
+                );
+                values.push(job.loss(fixed, moving, cell * job.spacing) as f32);
+            }
+            values.resize((row + 1) * stride, 0.0);
+        }
+        Self {
+            first,
+            columns,
+            stride,
+            values,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The orientations a piece is tried in: all of them, or fewer where there are many pieces.
 
-use crate::check::{SNUG, extent, folds_up};
-use crate::tables::Maps;
+use crate::maps::Maps;
+use crate::shape::{SNUG, extent, folds_up};
 use crate::{Item, Mirror, Nap, Strip};
 
 /// How finely orientations are tried.

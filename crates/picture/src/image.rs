@@ -98,13 +98,6 @@ impl Image {
         }
     }
 
-    /// Draws joined segments through points in pixels, round ends, as one shape.
-    pub fn draw_path(&mut self, points: &[[f64; 2]], width: f64, colour: Rgb) {
-        let mut ink = crate::ink::Ink::default();
-        ink.path(points, 0.5 * width);
-        ink.lay_on(self, colour);
-    }
-
     /// The image as a PNG file.
     ///
     /// # Errors
@@ -183,15 +176,5 @@ mod tests {
         let stack = Image::stacked(&[image, patch], [0.5; 3]).unwrap();
         assert_eq!((stack.width, stack.height), (4, 7));
         assert_eq!(stack.pixel(3, 6), Some([128, 128, 128, 255]));
-    }
-
-    #[test]
-    fn a_path_is_as_wide_as_asked() {
-        let mut image = Image::new(40, 20, [0.0; 3]).unwrap();
-        image.draw_path(&[[5.0, 10.0], [20.0, 10.0], [35.0, 10.0]], 4.0, [1.0; 3]);
-        let column: f64 = (0..20)
-            .map(|y| f64::from(image.pixel(20, y).unwrap()[0]) / 255.0)
-            .sum();
-        assert!((column - 4.0).abs() < 0.05, "{column}");
     }
 }

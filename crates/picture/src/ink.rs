@@ -63,3 +63,27 @@ impl Ink {
         }
     }
 }
+
+impl Image {
+    /// Draws joined segments through points in pixels, round ends, as one shape.
+    pub fn draw_path(&mut self, points: &[[f64; 2]], width: f64, colour: Rgb) {
+        let mut ink = Ink::default();
+        ink.path(points, 0.5 * width);
+        ink.lay_on(self, colour);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_as_wide_as_asked() {
+        let mut image = Image::new(40, 20, [0.0; 3]).unwrap();
+        image.draw_path(&[[5.0, 10.0], [20.0, 10.0], [35.0, 10.0]], 4.0, [1.0; 3]);
+        let column: f64 = (0..20)
+            .map(|y| f64::from(image.pixel(20, y).unwrap()[0]) / 255.0)
+            .sum();
+        assert!((column - 4.0).abs() < 0.05, "{column}");
+    }
+}

@@ -133,7 +133,7 @@ impl Crate {
                     module.items.extend(name.map(|(name, _)| name.to_string()));
                 }
                 (word, Some((name, _))) if DEFINING.contains(&word) => {
-                    drop(module.items.insert(name))
+                    module.items.insert(name);
                 }
                 _ if own.len() > 1 => module.paths.push(own),
                 _ => {}
