@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3};
 use serde::{Deserialize, Serialize};
+use strum::{EnumCount, VariantArray};
 use toile_geometry::Vec3;
 
 /// The density at which the surface of a part lies.
@@ -13,7 +14,20 @@ pub const VISIBLE_RATIO: f64 = 0.541_196_100_146_197;
 
 /// A group of primitives whose densities add up. Densities never add across parts, so that an arm
 /// beside the trunk does not grow a web to it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    EnumCount,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
     /// From the crotch to the base of the neck.
@@ -32,14 +46,7 @@ pub enum Part {
 
 impl Part {
     /// All parts, in order.
-    pub const ALL: [Part; 6] = [
-        Part::Trunk,
-        Part::Head,
-        Part::LeftArm,
-        Part::RightArm,
-        Part::LeftLeg,
-        Part::RightLeg,
-    ];
+    pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// The same part of the other side; itself in the middle.
     pub fn mirrored(self) -> Self {

@@ -2,9 +2,10 @@
 
 use crate::landmark_level::Level;
 use std::ops::{Index, IndexMut};
+use strum::{EnumCount, VariantArray};
 
 /// A girth, from the head down.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray)]
 pub(crate) enum Girth {
     Head,
     Neck,
@@ -27,14 +28,7 @@ pub(crate) enum Girth {
 }
 
 impl Girth {
-    const COUNT: usize = 18;
-    pub(crate) const ALL: [Girth; Self::COUNT] = {
-        use Girth::*;
-        [
-            Head, Neck, HighBust, Bust, Underbust, Waist, HighHips, Hips, Thigh, LowerThigh, Knee,
-            Calf, Ankle, Heel, UpperArm, Elbow, Forearm, Wrist,
-        ]
-    };
+    pub(crate) const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// The measurement's name.
     pub(crate) fn name(self) -> &'static str {

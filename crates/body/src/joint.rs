@@ -1,10 +1,24 @@
 //! The joints of the body by their H-Anim names, as a tree.
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumCount, VariantArray};
 
 /// A joint, named as by the H-Anim standard (ISO/IEC 19774): the eighteen of its lowest level of
 /// articulation, and chest, neck and collars, which motions may leave out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    EnumCount,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Joint {
     /// The whole body, between the hip joints.
@@ -85,36 +99,10 @@ const TABLE: [(&str, Option<Joint>, Joint); Joint::COUNT] = {
 
 impl Joint {
     /// How many there are.
-    pub const COUNT: usize = 22;
+    pub const COUNT: usize = <Self as EnumCount>::COUNT;
 
     /// All joints, every one after the joint it hangs on.
-    pub const ALL: [Joint; Self::COUNT] = {
-        use Joint::*;
-        [
-            HumanoidRoot,
-            Sacroiliac,
-            LHip,
-            LKnee,
-            LAnkle,
-            LMidtarsal,
-            RHip,
-            RKnee,
-            RAnkle,
-            RMidtarsal,
-            Vl5,
-            Vt6,
-            Vc4,
-            Skullbase,
-            LSternoclavicular,
-            LShoulder,
-            LElbow,
-            LWrist,
-            RSternoclavicular,
-            RShoulder,
-            RElbow,
-            RWrist,
-        ]
-    };
+    pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// The name in H-Anim files.
     pub fn name(self) -> &'static str {

@@ -5,6 +5,7 @@ use crate::BodyError;
 use std::collections::HashMap;
 use std::fmt;
 use std::str::FromStr;
+use strum::{EnumCount, VariantArray};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// An axis of a mesh's file, either way.
@@ -50,7 +51,7 @@ impl FromStr for Axis {
 }
 
 /// A unit of length of a mesh's file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray)]
 pub enum MeshUnit {
     /// Metre.
     Metre,
@@ -65,13 +66,7 @@ pub enum MeshUnit {
 }
 
 impl MeshUnit {
-    const ALL: [Self; 5] = [
-        Self::Metre,
-        Self::Centimetre,
-        Self::Millimetre,
-        Self::Inch,
-        Self::Foot,
-    ];
+    const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// Its length \[m\].
     pub fn metres(self) -> f64 {

@@ -3,52 +3,54 @@
 
 use crate::world::{Kind, Object, World};
 use crate::{Compression, DrapeError, Material, MethodKind};
+use strum::{EnumCount, VariantArray, VariantNames};
 
 /// An optional feature of a world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, EnumCount, VariantArray, VariantNames,
+)]
 pub enum Feature {
     /// Solids on a prescribed motion.
+    #[strum(serialize = "moving objects")]
     MovingObjects,
     /// Vertices of cloth on a prescribed motion.
+    #[strum(serialize = "grips")]
     Grips,
     /// Impacts with a material's coefficient of restitution.
+    #[strum(serialize = "restitution")]
     Restitution,
     /// Contact of cloth with cloth.
+    #[strum(serialize = "contact of cloth with cloth")]
     ClothContact,
     /// Cloths worn over one another in a given order.
+    #[strum(serialize = "layers")]
     Layers,
     /// Damping proportional to mass.
+    #[strum(serialize = "drag per mass")]
     MassDrag,
     /// Drag of air and wind on triangles.
+    #[strum(serialize = "air and wind on triangles")]
     TriangleDrag,
     /// Viscosity, of a material or proportional to stiffness.
+    #[strum(serialize = "viscosity")]
     Viscosity,
     /// Stretch and folds that relax (internal strain).
+    #[strum(serialize = "kept strain and folds")]
     KeptStrain,
     /// Stretch stiffness that grows with strain.
+    #[strum(serialize = "hardening")]
     Hardening,
     /// A limit of stretch.
+    #[strum(serialize = "strain limit")]
     StrainLimit,
     /// Cloth without resistance to compression.
+    #[strum(serialize = "tension field")]
     TensionField,
 }
 
 impl Feature {
     /// All features with their names in messages and documentation.
-    pub const ALL: [(&'static str, Self); 12] = [
-        ("moving objects", Self::MovingObjects),
-        ("grips", Self::Grips),
-        ("restitution", Self::Restitution),
-        ("contact of cloth with cloth", Self::ClothContact),
-        ("layers", Self::Layers),
-        ("drag per mass", Self::MassDrag),
-        ("air and wind on triangles", Self::TriangleDrag),
-        ("viscosity", Self::Viscosity),
-        ("kept strain and folds", Self::KeptStrain),
-        ("hardening", Self::Hardening),
-        ("strain limit", Self::StrainLimit),
-        ("tension field", Self::TensionField),
-    ];
+    pub const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 
     /// Its name in messages and documentation.
     pub fn name(self) -> &'static str {

@@ -2,6 +2,7 @@
 
 use crate::collision::Tally;
 use crate::{DrapeError, State, System};
+use strum::{EnumCount, VariantArray, VariantNames};
 
 /// Cost of one step of a method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +57,10 @@ pub trait Method: Send {
 }
 
 /// The closed list of methods.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, EnumCount, VariantArray, VariantNames,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum MethodKind {
     /// Forward Euler: explicit, order 1, never stable without damping.
     ForwardEuler,
@@ -65,6 +69,7 @@ pub enum MethodKind {
     /// Velocity Verlet: explicit, order 2.
     VelocityVerlet,
     /// The classical Runge-Kutta method: explicit, order 4.
+    #[strum(serialize = "runge-kutta-4")]
     RungeKutta4,
     /// Velocity Verlet in patches, for cloth with linear laws: explicit, order 2, fast.
     PatchVerlet,
@@ -94,25 +99,8 @@ pub enum MethodKind {
 }
 
 impl MethodKind {
-    /// All methods with their names in files. The compiler does not check that the list is complete.
-    pub const ALL: [(&'static str, Self); 16] = [
-        ("forward-euler", Self::ForwardEuler),
-        ("symplectic-euler", Self::SymplecticEuler),
-        ("velocity-verlet", Self::VelocityVerlet),
-        ("runge-kutta-4", Self::RungeKutta4),
-        ("patch-verlet", Self::PatchVerlet),
-        ("semi-implicit-euler", Self::SemiImplicitEuler),
-        ("implicit-euler", Self::ImplicitEuler),
-        ("bdf2", Self::Bdf2),
-        ("implicit-midpoint", Self::ImplicitMidpoint),
-        ("projective-dynamics", Self::ProjectiveDynamics),
-        ("lbfgs", Self::Lbfgs),
-        ("vertex-block-descent", Self::VertexBlockDescent),
-        ("chebyshev-block-descent", Self::ChebyshevBlockDescent),
-        ("dynamic-relaxation", Self::DynamicRelaxation),
-        ("rest", Self::Rest),
-        ("xpbd", Self::Xpbd),
-    ];
+    /// All methods with their names in files.
+    pub const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 
     /// Its name in files.
     pub fn name(self) -> &'static str {

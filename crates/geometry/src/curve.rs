@@ -87,7 +87,7 @@ impl Curve {
             .all(|p| p.x.is_finite() && p.y.is_finite())
             && match *self {
                 Self::Arc { bulge, .. } => bulge.is_finite(),
-                _ => true,
+                Self::Line { .. } | Self::Quadratic { .. } | Self::Cubic { .. } => true,
             }
     }
 
@@ -202,7 +202,7 @@ impl Curve {
                 let (centre, _, sweep) = Self::arc_frame(start, end, bulge);
                 (start - centre).norm() * sweep.abs() * t
             }
-            _ => (0..LENGTH_PIECES)
+            Self::Quadratic { .. } | Self::Cubic { .. } => (0..LENGTH_PIECES)
                 .map(|k| {
                     let from = t * k as f64 / LENGTH_PIECES as f64;
                     let to = t * (k + 1) as f64 / LENGTH_PIECES as f64;

@@ -6,6 +6,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod closed_list;
 mod closest;
 mod closest_facet;
 mod curve;

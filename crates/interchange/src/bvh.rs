@@ -300,17 +300,14 @@ fn joint_named(name: &str) -> Option<Joint> {
 /// Where each joint's own bone ends, for the direction it points in.
 fn end_of(joint: Joint) -> Option<Joint> {
     use Joint::*;
-    Some(match joint {
-        LHip => LKnee,
-        LKnee => LAnkle,
-        RHip => RKnee,
-        RKnee => RAnkle,
-        LShoulder => LElbow,
-        LElbow => LWrist,
-        RShoulder => RElbow,
-        RElbow => RWrist,
-        _ => return None,
-    })
+    let limbs = [
+        [LHip, LKnee, LAnkle],
+        [RHip, RKnee, RAnkle],
+        [LShoulder, LElbow, LWrist],
+        [RShoulder, RElbow, RWrist],
+    ];
+    let mut bones = limbs.iter().flat_map(|limb| limb.windows(2));
+    bones.find(|bone| bone[0] == joint).map(|bone| bone[1])
 }
 
 /// From the file's bones to a skeleton's joints.

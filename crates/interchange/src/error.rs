@@ -20,6 +20,11 @@ impl FileError {
     /// An error of the operating system, with the remedy that fits its kind.
     pub fn from_io(action: &'static str, path: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
+        // Kinds of errors of the system: others than these may come with every version of it.
+        #[expect(
+            clippy::wildcard_enum_match_arm,
+            reason = "the system may tell kinds that nobody knows yet"
+        )]
         let hint = match error.kind() {
             ErrorKind::NotFound => "check the spelling of the path",
             ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {

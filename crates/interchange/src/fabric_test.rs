@@ -82,9 +82,9 @@ fn json(text: &str) -> Result<Values, FormatError> {
             let known = NAMES.iter().find(|(g, n)| g == group && n == name);
             let &(_, known) = known.ok_or_else(|| unknown(&place, name))?;
             let number = |value: &Value| value.as_f64();
-            let pair = match value {
-                Value::Array(pair) if pair.len() == 2 => number(&pair[0]).zip(number(&pair[1])),
-                other => number(other).map(|v| (v, v)),
+            let pair = match value.as_array().map(Vec::as_slice) {
+                Some([warp, weft]) => number(warp).zip(number(weft)),
+                _ => number(value).map(|v| (v, v)),
             };
             let (warp, weft) = pair.ok_or_else(|| no_number(place))?;
             values.push((known, [warp, weft]));

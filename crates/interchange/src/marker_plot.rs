@@ -140,7 +140,16 @@ pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook)
         let dash = match stroke.layer {
             Layer::Sew => 0.006,
             Layer::Fold => 0.02,
-            _ => 0.0,
+            Layer::Fabric
+            | Layer::Margin
+            | Layer::Print
+            | Layer::Flaw
+            | Layer::Cut
+            | Layer::Line
+            | Layer::Notch
+            | Layer::Grain
+            | Layer::Drill
+            | Layer::Text => 0.0,
         };
         let width = match stroke.layer.is_cut() {
             true => look.width,

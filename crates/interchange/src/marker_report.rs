@@ -74,7 +74,7 @@ impl Report {
     fn word(&mut self, text: &str, (x, align): Column, (size, ink): (f64, Ink)) {
         let room = match align {
             Align::Left => PAGE[0] - BORDER - x,
-            _ => x - BORDER,
+            Align::Middle | Align::Right => x - BORDER,
         };
         self.page.text(PdfText {
             text: &fitted(text, size, room),

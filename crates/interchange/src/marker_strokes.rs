@@ -2,12 +2,16 @@
 //! 0, y across from the lower side.
 
 use crate::{MarkerDrawing, MarkerPiece};
+use strum::{EnumCount, IntoStaticStr, VariantArray};
 use toile_cut::{StrokeKind, Words};
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::Fold;
 
 /// The purpose of a line or a text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, EnumCount, VariantArray, IntoStaticStr,
+)]
+#[strum(serialize_all = "UPPERCASE")]
 pub(crate) enum Layer {
     Fabric,
     Margin,
@@ -24,37 +28,11 @@ pub(crate) enum Layer {
 }
 
 impl Layer {
-    pub const ALL: [Self; 12] = [
-        Self::Fabric,
-        Self::Margin,
-        Self::Fold,
-        Self::Print,
-        Self::Flaw,
-        Self::Cut,
-        Self::Sew,
-        Self::Line,
-        Self::Notch,
-        Self::Grain,
-        Self::Drill,
-        Self::Text,
-    ];
+    pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// Name in files.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Fabric => "FABRIC",
-            Self::Margin => "MARGIN",
-            Self::Fold => "FOLD",
-            Self::Print => "PRINT",
-            Self::Flaw => "FLAW",
-            Self::Cut => "CUT",
-            Self::Sew => "SEW",
-            Self::Line => "LINE",
-            Self::Notch => "NOTCH",
-            Self::Grain => "GRAIN",
-            Self::Drill => "DRILL",
-            Self::Text => "TEXT",
-        }
+        self.into()
     }
 
     /// Class of its lines in SVG.

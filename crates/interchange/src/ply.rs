@@ -201,7 +201,7 @@ impl Data<'_> {
         for (k, byte) in bytes.iter().enumerate() {
             let k = match self.coding {
                 Coding::Big => number.length - 1 - k,
-                _ => k,
+                Coding::Text | Coding::Little => k,
             };
             eight[k] = *byte;
         }

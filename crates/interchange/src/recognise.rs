@@ -139,7 +139,23 @@ impl FileKind {
             Self::Scene => Some("`toile run` takes it"),
             Self::Journal => Some("`toile replay` takes it"),
             Self::Fabric => Some("`toile make --fabric` and scenes take it"),
-            _ => None,
+            Self::Empty
+            | Self::Utf16
+            | Self::Picture
+            | Self::Pdf
+            | Self::PostScript
+            | Self::Archive
+            | Self::Glb
+            | Self::Dxf
+            | Self::Svg
+            | Self::Html
+            | Self::Hpgl
+            | Self::ValentinaPattern
+            | Self::SeamlyPattern
+            | Self::FreeSewingPattern
+            | Self::OtherXml
+            | Self::Stl
+            | Self::Report => None,
         }
     }
 
@@ -149,7 +165,34 @@ impl FileKind {
             Self::Empty => Some("it holds nothing: it may not have been saved"),
             Self::Utf16 => Some("save it as UTF-8"),
             Self::Archive => Some("unpack it first"),
-            _ => None,
+            Self::Picture
+            | Self::Pdf
+            | Self::PostScript
+            | Self::Glb
+            | Self::Dxf
+            | Self::Svg
+            | Self::Html
+            | Self::Hpgl
+            | Self::ValentinaPattern
+            | Self::SeamlyPattern
+            | Self::FreeSewingPattern
+            | Self::OtherXml
+            | Self::Stl
+            | Self::Measurements
+            | Self::Obj
+            | Self::Ply
+            | Self::Bvh
+            | Self::X3d
+            | Self::Pattern
+            | Self::GarmentCode
+            | Self::Mannequin
+            | Self::Marker
+            | Self::MarkerSettings
+            | Self::NestingInstance
+            | Self::Scene
+            | Self::Report
+            | Self::Journal
+            | Self::Fabric => None,
         }
     }
 }

@@ -291,16 +291,19 @@ fn bones(centres: &BTreeMap<Joint, Vec3>, skeleton: &Skeleton) -> Vec<Bone> {
         Joint::LElbow,
     ];
     let whole = needed.iter().all(|joint| centres.contains_key(joint));
-    let hanging = |joint: Joint| match joint {
-        Joint::LKnee
-        | Joint::RKnee
-        | Joint::LAnkle
-        | Joint::RAnkle
-        | Joint::LElbow
-        | Joint::RElbow
-        | Joint::LWrist
-        | Joint::RWrist => -Vec3::y() * skeleton.offset(joint).norm(),
-        _ => skeleton.offset(joint),
+    let hang = [
+        Joint::LKnee,
+        Joint::RKnee,
+        Joint::LAnkle,
+        Joint::RAnkle,
+        Joint::LElbow,
+        Joint::RElbow,
+        Joint::LWrist,
+        Joint::RWrist,
+    ];
+    let hanging = |joint: Joint| match hang.contains(&joint) {
+        true => -Vec3::y() * skeleton.offset(joint).norm(),
+        false => skeleton.offset(joint),
     };
     let mut place = BTreeMap::new();
     for joint in Joint::ALL {

@@ -111,7 +111,7 @@ pub(crate) fn read(text: &str) -> Result<Scene, FormatError> {
                 k = next;
                 continue;
             }
-            _ => {}
+            Token::Word(_) | Token::Quoted(_) | Token::Bracket(_) => {}
         }
         k += 1;
     }
@@ -155,7 +155,7 @@ fn after_brackets(tokens: &[(usize, Token)], from: usize) -> Option<usize> {
         match token {
             Token::Bracket('{' | '[') => depth += 1,
             Token::Bracket(_) => depth -= 1,
-            _ => {}
+            Token::Word(_) | Token::Quoted(_) => {}
         }
         if depth <= 0 {
             return Some(if k == from { k } else { k + 1 });

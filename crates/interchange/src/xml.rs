@@ -44,14 +44,16 @@ impl<'a> Xml<'a> {
         let document = Document::parse_with_options(body, options).map_err(|error| {
             let place = error.pos();
             let what = error.to_string().replace(&format!(" at {place}"), "");
-            match error {
-                Error::NoRootNode | Error::UnclosedRootNode | Error::UnexpectedEndOfStream => {
-                    refuse(
-                        body.trim_end().matches('\n').count() + 1,
-                        format!("the file ends too early: {what}"),
-                    )
-                }
-                _ => refuse(place.row as usize, what),
+            let ends_early = matches!(
+                error,
+                Error::NoRootNode | Error::UnclosedRootNode | Error::UnexpectedEndOfStream
+            );
+            match ends_early {
+                true => refuse(
+                    body.trim_end().matches('\n').count() + 1,
+                    format!("the file ends too early: {what}"),
+                ),
+                false => refuse(place.row as usize, what),
             }
         })?;
         let starts = body.match_indices('\n').map(|(at, _)| at + 1).collect();

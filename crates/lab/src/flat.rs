@@ -5,11 +5,13 @@ use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
 };
 use std::collections::BTreeMap;
+use strum::{EnumCount, VariantArray, VariantNames};
 use toile_drape::{Cloth, Material};
 use toile_geometry::{Vec2, Vec3};
 
 /// How a sheet is cut into triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray, VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub enum MeshKind {
     /// Squares, all cut along the same diagonal.
     Right,
@@ -23,12 +25,7 @@ pub enum MeshKind {
 
 impl MeshKind {
     /// Every kind with its name.
-    pub const ALL: [(&'static str, Self); 4] = [
-        ("right", Self::Right),
-        ("alternating", Self::Alternating),
-        ("delaunay", Self::Delaunay),
-        ("slivers", Self::Slivers),
-    ];
+    pub const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 }
 
 /// A flat sheet: points in its plane [m], and triangles, all of one hand.

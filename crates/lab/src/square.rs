@@ -4,11 +4,13 @@
 use crate::LabError;
 use crate::freeze::ball;
 use std::sync::Arc;
+use strum::{EnumCount, VariantArray, VariantNames};
 use toile_drape::{Cloth, Collider, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// The scene of a square.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray, VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub(crate) enum Square {
     /// It lies flat, held at two corners of one side, and swings down.
     Hang,
@@ -25,8 +27,7 @@ const START: f64 = 0.3;
 
 impl Square {
     /// Both with their names.
-    pub(crate) const ALL: [(&'static str, Self); 2] =
-        [("hang", Self::Hang), ("sphere", Self::Sphere)];
+    pub(crate) const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 
     /// The model and its state at the start.
     ///

@@ -90,7 +90,7 @@ impl EdgeOrigin {
                 role: Role::Leg,
                 index,
             } => Some((by, index)),
-            _ => None,
+            Name::Drawn(_) | Name::Made { .. } => None,
         }
     }
 }
@@ -217,12 +217,17 @@ impl Worn {
                     BodyPart::RightArm => BodyPart::LeftArm,
                     BodyPart::LeftLeg => BodyPart::RightLeg,
                     BodyPart::RightLeg => BodyPart::LeftLeg,
-                    middle => middle,
+                    middle @ (BodyPart::Trunk | BodyPart::Head) => middle,
                 },
                 facing: match facing {
                     Facing::Left if is_middle(part) => Facing::Right,
                     Facing::Right if is_middle(part) => Facing::Left,
-                    other => other,
+                    other @ (Facing::Front
+                    | Facing::Back
+                    | Facing::Left
+                    | Facing::Right
+                    | Facing::Around
+                    | Facing::Over) => other,
                 },
                 level,
             },

@@ -49,6 +49,18 @@ macro_rules! ids {
                 }
             }
 
+            /// Of a part of another kind the part itself comes back.
+            impl TryFrom<PartId> for $name {
+                type Error = PartId;
+
+                fn try_from(part: PartId) -> Result<Self, PartId> {
+                    if let PartId::$variant(id) = part {
+                        return Ok(id);
+                    }
+                    Err(part)
+                }
+            }
+
             impl From<$name> for PartId {
                 fn from(id: $name) -> Self {
                     Self::$variant(id)

@@ -36,7 +36,7 @@ impl Number {
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Value(value) => Some(*value),
-            _ => None,
+            Self::Formula(_) | Self::Adjusted { .. } | Self::PerSize { .. } => None,
         }
     }
 

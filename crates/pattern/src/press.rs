@@ -85,7 +85,7 @@ fn pleat_arrows(
         {
             at(line)
         }
-        _ => None,
+        Name::Drawn(_) | Name::Made { .. } => None,
     });
     for turn in turns {
         // From where the fold is laid to, outward, lies what is under the part beside it; under a box

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use strum::{EnumCount, IntoStaticStr, VariantArray};
 use toile_marker::MarkerFormat;
 
 /// What is written where.
@@ -30,8 +31,22 @@ impl Export {
 }
 
 /// Something that is exported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    EnumCount,
+    VariantArray,
+    IntoStaticStr,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum ExportFormat {
     /// `garment.glb`: the garment as binary glTF, UVs in metres.
     Glb,
@@ -67,43 +82,11 @@ pub enum ExportFormat {
 
 impl ExportFormat {
     /// All of them, in the order in which they are told.
-    pub const ALL: [Self; 15] = [
-        Self::Glb,
-        Self::Obj,
-        Self::Drape,
-        Self::Fit,
-        Self::MarkerSvg,
-        Self::MarkerJson,
-        Self::MarkerDxf,
-        Self::MarkerPdf,
-        Self::MarkerReport,
-        Self::MarkerPlt,
-        Self::MarkerInstance,
-        Self::PiecesPdf,
-        Self::PiecesSvg,
-        Self::Report,
-        Self::Journal,
-    ];
+    pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// Its name in journals and on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Glb => "glb",
-            Self::Obj => "obj",
-            Self::Drape => "drape",
-            Self::Fit => "fit",
-            Self::MarkerSvg => "marker-svg",
-            Self::MarkerJson => "marker-json",
-            Self::MarkerDxf => "marker-dxf",
-            Self::MarkerPdf => "marker-pdf",
-            Self::MarkerReport => "marker-report",
-            Self::MarkerPlt => "marker-plt",
-            Self::MarkerInstance => "marker-instance",
-            Self::PiecesPdf => "pieces-pdf",
-            Self::PiecesSvg => "pieces-svg",
-            Self::Report => "report",
-            Self::Journal => "journal",
-        }
+        self.into()
     }
 
     /// The format of that name.

@@ -4,6 +4,7 @@
 use crate::drape::Drape;
 use crate::{Command, OtherGarment, Quality, Session, SessionError, Watcher};
 use std::path::PathBuf;
+use strum::{EnumCount, VariantArray, VariantNames};
 use toile_body::{Clip, Figure, Mannequin, Skeleton};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_picture::{
@@ -22,26 +23,25 @@ pub enum Adjustment {
 }
 
 /// What may be asked of a figure in real time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray, VariantNames)]
 pub enum RealtimeKey {
     /// Stand.
+    #[strum(serialize = "down")]
     Stand,
     /// Walk.
+    #[strum(serialize = "up")]
     Walk,
     /// Run.
+    #[strum(serialize = "right")]
     Run,
     /// The other adjustment.
+    #[strum(serialize = "g")]
     Switch,
 }
 
 impl RealtimeKey {
     /// All, each with the name of the key that asks for it.
-    pub const ALL: [(&str, Self); 4] = [
-        ("down", Self::Stand),
-        ("up", Self::Walk),
-        ("right", Self::Run),
-        ("g", Self::Switch),
-    ];
+    pub const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 
     /// The one of a key's name.
     pub fn named(name: &str) -> Option<Self> {

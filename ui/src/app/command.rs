@@ -2,6 +2,7 @@
 
 use super::ToileApp;
 use egui::{Key, KeyboardShortcut, Modifiers};
+use strum::{EnumCount, IntoStaticStr, VariantArray};
 
 /// A command of the window.
 pub struct UiCommand {
@@ -22,7 +23,7 @@ pub struct UiCommand {
 }
 
 /// Menus, in the order of the menu bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray, IntoStaticStr)]
 pub enum Menu {
     /// Files.
     File,
@@ -44,29 +45,11 @@ pub enum Menu {
 
 impl Menu {
     /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::File,
-        Self::Edit,
-        Self::View,
-        Self::Draw,
-        Self::Panel,
-        Self::Sew,
-        Self::Marker,
-        Self::Garment,
-    ];
+    pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Edit => "Edit",
-            Self::View => "View",
-            Self::Draw => "Draw",
-            Self::Panel => "Panel",
-            Self::Sew => "Sew",
-            Self::Marker => "Marker",
-            Self::Garment => "Garment",
-        }
+        self.into()
     }
 }
 

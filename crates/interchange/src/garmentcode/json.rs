@@ -119,11 +119,9 @@ impl<'a> At<'a> {
 
     /// A finite number of a size that a garment may need.
     pub fn number(&self) -> Result<f64, FormatError> {
-        let number = match self.value {
-            // Python writes flags as true and false or as 1 and 0.
-            Value::Bool(flag) => Some(f64::from(u8::from(*flag))),
-            value => value.as_f64(),
-        };
+        // Python writes flags as true and false or as 1 and 0.
+        let flag = self.value.as_bool().map(|flag| f64::from(u8::from(flag)));
+        let number = flag.or_else(|| self.value.as_f64());
         let number = number.ok_or_else(|| self.expected("a number"))?;
         if !number.is_finite() || number.abs() >= 1e7 {
             return Err(self.error(

@@ -66,7 +66,9 @@ impl<'a> Item<'a> {
     pub fn text(&self) -> Result<&'a str, FormatError> {
         match &self.node.value {
             Value::Text(text) => Ok(text),
-            _ => Err(self.wrong_kind("a text", "write it in quotes")),
+            Value::Null | Value::Flag(_) | Value::Number(_) | Value::List(_) | Value::Object(_) => {
+                Err(self.wrong_kind("a text", "write it in quotes"))
+            }
         }
     }
 
@@ -91,7 +93,9 @@ impl<'a> Item<'a> {
     pub fn flag(&self) -> Result<bool, FormatError> {
         match self.node.value {
             Value::Flag(flag) => Ok(flag),
-            _ => Err(self.wrong_kind("true or false", "write true or false without quotes")),
+            Value::Null | Value::Number(_) | Value::Text(_) | Value::List(_) | Value::Object(_) => {
+                Err(self.wrong_kind("true or false", "write true or false without quotes"))
+            }
         }
     }
 
@@ -105,7 +109,9 @@ impl<'a> Item<'a> {
                     path: format!("{}[{k}]", self.path),
                 })
                 .collect()),
-            _ => Err(self.wrong_kind("a list", "write it in [ ]")),
+            Value::Null | Value::Flag(_) | Value::Number(_) | Value::Text(_) | Value::Object(_) => {
+                Err(self.wrong_kind("a list", "write it in [ ]"))
+            }
         }
     }
 
@@ -128,7 +134,9 @@ impl<'a> Item<'a> {
                 .iter()
                 .map(|(name, node)| (name.as_str(), self.child(node, name)))
                 .collect()),
-            _ => Err(self.wrong_kind("an object", "write it in { }")),
+            Value::Null | Value::Flag(_) | Value::Number(_) | Value::Text(_) | Value::List(_) => {
+                Err(self.wrong_kind("an object", "write it in { }"))
+            }
         }
     }
 
@@ -178,7 +186,9 @@ impl<'a> Item<'a> {
                 item: self.clone(),
                 fields,
             }),
-            _ => Err(self.wrong_kind("an object", "write it in { }")),
+            Value::Null | Value::Flag(_) | Value::Number(_) | Value::Text(_) | Value::List(_) => {
+                Err(self.wrong_kind("an object", "write it in { }"))
+            }
         }
     }
 
@@ -215,7 +225,9 @@ impl<'a> Item<'a> {
                 }
                 _ => Err(self.wrong_kind(wanted, "write a number, or a formula in quotes")),
             },
-            _ => Err(self.wrong_kind(wanted, "write a number, or a formula in quotes")),
+            Value::Null | Value::Flag(_) | Value::List(_) => {
+                Err(self.wrong_kind(wanted, "write a number, or a formula in quotes"))
+            }
         }
     }
 
@@ -235,7 +247,9 @@ impl<'a> Item<'a> {
     pub fn plain_value(&self) -> Result<f64, FormatError> {
         match &self.node.value {
             Value::Number(raw) => units::read_plain(raw).ok_or_else(|| self.not_finite()),
-            _ => Err(self.wrong_kind("a number", "write it without quotes")),
+            Value::Null | Value::Flag(_) | Value::Text(_) | Value::List(_) | Value::Object(_) => {
+                Err(self.wrong_kind("a number", "write it without quotes"))
+            }
         }
     }
 
@@ -258,7 +272,9 @@ impl<'a> Item<'a> {
                     "write a whole number",
                 )
             }),
-            _ => Err(self.wrong_kind("a whole number", "write it without quotes")),
+            Value::Null | Value::Flag(_) | Value::Text(_) | Value::List(_) | Value::Object(_) => {
+                Err(self.wrong_kind("a whole number", "write it without quotes"))
+            }
         }
     }
 

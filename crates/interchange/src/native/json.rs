@@ -412,7 +412,12 @@ fn lay_out(value: &Value, indent: usize, used: usize, text: &mut String) {
             new_line(text, indent);
             text.push('}');
         }
-        _ => {
+        Value::Null
+        | Value::Flag(_)
+        | Value::Number(_)
+        | Value::Text(_)
+        | Value::List(_)
+        | Value::Object(_) => {
             inline(value, usize::MAX, text);
         }
     }

@@ -16,7 +16,9 @@ pub fn measurements(
     for (name, entry) in item.entries()? {
         let predicted = match &entry.node.value {
             Value::Object(fields) => fields.iter().any(|(name, _)| name == "predicted"),
-            _ => false,
+            Value::Null | Value::Flag(_) | Value::Number(_) | Value::Text(_) | Value::List(_) => {
+                false
+            }
         };
         let (entry, origin) = if predicted {
             let fields = entry.object(&["predicted"], notes)?;

@@ -123,7 +123,12 @@ pub(crate) fn piece_marks(
             let told = match stroke.kind {
                 StrokeKind::Fold => Some(("fold of the cloth", FOLD_LETTERS, PURPLE)),
                 StrokeKind::Grain => Some(("grain", GRAIN_LETTERS, BLUE)),
-                _ => None,
+                StrokeKind::Cut
+                | StrokeKind::Sew
+                | StrokeKind::Inside
+                | StrokeKind::Notch
+                | StrokeKind::Mark
+                | StrokeKind::Drill => None,
             };
             if let ([from, to], Some(told), true, Some(lines)) =
                 (&stroke.points[..], told, own, clear_of)

@@ -1,5 +1,6 @@
 //! Paper, and the division of a drawing over several sheets.
 
+use strum::{EnumCount, IntoStaticStr, VariantArray};
 use toile_geometry::{Bounds2, Vec2};
 
 /// White that printers leave at every side \[m\].
@@ -10,7 +11,8 @@ pub(crate) const OVERLAP: f64 = 0.010;
 const BORDER: f64 = 0.010;
 
 /// The paper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, EnumCount, VariantArray, IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
 pub enum Paper {
     /// Sheets of 210 x 297 mm.
     A4,
@@ -26,23 +28,11 @@ pub enum Paper {
 
 impl Paper {
     /// Every kind, in the order in which it is offered.
-    pub const ALL: [Self; 5] = [
-        Self::A4,
-        Self::Letter,
-        Self::A0,
-        Self::Page,
-        Self::Projector,
-    ];
+    pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::A4 => "a4",
-            Self::Letter => "letter",
-            Self::A0 => "a0",
-            Self::Page => "page",
-            Self::Projector => "projector",
-        }
+        self.into()
     }
 
     /// Size of a sheet \[m\]; nothing for one page as large as it takes.

@@ -106,7 +106,7 @@ fn legend(job: &PrintJob, at: Vec2) -> Vec<Mark> {
         rows.extend(sizes.map(|(k, layer)| {
             let kind = match job.lines {
                 Lines::Sew => StrokeKind::Sew,
-                _ => StrokeKind::Cut,
+                Lines::Cut | Lines::Both => StrokeKind::Cut,
             };
             (kind, k, layer.name.clone())
         }));

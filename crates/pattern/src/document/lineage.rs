@@ -65,7 +65,16 @@ impl Pattern {
             PartId::Line(id) => own.line(id).is_some(),
             PartId::Notch(id) => own.notch(id).is_some(),
             PartId::Operation(id) => own.step_of(id).is_some(),
-            _ => false,
+            PartId::Size(_)
+            | PartId::Variable(_)
+            | PartId::Fabric(_)
+            | PartId::Sheet(_)
+            | PartId::Point(_)
+            | PartId::Curve(_)
+            | PartId::Panel(_)
+            | PartId::Seam(_)
+            | PartId::Marker(_)
+            | PartId::Guide(_) => false,
         };
         let lineage = self.lineage(self.panel(panel)?);
         lineage.into_iter().find(|own| has(own))
@@ -124,7 +133,7 @@ impl Pattern {
     ) -> Option<usize> {
         let at = match mark {
             Mark::Notch(id) => &self.notch_of(panel, *id)?.at,
-            own => own,
+            own @ (Mark::Along { .. } | Mark::Between { .. } | Mark::Corner(_)) => own,
         };
         let makers = at.corners().into_iter().filter_map(|corner| corner.maker());
         makers

@@ -152,8 +152,7 @@ impl Default for OperationKind {
 fields!(
     OperationKind,
     |self, v| {
-        let word: &'static str = (&*self).into();
-        let own = group(word);
+        let own = group(self.key());
         match self {
             Self::Dart { line, mouth, intake, apex, pressed, trued, keeps_length } => v.object(own, &mut |v| {
                 v.part(group("line"), line);
@@ -208,7 +207,7 @@ fields!(
             }),
         }
     },
-    kinds: |kind| Told::Field(kind.into()),
+    kinds: |kind| Told::Field(kind.key()),
     clash: Clash {
         none: Some([
             "the operation is none that this version knows".into(),
@@ -461,16 +460,29 @@ impl OperationKind {
         }
     }
 
+    /// Both ends of the stretch that a fold unfolds.
+    pub fn fold_ends(&self) -> Option<&[Mark; 2]> {
+        let Self::Fold { ends, .. } = self else {
+            return None;
+        };
+        Some(ends)
+    }
+
     /// The sheet whose lines it brings in.
     pub fn sheet(&self) -> Option<SheetId> {
-        match self {
-            Self::Insert { sheet } => Some(*sheet),
-            _ => None,
-        }
+        let Self::Insert { sheet } = self else {
+            return None;
+        };
+        Some(*sheet)
     }
 }
 
 impl OperationKind {
+    /// The field of files that holds it.
+    fn key(&self) -> &'static str {
+        self.into()
+    }
+
     /// Whether it redraws an edge across darts that are trued: a dart, or the pivot of one.
     pub fn may_true(&self) -> bool {
         matches!(self, Self::Dart { trued: true, .. } | Self::Pivot { .. })

@@ -213,7 +213,15 @@ impl Pattern {
             PartId::Panel(id) => self.panel(id).is_some(),
             PartId::Fabric(id) => self.fabric(id).is_some(),
             PartId::Curve(id) => self.curve(id).is_some(),
-            _ => false,
+            // Asked of seldom: they are looked for among all parts.
+            PartId::Size(_)
+            | PartId::Line(_)
+            | PartId::Edge(_)
+            | PartId::Notch(_)
+            | PartId::Operation(_)
+            | PartId::Seam(_)
+            | PartId::Marker(_)
+            | PartId::Guide(_) => false,
         }
     }
 }

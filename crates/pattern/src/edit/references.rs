@@ -119,7 +119,14 @@ impl Entity {
                 .collect::<BTreeSet<_>>()
                 .into_iter()
                 .collect(),
-            _ => found,
+            Self::Head(_)
+            | Self::Size(_)
+            | Self::Variable(_)
+            | Self::Fabric(_)
+            | Self::Sheet(_)
+            | Self::Panel(_)
+            | Self::Seam(_)
+            | Self::Guide(_) => found,
         }
     }
 

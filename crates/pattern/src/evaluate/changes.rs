@@ -178,7 +178,12 @@ impl Evaluation {
             node,
             definition: match node {
                 Node::Word(_) => Definition::Word,
-                _ => Definition::Missing,
+                Node::Variable(_)
+                | Node::Point(_)
+                | Node::Curve(_)
+                | Node::Edge(_)
+                | Node::Stage(..)
+                | Node::Seam(_) => Definition::Missing,
             },
             needs: Vec::new(),
             needed_by: Vec::new(),

@@ -91,7 +91,12 @@ impl Evaluation {
             Definition::Seam(seam) => seam.name.clone(),
             Definition::Missing | Definition::Word => match self.nodes[k as usize].node {
                 Node::Word(word) => self.word_texts[word as usize].to_string(),
-                _ => format!("?{k}"),
+                Node::Variable(_)
+                | Node::Point(_)
+                | Node::Curve(_)
+                | Node::Edge(_)
+                | Node::Stage(..)
+                | Node::Seam(_) => format!("?{k}"),
             },
         }
     }

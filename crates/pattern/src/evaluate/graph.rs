@@ -146,7 +146,12 @@ impl Evaluation {
                         .min_by_key(|&w| match self.nodes[w as usize].node {
                             // A word is in a cycle by the variable that it names.
                             Node::Word(_) => (true, Node::Word(0)),
-                            node => (false, node),
+                            node @ (Node::Variable(_)
+                            | Node::Point(_)
+                            | Node::Curve(_)
+                            | Node::Edge(_)
+                            | Node::Stage(..)
+                            | Node::Seam(_)) => (false, node),
                         });
                 for w in component {
                     on_stack[w as usize] = false;

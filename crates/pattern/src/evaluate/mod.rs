@@ -93,7 +93,12 @@ impl Evaluation {
         // A word that nothing names any more is nobody's concern.
         let is_used = |state: &NodeState| match state.node {
             Node::Word(_) => !state.needed_by.is_empty(),
-            _ => true,
+            Node::Variable(_)
+            | Node::Point(_)
+            | Node::Curve(_)
+            | Node::Edge(_)
+            | Node::Stage(..)
+            | Node::Seam(_) => true,
         };
         let states = self.nodes.iter().map(|state| &**state);
         let told = states.filter(|state| !state.diagnostics.is_empty() && is_used(state));
@@ -111,7 +116,12 @@ impl Evaluation {
     fn place_in_order(&self, state: &NodeState) -> Result<Node, &str> {
         match state.node {
             Node::Word(word) => Err(&self.word_texts[word as usize]),
-            node => Ok(node),
+            node @ (Node::Variable(_)
+            | Node::Point(_)
+            | Node::Curve(_)
+            | Node::Edge(_)
+            | Node::Stage(..)
+            | Node::Seam(_)) => Ok(node),
         }
     }
 
@@ -119,7 +129,7 @@ impl Evaluation {
     pub fn point(&self, id: PointId) -> Option<Vec2> {
         match self.value(Node::Point(id))? {
             Value::Point(place) => Some(*place),
-            _ => None,
+            Value::Number(_) | Value::Path(_) | Value::Stage(_) | Value::Seam(_) => None,
         }
     }
 
@@ -136,7 +146,7 @@ impl Evaluation {
     pub fn curve(&self, id: crate::CurveId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Curve(id))? {
             Value::Path(path) => Some(path),
-            _ => None,
+            Value::Number(_) | Value::Point(_) | Value::Stage(_) | Value::Seam(_) => None,
         }
     }
 
@@ -144,7 +154,7 @@ impl Evaluation {
     pub fn edge(&self, id: crate::EdgeId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Edge(id))? {
             Value::Path(path) => Some(path),
-            _ => None,
+            Value::Number(_) | Value::Point(_) | Value::Stage(_) | Value::Seam(_) => None,
         }
     }
 
@@ -156,7 +166,7 @@ impl Evaluation {
     ) -> Option<&Arc<crate::Stage>> {
         match self.value(Node::Stage(panel, after))? {
             Value::Stage(stage) => Some(stage),
-            _ => None,
+            Value::Number(_) | Value::Point(_) | Value::Path(_) | Value::Seam(_) => None,
         }
     }
 
@@ -171,7 +181,7 @@ impl Evaluation {
         let node = Node::Stage(panel.id, panel.operations.last().map(|o| o.id));
         match self.state(node)?.last_good.as_ref()? {
             Value::Stage(stage) => Some(stage),
-            _ => None,
+            Value::Number(_) | Value::Point(_) | Value::Path(_) | Value::Seam(_) => None,
         }
     }
 
@@ -179,7 +189,7 @@ impl Evaluation {
     pub fn variable(&self, id: crate::VariableId) -> Option<(f64, i8)> {
         match self.value(Node::Variable(id))? {
             Value::Number(quantity) => Some((quantity.value, quantity.power)),
-            _ => None,
+            Value::Point(_) | Value::Path(_) | Value::Stage(_) | Value::Seam(_) => None,
         }
     }
 
@@ -191,7 +201,7 @@ impl Evaluation {
     pub(crate) fn seam_value(&self, id: crate::SeamId) -> Option<&Arc<SeamValue>> {
         match self.value(Node::Seam(id))? {
             Value::Seam(value) => Some(value),
-            _ => None,
+            Value::Number(_) | Value::Point(_) | Value::Path(_) | Value::Stage(_) => None,
         }
     }
 

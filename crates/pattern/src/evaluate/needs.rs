@@ -169,7 +169,7 @@ impl<'d> Needs<'d> {
                 let notch = self.pattern.notch_of(panel, *id);
                 notch.and_then(|notch| notch.at.number())
             }
-            own => own.number(),
+            own @ (Mark::Along { .. } | Mark::Between { .. } | Mark::Corner(_)) => own.number(),
         });
         let first = self.pattern.first_step(panel, &lineage, mark);
         let before = before.map_or(usize::MAX, |step| lineage.base + step);

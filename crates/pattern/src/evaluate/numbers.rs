@@ -171,7 +171,7 @@ impl<'e> Computation<'e> {
                 value: found.value,
                 ..self.variable(usual)?
             }),
-            _ => Ok(found),
+            Number::Value(_) | Number::Formula(_) | Number::Adjusted { .. } => Ok(found),
         }
     }
 
@@ -231,7 +231,9 @@ impl<'e> Computation<'e> {
     pub fn point_at(&self, id: crate::PointId) -> Result<Vec2, Failure> {
         match self.needed(Node::Point(id))? {
             Value::Point(place) => Ok(*place),
-            _ => Err(missing(Node::Point(id))),
+            Value::Number(_) | Value::Path(_) | Value::Stage(_) | Value::Seam(_) => {
+                Err(missing(Node::Point(id)))
+            }
         }
     }
 
@@ -239,7 +241,9 @@ impl<'e> Computation<'e> {
     pub fn path(&self, node: Node) -> Result<&std::sync::Arc<Path>, Failure> {
         match self.needed(node)? {
             Value::Path(path) => Ok(path),
-            _ => Err(missing(node)),
+            Value::Number(_) | Value::Point(_) | Value::Stage(_) | Value::Seam(_) => {
+                Err(missing(node))
+            }
         }
     }
 
@@ -247,7 +251,9 @@ impl<'e> Computation<'e> {
     pub fn stage(&self, node: Node) -> Result<&std::sync::Arc<crate::Stage>, Failure> {
         match self.needed(node)? {
             Value::Stage(stage) => Ok(stage),
-            _ => Err(missing(node)),
+            Value::Number(_) | Value::Point(_) | Value::Path(_) | Value::Seam(_) => {
+                Err(missing(node))
+            }
         }
     }
 }
@@ -328,7 +334,9 @@ impl Environment for Reading<'_, '_> {
     fn variable(&self, id: VariableId) -> Result<Quantity, Failure> {
         match self.0.needed(Node::Variable(id))? {
             Value::Number(quantity) => Ok(*quantity),
-            _ => Err(missing(Node::Variable(id))),
+            Value::Point(_) | Value::Path(_) | Value::Stage(_) | Value::Seam(_) => {
+                Err(missing(Node::Variable(id)))
+            }
         }
     }
 
@@ -359,7 +367,9 @@ impl Environment for Reading<'_, '_> {
         if let PartReference::Seam(id) = part {
             return match self.0.needed(Node::Seam(*id))? {
                 Value::Seam(seam) => Ok(seam.lengths[0]),
-                _ => Err(missing(Node::Seam(*id))),
+                Value::Number(_) | Value::Point(_) | Value::Path(_) | Value::Stage(_) => {
+                    Err(missing(Node::Seam(*id)))
+                }
             };
         }
         Ok(self
@@ -418,7 +428,10 @@ impl Environment for Reading<'_, '_> {
     fn point(&self, part: &PartReference) -> Result<Vec2, Failure> {
         match &*self.bound(part, Kind::Point)? {
             PartReference::Point(id) => self.0.point_at(*id),
-            _ => Err(Failure::new(
+            PartReference::Curve(_)
+            | PartReference::Stretch { .. }
+            | PartReference::Seam(_)
+            | PartReference::Unknown(_) => Err(Failure::new(
                 Code::Formula,
                 "it is no point",
                 "name a point",

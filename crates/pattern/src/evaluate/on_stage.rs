@@ -52,7 +52,9 @@ pub(super) fn point(
     }
     let spot = match at {
         Mark::Corner(_) => stage.spot(line, value),
-        _ => evaluated.past(step, &place)?.spot(line, value),
+        Mark::Notch(_) | Mark::Along { .. } | Mark::Between { .. } => {
+            evaluated.past(step, &place)?.spot(line, value)
+        }
     };
     match spot {
         Ok(spot) => match stage.at_spot(line, spot) {

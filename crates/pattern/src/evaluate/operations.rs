@@ -67,7 +67,12 @@ impl PanelEvaluation<'_, '_, '_> {
         let what = match &operation.kind {
             OperationKind::Pleat { .. } => "has no depth",
             OperationKind::Pivot { .. } => "moves a dart that has no width",
-            _ => "has no width",
+            OperationKind::Dart { .. }
+            | OperationKind::Diamond { .. }
+            | OperationKind::Fold { .. }
+            | OperationKind::Spread { .. }
+            | OperationKind::Split { .. }
+            | OperationKind::Insert { .. } => "has no width",
         };
         let step = format!("{} {:?}", operation.kind.word(), operation.name);
         let message = format!("{step} {what} and leaves the panel as it was");
@@ -204,10 +209,7 @@ impl PanelEvaluation<'_, '_, '_> {
     fn going_on(&self, step: usize) -> Vec<CornerName> {
         let pattern = &self.c.evaluation.pattern;
         let later = self.panel.operations.iter().skip(step);
-        let folds = later.filter_map(|later| match &later.kind {
-            OperationKind::Fold { ends, .. } => Some([&ends[0], &ends[1]]),
-            _ => None,
-        });
+        let folds = later.filter_map(|later| Some(later.kind.fold_ends()?.each_ref()));
         let is_of_it = |id: PanelId| {
             let found = pattern.panel(id);
             found.is_some_and(|own| pattern.lineage(own).iter().any(|p| p.id == self.panel.id))
@@ -218,7 +220,7 @@ impl PanelEvaluation<'_, '_, '_> {
         ends.flatten()
             .filter_map(|end| match end {
                 Mark::Corner(corner) => Some(*corner),
-                _ => None,
+                Mark::Notch(_) | Mark::Along { .. } | Mark::Between { .. } => None,
             })
             .collect()
     }

@@ -389,7 +389,7 @@ pub(super) fn has_made(
 ) -> bool {
     let at = match mark {
         Mark::Notch(id) => pattern.notch_of(panel, *id).map(|notch| &notch.at),
-        own => Some(own),
+        own @ (Mark::Along { .. } | Mark::Between { .. } | Mark::Corner(_)) => Some(own),
     };
     let corners = at.map_or_else(Vec::new, Mark::corners);
     let makers = corners.iter().filter_map(|corner| corner.maker());

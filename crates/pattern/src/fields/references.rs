@@ -14,20 +14,14 @@ pub fn references(part: &dyn Fields) -> Vec<PartId> {
 /// The points that a part is drawn from: those that its own fields name, neither in formulas nor by a place on a line.
 pub fn points(part: &dyn Fields) -> Vec<PointId> {
     let sources = sources(part).into_iter();
-    let points = sources.filter_map(|part| match part {
-        PartId::Point(id) => Some(id),
-        _ => None,
-    });
+    let points = sources.filter_map(|part| part.try_into().ok());
     points.collect()
 }
 
 /// The curves that a part is drawn from, likewise.
 pub fn curves(part: &dyn Fields) -> Vec<CurveId> {
     let sources = sources(part).into_iter();
-    let curves = sources.filter_map(|part| match part {
-        PartId::Curve(id) => Some(id),
-        _ => None,
-    });
+    let curves = sources.filter_map(|part| part.try_into().ok());
     curves.collect()
 }
 

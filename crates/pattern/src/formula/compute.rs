@@ -85,7 +85,7 @@ pub(crate) fn compute(
                 message,
                 hint,
             },
-            other => other,
+            other @ (Failure::Reported(_) | Failure::Fault { .. }) => other,
         };
         let result = match &step.operation {
             Operation::JumpUnless(to) => {

@@ -223,7 +223,19 @@ impl Formula {
                 Operation::AngleBetween(a, b) | Operation::Distance(a, b) => {
                     uses.extend([part(a, Kind::Point), part(b, Kind::Point)]);
                 }
-                _ => {}
+                Operation::Constant(_)
+                | Operation::Negate
+                | Operation::Not
+                | Operation::Add
+                | Operation::Subtract
+                | Operation::Multiply
+                | Operation::Divide
+                | Operation::Compare(_)
+                | Operation::And
+                | Operation::Or
+                | Operation::Call(..)
+                | Operation::JumpUnless(_)
+                | Operation::Jump(_) => {}
             }
         }
         uses
@@ -241,7 +253,7 @@ impl Formula {
                 kind,
                 ..
             } => names.part(text, kind).map_or(Vec::new(), |p| p.parts()),
-            _ => Vec::new(),
+            Use::Variable(_) | Use::Word(_) | Use::Part { .. } => Vec::new(),
         });
         found.collect()
     }
@@ -252,7 +264,9 @@ impl Formula {
         let tokens: Arc<[Token]> = self.tokens.iter().map(&mut *map).collect();
         let mut part = |reference: &PartReference| match map(&Token::Part(reference.clone())) {
             Token::Part(part) => part,
-            other => PartReference::Unknown(format!("{other:?}").into()),
+            other @ (Token::Text(_) | Token::Variable(_) | Token::Word(_)) => {
+                PartReference::Unknown(format!("{other:?}").into())
+            }
         };
         let mut steps: Vec<Step> = self.steps.to_vec();
         for step in &mut steps {
@@ -265,7 +279,21 @@ impl Formula {
                     *a = part(a);
                     *b = part(b);
                 }
-                _ => {}
+                Operation::Variable(_)
+                | Operation::Word(_)
+                | Operation::Constant(_)
+                | Operation::Negate
+                | Operation::Not
+                | Operation::Add
+                | Operation::Subtract
+                | Operation::Multiply
+                | Operation::Divide
+                | Operation::Compare(_)
+                | Operation::And
+                | Operation::Or
+                | Operation::Call(..)
+                | Operation::JumpUnless(_)
+                | Operation::Jump(_) => {}
             }
         }
         for step in &mut steps {

@@ -77,7 +77,7 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Formula, FormulaError> 
     parser.flush(text.len());
     let lengths = parser.tokens.iter().map(|token| match token {
         Token::Text(text) => text.len(),
-        _ => 1,
+        Token::Variable(_) | Token::Word(_) | Token::Part(_) => 1,
     });
     if lengths.sum::<usize>() > FORMULA_LENGTH {
         return Err(too_long());

@@ -50,7 +50,7 @@ impl Formula {
     pub fn words(&self) -> impl Iterator<Item = &str> {
         self.tokens().iter().filter_map(|token| match token {
             Token::Word(word) => Some(&**word),
-            _ => None,
+            Token::Text(_) | Token::Variable(_) | Token::Part(_) => None,
         })
     }
 

@@ -95,7 +95,9 @@ impl Written {
                     cursor.at = end;
                     Ok(Self::Seam(name))
                 }
-                _ => Err(cursor.error_here("stands where a dot is missing", HINT)),
+                Owner::Panel(_) | Owner::Sheet(_) => {
+                    Err(cursor.error_here("stands where a dot is missing", HINT))
+                }
             };
         }
         let part = word(cursor)?;

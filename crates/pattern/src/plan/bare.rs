@@ -77,7 +77,7 @@ pub(super) fn with_units(
         let end = number_end(&written, column - 1);
         let sign = match kind {
             Kind::Angle => "deg",
-            _ => unit.sign(),
+            Kind::Length | Kind::Plain | Kind::Unknown => unit.sign(),
         };
         written.splice(end..end, sign.chars());
     }

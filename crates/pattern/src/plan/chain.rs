@@ -63,18 +63,19 @@ pub(super) fn along(
     if let Some(k) = curve.ends.iter().position(|&end| end == point.id) {
         return Some(if k == 0 { 0.0 } else { path.length() });
     }
-    match &point.rule {
-        PointRule::OnCurve { curve: on, share } if *on == curve.id => {
-            return Some(path.length() * evaluation.number(share, Want::Plain)?);
-        }
-        PointRule::AlongCurve {
-            curve: on,
-            distance,
-        } if *on == curve.id => {
-            let distance = evaluation.number(distance, Want::Length)?;
-            return Some(if distance < 0.0 { path.length() } else { 0.0 } + distance);
-        }
-        _ => {}
+    if let PointRule::OnCurve { curve: on, share } = &point.rule
+        && *on == curve.id
+    {
+        return Some(path.length() * evaluation.number(share, Want::Plain)?);
+    }
+    if let PointRule::AlongCurve {
+        curve: on,
+        distance,
+    } = &point.rule
+        && *on == curve.id
+    {
+        let distance = evaluation.number(distance, Want::Length)?;
+        return Some(if distance < 0.0 { path.length() } else { 0.0 } + distance);
     }
     let at = evaluation.point(point.id)?;
     let nearest = path.nearest(at)?;

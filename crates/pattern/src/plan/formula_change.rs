@@ -122,7 +122,9 @@ fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Numb
     })?;
     let (usual, mut sizes) = match old {
         Number::PerSize { usual, sizes } => (usual, sizes),
-        other => (Box::new(other), Vec::new()),
+        other @ (Number::Value(_) | Number::Formula(_) | Number::Adjusted { .. }) => {
+            (Box::new(other), Vec::new())
+        }
     };
     sizes.retain(|own| own.0 != size);
     sizes.push((size, value));

@@ -5,7 +5,7 @@ use super::numbers::numbers_of;
 use crate::fields::NumberAddress;
 use crate::{
     EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, PointRule, Seam,
-    Sheet, SheetHead, SheetId, Source, Variable, Want,
+    Sheet, SheetHead, SheetId, Source, Variable, VariableId, Want,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -136,10 +136,7 @@ pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditE
 }
 
 fn whole_sheet(part: &PartId) -> Option<SheetId> {
-    match part {
-        PartId::Sheet(id) => Some(*id),
-        _ => None,
-    }
+    SheetId::try_from(*part).ok()
 }
 
 /// Gives points at marks of a panel that is not copied their places as they are.
@@ -179,7 +176,17 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
         PartId::Point(id) => pattern.point(id).map(|found| found.0.id),
         PartId::Curve(id) => pattern.curve(id).map(|found| found.0.id),
         PartId::Panel(id) => pattern.panel(id).and_then(|panel| pattern.sheet_of(panel)),
-        _ => None,
+        PartId::Size(_)
+        | PartId::Variable(_)
+        | PartId::Fabric(_)
+        | PartId::Sheet(_)
+        | PartId::Line(_)
+        | PartId::Edge(_)
+        | PartId::Notch(_)
+        | PartId::Operation(_)
+        | PartId::Seam(_)
+        | PartId::Marker(_)
+        | PartId::Guide(_) => None,
     };
     while let Some(part) = open.pop() {
         if !chosen.insert(part) {
@@ -287,12 +294,12 @@ fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
             if only_sizes {
                 continue;
             }
-            let (value, power) = match entry.place.part {
-                PartId::Variable(id) => match evaluation.variable(id) {
+            let (value, power) = match VariableId::try_from(entry.place.part) {
+                Ok(id) => match evaluation.variable(id) {
                     Some((value, power)) => (Some(value), power),
                     None => (None, 0),
                 },
-                _ => (
+                Err(_) => (
                     evaluation.number(&number, entry.want),
                     i8::from(entry.want == Want::Length),
                 ),

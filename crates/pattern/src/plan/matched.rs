@@ -123,7 +123,7 @@ pub fn add_matched_notches(
 ) -> Result<(Vec<Edit>, Vec<PanelNotch>), EditError> {
     let share = match &near.mark {
         Mark::Between { share, .. } => share.value(),
-        _ => None,
+        Mark::Notch(_) | Mark::Along { .. } | Mark::Corner(_) => None,
     };
     let Some(share) = share else {
         return Err(impossible(
@@ -220,7 +220,7 @@ fn rise(evaluation: &Evaluation, side: &[Span]) -> Option<f64> {
     let (first, last) = (side.first()?, side.last()?);
     let place = |mark: &Mark| match mark {
         Mark::Corner(Name::Drawn(id)) => evaluation.point(*id),
-        _ => None,
+        Mark::Notch(_) | Mark::Along { .. } | Mark::Between { .. } | Mark::Corner(_) => None,
     };
     let way = place(&last.to)? - place(&first.from)?;
     let panel = evaluation.pattern().panel(first.panel)?;

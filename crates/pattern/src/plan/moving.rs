@@ -213,7 +213,7 @@ fn moved_mark(
             from: *from,
             distance: added(number, shift),
         },
-        _ => {
+        Mark::Notch(_) | Mark::Between { .. } | Mark::Corner(_) => {
             let span = stage.stretch(line, [corner(0), corner(1)], |edge| edge.half == 0);
             let span = span.map_err(|_| lost())?;
             let length = stage.stretch_length(0, &span).max(1e-12);

@@ -131,7 +131,7 @@ fn refuse_itself(at: &Mark, notch: NotchId) -> Result<(), EditError> {
             "the notch would lie where it lies itself",
             "put it on an edge or a corner",
         )),
-        _ => Ok(()),
+        Mark::Notch(_) | Mark::Along { .. } | Mark::Between { .. } | Mark::Corner(_) => Ok(()),
     }
 }
 

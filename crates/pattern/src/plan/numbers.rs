@@ -4,7 +4,9 @@ use super::impossible;
 use super::lookup::{after, refuse_faults};
 use super::moving::added;
 use crate::fields::{NumberAddress, NumberEntry, NumberSlot, with_number};
-use crate::{Code, Edit, EditError, Entity, Evaluation, Number, PartId, Pattern, Place, SizeId};
+use crate::{
+    Code, Edit, EditError, Entity, Evaluation, Number, PartId, Pattern, Place, SizeId, VariableId,
+};
 
 /// The numbers of a part, in the order they are shown; none if it has none or is not there.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
@@ -67,9 +69,9 @@ pub fn adjust_number(
 ) -> Result<Vec<Edit>, EditError> {
     let entry = number_entry(evaluation.pattern(), place).ok_or_else(|| missing(place))?;
     let number = entry.number.ok_or_else(|| missing(place))?;
-    let now = match place.part {
-        PartId::Variable(id) => evaluation.variable(id).map(|found| found.0),
-        _ => evaluation.number(&number, entry.want),
+    let now = match VariableId::try_from(place.part) {
+        Ok(id) => evaluation.variable(id).map(|found| found.0),
+        Err(_) => evaluation.number(&number, entry.want),
     };
     let now = now.ok_or_else(|| {
         impossible(
@@ -97,7 +99,9 @@ pub fn set_number_in_size(
     let number = number_at(pattern, place).ok_or_else(|| missing(place))?;
     let (usual, mut sizes) = match number {
         Number::PerSize { usual, sizes } => (usual, sizes),
-        other => (Box::new(other), Vec::new()),
+        other @ (Number::Value(_) | Number::Formula(_) | Number::Adjusted { .. }) => {
+            (Box::new(other), Vec::new())
+        }
     };
     let at = sizes.iter().position(|own| own.0 == size);
     match (at, value) {

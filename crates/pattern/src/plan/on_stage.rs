@@ -146,7 +146,9 @@ pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) ->
         }
         Mark::Notch(id) => match &evaluation.pattern().notch_of(panel, *id)?.at {
             Mark::Notch(_) => return None,
-            at => mark_value(evaluation, panel, at)?,
+            at @ (Mark::Along { .. } | Mark::Between { .. } | Mark::Corner(_)) => {
+                mark_value(evaluation, panel, at)?
+            }
         },
     })
 }
@@ -165,7 +167,7 @@ pub(super) fn place_of(
     let first = evaluation.stage(of, after)?;
     let spot = match mark {
         Mark::Corner(_) => stage.spot(line, value),
-        _ => first.spot(line, value),
+        Mark::Notch(_) | Mark::Along { .. } | Mark::Between { .. } => first.spot(line, value),
     };
     Some(stage.at_spot(line, spot.ok()?)?.0)
 }

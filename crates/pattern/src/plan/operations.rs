@@ -25,11 +25,12 @@ pub fn add_operation(
     let id: OperationId = ids.take();
     let named = |name: &str| changed.operations.iter().any(|known| known.name == name);
     let name = free_name(kind.word(), named);
-    let fold = |known: &Arc<Operation>| matches!(known.kind, OperationKind::Fold { .. });
+    // Folds come last.
+    let fold = |known: &Arc<Operation>| known.kind.fold_ends().is_some();
     let end = changed.operations.len();
-    let at = match kind {
-        OperationKind::Fold { .. } => end,
-        _ => changed.operations.iter().position(fold).unwrap_or(end),
+    let at = match kind.fold_ends() {
+        Some(_) => end,
+        None => changed.operations.iter().position(fold).unwrap_or(end),
     };
     let operation = Arc::new(Operation {
         id,

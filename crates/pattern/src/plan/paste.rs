@@ -181,9 +181,10 @@ impl Pasting {
             }
             self.result.loosened.push(outside.place.clone());
             if let Some(value) = outside.value {
-                let number = match outside.place.part {
-                    PartId::Variable(_) if outside.power == 1 => length(value),
-                    _ => Number::Value(value),
+                let is_variable = matches!(outside.place.part, PartId::Variable(_));
+                let number = match is_variable && outside.power == 1 {
+                    true => length(value),
+                    false => Number::Value(value),
                 };
                 put_number(&mut entity, &outside.place, &number);
                 own.apply(&[Edit::Put(entity)])?;
@@ -393,9 +394,9 @@ fn put_unchecked(work: &mut Pattern, edit: &Edit) -> Result<(), EditError> {
 /// Moves pasted points on their sheet.
 fn moved(evaluation: &Evaluation, mut result: Pasted, offset: Vec2) -> Result<Pasted, EditError> {
     let pasted = after(evaluation, &result.edits)?;
-    let goal = |part: &PartId| match part {
-        PartId::Point(id) => Some((*id, pasted.point(*id)? + offset)),
-        _ => None,
+    let goal = |part: &PartId| {
+        let id = PointId::try_from(*part).ok()?;
+        Some((id, pasted.point(id)? + offset))
     };
     let goals: Vec<(PointId, Vec2)> = result.parts.iter().filter_map(goal).collect();
     for edit in move_points(&pasted, &goals)?.edits {

@@ -97,7 +97,18 @@ fn is_on_removed_sheet(pattern: &Pattern, gone: &HashSet<PartId>, part: PartId) 
     let sheet = match part {
         PartId::Point(id) => pattern.point(id).map(|found| found.0),
         PartId::Curve(id) => pattern.curve(id).map(|found| found.0),
-        _ => None,
+        PartId::Size(_)
+        | PartId::Variable(_)
+        | PartId::Fabric(_)
+        | PartId::Sheet(_)
+        | PartId::Panel(_)
+        | PartId::Line(_)
+        | PartId::Edge(_)
+        | PartId::Notch(_)
+        | PartId::Operation(_)
+        | PartId::Seam(_)
+        | PartId::Marker(_)
+        | PartId::Guide(_) => None,
     };
     sheet.is_some_and(|sheet| gone.contains(&sheet.id.into()))
 }

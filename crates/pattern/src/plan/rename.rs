@@ -32,7 +32,19 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
             let panel = lookup::panel(pattern, *panel)?;
             Entity::Panel(Arc::new(renamed(panel, part, name)?))
         }
-        _ => match of_sheet(pattern, part, name)? {
+        Place::Pattern
+        | Place::Size(_)
+        | Place::Variable(_)
+        | Place::Sheet(_)
+        | Place::Point(_)
+        | Place::Curve(_)
+        | Place::Panel(_)
+        | Place::Seam(_)
+        | Place::SeamEnd(..)
+        | Place::Fabric(_)
+        | Place::Marker(_)
+        | Place::Guide(_)
+        | Place::File { .. } => match of_sheet(pattern, part, name)? {
             Some(entity) => entity,
             None => of_pattern(pattern, part, name)?,
         },
@@ -84,7 +96,16 @@ fn of_sheet(pattern: &Pattern, part: PartId, name: &str) -> Result<Option<Entity
             let panel = (**panel).clone();
             Entity::Panel(Arc::new(Panel { name, ..panel }))
         }
-        _ => return Ok(None),
+        PartId::Size(_)
+        | PartId::Variable(_)
+        | PartId::Fabric(_)
+        | PartId::Line(_)
+        | PartId::Edge(_)
+        | PartId::Notch(_)
+        | PartId::Operation(_)
+        | PartId::Seam(_)
+        | PartId::Marker(_)
+        | PartId::Guide(_) => return Ok(None),
     }))
 }
 
@@ -123,7 +144,15 @@ fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, Edi
             let marker = (**pattern.marker(id).ok_or_else(missing)?).clone();
             Entity::Marker(Arc::new(Marker { name, ..marker }))
         }
-        _ => return Err(missing()),
+        PartId::Sheet(_)
+        | PartId::Point(_)
+        | PartId::Curve(_)
+        | PartId::Panel(_)
+        | PartId::Line(_)
+        | PartId::Edge(_)
+        | PartId::Notch(_)
+        | PartId::Operation(_)
+        | PartId::Guide(_) => return Err(missing()),
     })
 }
 
@@ -209,7 +238,18 @@ fn renamed(panel: &Panel, part: PartId, name: &str) -> Result<Panel, EditError> 
             let own = changed.operations.iter_mut().filter(|known| known.id == id);
             own.for_each(|known| Arc::make_mut(known).name.clone_from(&name));
         }
-        _ => return Err(EditError::Missing(part.to_string())),
+        PartId::Size(_)
+        | PartId::Variable(_)
+        | PartId::Fabric(_)
+        | PartId::Sheet(_)
+        | PartId::Point(_)
+        | PartId::Curve(_)
+        | PartId::Panel(_)
+        | PartId::Seam(_)
+        | PartId::Marker(_)
+        | PartId::Guide(_) => {
+            return Err(EditError::Missing(part.to_string()));
+        }
     }
     Ok(changed)
 }

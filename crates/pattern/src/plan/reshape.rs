@@ -219,10 +219,8 @@ fn usual_held(evaluation: &Evaluation, panel: &Panel, line: LineName) -> Option<
     let fold = panel
         .operations
         .iter()
-        .find_map(|operation| match &operation.kind {
-            OperationKind::Fold { ends, line: own } if *own == line => Some(ends[0].clone()),
-            _ => None,
-        });
+        .filter(|operation| operation.kind.line() == Some(line))
+        .find_map(|operation| Some(operation.kind.fold_ends()?[0].clone()));
     let first = || {
         let stage = evaluation.stage(panel.id, None)?;
         let found = stage.lines.iter().find(|known| known.name == line)?;

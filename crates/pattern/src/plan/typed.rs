@@ -85,7 +85,7 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
     let want = match want {
         Want::Any if !is_bare(text) => return Ok(number),
         Want::Any => Want::Plain,
-        want => want,
+        want @ (Want::Length | Want::Plain | Want::Angle) => want,
     };
     let value = evaluation.number(&number, want).filter(|_| is_single);
     Ok(value.map_or(number, Number::Value))
@@ -118,7 +118,7 @@ fn is_bare(text: &str) -> bool {
 fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
     let mut unknown = formula.tokens().iter().filter_map(|token| match token {
         Token::Part(PartReference::Unknown(text)) => Some(text),
-        _ => None,
+        Token::Text(_) | Token::Variable(_) | Token::Word(_) | Token::Part(_) => None,
     });
     match unknown.next() {
         Some(text) => Err(impossible(

@@ -393,7 +393,9 @@ fn handles(curve: Curve) -> [Vec2; 2] {
     let third = match curve {
         // Of the arc that turns by four times atan(bulge).
         Curve::Arc { bulge, .. } if bulge != 0.0 => bulge / (3.0 * bulge.atan()),
-        _ => 1.0 / 3.0,
+        Curve::Line { .. } | Curve::Arc { .. } | Curve::Quadratic { .. } | Curve::Cubic { .. } => {
+            1.0 / 3.0
+        }
     };
     [
         curve.derivative(0.0) * third,

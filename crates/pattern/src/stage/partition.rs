@@ -135,7 +135,9 @@ pub(super) fn partition(
         match line.kind {
             _ if k == outline || line.edges.is_empty() => {}
             LineKind::Internal => lines.extend(parts_of_line(line, cuts, rings)),
-            _ => lines.push((line.clone(), part_at(rings, line.edges[0].curve.point(0.5)))),
+            LineKind::Outline | LineKind::Hole => {
+                lines.push((line.clone(), part_at(rings, line.edges[0].curve.point(0.5))))
+            }
         }
     }
     let part_of = |is: &dyn Fn(&StageEdge) -> bool| {

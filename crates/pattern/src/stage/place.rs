@@ -82,7 +82,9 @@ impl Stage {
         let is_here = |corner| self.of_line(line, |line| line.corner(corner)).is_ok();
         match mark {
             MarkValue::Corner(corner) if is_here(corner) => Ok(Placed::Mark(mark)),
-            _ => first.spot(line, mark).map(Placed::Spot),
+            MarkValue::Corner(_) | MarkValue::Along(..) | MarkValue::Between(..) => {
+                first.spot(line, mark).map(Placed::Spot)
+            }
         }
     }
 
@@ -253,7 +255,7 @@ impl StageLine {
         };
         let wanted = match mark {
             MarkValue::Between([from, _], _) => self.named_from(from),
-            _ => None,
+            MarkValue::Corner(_) | MarkValue::Along(..) => None,
         };
         let mut before = 0.0;
         let mut best: Option<Spot> = None;

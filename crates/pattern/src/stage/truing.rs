@@ -129,7 +129,10 @@ fn divide_arcs(stage: &mut Stage, outline: usize) {
                     ..edge.clone()
                 }));
             }
-            _ => divided.push(edge),
+            Curve::Line { .. }
+            | Curve::Arc { .. }
+            | Curve::Quadratic { .. }
+            | Curve::Cubic { .. } => divided.push(edge),
         }
     }
     *edges = divided;
