@@ -301,7 +301,10 @@ fn a_piece_let_go_beside_another_lies_against_it_at_the_gap() {
         }
         assert_eq!(window.state().session().past().len(), steps + 1);
         let all = outlines(&window);
-        let gap = marker(&window).cloth.gap;
+        let gap = marker(&window)
+            .cloth
+            .gap
+            .unwrap_or(toile_pattern::DEFAULT_GAP);
         let lies = apart(&all, "front", Vec2::zeros());
         match with_alt {
             true => assert!((lies - near).abs() < 1e-3, "{lies}"),

@@ -1,10 +1,11 @@
 //! Options of `toile nest`.
 
-use crate::values::{flaw, repeat, roll, sizes};
+use crate::values::{flaw, nap, repeat, roll, sizes, spread};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
-use toile_session::{GivenFlaw, MarkerFormat, SizeSelection, Spread};
+use toile_session::{GivenFlaw, MarkerFormat, NapRule, Print, Roll, SizeSelection, Spread};
+
 /// `toile nest`.
 #[derive(Debug, Args)]
 pub struct Nest {
@@ -41,18 +42,18 @@ pub struct Nest {
     #[arg(long, value_name = "LENGTH")]
     pub gap: Option<Length>,
     /// Nap of the fabric. Default: the fabric's own.
-    #[arg(long, value_enum)]
-    pub nap: Option<NapName>,
+    #[arg(long, value_parser = nap())]
+    pub nap: Option<NapRule>,
     /// How the fabric is spread. The width is that of the fabric laid open. Default: open.
-    #[arg(long, value_enum)]
-    pub spread: Option<SpreadName>,
+    #[arg(long, value_parser = spread())]
+    pub spread: Option<Spread>,
     /// Layers cut at once. Default: 1; face to face 2.
     #[arg(long, value_name = "COUNT")]
     pub plies: Option<u32>,
     /// A roll at hand: its length, all plies together, and its width if that is not the fabric's.
     /// May be given again; rolls are filled in this order, and what fits none is named with the reason.
     #[arg(long, value_name = "L[,L]", value_parser = roll, conflicts_with = "length")]
-    pub roll: Vec<(f64, Option<f64>)>,
+    pub roll: Vec<Roll>,
     /// Price of a metre of the fabric's length.
     #[arg(long, value_name = "PRICE", allow_negative_numbers = true)]
     pub price: Option<f64>,
@@ -78,7 +79,7 @@ pub struct Nest {
     /// Repeat of stripes or checks along the warp and across, as in 50mm,40mm; 0mm where it does
     /// not repeat. The hem and the middle of every piece lie on its lines.
     #[arg(long, value_name = "L[,L]", value_parser = repeat)]
-    pub repeat: Option<[f64; 2]>,
+    pub repeat: Option<Print>,
     /// A flaw no piece may lie on: x along the warp, y across the fabric laid open, length, width;
     /// where there are several fabrics after its name, as in lining:1m,20cm,3cm,3cm. May be given
     /// again.
@@ -138,30 +139,6 @@ pub struct Nest {
     pub out: PathBuf,
 }
 
-/// How fabric is spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SpreadName {
-    /// Open, right side up.
-    Open,
-    /// Folded in two along the warp: pieces cut on the fold lie on it, pairs are cut at once.
-    Folded,
-    /// A tube laid flat, a fold at both sides; its width is its girth.
-    Tubular,
-    /// Open, every second ply turned over: pairs are cut at once.
-    FaceToFace,
-}
-
-impl From<SpreadName> for Spread {
-    fn from(name: SpreadName) -> Self {
-        match name {
-            SpreadName::Open => Self::Open,
-            SpreadName::Folded => Self::Folded,
-            SpreadName::Tubular => Self::Tubular,
-            SpreadName::FaceToFace => Self::FaceToFace,
-        }
-    }
-}
-
 /// Files of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MarkerFormatName {
@@ -191,27 +168,6 @@ impl From<MarkerFormatName> for MarkerFormat {
             MarkerFormatName::Report => Self::Report,
             MarkerFormatName::Plt => Self::Hpgl,
             MarkerFormatName::Instance => Self::Instance,
-        }
-    }
-}
-
-/// Nap of a fabric.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum NapName {
-    /// Pieces may point either way.
-    None,
-    /// All pieces point one way.
-    OneWay,
-    /// All pieces of a garment point one way.
-    PerGarment,
-}
-
-impl From<NapName> for toile_session::Nap {
-    fn from(name: NapName) -> Self {
-        match name {
-            NapName::None => Self::None,
-            NapName::OneWay => Self::OneWay,
-            NapName::PerGarment => Self::PerBundle,
         }
     }
 }

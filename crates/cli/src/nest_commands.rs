@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Budget, Event, MarkerJob, MarkerSettings, MarkerSummary, NestOptions, Shown, Start,
-    is_nesting_instance, nest_instance, nest_marker, nest_patterns, open_marker,
+    Budget, ClothSettings, Event, MarkerJob, MarkerSettings, MarkerSummary, NestOptions, Shown,
+    Start, is_nesting_instance, nest_instance, nest_marker, nest_patterns, open_marker,
     open_marker_settings, rule_table, study_rules,
 };
 
@@ -23,23 +23,27 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
     }
     Ok(NestOptions {
         sizes: nest.size.clone().unwrap_or_default(),
-        width: metres(&nest.width),
-        length: metres(&nest.length),
-        selvedge: metres(&nest.selvedge),
-        end_margin: metres(&nest.end_margin),
-        gap: metres(&nest.gap),
-        nap: nest.nap.map(Into::into),
-        tilt: nest.tilt.map(f64::to_radians),
-        repeat: nest.repeat,
+        cloth: ClothSettings {
+            width: metres(&nest.width),
+            length: metres(&nest.length),
+            selvedge: metres(&nest.selvedge),
+            end_margin: metres(&nest.end_margin),
+            gap: metres(&nest.gap),
+            nap: nest.nap,
+            tilt: nest.tilt.map(f64::to_radians),
+            spread: nest.spread,
+            plies: nest.plies,
+            price_per_metre: price(nest.price)?,
+            print: nest.repeat,
+            rolls: (!nest.roll.is_empty()).then(|| nest.roll.clone()),
+            ..ClothSettings::default()
+        },
         flaws: nest.defect.clone(),
-        spread: nest.spread.map(Into::into),
-        plies: nest.plies,
-        price_per_metre: price(nest.price)?,
-        rolls: nest.roll.clone(),
         settings: match &nest.settings {
             Some(path) => open_marker_settings(path)?,
             None => MarkerSettings::default(),
         },
+        marker: None,
         from: nest
             .from
             .iter()
@@ -121,8 +125,7 @@ fn marker_of_file(
     };
     let bar = &mut Bar::stopped_by_a_signal();
     let made = nest_marker(path, &job, (&nest.out, bar));
-    let (summary, paths) = made.map_err(|error| Failure::from(error).about(path))?;
-    Ok((vec![summary], paths))
+    made.map_err(|error| Failure::from(error).about(path))
 }
 
 /// Pieces laid on fabric.

@@ -1,7 +1,11 @@
 //! Parsers for options with several values.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use toile_geometry::Length;
-use toile_session::{ExportFormat, GivenFlaw, PanelOrigin, Shrinkage, SizeSelection};
+use toile_session::{
+    Choice, ExportFormat, GivenFlaw, NapRule, PanelOrigin, Print, Roll, Shrinkage, SizeSelection,
+    Spread,
+};
 
 /// Most garments of one size: far more than can be laid at once.
 const MOST_GARMENTS: u32 = 10_000;
@@ -88,11 +92,57 @@ fn lengths(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Length and width of a roll [m].
-pub fn roll(text: &str) -> Result<(f64, Option<f64>), String> {
+/// One of a closed list of words, each with what it means.
+fn choice<T: Choice + Send + Sync + 'static>(
+    all: &'static [(T, &'static str)],
+) -> impl TypedValueParser<Value = T> {
+    let words = all
+        .iter()
+        .map(|(choice, meaning)| PossibleValue::new(choice.word()).help(*meaning));
+    PossibleValuesParser::new(words).try_map(|word| {
+        let found = all.iter().find(|(choice, _)| choice.word() == word);
+        found.map(|(choice, _)| *choice).ok_or("it is not known")
+    })
+}
+
+/// Which way pieces may point.
+pub fn nap() -> impl TypedValueParser<Value = NapRule> {
+    choice(&[
+        (NapRule::None, "Pieces may point either way"),
+        (NapRule::OneWay, "All pieces point one way"),
+        (NapRule::PerGarment, "All pieces of a garment point one way"),
+    ])
+}
+
+/// How fabric is spread.
+pub fn spread() -> impl TypedValueParser<Value = Spread> {
+    choice(&[
+        (Spread::Open, "Open, right side up"),
+        (
+            Spread::Folded,
+            "Folded in two along the warp: pieces cut on the fold lie on it, pairs are cut at once",
+        ),
+        (
+            Spread::Tubular,
+            "A tube laid flat, a fold at both sides; its width is its girth",
+        ),
+        (
+            Spread::FaceToFace,
+            "Open, every second ply turned over: pairs are cut at once",
+        ),
+    ])
+}
+
+/// A roll of a length and, if that is not the fabric's, a width.
+pub fn roll(text: &str) -> Result<Roll, String> {
+    let roll = |length, width| Roll {
+        length: Some(length),
+        width,
+        ..Roll::default()
+    };
     match lengths(text)?[..] {
-        [length] => Ok((length, None)),
-        [length, width] => Ok((length, Some(width))),
+        [length] => Ok(roll(length, None)),
+        [length, width] => Ok(roll(length, Some(width))),
         ref more => Err(format!(
             "there are {} lengths; give the roll's length, or length,width",
             more.len()
@@ -100,11 +150,15 @@ pub fn roll(text: &str) -> Result<(f64, Option<f64>), String> {
     }
 }
 
-/// Repeat along the warp and, if it repeats there, across [m].
-pub fn repeat(text: &str) -> Result<[f64; 2], String> {
+/// A print that repeats along the warp and, if it repeats there, across.
+pub fn repeat(text: &str) -> Result<Print, String> {
+    let print = |repeat| Print {
+        repeat,
+        origin: [0.0; 2],
+    };
     match lengths(text)?[..] {
-        [along] => Ok([along, 0.0]),
-        [along, across] => Ok([along, across]),
+        [along] => Ok(print([along, 0.0])),
+        [along, across] => Ok(print([along, across])),
         ref more => Err(format!(
             "there are {} lengths; give the repeat along the warp, or along,across",
             more.len()

@@ -50,6 +50,7 @@ mod recognise;
 mod scene;
 mod scene_material;
 mod scene_motion;
+mod settings_reader;
 mod shown;
 mod svg_text;
 mod x3d;
@@ -84,8 +85,7 @@ pub use marker_json::{
 pub use marker_plot::{write_marker_dxf, write_marker_hpgl, write_marker_pdf};
 pub use marker_report::write_marker_report;
 pub use marker_settings::{
-    ANY_NAME, FabricSettings, FlawSettings, LockSettings, MarkerSettings, Metres, NapField,
-    PieceSettings, PrintSettings, RollSettings, read_marker_settings,
+    ANY_NAME, LockSettings, MarkerSettings, PieceSettings, read_marker_settings,
 };
 pub use marker_svg::write_marker_svg;
 pub use measurements_foreign::read_freesewing;

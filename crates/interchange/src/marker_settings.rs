@@ -2,13 +2,12 @@
 //! flaws, and rules for single pieces. Lengths are texts with their unit, angles degrees.
 
 use crate::FormatError;
-use serde::de::{Error as _, Visitor};
-use serde::{Deserialize, Deserializer};
+use crate::native::item::{Item, Object};
+use crate::native::json::{self, Value as Json};
+use crate::settings_reader::{SettingsReader, invalid_type, refused, unknown_field};
 use std::collections::BTreeMap;
-use std::fmt;
-use toile_geometry::Length;
-use toile_nesting::Nap;
-use toile_pattern::Spread;
+use toile_pattern::fields::{group, key};
+use toile_pattern::{ClothSettings, LayingRule, Spread, fields};
 
 const KIND: &str = "marker-settings";
 
@@ -16,117 +15,23 @@ const KIND: &str = "marker-settings";
 pub const ANY_NAME: &str = "*";
 
 /// The content of a file of marker settings.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarkerSettings {
-    /// Version of the format: 1.
-    #[serde(default)]
-    pub toile: u32,
-    /// What kind of file this is: `marker-settings`.
-    #[serde(default)]
-    pub kind: String,
     /// Currency of prices, as in EUR.
-    #[serde(default)]
     pub currency: Option<String>,
     /// By name of the fabric.
-    #[serde(default)]
-    pub fabrics: BTreeMap<String, FabricSettings>,
+    pub fabrics: BTreeMap<String, ClothSettings>,
     /// By name of the panel, or of one of its pieces.
-    #[serde(default)]
     pub pieces: BTreeMap<String, PieceSettings>,
     /// Marks that lie on the same place of the print in every garment: lists of `panel.notch`.
-    #[serde(default, rename = "match")]
     pub matched: Vec<Vec<String>>,
 }
 
-/// Settings of a fabric. A setting that is not given is the pattern's, or the default.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FabricSettings {
-    /// Full width, selvedges included; of a tube its girth.
-    pub width: Option<Metres>,
-    /// Unusable edge at either side.
-    pub selvedge: Option<Metres>,
-    /// Fabric left free at either end.
-    pub end_margin: Option<Metres>,
-    /// Least distance between pieces.
-    pub gap: Option<Metres>,
-    /// Nap.
-    pub nap: Option<NapField>,
-    /// How it is spread.
-    pub spread: Option<Spread>,
-    /// Layers cut at once.
-    pub plies: Option<u32>,
-    /// Price of a metre of length.
-    pub price_per_metre: Option<f64>,
-    /// Print that repeats.
-    pub print: Option<PrintSettings>,
-    /// Flaws no piece may lie on; none where the list is empty.
-    pub flaws: Option<Vec<FlawSettings>>,
-    /// Rolls at hand, filled in this order. Without any, as much as it takes.
-    pub rolls: Option<Vec<RollSettings>>,
-}
-
-/// A roll of fabric.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RollSettings {
-    /// Name for messages and files.
-    pub name: Option<String>,
-    /// Full width; the fabric's if it is not given.
-    pub width: Option<Metres>,
-    /// Length; as long as it takes if it is not given.
-    pub length: Option<Metres>,
-    /// Price of a metre of length; the fabric's if it is not given.
-    pub price_per_metre: Option<f64>,
-    /// Its flaws, none where the list is empty; the fabric's if they are not given.
-    pub flaws: Option<Vec<FlawSettings>>,
-}
-
-/// A print that repeats.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PrintSettings {
-    /// Length of a repeat along the warp and across; 0mm where it does not repeat.
-    pub repeat: [Metres; 2],
-    /// A point where lines of the print cross.
-    #[serde(default)]
-    pub origin: [Metres; 2],
-}
-
-/// A flaw: a rectangle of the fabric.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FlawSettings {
-    /// Its corner nearest to the start: along the warp and across.
-    pub at: [Metres; 2],
-    /// Its length and width.
-    pub size: [Metres; 2],
-    /// Distance pieces keep from it.
-    #[serde(default)]
-    pub clearance: Metres,
-}
-
 /// Settings of one piece. A setting that is not given is the default.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceSettings {
-    /// Free fabric it needs to any other.
-    pub gap: Option<Metres>,
-    /// Extra fabric cut all round it, to be cut to shape later.
-    pub block: Option<Metres>,
-    /// How far its grain may lie off \[deg\].
-    pub tilt: Option<f64>,
-    /// Angles its grain may have to the warp \[deg\].
-    pub turns: Option<Vec<f64>>,
-    /// Whether it may be turned over.
-    pub turn_over: Option<bool>,
-    /// Where the fabric is folded and the panel too: whether half of it lies on the fold.
-    pub on_fold: Option<bool>,
-    /// Whether it may hide flaws.
-    pub over_flaws: Option<bool>,
-    /// Whether its hem and middle lie on the print.
-    pub on_print: Option<bool>,
+    /// What is asked of it.
+    pub rule: LayingRule,
     /// The fabric it is cut from instead of the pattern's.
     pub fabric: Option<String>,
     /// How often it is cut from further fabrics too.
@@ -136,61 +41,56 @@ pub struct PieceSettings {
 }
 
 /// A copy that stays where it is, in the terms of a `marker.json`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LockSettings {
     /// Number of the copy, from 0.
-    #[serde(default)]
     pub copy: u32,
-    /// Angle from the warp to the piece's grain \[deg\].
-    #[serde(default)]
+    /// Angle from the warp to the piece's grain (rad).
     pub turn: f64,
     /// Whether it lies face down.
-    #[serde(default)]
     pub face_down: bool,
-    /// Move after turning.
-    pub at: [Metres; 2],
+    /// Move after turning (m).
+    pub at: [f64; 2],
 }
 
-/// A length written as text with its unit, held in metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-pub struct Metres(pub f64);
+fields!(LockSettings, |self, v| {
+    let Self {
+        copy,
+        turn,
+        face_down,
+        at: [x, y],
+    } = self;
+    v.value(key("copy").may_lack(), copy);
+    v.value(key("turn").angle().may_lack(), turn);
+    v.value(key("face_down").may_lack(), face_down);
+    v.list(group("at"), &mut |v| {
+        v.value(key("x").length(), x);
+        v.value(key("y").length(), y);
+    });
+});
 
-impl<'de> Deserialize<'de> for Metres {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Text;
-        impl Visitor<'_> for Text {
-            type Value = Metres;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a length as text with its unit, as in \"150cm\"")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Metres, E> {
-                let length: Length = text.parse().map_err(E::custom)?;
-                Ok(Metres(length.as_metres()))
-            }
-        }
-        deserializer.deserialize_str(Text)
-    }
-}
-
-/// A nap by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NapField(pub Nap);
-
-impl<'de> Deserialize<'de> for NapField {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match String::deserialize(deserializer)?.as_str() {
-            "none" => Ok(Self(Nap::None)),
-            "one-way" => Ok(Self(Nap::OneWay)),
-            "per-garment" => Ok(Self(Nap::PerBundle)),
-            other => Err(D::Error::custom(format!(
-                "{other:?} is no nap; write none, one-way or per-garment"
-            ))),
+impl PieceSettings {
+    /// These settings over those for more pieces: what they leave open is that of the others.
+    #[must_use]
+    pub fn over(self, below: &Self) -> Self {
+        let Self {
+            rule,
+            fabric,
+            also,
+            locked,
+        } = self;
+        Self {
+            rule: rule.over(&below.rule),
+            fabric: fabric.or_else(|| below.fabric.clone()),
+            also: also.or_else(|| below.also.clone()),
+            locked: locked.or_else(|| below.locked.clone()),
         }
     }
 }
+
+/// Settings of fabric that a file of settings says otherwise: a length as a roll, a tilt as a rule for all pieces, the
+/// currency once for all.
+const SAID_OTHERWISE: [&str; 3] = ["length", "tilt", "currency"];
 
 /// Reads a file of marker settings.
 ///
@@ -198,21 +98,61 @@ impl<'de> Deserialize<'de> for NapField {
 /// The text is not JSON, not marker settings, of a newer version, has a field that is not known
 /// here, or a number that makes no sense.
 pub fn read_marker_settings(text: &str) -> Result<MarkerSettings, FormatError> {
-    let broken = |error: serde_json::Error| {
+    // What is no JSON is told as every reader of it tells it.
+    serde_json::from_str::<serde::de::IgnoredAny>(text).map_err(|error| {
         let place = format!("line {}, column {}", error.line(), error.column());
         let what = error.to_string();
         let what = what.split(" at line ").next().unwrap_or(&what).to_owned();
-        FormatError::new(place, what, "see docs/FORMATS.md, marker settings")
+        refused(place, what)
+    })?;
+    let node = json::parse(text)?;
+    let root = Item::root(&node);
+    let known = ["toile", "kind", "currency", "fabrics", "pieces", "match"];
+    let object = object(&root, "struct MarkerSettings")?;
+    refuse_unknown(&root, &known)?;
+    let given = |name: &str| {
+        object
+            .get(name)
+            .filter(|item| item.node.value != Json::Null)
     };
-    let settings: MarkerSettings = serde_json::from_str(text).map_err(broken)?;
-    if settings.kind != KIND {
+    let kind = object.get("kind").map(|item| text_of(&item)).transpose()?;
+    let version = object
+        .get("toile")
+        .map(|item| count_of(&item))
+        .transpose()?;
+    let mut settings = MarkerSettings {
+        currency: given("currency").map(|item| text_of(&item)).transpose()?,
+        ..MarkerSettings::default()
+    };
+    if let Some(fabrics) = object.get("fabrics") {
+        for (name, item) in entries(&fabrics)? {
+            let mut cloth = ClothSettings::default();
+            let mut reader = SettingsReader::new(&item, "struct FabricSettings", &SAID_OTHERWISE);
+            reader.read(&mut cloth)?;
+            settings.fabrics.insert(name, cloth);
+        }
+    }
+    if let Some(pieces) = object.get("pieces") {
+        for (name, item) in entries(&pieces)? {
+            let piece = piece(&item)?;
+            settings.pieces.insert(name, piece);
+        }
+    }
+    if let Some(sets) = object.get("match") {
+        for set in list(&sets)? {
+            let marks = list(&set)?;
+            let marks: Result<_, _> = marks.iter().map(text_of).collect();
+            settings.matched.push(marks?);
+        }
+    }
+    if kind.as_deref() != Some(KIND) {
         return Err(FormatError::new(
             "kind",
             format!("these are no marker settings: the field is not {KIND:?}"),
             format!("write \"toile\": 1, \"kind\": {KIND:?} at the top"),
         ));
     }
-    if settings.toile != 1 {
+    if version != Some(1) {
         return Err(FormatError::new(
             "toile",
             "only version 1 is known here",
@@ -221,6 +161,69 @@ pub fn read_marker_settings(text: &str) -> Result<MarkerSettings, FormatError> {
     }
     check(&settings)?;
     Ok(settings)
+}
+
+/// Settings of a piece.
+fn piece(item: &Item<'_>) -> Result<PieceSettings, FormatError> {
+    let mut settings = PieceSettings::default();
+    let besides = ["fabric", "also", "locked"];
+    let mut reader = SettingsReader::new(item, "struct PieceSettings", &[]).with(&besides);
+    reader.read(&mut settings.rule)?;
+    let object = object(item, "struct PieceSettings")?;
+    let given = |name: &str| {
+        object
+            .get(name)
+            .filter(|item| item.node.value != Json::Null)
+    };
+    settings.fabric = given("fabric").map(|item| text_of(&item)).transpose()?;
+    if let Some(also) = given("also") {
+        let counts = entries(&also)?.into_iter();
+        let counts = counts.map(|(name, item)| Ok((name, count_of(&item)?)));
+        settings.also = Some(counts.collect::<Result<_, FormatError>>()?);
+    }
+    if let Some(locked) = given("locked") {
+        let mut copies = Vec::new();
+        for item in list(&locked)? {
+            let mut lock = LockSettings::default();
+            SettingsReader::new(&item, "struct LockSettings", &[]).read(&mut lock)?;
+            copies.push(lock);
+        }
+        settings.locked = Some(copies);
+    }
+    Ok(settings)
+}
+
+fn object<'a>(item: &Item<'a>, expected: &str) -> Result<Object<'a>, FormatError> {
+    item.fields().map_err(|_| invalid_type(item, expected))
+}
+
+fn refuse_unknown(item: &Item<'_>, known: &[&str]) -> Result<(), FormatError> {
+    let mut entries = item.entries()?.into_iter();
+    match entries.find(|(name, _)| !known.contains(name)) {
+        Some((name, field)) => Err(unknown_field(&field, name, known)),
+        None => Ok(()),
+    }
+}
+
+fn entries<'a>(item: &Item<'a>) -> Result<Vec<(String, Item<'a>)>, FormatError> {
+    let entries = item.entries().map_err(|_| invalid_type(item, "a map"))?;
+    Ok(entries
+        .into_iter()
+        .map(|(name, item)| (name.to_owned(), item))
+        .collect())
+}
+
+fn list<'a>(item: &Item<'a>) -> Result<Vec<Item<'a>>, FormatError> {
+    item.list().map_err(|_| invalid_type(item, "a sequence"))
+}
+
+fn text_of(item: &Item<'_>) -> Result<String, FormatError> {
+    let text = item.text().map_err(|_| invalid_type(item, "a string"))?;
+    Ok(text.to_owned())
+}
+
+fn count_of(item: &Item<'_>) -> Result<u32, FormatError> {
+    item.count().map_err(|_| invalid_type(item, "u32"))
 }
 
 fn check(settings: &MarkerSettings) -> Result<(), FormatError> {
@@ -253,7 +256,7 @@ fn check(settings: &MarkerSettings) -> Result<(), FormatError> {
         }
     }
     for (name, piece) in &settings.pieces {
-        if piece.turns.as_ref().is_some_and(Vec::is_empty) {
+        if piece.rule.turns.as_ref().is_some_and(Vec::is_empty) {
             let what = "it may lie in no direction".into();
             let hint = "give at least one turn, as in [0]";
             return refuse(format!("pieces.{name}.turns"), what, hint);
@@ -265,6 +268,7 @@ fn check(settings: &MarkerSettings) -> Result<(), FormatError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_pattern::NapRule;
 
     const GOOD: &str = r#"{ "toile": 1, "kind": "marker-settings", "currency": "EUR",
       "fabrics": { "twill": { "width": "150cm", "nap": "per-garment", "spread": "face-to-face",
@@ -280,16 +284,13 @@ mod tests {
     fn settings_are_read_in_metres() {
         let settings = read_marker_settings(GOOD).unwrap();
         let twill = &settings.fabrics["twill"];
-        assert_eq!(twill.width, Some(Metres(1.5)));
-        assert_eq!(twill.nap, Some(NapField(Nap::PerBundle)));
+        assert_eq!(twill.width, Some(1.5));
+        assert_eq!(twill.nap, Some(NapRule::PerGarment));
         assert_eq!(twill.spread, Some(Spread::FaceToFace));
-        assert_eq!(
-            twill.flaws.as_ref().unwrap()[0].size,
-            [Metres(0.03), Metres(0.0254)]
-        );
+        assert_eq!(twill.flaws.as_ref().unwrap()[0].size, [0.03, 0.0254]);
         assert_eq!(twill.rolls.as_ref().unwrap().len(), 2);
-        assert_eq!(settings.pieces["*"].tilt, Some(2.0));
-        assert_eq!(settings.pieces["front"].block, Some(Metres(0.02)));
+        assert_eq!(settings.pieces["*"].rule.tilt, Some(2.0_f64.to_radians()));
+        assert_eq!(settings.pieces["front"].rule.block, Some(0.02));
         assert_eq!(settings.matched[0][1], "back.hip");
     }
 

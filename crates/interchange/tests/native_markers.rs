@@ -51,18 +51,20 @@ fn a_marker_is_read_and_written() {
     let marker = pattern.marker_named("jersey 140").unwrap();
     let cloth = &marker.cloth;
     assert_eq!((cloth.width, cloth.length), (Some(1.4), Some(5.0)));
-    assert_eq!((cloth.selvedge, cloth.gap), (0.01, 0.002));
+    assert_eq!(
+        (cloth.selvedge, cloth.gap),
+        (None, None),
+        "what is not said stays open"
+    );
     assert_eq!(
         (cloth.nap, cloth.spread),
-        (Some(NapRule::PerGarment), Spread::Folded)
+        (Some(NapRule::PerGarment), Some(Spread::Folded))
     );
-    assert_eq!((cloth.plies, cloth.price_per_metre), (3, Some(11.5)));
-    assert_eq!(cloth.tilt, 2f64.to_radians());
+    assert_eq!((cloth.plies, cloth.price_per_metre), (Some(3), Some(11.5)));
+    assert_eq!(cloth.tilt, Some(2f64.to_radians()));
     assert_eq!(cloth.print.unwrap().repeat, [0.05, 0.0]);
-    assert_eq!(
-        (cloth.flaws[0].at, cloth.flaws[0].clearance),
-        ([1.0, 0.2], 0.005)
-    );
+    let flaws = cloth.flaws.as_deref().unwrap();
+    assert_eq!((flaws[0].at, flaws[0].clearance), ([1.0, 0.2], 0.005));
     assert_eq!(marker.quantity(pattern.size_named("M").map(|m| m.id)), 2);
     let [first, second] = &marker.placements[..] else {
         panic!("{marker:?}")
@@ -79,6 +81,123 @@ fn a_marker_is_read_and_written() {
     let (again, _) = read_pattern(&text).unwrap();
     assert_eq!(again, pattern);
     assert_eq!(write_pattern(&again).unwrap(), text);
+}
+
+/// The shirt with that marker on two rolls, with rules and marks that match.
+fn ruled() -> String {
+    let (pattern, _) = read_pattern(SHIRT).unwrap();
+    let panel = |name: &str| pattern.panel_named(name).unwrap();
+    let notch = |panel: &toile_pattern::Panel| {
+        let mut notches = panel.notches.iter();
+        notches.find(|notch| notch.name == "waist").unwrap().id.0
+    };
+    let (front, back) = (panel("front"), panel("back"));
+    let more = format!(
+        r#""selvedge": 1,
+      "gap": 0.2,
+      "rolls": [{{"name": "remnant", "width": 140, "length": 200, "price_per_metre": 4, "flaws": []}}, {{}}],
+      "rules": [
+        {{"tilt": 2}},
+        {{"panel": {0}, "gap": 0.4, "block": 2, "turns": [0, 180], "turn_over": false}},
+        {{"panel": {0}, "copy": 1, "on_fold": true, "over_flaws": false, "on_print": true, "fabric": {2}}},
+        {{"panel": {1}, "also": [{{"fabric": {2}, "quantity": 2}}]}}
+      ],
+      "match": [[{{"panel": {0}, "notch": {3}}}, {{"panel": {1}, "notch": {4}}}]],
+      "order""#,
+        front.id.0,
+        back.id.0,
+        front.fabric.0,
+        notch(front),
+        notch(back)
+    );
+    let with = marked().replacen("\"order\"", &more, 1);
+    with.replacen("\"locked\": true", "\"roll\": 1", 1)
+}
+
+#[test]
+fn rolls_rules_and_marks_are_read_and_written() {
+    let (pattern, notes) = read_pattern(&ruled()).unwrap();
+    assert!(notes.is_empty(), "{notes:?}");
+    let marker = pattern.marker_named("jersey 140").unwrap();
+    let cloth = &marker.cloth;
+    assert_eq!(
+        (cloth.selvedge, cloth.gap),
+        (Some(0.01), Some(0.002)),
+        "given as by default"
+    );
+    let rolls = cloth.rolls.as_deref().unwrap();
+    assert_eq!(rolls[0].name.as_deref(), Some("remnant"));
+    assert_eq!((rolls[0].width, rolls[0].length), (Some(1.4), Some(2.0)));
+    assert_eq!(rolls[0].flaws.as_deref(), Some(&[][..]));
+    assert_eq!(rolls[1], toile_pattern::Roll::default());
+    let front = pattern.panel_named("front").unwrap();
+    let rule = |copy| marker.rule_for(front.id, copy);
+    assert_eq!(rule(0).rule.block, Some(0.02));
+    assert_eq!(rule(0).rule.tilt, Some(2f64.to_radians()));
+    let turns = rule(0).rule.turns.unwrap();
+    assert_eq!(turns[1].0, std::f64::consts::PI);
+    assert_eq!((rule(0).fabric, rule(1).fabric), (None, Some(front.fabric)));
+    assert_eq!((marker.rules.len(), marker.matched[0].0.len()), (4, 2));
+    assert_eq!(marker.placements[0].roll, 1);
+    let text = write_pattern(&pattern).unwrap();
+    let (again, _) = read_pattern(&text).unwrap();
+    assert_eq!(again, pattern);
+    assert_eq!(write_pattern(&again).unwrap(), text);
+}
+
+#[test]
+fn what_no_cloth_can_be_laid_by_is_refused() {
+    let good = ruled();
+    for (old, new, what) in [
+        (
+            "}, {}],",
+            "}, {\"name\": \"remnant\"}],",
+            "two rolls are called",
+        ),
+        ("\"length\": 200", "\"length\": 0", "the roll has no length"),
+        (
+            "\"rolls\": [",
+            "\"rolls\": {}, \"held\": [",
+            "where a list is expected",
+        ),
+        (
+            "\"copy\": 1, \"on_fold",
+            "\"on_fold",
+            "the same pieces have two rules",
+        ),
+        ("\"turns\": [0, 180]", "\"turns\": []", "in no direction"),
+        (
+            "\"turns\": [0, 180]",
+            "\"turns\": 0",
+            "where a list is expected",
+        ),
+        ("\"block\": 2", "\"block\": -2", "the block of its rule"),
+        (
+            "\"on_fold\": true",
+            "\"on_fold\": 1",
+            "where true or false is expected",
+        ),
+        (
+            "\"quantity\": 2}]}",
+            "\"quantity\": 0.5}]}",
+            "not a whole number",
+        ),
+    ] {
+        assert!(good.contains(old), "{old}");
+        let error = read_pattern(&good.replacen(old, new, 1)).unwrap_err();
+        assert!(error.what.contains(what), "{old}: {error}");
+        assert!(error.place.starts_with("line "), "{error}");
+        assert!(!error.hint.is_empty(), "{error}");
+    }
+    // A panel that was never given, and a mark alone.
+    let panel = good.replacen("{\"panel\": ", "{\"panel\": 88888", 1);
+    assert!(read_pattern(&panel).is_err());
+    let start = good.find("\"match\": [[").unwrap();
+    let end = start + good[start..].find("]]").unwrap();
+    let middle = start + good[start..end].rfind(", {").unwrap();
+    let alone = format!("{}{}", &good[..middle], &good[end..]);
+    let error = read_pattern(&alone).unwrap_err();
+    assert!(error.what.contains("fewer than two marks"), "{error}");
 }
 
 #[test]

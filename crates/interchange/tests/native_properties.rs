@@ -61,7 +61,7 @@ proptest! {
             Ok(text) => {
                 // Names that were nothing's when a formula was made may be something's now.
                 let (again, notes) = read_pattern(&text).unwrap();
-                prop_assert!(notes.is_empty());
+                prop_assert!(notes.is_empty(), "{notes:?}");
                 let text = write_pattern(&again).unwrap();
                 prop_assert!(read_pattern(&text).unwrap().0 == again);
                 prop_assert!(again.seams.len() == pattern.seams.len());

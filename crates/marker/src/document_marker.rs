@@ -14,7 +14,9 @@ use toile_pattern::{Marker, OrderedPiece, PiecePlacement};
 pub struct DocumentMarker {
     marker: Arc<Marker>,
     pieces: Arc<MarkerPieces>,
-    /// The placements; pieces that wait are listed as unplaced.
+    /// Which of its rolls is shown, from 0.
+    roll: usize,
+    /// The placements on that; pieces that wait are listed as unplaced.
     laid: toile_nesting::Marker,
     /// The placement of the document that each of these is.
     sources: Vec<usize>,
@@ -105,13 +107,20 @@ pub enum Start {
 pub struct Found {
     /// Where the pieces lie, for `plan::place_marker`.
     pub placements: Vec<PiecePlacement>,
-    /// The marker in a few numbers.
-    pub summary: MarkerSummary,
+    /// The marker in a few numbers, that of each roll.
+    pub summaries: Vec<MarkerSummary>,
 }
 
 impl DocumentMarker {
     /// A marker with its pieces.
     pub fn new(marker: Arc<Marker>, pieces: Arc<MarkerPieces>) -> Self {
+        Self::on_roll(marker, pieces, 0)
+    }
+
+    /// A marker with its pieces as they lie on one of its rolls, counted from 0; on the last where there are not so many.
+    pub fn on_roll(marker: Arc<Marker>, pieces: Arc<MarkerPieces>, roll: usize) -> Self {
+        let rolls = pieces.rolls().count();
+        let roll = roll.min(rolls.saturating_sub(1));
         let mut laid = toile_nesting::Marker::default();
         let mut sources = Vec::new();
         let mut suspended = Vec::new();
@@ -120,6 +129,9 @@ impl DocumentMarker {
                 suspended.push(placed.piece);
                 continue;
             };
+            if usize::from(placed.roll) != roll {
+                continue;
+            }
             sources.push(k);
             laid.placements.push(toile_nesting::Placement {
                 item,
@@ -131,7 +143,9 @@ impl DocumentMarker {
         }
         for (item, copies) in pieces.keys.iter().enumerate() {
             for (key, copy) in copies.iter().zip(0..) {
-                if marker.placement(*key).is_none() {
+                // What lies on a roll that is gone waits, too.
+                let placed = marker.placement(*key);
+                if placed.is_none_or(|placed| usize::from(placed.roll) >= rolls) {
                     laid.unplaced.push(Unplaced {
                         item,
                         copy,
@@ -140,10 +154,11 @@ impl DocumentMarker {
                 }
             }
         }
-        laid.measure(&pieces.job.items, pieces.strip());
+        laid.measure(&pieces.job.items, pieces.strip(roll));
         Self {
             marker,
             pieces,
+            roll,
             laid,
             sources,
             suspended,
@@ -155,9 +170,19 @@ impl DocumentMarker {
         &self.marker
     }
 
-    /// The fabric as it lies.
+    /// Names of the rolls it is laid on, in their order; one without a name where there are none.
+    pub fn rolls(&self) -> impl Iterator<Item = Option<&str>> {
+        self.pieces.rolls()
+    }
+
+    /// The roll that is shown, from 0.
+    pub fn roll(&self) -> usize {
+        self.roll
+    }
+
+    /// The fabric as it lies: the roll that is shown.
     pub fn strip(&self) -> &Strip {
-        self.pieces.strip()
+        self.pieces.strip(self.roll)
     }
 
     /// The pieces that are laid, in the order of the document.
@@ -223,13 +248,49 @@ impl DocumentMarker {
             length: found.length,
             efficiency: found.efficiency,
             utilisation: found.utilisation,
-            cost: job.cost(found.length),
+            cost: job.cost(found.length, self.roll),
         }
     }
 
     /// The marker as it lies, judged by all rules, to be drawn and written.
     pub fn finished(&self) -> FinishedMarker {
-        self.pieces.finished(self.laid.clone())
+        let mut laid = self.laid.clone();
+        let waiting = laid.unplaced.len();
+        laid.unplaced.extend(self.elsewhere());
+        let mut finished = self.pieces.job.whole(laid, self.roll);
+        finished.missing.truncate(waiting);
+        finished
+    }
+
+    /// What lies on other rolls.
+    fn elsewhere(&self) -> impl Iterator<Item = Unplaced> {
+        let rolls = self.rolls().count();
+        let others = self.marker.placements.iter().filter_map(move |placed| {
+            let on = usize::from(placed.roll);
+            let is_other = on != self.roll && on < rolls;
+            self.pieces.index.get(&placed.piece).filter(|_| is_other)
+        });
+        others.map(|&(item, copy)| Unplaced {
+            item,
+            copy,
+            reason: "it lies on another roll".to_owned(),
+        })
+    }
+
+    /// The same of every roll on which something lies, or of the first where nothing lies. What lies on none is missing
+    /// on the last of them.
+    pub fn finished_rolls(&self) -> Vec<FinishedMarker> {
+        let rolls = 0..self.rolls().count();
+        let each = rolls.map(|roll| Self::on_roll(self.marker.clone(), self.pieces.clone(), roll));
+        let (full, empty): (Vec<Self>, Vec<Self>) =
+            each.partition(|own| !own.laid.placements.is_empty());
+        let first = empty.iter().take(usize::from(full.is_empty()));
+        let mut finished: Vec<FinishedMarker> =
+            full.iter().chain(first).map(Self::finished).collect();
+        if let Some((_, before)) = finished.split_last_mut() {
+            before.iter_mut().for_each(|own| own.missing.clear());
+        }
+        finished
     }
 
     /// Lays the pieces in little length. Locked pieces stay where they are.
@@ -242,6 +303,9 @@ impl DocumentMarker {
         (start, search): (Start, Search),
         follow: &mut SearchWatcher<'_>,
     ) -> Result<Found, MarkerError> {
+        if self.pieces.job.is_on_rolls() {
+            return self.search_on_rolls((start, search), follow);
+        }
         let mut items = self.pieces.job.items.clone();
         let placed = self.laid.placements.iter().zip(&self.sources);
         for (placement, &source) in placed {
@@ -267,15 +331,50 @@ impl DocumentMarker {
         let job = &self.pieces.job;
         let made = job.made((&items, from), search, (&flag, &mut report))?;
         let placements = self.placements_of(&made);
-        let mut summary = self.pieces.finished(made).summary();
-        if stopped || flag.load(Ordering::Relaxed) {
-            let note = "stopped early: the best so far";
-            summary.notes.push(note.to_owned());
+        let finished = job.whole(made, 0);
+        let is_stopped = stopped || flag.load(Ordering::Relaxed);
+        Ok(found(placements, &[finished], is_stopped))
+    }
+
+    /// Lays the pieces on the rolls anew, one after another.
+    fn search_on_rolls(
+        &self,
+        (start, search): (Start, Search),
+        follow: &mut SearchWatcher<'_>,
+    ) -> Result<Found, MarkerError> {
+        if start == Start::AsItLies && !self.marker.placements.is_empty() {
+            return Err(MarkerError::Conflict(
+                "the marker is laid on rolls, and markers on rolls cannot be gone on from; lay it anew, or leave the rolls out".to_owned(),
+            ));
         }
-        Ok(Found {
-            placements,
-            summary,
-        })
+        if self.marker.placements.iter().any(|laid| laid.locked) {
+            return Err(MarkerError::Conflict(
+                "pieces are locked, and on rolls each is laid anew; unlock them, or leave the rolls out".to_owned(),
+            ));
+        }
+        let flag = follow.stop.clone();
+        let mut stopped = false;
+        let mut report = |progress: SearchProgress| {
+            stopped |= !(follow.report)(&progress);
+            !stopped
+        };
+        let finished = self.pieces.job.lay_on_rolls(search, (&flag, &mut report))?;
+        let placements = finished.iter().flat_map(|own| {
+            own.marker.placements.iter().map(|placement| {
+                let (item, copy) = own.of_fabric(placement.item, placement.copy);
+                PiecePlacement {
+                    piece: self.pieces.keys[item][copy as usize],
+                    at: placement.translation.into(),
+                    turn: placement.turn,
+                    flipped: placement.mirrored,
+                    locked: false,
+                    roll: own.roll as u16,
+                }
+            })
+        });
+        let placements = placements.collect();
+        let is_stopped = stopped || flag.load(Ordering::Relaxed);
+        Ok(found(placements, &finished, is_stopped))
     }
 
     /// The marker as a search has it meanwhile, by its progress.
@@ -284,7 +383,7 @@ impl DocumentMarker {
             placements: self.placements_of(found),
             ..(*self.marker).clone()
         };
-        Self::new(Arc::new(marker), self.pieces.clone())
+        Self::on_roll(Arc::new(marker), self.pieces.clone(), self.roll)
     }
 
     /// Where the pieces of the document lie on a marker that was found.
@@ -298,6 +397,7 @@ impl DocumentMarker {
                 turn: placement.turn,
                 flipped: placement.mirrored,
                 locked: known.is_some_and(|known| known.locked),
+                roll: 0,
             }
         });
         each.collect()
@@ -311,5 +411,21 @@ impl DocumentMarker {
             let outline = placement.pose(item).lay(&item.outline);
             (self.marker.placements[source].piece, item, outline)
         })
+    }
+}
+
+/// The result of a search, and what is said where it was stopped.
+fn found(placements: Vec<PiecePlacement>, finished: &[FinishedMarker], is_stopped: bool) -> Found {
+    let mut summaries: Vec<MarkerSummary> = finished.iter().map(FinishedMarker::summary).collect();
+    if is_stopped {
+        for summary in &mut summaries {
+            summary
+                .notes
+                .push("stopped early: the best so far".to_owned());
+        }
+    }
+    Found {
+        placements,
+        summaries,
     }
 }

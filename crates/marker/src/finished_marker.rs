@@ -25,6 +25,8 @@ pub struct FinishedMarker {
     pub verdict: Verdict,
     /// Copies that lie on no marker of this fabric, by the items and copies of the whole fabric.
     pub missing: Vec<MarkerFileUnplaced>,
+    /// Which of the rolls of its fabric it lies on, from 0.
+    pub roll: usize,
     /// On a roll: of each item, its index among those of the whole fabric, and its copies there.
     pub sources: Option<Vec<(usize, Vec<u32>)>>,
     /// Roll, plies, price and notes.
@@ -121,7 +123,7 @@ impl FinishedMarker {
     }
 
     /// The item and the copy of the whole fabric that an item and a copy of this marker are.
-    fn of_fabric(&self, item: usize, copy: u32) -> (usize, u32) {
+    pub(crate) fn of_fabric(&self, item: usize, copy: u32) -> (usize, u32) {
         let source = self.sources.as_ref().and_then(|s| s.get(item));
         let own = source.and_then(|(item, copies)| Some((*item, *copies.get(copy as usize)?)));
         own.unwrap_or((item, copy))

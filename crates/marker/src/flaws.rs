@@ -2,9 +2,7 @@
 
 use crate::MarkerError;
 use toile_geometry::{Bounds2, Polygon, Vec2};
-use toile_interchange::{FlawSettings, Metres};
-use toile_nesting::Flaw;
-use toile_pattern::Spread;
+use toile_pattern::{Flaw, Spread};
 
 /// What a flaw may reach beyond the edge of the fabric and count as within [m].
 const ROUNDING: f64 = 1e-9;
@@ -27,13 +25,13 @@ impl GivenFlaw {
         }
     }
 
-    /// The flaw as the settings have it.
-    pub(crate) fn settings(&self) -> FlawSettings {
+    /// The flaw.
+    pub(crate) fn flaw(&self) -> Flaw {
         let [x, y, length, width] = self.place;
-        FlawSettings {
-            at: [Metres(x), Metres(y)],
-            size: [Metres(length), Metres(width)],
-            clearance: Metres(0.0),
+        Flaw {
+            at: [x, y],
+            size: [length, width],
+            clearance: 0.0,
         }
     }
 
@@ -70,14 +68,14 @@ pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), M
 /// The flaws of a fabric of a width laid open [m], in the plane of the fabric as it is spread. One
 /// across a fold lies on both sides of it.
 pub(crate) fn flaws_on(
-    flaws: &[FlawSettings],
+    flaws: &[Flaw],
     (fabric, width): (&str, f64),
     spread: Spread,
-) -> Result<Vec<Flaw>, MarkerError> {
+) -> Result<Vec<toile_nesting::Flaw>, MarkerError> {
     let mut spread_flaws = Vec::new();
     for (k, flaw) in flaws.iter().enumerate() {
-        let [x, low] = flaw.at.map(|m| m.0);
-        let [length, high] = [flaw.size[0].0, low + flaw.size[1].0];
+        let [x, low] = flaw.at;
+        let [length, high] = [flaw.size[0], low + flaw.size[1]];
         let inside = x >= 0.0 && low >= -ROUNDING && high <= width + ROUNDING;
         if !inside {
             return Err(MarkerError::Conflict(format!(
@@ -90,12 +88,12 @@ pub(crate) fn flaws_on(
             )));
         }
         for [low, high] in as_spread([low, high], width, spread) {
-            spread_flaws.push(Flaw {
+            spread_flaws.push(toile_nesting::Flaw {
                 outline: Polygon::rectangle(Bounds2 {
                     min: Vec2::new(x, low),
                     max: Vec2::new(x + length, high),
                 }),
-                clearance: flaw.clearance.0,
+                clearance: flaw.clearance,
             });
         }
     }
@@ -127,16 +125,15 @@ fn as_spread([low, high]: [f64; 2], width: f64, spread: Spread) -> Vec<[f64; 2]>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_interchange::Metres;
 
     fn spans(low: f64, high: f64, spread: Spread) -> Vec<[f64; 2]> {
-        let flaw = FlawSettings {
-            at: [Metres(1.0), Metres(low)],
-            size: [Metres(0.1), Metres(high - low)],
-            clearance: Metres(0.0),
+        let flaw = Flaw {
+            at: [1.0, low],
+            size: [0.1, high - low],
+            clearance: 0.0,
         };
         let found = flaws_on(&[flaw], ("cloth", 1.6), spread).unwrap();
-        let span = |d: &Flaw| [d.outline.bounds().min.y, d.outline.bounds().max.y];
+        let span = |d: &toile_nesting::Flaw| [d.outline.bounds().min.y, d.outline.bounds().max.y];
         found.iter().map(span).collect()
     }
 
@@ -170,10 +167,10 @@ mod tests {
             (-0.2, 0.5),
             (f64::NAN, 0.5),
         ] {
-            let flaw = FlawSettings {
-                at: [Metres(x), Metres(y)],
-                size: [Metres(0.1), Metres(0.1)],
-                clearance: Metres(0.0),
+            let flaw = Flaw {
+                at: [x, y],
+                size: [0.1, 0.1],
+                clearance: 0.0,
             };
             let error = flaws_on(&[flaw], ("cloth", 1.6), Spread::Open).unwrap_err();
             assert!(error.to_string().contains("flaw 1"), "{error}");

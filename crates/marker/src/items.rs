@@ -17,8 +17,8 @@ use toile_nesting::{
 };
 use toile_pattern::Spread;
 
-/// Items, the drawing of each, and notes for the cutter.
-type Items = (Vec<Item>, Vec<Arc<CutPiece>>, Vec<String>);
+/// Items, of each which piece to cut it is and its drawing, and notes for the cutter.
+type Items = (Vec<Item>, Vec<(usize, Arc<CutPiece>)>, Vec<String>);
 
 /// The pieces of one fabric as they are laid on it.
 pub(crate) fn items_on(
@@ -40,9 +40,9 @@ pub(crate) fn items_on(
     let each_alone = plan.rolls.iter().any(|r| r.strip.nap == Nap::PerBundle);
     for (k, role) in roles(to_cut, plan)?.into_iter().enumerate() {
         let to_cut = &to_cut[k];
-        let on_print = to_cut.settings.on_print.unwrap_or(!matched);
+        let on_print = to_cut.settings.rule.on_print.unwrap_or(!matched);
         let print = printed && on_print && to_cut.marks.is_empty();
-        let mut item = item_of(to_cut, print, options);
+        let mut item = item_of(to_cut, print, (plan, options));
         match role {
             Role::Twin => continue,
             Role::Alone => {}
@@ -77,7 +77,7 @@ pub(crate) fn items_on(
             plan.plies
         ));
     }
-    Ok((items, drawn.into_iter().map(|d| d.1).collect(), notes))
+    Ok((items, drawn, notes))
 }
 
 /// What is said where pieces have holes: a search lays nothing into them.
@@ -139,7 +139,7 @@ fn roles(to_cut: &[PieceToCut], plan: &FabricPlan) -> Result<Vec<Role>, MarkerEr
             half.runs_along(to_cut[k].cut.grain) && to_cut[k].cut.is_symmetric_in(half)
         };
         let fold = to_cut[k].cut.fold.filter(along);
-        let on_fold = to_cut[k].settings.on_fold.unwrap_or(true);
+        let on_fold = to_cut[k].settings.rule.on_fold.unwrap_or(true);
         if let Some(half) = fold.filter(|_| folded && on_fold) {
             roles[k] = Some(Role::Half(half));
             continue;
@@ -175,38 +175,39 @@ fn roles(to_cut: &[PieceToCut], plan: &FabricPlan) -> Result<Vec<Role>, MarkerEr
 }
 
 /// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
-fn item_of(to_cut: &PieceToCut, print: bool, options: &NestOptions) -> Item {
+fn item_of(to_cut: &PieceToCut, print: bool, (plan, options): (&FabricPlan, &NestOptions)) -> Item {
     let (piece, settings) = (&to_cut.cut, &to_cut.settings);
     let outline = piece.polygon();
     // Back to the grain's own axes: the hem lies where the grain starts.
     let bounds = outline.rotated(-piece.grain).bounds();
     let hem = turned(Vec2::new(bounds.min.x, bounds.centre().y), piece.grain);
-    let turns = match &settings.turns {
-        Some(turns) => turns.iter().map(|t| t.to_radians()).collect(),
+    let turns = match &settings.rule.turns {
+        Some(turns) => turns.iter().map(|turn| turn.0).collect(),
         None => vec![0.0, PI],
     };
     let locked = settings.locked.iter().flatten().map(|lock| Locked {
         copy: lock.copy,
-        turn: lock.turn.to_radians(),
+        turn: lock.turn,
         mirrored: lock.face_down,
-        translation: Vec2::new(lock.at[0].0, lock.at[1].0),
+        translation: Vec2::from(lock.at),
     });
     Item {
         grain: piece.grain,
         quantity: to_cut.bundles.len() as u32,
         bundles: to_cut.bundles.clone(),
-        gap: settings.gap.unwrap_or_default().0,
-        over_flaws: settings.over_flaws.unwrap_or(false),
+        gap: settings.rule.gap.unwrap_or_default(),
+        over_flaws: settings.rule.over_flaws.unwrap_or(false),
         match_point: print.then_some(MatchPoint {
             point: hem,
             phase: Phase::At(Vec2::zeros()),
         }),
         allowed: Allowed {
             tilt: options
+                .cloth
                 .tilt
-                .or(settings.tilt.map(f64::to_radians))
-                .unwrap_or(0.0),
-            mirror: match settings.turn_over {
+                .or(settings.rule.tilt)
+                .unwrap_or(plan.tilt),
+            mirror: match settings.rule.turn_over {
                 Some(true) => Mirror::Free,
                 _ => Mirror::Never,
             },

@@ -8,6 +8,7 @@ use crate::pieces::PieceToCut;
 use crate::progress::SearchProgress;
 use crate::starting_marker::{lock, start_of};
 use crate::{MarkerError, NestOptions};
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_cut::CutPiece;
@@ -27,6 +28,8 @@ pub(crate) struct FabricJob {
     plan: FabricPlan,
     pub items: Vec<Item>,
     pub pieces: Vec<Arc<CutPiece>>,
+    /// Of each item, the number of its first copy among those of its panel.
+    first_copies: Vec<u32>,
     pub notes: Vec<String>,
     /// The unit numbers are shown in.
     unit: DisplayUnit,
@@ -54,7 +57,9 @@ impl FabricJob {
                 }
             }
         }
-        let (mut items, pieces, notes) = items_on(to_cut, &plan, options)?;
+        let (mut items, drawn, notes) = items_on(to_cut, &plan, options)?;
+        let first_copies = drawn.iter().map(|(k, _)| to_cut[*k].first_copy).collect();
+        let pieces = drawn.into_iter().map(|(_, piece)| piece).collect();
         let start = start_of(starts, fabric, (&items, &plan.rolls[0].strip));
         if let Some(start) = &start {
             lock(&mut items, start, &options.locked);
@@ -64,6 +69,7 @@ impl FabricJob {
             plan,
             items,
             pieces,
+            first_copies,
             notes,
             unit: to_cut.first().map(|piece| piece.unit).unwrap_or_default(),
             start,
@@ -77,11 +83,11 @@ impl FabricJob {
         (flag, report): (&AtomicBool, Report<'_>),
     ) -> Result<Vec<FinishedMarker>, MarkerError> {
         if self.plan.rolled {
-            return self.lay_on_rolls(options, (flag, report));
+            return self.lay_on_rolls(options.search(), (flag, report));
         }
         let of = (&*self.items, self.start.as_ref());
         let marker = self.made(of, options.search(), (flag, report))?;
-        Ok(vec![self.whole(marker, options)])
+        Ok(vec![self.whole(marker, 0)])
     }
 
     /// The items, some of them locked, on the only roll: anew, or from a start.
@@ -114,24 +120,39 @@ impl FabricJob {
         }
     }
 
-    /// A marker of all pieces on the only roll.
-    pub fn whole(&self, marker: Marker, options: &NestOptions) -> FinishedMarker {
+    /// A marker of all pieces on a roll.
+    pub fn whole(&self, marker: Marker, roll: usize) -> FinishedMarker {
         let missing = named(&self.items, &marker.unplaced);
         let of = (self.items.clone(), self.pieces.clone());
         FinishedMarker {
             missing,
-            ..self.finished(&self.plan.rolls[0], of, marker, options)
+            ..self.finished(&self.plan.rolls[roll], of, marker)
         }
     }
 
-    /// The only roll.
-    pub fn strip(&self) -> &Strip {
-        &self.plan.rolls[0].strip
+    /// A roll as it lies.
+    pub fn strip(&self, roll: usize) -> &Strip {
+        &self.plan.rolls[roll].strip
     }
 
-    /// Price of a length of the only roll [m], all plies together, if a metre's is known.
-    pub fn cost(&self, length: f64) -> Option<f64> {
-        let price = self.plan.rolls[0].price_per_metre;
+    /// All rolls as they lie.
+    pub fn strips(&self) -> impl Iterator<Item = &Strip> {
+        self.plan.rolls.iter().map(|roll| &roll.strip)
+    }
+
+    /// Names of the rolls; one without a name where there are none.
+    pub fn roll_names(&self) -> impl Iterator<Item = Option<&str>> {
+        self.plan.rolls.iter().map(|roll| roll.name.as_deref())
+    }
+
+    /// Whether rolls were given, so that pieces may be left over.
+    pub fn is_on_rolls(&self) -> bool {
+        self.plan.rolled
+    }
+
+    /// Price of a length of a roll (m), all plies together, if a metre's is known.
+    pub fn cost(&self, length: f64, roll: usize) -> Option<f64> {
+        let price = self.plan.rolls[roll].price_per_metre;
         price.map(|price| price * length * f64::from(self.plan.plies))
     }
 
@@ -141,17 +162,25 @@ impl FabricJob {
             .iter()
             .flat_map(|&(size, quantity)| (0..quantity).map(move |garment| (size, garment)))
             .collect();
-        let items = self.items.iter().zip(&self.pieces);
-        let keys = items.map(|(item, piece)| {
-            let bundles = item.bundles.iter();
-            let own = bundles.filter_map(|&bundle| garments.get(bundle as usize));
-            let key = |&(size, garment): &(Option<SizeId>, u32)| OrderedPiece {
-                panel: piece.id.panel,
-                copy: piece.id.copy,
-                size,
-                garment,
-            };
-            own.map(key).collect()
+        let items = self.items.iter().zip(&self.pieces).zip(&self.first_copies);
+        let keys = items.map(|((item, piece), first_copy)| {
+            // Several copies of a garment's piece are numbered on.
+            let mut seen: HashMap<u32, u32> = HashMap::new();
+            let mut own = Vec::with_capacity(item.bundles.len());
+            for bundle in &item.bundles {
+                let Some(&(size, garment)) = garments.get(*bundle as usize) else {
+                    continue;
+                };
+                let number = seen.entry(*bundle).or_default();
+                own.push(OrderedPiece {
+                    panel: piece.id.panel,
+                    copy: first_copy + *number,
+                    size,
+                    garment,
+                });
+                *number += 1;
+            }
+            own
         });
         keys.collect()
     }
@@ -170,14 +199,15 @@ impl FabricJob {
             done: progress.done,
             length,
             efficiency: whole.map(efficiency),
-            cost: whole.and_then(|length| self.cost(length)),
+            cost: whole.and_then(|length| self.cost(length, 0)),
             marker: progress.marker,
         }
     }
 
-    fn lay_on_rolls(
+    /// All pieces on the rolls, one after another.
+    pub fn lay_on_rolls(
         &self,
-        options: &NestOptions,
+        search: Search,
         (flag, report): (&AtomicBool, Report<'_>),
     ) -> Result<Vec<FinishedMarker>, MarkerError> {
         let mut follow = |progress| self.follow(progress, flag, report);
@@ -186,7 +216,7 @@ impl FabricJob {
             cancel: flag,
         };
         let strips: Vec<Strip> = self.plan.rolls.iter().map(|r| r.strip.clone()).collect();
-        let out = make_markers_on_rolls(&self.items, &strips, options.search(), &mut control)?;
+        let out = make_markers_on_rolls(&self.items, &strips, search, &mut control)?;
         let missing = named(&self.items, &out.unplaced);
         let mut finished_markers: Vec<FinishedMarker> = out
             .markers
@@ -197,7 +227,8 @@ impl FabricJob {
                 let roll = &self.plan.rolls[made.roll];
                 FinishedMarker {
                     sources: Some(made.sources),
-                    ..self.finished(roll, of, made.marker, options)
+                    roll: made.roll,
+                    ..self.finished(roll, of, made.marker)
                 }
             })
             .collect();
@@ -217,7 +248,6 @@ impl FabricJob {
         roll: &PlannedRoll,
         (items, pieces): (Vec<Item>, Vec<Arc<CutPiece>>),
         marker: Marker,
-        options: &NestOptions,
     ) -> FinishedMarker {
         let verdict = judge(&items, &roll.strip, &marker);
         FinishedMarker {
@@ -230,11 +260,12 @@ impl FabricJob {
                 face_to_face: self.plan.spread == Spread::FaceToFace,
                 utilisation: marker.utilisation,
                 price_per_metre: roll.price_per_metre,
-                currency: options.settings.currency.clone().unwrap_or_default(),
+                currency: self.plan.currency.clone(),
                 unit: self.unit,
                 notes: self.notes.clone(),
             },
             missing: Vec::new(),
+            roll: 0,
             sources: None,
             items,
             pieces,

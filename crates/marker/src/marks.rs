@@ -1,18 +1,36 @@
 //! The marks of a pattern that lie on a print, by their names.
 
+use crate::NestOptions;
 use toile_geometry::Vec2;
-use toile_pattern::{NotchId, PanelId, Pattern};
+use toile_pattern::{MarkRef, Notch, NotchId, Panel, PanelId, Pattern};
 
-/// The marks of a pattern: number of the set, panel and notch. Names that are not there are left out.
+/// The marks of a pattern: number of the set, panel and notch. Those that are not there are left out.
 pub(crate) fn resolve_marks(
     pattern: &Pattern,
-    sets: &[Vec<String>],
+    options: &NestOptions,
 ) -> Vec<(usize, PanelId, NotchId)> {
     let mut marks = Vec::new();
-    for (set, names) in sets.iter().enumerate() {
+    let is_in = |set: usize, panel: &Panel, notch: &Notch| match &options.marker {
+        Some(marker) => marker.matched.get(set).is_some_and(|set| {
+            set.0.contains(&MarkRef {
+                panel: panel.id,
+                notch: notch.id,
+            })
+        }),
+        None => options
+            .settings
+            .matched
+            .get(set)
+            .is_some_and(|names| names.contains(&format!("{}.{}", panel.name, notch.name))),
+    };
+    let sets = match &options.marker {
+        Some(marker) => marker.matched.len(),
+        None => options.settings.matched.len(),
+    };
+    for set in 0..sets {
         for panel in &pattern.panels {
             for notch in &panel.notches {
-                if names.contains(&format!("{}.{}", panel.name, notch.name)) {
+                if is_in(set, panel, notch) {
                     marks.push((set, panel.id, notch.id));
                 }
             }

@@ -2,14 +2,12 @@
 
 use crate::job::FabricJob;
 use crate::pieces::{Garments, pieces_to_cut};
-use crate::{FinishedMarker, MarkerError, NestOptions};
+use crate::{MarkerError, NestOptions};
 use std::collections::HashMap;
 use std::sync::Arc;
-use toile_interchange::{FabricSettings, FlawSettings, MarkerSettings, Metres, PrintSettings};
-use toile_nesting::{Nap, NestingError, Strip};
+use toile_nesting::{NestingError, Strip};
 use toile_pattern::{
-    Draft, Fabric, GarmentCloth, Marker, MarkerCloth, NapRule, OrderedPiece, OrderedSize, Pattern,
-    SizeId,
+    Draft, Fabric, GarmentCloth, Marker, OrderedPiece, OrderedSize, Pattern, SizeId,
 };
 
 /// A pattern drafted to the sizes of an order; nothing stands for the wearer's.
@@ -18,13 +16,12 @@ pub type SizeDrafts = [(Option<SizeId>, Arc<Draft>)];
 /// The pieces that a marker of a document cuts, as they are cut and as its fabric lies. It stays the
 /// same while pieces are moved.
 pub struct MarkerPieces {
-    cloth: MarkerCloth,
+    /// The marker they were made for, without placements.
+    marker: Arc<Marker>,
     fabric: Fabric,
-    order: Vec<OrderedSize>,
     /// What tells the wearer's pieces from those of sizes, where both are cut.
     whose: Option<String>,
     pub(crate) job: FabricJob,
-    pub(crate) options: NestOptions,
     /// Which piece of the order each copy of each item is.
     pub(crate) keys: Vec<Vec<OrderedPiece>>,
     /// The item and copy of each piece.
@@ -44,7 +41,7 @@ impl MarkerPieces {
         marker: &Marker,
         (drafts, whose): (&SizeDrafts, &str),
     ) -> Result<Self, MarkerError> {
-        let id = marker.cloth.fabric;
+        let id = marker.fabric;
         let of_panels = pattern.fabric(id);
         let fabric = pattern.marker_fabric(marker, garment);
         let (Some(of_panels), Some(fabric)) = (of_panels, fabric) else {
@@ -54,7 +51,15 @@ impl MarkerPieces {
                 hint: "give the marker one of the pattern's fabrics".to_owned(),
             });
         };
-        let options = options_of(&marker.cloth, &fabric.name);
+        let bare = Arc::new(Marker {
+            placements: Vec::new(),
+            ..marker.clone()
+        });
+        let options = NestOptions {
+            marker: Some(bare.clone()),
+            keep_best: true,
+            ..NestOptions::default()
+        };
         let ordered = ordered(pattern, &marker.order);
         let several = ordered.len() > 1;
         let mut garments = Vec::new();
@@ -84,35 +89,32 @@ impl MarkerPieces {
             copies.map(move |(piece, copy)| (*piece, (item, copy)))
         });
         Ok(Self {
-            cloth: marker.cloth.clone(),
+            marker: bare,
             fabric,
-            order: marker.order.clone(),
             whose: told(&marker.order, whose).map(str::to_owned),
             index: pairs.collect(),
             job,
-            options,
             keys,
         })
     }
 
     /// Whether these are to the bit the pieces and the fabric of others.
     pub fn is_same(&self, other: &Self) -> bool {
-        self.cloth == other.cloth
-            && self.order == other.order
+        cut_alike(&self.marker, &other.marker)
             && self.whose == other.whose
             && self.job.items == other.job.items
             && self.job.pieces == other.job.pieces
-            && self.strip() == other.strip()
+            && self.job.strips().eq(other.job.strips())
     }
 
-    /// The fabric as it lies.
-    pub fn strip(&self) -> &Strip {
-        self.job.strip()
+    /// Names of the rolls it is laid on, in their order; one without a name where there are none.
+    pub fn rolls(&self) -> impl Iterator<Item = Option<&str>> {
+        self.job.roll_names()
     }
 
-    /// A marker of these pieces, judged, to be drawn and written.
-    pub(crate) fn finished(&self, marker: toile_nesting::Marker) -> FinishedMarker {
-        self.job.whole(marker, &self.options)
+    /// The fabric as it lies, of a roll.
+    pub fn strip(&self, roll: usize) -> &Strip {
+        self.job.strip(roll)
     }
 
     /// Whether a marker of a pattern cuts the same pieces from fabric that lies alike, as long as the drafts are
@@ -122,11 +124,20 @@ impl MarkerPieces {
         (pattern, garment): (&Pattern, &GarmentCloth),
         (marker, whose): (&Marker, &str),
     ) -> bool {
-        self.cloth == marker.cloth
-            && self.order == marker.order
+        cut_alike(&self.marker, marker)
             && self.whose.as_deref() == told(&marker.order, whose)
             && pattern.marker_fabric(marker, garment).as_ref() == Some(&self.fabric)
     }
+}
+
+/// Whether two markers cut the same pieces from fabric that lies alike.
+fn cut_alike(one: &Marker, other: &Marker) -> bool {
+    let settings = |marker: &Marker| Marker {
+        placements: Vec::new(),
+        name: String::new(),
+        ..marker.clone()
+    };
+    settings(one) == settings(other)
 }
 
 /// Whose the wearer's pieces are, where an order cuts sizes beside them.
@@ -140,50 +151,4 @@ pub(crate) fn ordered(pattern: &Pattern, order: &[OrderedSize]) -> Vec<(Option<S
     let known = |id: SizeId| pattern.sizes.iter().any(|size| size.id == id);
     let there = order.iter().filter(|one| one.size.is_none_or(known));
     there.map(|one| (one.size, one.quantity)).collect()
-}
-
-/// The options of a search that follow from a marker's fabric.
-fn options_of(cloth: &MarkerCloth, fabric: &str) -> NestOptions {
-    let metres = |place: [f64; 2]| place.map(Metres);
-    let settings = FabricSettings {
-        print: cloth.print.map(|print| PrintSettings {
-            repeat: metres(print.repeat),
-            origin: metres(print.origin),
-        }),
-        flaws: Some(
-            cloth
-                .flaws
-                .iter()
-                .map(|flaw| FlawSettings {
-                    at: metres(flaw.at),
-                    size: metres(flaw.size),
-                    clearance: Metres(flaw.clearance),
-                })
-                .collect(),
-        ),
-        ..FabricSettings::default()
-    };
-    NestOptions {
-        width: cloth.width,
-        length: cloth.length,
-        selvedge: Some(cloth.selvedge),
-        end_margin: Some(cloth.end_margin),
-        gap: Some(cloth.gap),
-        nap: cloth.nap.map(|rule| match rule {
-            NapRule::None => Nap::None,
-            NapRule::OneWay => Nap::OneWay,
-            NapRule::PerGarment => Nap::PerBundle,
-        }),
-        tilt: Some(cloth.tilt),
-        spread: Some(cloth.spread),
-        plies: Some(cloth.plies),
-        price_per_metre: cloth.price_per_metre,
-        settings: MarkerSettings {
-            currency: Some(cloth.currency.clone()),
-            fabrics: [(fabric.to_owned(), settings)].into(),
-            ..MarkerSettings::default()
-        },
-        keep_best: true,
-        ..NestOptions::default()
-    }
 }

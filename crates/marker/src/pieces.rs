@@ -26,6 +26,8 @@ pub struct Garments<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct PieceToCut {
     pub fabric: String,
+    /// Number of its first copy: of what is cut besides, counted on from those of the panel.
+    pub first_copy: u32,
     pub cut: Arc<CutPiece>,
     pub settings: PieceSettings,
     /// Name for messages and on the marker.
@@ -53,10 +55,10 @@ pub(crate) fn pieces_to_cut(
     let mut all = Vec::new();
     let mut first = 0;
     for garment in garments {
-        let marks = resolve_marks(garment.pattern, &options.settings.matched);
+        let marks = resolve_marks(garment.pattern, options);
         let bundles: Vec<u32> = (first..first + garment.count).collect();
         first += garment.count;
-        let alone = !options.settings.matched.is_empty();
+        let alone = options.matches_marks();
         let parts: Vec<Vec<u32>> = match alone {
             true => bundles.iter().map(|&b| vec![b]).collect(),
             false => vec![bundles],
@@ -66,14 +68,17 @@ pub(crate) fn pieces_to_cut(
                 let Some(own) = garment.draft.fabrics.get(piece.fabric) else {
                     continue;
                 };
-                let settings = options.piece(panel_name(garment, piece), &piece.name);
+                let settings = options.piece(garment.pattern, piece);
                 let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
                 let also = settings.also.iter().flatten();
                 let also = also.filter(|(_, count)| piece.id.copy == 0 && **count > 0);
-                let cut_from = std::iter::once((fabric, 1));
-                let cut_from = cut_from.chain(also.map(|(fabric, count)| (&**fabric, *count)));
-                let cut_from: Vec<(&str, u32)> = cut_from
-                    .filter(|(fabric, _)| only.is_none_or(|only| only == *fabric))
+                let panel = garment.pattern.panel(piece.id.panel);
+                let beside = panel.map_or(1, |panel| panel.cut.quantity);
+                let cut_from = std::iter::once((fabric, 1, piece.id.copy));
+                let also = also.map(|(fabric, count)| (&**fabric, *count, beside));
+                let cut_from: Vec<(&str, u32, u32)> = cut_from
+                    .chain(also)
+                    .filter(|(fabric, ..)| only.is_none_or(|only| only == *fabric))
                     .collect();
                 if cut_from.is_empty() {
                     continue;
@@ -87,8 +92,9 @@ pub(crate) fn pieces_to_cut(
                     Some(label) => format!("{} {label}", piece.name),
                     None => piece.name.clone(),
                 };
-                let to_cut = |fabric: &str, count: u32| PieceToCut {
+                let to_cut = |fabric: &str, count: u32, first_copy: u32| PieceToCut {
                     fabric: fabric.to_owned(),
+                    first_copy,
                     name: name.clone(),
                     bundles: bundles
                         .iter()
@@ -110,7 +116,7 @@ pub(crate) fn pieces_to_cut(
                 all.extend(
                     cut_from
                         .iter()
-                        .map(|&(fabric, count)| to_cut(fabric, count)),
+                        .map(|&(fabric, count, first)| to_cut(fabric, count, first)),
                 );
             }
         }
@@ -125,7 +131,7 @@ fn cut_piece(
     settings: &PieceSettings,
 ) -> Result<Arc<CutPiece>, MarkerError> {
     let options = CutOptions {
-        block: settings.block.unwrap_or_default().0.max(0.0),
+        block: settings.rule.block.unwrap_or_default().max(0.0),
         ..CutOptions::default()
     };
     let of = (garment.pattern, garment.draft);
@@ -147,17 +153,11 @@ fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
     told.map(words).collect()
 }
 
-fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {
-    let panels = &garment.pattern.panels;
-    let panel = panels.iter().find(|p| p.id == piece.id.panel);
-    panel.map_or("", |p| p.name.as_str())
-}
-
 /// More pieces than can be laid at once are refused before any list of them is made.
 fn check_count(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), MarkerError> {
     let of = |garment: &Garments<'_>| {
         let each = |piece: &Piece| {
-            let settings = options.piece(panel_name(garment, piece), &piece.name);
+            let settings = options.piece(garment.pattern, piece);
             let also = settings.also.iter().flatten();
             1 + also.map(|(_, &count)| u64::from(count)).sum::<u64>()
         };

@@ -47,6 +47,7 @@ fn placed(piece: OrderedPiece, at: [f64; 2]) -> PiecePlacement {
         turn: 0.0,
         flipped: false,
         locked: false,
+        roll: 0,
     }
 }
 
@@ -115,9 +116,9 @@ fn order_and_fabric_are_set_or_refused() {
         assert!(error.to_string().contains(what), "{error}");
     }
     let usual = pattern.marker(id).unwrap().cloth.clone();
-    let cloth = MarkerCloth {
-        spread: Spread::FaceToFace,
-        plies: 4,
+    let cloth = ClothSettings {
+        spread: Some(Spread::FaceToFace),
+        plies: Some(4),
         width: Some(1.4),
         ..usual.clone()
     };
@@ -130,29 +131,29 @@ fn order_and_fabric_are_set_or_refused() {
     };
     for (wrong, what) in [
         (
-            MarkerCloth {
-                plies: 3,
+            ClothSettings {
+                plies: Some(3),
                 ..cloth.clone()
             },
             "3 plies",
         ),
         (
-            MarkerCloth {
-                gap: -0.1,
+            ClothSettings {
+                gap: Some(-0.1),
                 ..usual.clone()
             },
             "the gap is -0.1",
         ),
         (
-            MarkerCloth {
+            ClothSettings {
                 width: Some(f64::NAN),
                 ..usual.clone()
             },
             "the width",
         ),
         (
-            MarkerCloth {
-                flaws: vec![flaw],
+            ClothSettings {
+                flaws: Some(vec![flaw]),
                 ..usual.clone()
             },
             "flaw",

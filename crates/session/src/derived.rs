@@ -18,7 +18,9 @@ use toile_drape::{Aspect, DrapeError, Finding, Input};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_marker::{FinishedMarker, Garments};
-use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer};
+use toile_pattern::{
+    ClothSettings, Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer,
+};
 
 /// A mannequin with its source.
 #[derive(Clone)]
@@ -251,7 +253,10 @@ impl Derived {
         }
         let parts = self.sound_parts(project)?;
         let options = NestOptions {
-            width: project.width,
+            cloth: ClothSettings {
+                width: project.width,
+                ..ClothSettings::default()
+            },
             ..NestOptions::default()
         };
         let several = parts.len() > 1;

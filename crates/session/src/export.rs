@@ -144,12 +144,13 @@ impl Session {
                     let marker = self.project.pattern.marker_named(name);
                     let kept = marker.and_then(|marker| self.kept_by(marker));
                     events.extend(Event::warnings(kept.as_slice()));
-                    let (name, finished, other_sizes) = stored(self, name)?;
+                    let (name, markers, other_sizes) = stored(self, name)?;
                     events.extend(Event::warnings(other_sizes.as_slice()));
-                    let faults = finished.faults();
-                    events.push(Event::Nested(finished.summary()));
-                    events.extend(Event::warnings(&faults));
-                    (name, Arc::new(vec![finished]))
+                    for finished in &markers {
+                        events.push(Event::Nested(finished.summary()));
+                        events.extend(Event::warnings(&finished.faults()));
+                    }
+                    (name, Arc::new(markers))
                 }
                 None => {
                     events.extend(self.nest(&mut part)?);

@@ -135,8 +135,9 @@ pub use toile_marker::{
     MarkerSummary, NestOptions, Obstacle, PieceOutside, PieceOverlap, SearchProgress,
     SearchWatcher, Start, WaitingPiece,
 };
-pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
-pub use toile_pattern::{Severity, SizeSelection, Spread};
+pub use toile_nesting::{Budget, Pose, Search, Side, Strip};
+pub use toile_pattern::fields::Choice;
+pub use toile_pattern::{ClothSettings, NapRule, Print, Roll, Severity, SizeSelection, Spread};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, PersonFile, convert, fit_mesh,
     make_body, measure_mesh, mesh_panels, stretch_body,

@@ -52,9 +52,21 @@ impl Session {
     /// # Errors
     /// The marker or its fabric is not there; nothing is cut from it; a piece cannot be cut.
     pub fn marker(&mut self, id: MarkerId) -> Result<DocumentMarker, SessionError> {
+        self.marker_on_roll(id, 0)
+    }
+
+    /// The same as its pieces lie on one of its rolls, counted from 0.
+    ///
+    /// # Errors
+    /// As [`Session::marker`].
+    pub fn marker_on_roll(
+        &mut self,
+        id: MarkerId,
+        roll: usize,
+    ) -> Result<DocumentMarker, SessionError> {
         let marker = self.document_marker(id)?;
         let pieces = self.derived.markers.pieces(&self.project, &marker)?;
-        Ok(DocumentMarker::new(marker, pieces))
+        Ok(DocumentMarker::on_roll(marker, pieces, roll))
     }
 
     /// A search for a marker of the document, to be run elsewhere and taken over by
@@ -90,7 +102,7 @@ impl Session {
         let edits = plan::place_marker(&self.evaluation(), id, found.found.placements)?;
         let label = "Lay marker".to_owned();
         let mut events = self.execute(Command::Edit { edits, label }, &mut Silent)?;
-        events.push(Event::Nested(found.found.summary));
+        events.extend(found.found.summaries.into_iter().map(Event::Nested));
         Ok(Some(events))
     }
 

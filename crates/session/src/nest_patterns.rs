@@ -17,7 +17,7 @@ use toile_interchange::{
 };
 use toile_marker::{Garments, MarkerError, marker_files};
 use toile_nesting::{Budget, Control, Progress, judge, make_marker};
-use toile_pattern::{Draft, Pattern};
+use toile_pattern::{ClothSettings, Draft, Pattern};
 
 /// A pattern drafted in a size, and how often it is cut.
 pub(crate) struct Drafted {
@@ -189,7 +189,10 @@ pub fn nest_instance(
         error,
     })?;
     let plain = NestOptions {
-        tilt: options.tilt,
+        cloth: ClothSettings {
+            tilt: options.cloth.tilt,
+            ..ClothSettings::default()
+        },
         keep_best: options.keep_best,
         budget: options.budget,
         seed: options.seed,
@@ -204,7 +207,7 @@ pub fn nest_instance(
         )));
     }
     for item in &mut instance.items {
-        item.allowed.tilt = options.tilt.unwrap_or(0.0);
+        item.allowed.tilt = options.cloth.tilt.unwrap_or(0.0);
     }
     let cancel = watcher.stop_flag().unwrap_or_default();
     let scale = instance.scale;

@@ -26,8 +26,8 @@ pub struct MarkerJob {
 }
 
 /// Searches for a marker of a pattern file, stores where its pieces lie in the file, and writes the
-/// marker. Returns a summary, with what keeps it from being cut among its notes, and the files written,
-/// the pattern's first if it was stored.
+/// marker. Returns a summary, of each roll that it is laid on, with what keeps it from being cut among its notes, and the
+/// files written, the pattern's first if it was stored.
 ///
 /// # Errors
 /// The pattern cannot be read, is not in Toile's format or has what would be lost in storing; it
@@ -37,7 +37,7 @@ pub fn nest_marker(
     path: &Path,
     job: &MarkerJob,
     (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<(MarkerSummary, Vec<PathBuf>), SessionError> {
+) -> Result<(Vec<MarkerSummary>, Vec<PathBuf>), SessionError> {
     let opened = open_pattern(path)?;
     let pattern = &opened.pattern;
     let id = marker_named(pattern, &job.name)?;
@@ -55,11 +55,12 @@ pub fn nest_marker(
     let path = path.to_owned();
     session.execute(Command::OpenPattern { path: path.clone() }, &mut Silent)?;
     let mut paths = Vec::new();
-    let mut notes = Vec::new();
+    let mut notes: Vec<Vec<String>> = Vec::new();
     if let Some(how) = job.search {
         let search = session.marker_search(id)?;
         let found = watched(watcher, |follow| search.run(how, follow))?;
-        notes.clone_from(&found.found.summary.notes);
+        let found_notes = found.found.summaries.iter().map(|own| own.notes.clone());
+        notes.extend(found_notes);
         if session.adopt_marker(found)?.is_none() {
             let what = "the marker changed while it was searched for; search again";
             return Err(SessionError::Conflict(what.to_owned()));
@@ -68,23 +69,25 @@ pub fn nest_marker(
         session.execute(save, &mut Silent)?;
         paths.push(path);
     }
-    let (mut summary, files) = written(&mut session, &job.name, &job.formats)?;
-    for note in notes {
-        if !summary.notes.contains(&note) {
-            summary.notes.push(note);
+    let (mut summaries, files) = written(&mut session, &job.name, &job.formats)?;
+    for (summary, notes) in summaries.iter_mut().zip(notes) {
+        for note in notes {
+            if !summary.notes.contains(&note) {
+                summary.notes.push(note);
+            }
         }
     }
     write_all_atomically(folder, &files)?;
     paths.extend(files.iter().map(|(name, _)| folder.join(name)));
-    Ok((summary, paths))
+    Ok((summaries, paths))
 }
 
-/// A marker of a session's pattern as it lies, what its files are called, and what is said where it is of other sizes
-/// than the garment.
+/// A marker of a session's pattern as it lies, on each of its rolls, what its files are called, and what is said where it
+/// is of other sizes than the garment.
 pub(crate) fn stored(
     session: &mut Session,
     name: &str,
-) -> Result<(String, FinishedMarker, Option<String>), SessionError> {
+) -> Result<(String, Vec<FinishedMarker>, Option<String>), SessionError> {
     let laid = session.marker(marker_named(&session.project().pattern, name)?)?;
     let project = session.project();
     let pattern = &project.pattern;
@@ -110,7 +113,7 @@ pub(crate) fn stored(
     };
     let other_sizes = other_sizes_words(project, marker);
     let other_sizes = other_sizes.map(|words| format!("marker {:?} {words}", marker.name));
-    Ok((name, laid.finished(), other_sizes))
+    Ok((name, laid.finished_rolls(), other_sizes))
 }
 
 fn marker_named(pattern: &Pattern, name: &str) -> Result<MarkerId, SessionError> {
@@ -122,21 +125,25 @@ fn marker_named(pattern: &Pattern, name: &str) -> Result<MarkerId, SessionError>
     })
 }
 
-/// A marker as it lies, in a few numbers and as files.
+/// A marker as it lies, each of its rolls in a few numbers, and as files.
 fn written(
     session: &mut Session,
     marker: &str,
     formats: &[MarkerFormat],
-) -> Result<(MarkerSummary, Vec<File>), SessionError> {
-    let (name, finished, other_sizes) = stored(session, marker)?;
-    let finished_markers = [finished];
+) -> Result<(Vec<MarkerSummary>, Vec<File>), SessionError> {
+    let (name, finished_markers, other_sizes) = stored(session, marker)?;
     let mut files = Vec::new();
     let lost = marker_files((&name, formats), &finished_markers, &mut files)?;
-    let mut summary = finished_markers[0].summary();
-    summary.notes.extend(other_sizes);
-    summary.notes.extend(finished_markers[0].faults());
-    summary.notes.extend(lost.into_iter().flatten());
-    Ok((summary, files))
+    let mut other_sizes = other_sizes.into_iter();
+    let summaries = finished_markers.iter().zip(lost).map(|(finished, lost)| {
+        let mut summary = finished.summary();
+        // Said once, of the first.
+        summary.notes.extend(other_sizes.by_ref());
+        summary.notes.extend(finished.faults());
+        summary.notes.extend(lost);
+        summary
+    });
+    Ok((summaries.collect(), files))
 }
 
 /// Storing writes the whole file anew: what this program does not know would be lost.

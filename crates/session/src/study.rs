@@ -4,13 +4,13 @@
 use crate::nest_patterns::drafts_of;
 use crate::watched_search::lay_watched;
 use crate::watcher::ProgressShare;
-use crate::{Budget, GivenFlaw, Nap, NestOptions, SessionError, Spread, Watcher};
+use crate::{Budget, GivenFlaw, NapRule, NestOptions, SessionError, Spread, Watcher};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use toile_interchange::{ANY_NAME, Metres, PieceSettings};
+use toile_interchange::ANY_NAME;
 use toile_marker::{FinishedMarker, Garments};
 use toile_nesting::{Fold, Marker, judge};
-use toile_pattern::Pattern;
+use toile_pattern::{LayingRule, Pattern, Print, Roll};
 
 /// What a rule costs.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,12 +41,17 @@ fn rule(words: &str, change: impl Fn(&mut NestOptions) + 'static) -> Rule {
 }
 
 /// What holds for all pieces, to change.
-fn every_piece(options: &mut NestOptions) -> &mut PieceSettings {
-    options
-        .settings
-        .pieces
-        .entry(ANY_NAME.to_owned())
-        .or_default()
+fn every_piece(options: &mut NestOptions) -> &mut LayingRule {
+    let pieces = &mut options.settings.pieces;
+    &mut pieces.entry(ANY_NAME.to_owned()).or_default().rule
+}
+
+/// A print that repeats along the warp and across (m).
+fn print(repeat: [f64; 2]) -> Option<Print> {
+    Some(Print {
+        repeat,
+        origin: [0.0; 2],
+    })
 }
 
 /// The rules, for markers as they are without any.
@@ -55,28 +60,32 @@ fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
     let fabrics = base.fabrics.clone();
     let mut all = vec![
         rule("grain within 2 degrees instead of exact", |o| {
-            o.tilt = Some(2f64.to_radians());
+            o.cloth.tilt = Some(2f64.to_radians());
         }),
         rule("pieces may be turned over", |o| {
             every_piece(o).turn_over = Some(true);
         }),
         rule("nap: each garment one way", |o| {
-            o.nap = Some(Nap::PerBundle)
+            o.cloth.nap = Some(NapRule::PerGarment);
         }),
-        rule("nap: all one way", |o| o.nap = Some(Nap::OneWay)),
-        rule("gap of 5 mm instead of 2 mm", |o| o.gap = Some(0.005)),
+        rule("nap: all one way", |o| {
+            o.cloth.nap = Some(NapRule::OneWay);
+        }),
+        rule("gap of 5 mm instead of 2 mm", |o| {
+            o.cloth.gap = Some(0.005);
+        }),
         rule("block of 5 mm round every piece", |o| {
-            every_piece(o).block = Some(Metres(0.005));
+            every_piece(o).block = Some(0.005);
         }),
         rule("selvedges of 20 mm instead of 10 mm, ends of 20 mm", |o| {
-            o.selvedge = Some(0.02);
-            o.end_margin = Some(0.02);
+            o.cloth.selvedge = Some(0.02);
+            o.cloth.end_margin = Some(0.02);
         }),
         rule("stripes of 50 mm across, hems on a line", |o| {
-            o.repeat = Some([REPEAT, 0.0]);
+            o.cloth.print = print([REPEAT, 0.0]);
         }),
         rule("checks of 50 mm, hems and middles on lines", |o| {
-            o.repeat = Some([REPEAT, REPEAT]);
+            o.cloth.print = print([REPEAT, REPEAT]);
         }),
         rule("three flaws of 50 mm, 5 mm kept from them", move |o| {
             for (name, [length, width]) in &fabrics {
@@ -87,18 +96,28 @@ fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
             }
         }),
         rule("two rolls of 60 % of the length", move |o| {
-            o.rolls = vec![(0.6 * length, None); 2];
+            let roll = Roll {
+                length: Some(0.6 * length),
+                ..Roll::default()
+            };
+            o.cloth.rolls = Some(vec![roll; 2]);
         }),
-        rule("face to face", |o| o.spread = Some(Spread::FaceToFace)),
-        rule("folded in two", |o| o.spread = Some(Spread::Folded)),
-        rule("tubular", |o| o.spread = Some(Spread::Tubular)),
+        rule("face to face", |o| {
+            o.cloth.spread = Some(Spread::FaceToFace);
+        }),
+        rule("folded in two", |o| {
+            o.cloth.spread = Some(Spread::Folded);
+        }),
+        rule("tubular", |o| {
+            o.cloth.spread = Some(Spread::Tubular);
+        }),
     ];
     if let Some(marks) = shared_notch(patterns) {
         let words = format!("stripes of 50 mm met at {}", marks.join(" and "));
         all.push((
             words,
             Box::new(move |o| {
-                o.repeat = Some([REPEAT, 0.0]);
+                o.cloth.print = print([REPEAT, 0.0]);
                 o.settings.matched = vec![marks.clone()];
             }),
         ));

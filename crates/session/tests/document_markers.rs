@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::write_pattern;
 use toile_pattern::{
-    Edit, Evaluation, MarkerCloth, MarkerId, OrderedPiece, OrderedSize, PiecePlacement, PointRule,
-    Spread, plan,
+    ClothSettings, Edit, Evaluation, MarkerId, OrderedPiece, OrderedSize, PiecePlacement,
+    PointRule, Spread, plan,
 };
 use toile_session::{
     Budget, Command, Event, MarkerFormat, MarkerJob, MarkerState, NestOptions, SAMPLE, Search,
@@ -309,10 +309,10 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     let mut session = opened(SAMPLE);
     let id = marked(&mut session);
     let usual = session.project().pattern.marker(id).unwrap().cloth.clone();
-    let cloth = MarkerCloth {
+    let cloth = ClothSettings {
         price_per_metre: Some(10.0),
-        currency: "EUR".into(),
-        plies: 2,
+        currency: Some("EUR".into()),
+        plies: Some(2),
         ..usual
     };
     let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();
@@ -343,7 +343,7 @@ fn a_search_tells_how_far_it_is_and_what_comes_too_late_is_dropped() {
     assert!((last.cost.unwrap() - 20.0 * length).abs() < 1e-9);
     let lengths: Vec<f64> = told.iter().filter_map(|standing| standing.length).collect();
     assert!(lengths.is_sorted_by(|a, b| a >= b), "{lengths:?}");
-    let summary = &found.found.summary;
+    let summary = &found.found.summaries[0];
     assert!(summary.length <= length + 1e-9 && summary.efficiency >= efficiency - 1e-9);
     assert_eq!(summary.currency, "EUR");
     assert_eq!(
@@ -382,8 +382,8 @@ fn on_folded_fabric_pairs_are_laid_once_and_halves_on_the_fold() {
     let open = state(&mut session, id).waiting;
     lay(&mut session, id, (Start::Anew, search(1)));
     let usual = session.project().pattern.marker(id).unwrap().cloth.clone();
-    let cloth = MarkerCloth {
-        spread: Spread::Folded,
+    let cloth = ClothSettings {
+        spread: Some(Spread::Folded),
         ..usual.clone()
     };
     let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();
@@ -427,7 +427,10 @@ fn a_marker_of_a_file_is_stored_there_and_written() {
         formats: vec![MarkerFormat::Svg, MarkerFormat::Json],
     };
     let out = folder.path().join("out");
-    let (summary, paths) = nest_marker(&path, &job, (&out, &mut Silent)).unwrap();
+    let (summaries, paths) = nest_marker(&path, &job, (&out, &mut Silent)).unwrap();
+    let [summary] = &summaries[..] else {
+        panic!("{summaries:?}");
+    };
     assert!(summary.sound && summary.unplaced == 0, "{summary:?}");
     assert_eq!(paths.len(), 3);
     lay(&mut session, id, (Start::Anew, search(1)));
@@ -459,7 +462,8 @@ fn a_marker_of_a_file_is_stored_there_and_written() {
         path: other.clone(),
     };
     again.execute(save, &mut Silent).unwrap();
-    let (told, _) = nest_marker(&other, &stored, (&out, &mut Silent)).unwrap();
+    let (mut told, _) = nest_marker(&other, &stored, (&out, &mut Silent)).unwrap();
+    let told = told.remove(0);
     assert!(!told.sound);
     let is_told = |note: &String| note.contains("front") && note.contains("overlap by");
     assert!(told.notes.iter().any(is_told), "{:?}", told.notes);

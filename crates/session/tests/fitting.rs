@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use support::{BAND, files, lasting, make};
 use toile_measure::{Measurements, Origin};
 use toile_session::{
-    BodyChoice, Budget, Command, Event, Figure, MarkerSummary, NestOptions, OtherGarment,
-    PanelOrigin, PrintOptions, Project, Recovery, Session, SessionError, Silent, abandoned,
-    convert, journal_lines, mesh_panels, nest_patterns, print_pattern, read_journal,
+    BodyChoice, Budget, ClothSettings, Command, Event, Figure, MarkerSummary, NestOptions,
+    OtherGarment, PanelOrigin, PrintOptions, Project, Recovery, Session, SessionError, Silent,
+    abandoned, convert, journal_lines, mesh_panels, nest_patterns, print_pattern, read_journal,
 };
 
 fn run(session: &mut Session, command: Command) -> Result<Vec<Event>, SessionError> {
@@ -418,7 +418,10 @@ fn jobs_without_a_session_take_what_the_file_keeps() {
     assert!(area(&kept) > area(&medium));
     // An option says otherwise.
     let asked = NestOptions {
-        width: Some(0.9),
+        cloth: ClothSettings {
+            width: Some(0.9),
+            ..ClothSettings::default()
+        },
         ..options
     };
     assert_eq!(nest(&path, &asked).width, 0.9);

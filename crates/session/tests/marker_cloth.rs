@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, Flaw, MarkerCloth, MarkerId, OrderedSize, PiecePlacement, plan};
+use toile_pattern::{ClothSettings, Edit, Flaw, MarkerId, OrderedSize, PiecePlacement, plan};
 use toile_session::{
     Command, Event, LetGo, Obstacle, SAMPLE, Search, SearchWatcher, Session, Silent, Start,
     other_sizes_words,
@@ -88,14 +88,14 @@ fn a_marker_lies_on_what_the_garment_is_cut_from_and_what_it_keeps_is_told() {
 
     // A width of its own, and its own fabric, stay: that is told.
     let usual = session.project().pattern.marker(id).unwrap().cloth.clone();
-    let with = |session: &mut Session, cloth: MarkerCloth| {
+    let with = |session: &mut Session, cloth: ClothSettings| {
         let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();
         edit(session, edits);
     };
     let width = Some(1.4);
     with(
         &mut session,
-        MarkerCloth {
+        ClothSettings {
             width,
             ..usual.clone()
         },
@@ -105,23 +105,23 @@ fn a_marker_lies_on_what_the_garment_is_cut_from_and_what_it_keeps_is_told() {
         told[0].contains("\"shirts\" stays 140.0 cm wide"),
         "{told:?}"
     );
-    let keeps_fabric = true;
-    with(
-        &mut session,
-        MarkerCloth {
-            keeps_fabric,
-            ..usual.clone()
-        },
-    );
+    with(&mut session, usual);
+    let own_fabric = session.project().pattern.marker(id).unwrap().fabric;
+    let keeps = |session: &mut Session, keeps_fabric: bool| {
+        let lies_on = (own_fabric, keeps_fabric);
+        let edits = plan::set_marker_fabric(&session.evaluation(), id, lies_on).unwrap();
+        edit(session, edits);
+    };
+    keeps(&mut session, true);
     assert_eq!(lies_on(&mut session), (own.fabric.clone(), own.strip.width));
     let told = run(&mut session, wide(None));
     let words = format!("stays on {}, and the garment is cut from denim", own.fabric);
     assert!(told[0].contains(&words), "{told:?}");
-    with(&mut session, usual);
+    keeps(&mut session, false);
 
     // A search is on the same cloth, and is dropped where that changes meanwhile.
     let found = searched(&mut session, id);
-    assert_eq!(found.found.summary.fabric, "denim");
+    assert_eq!(found.found.summaries[0].fabric, "denim");
     run(&mut session, wide(Some(1.3)));
     assert!(session.adopt_marker(found).unwrap().is_none());
     run(&mut session, wide(None));
@@ -197,6 +197,7 @@ fn a_piece_that_is_let_go_lies_on_no_flaw() {
         turn: 0.0,
         flipped: false,
         locked: false,
+        roll: 0,
     };
     let edits = plan::place_pieces(&session.evaluation(), id, &[at([0.0; 2])]).unwrap();
     edit(&mut session, edits);
@@ -209,8 +210,8 @@ fn a_piece_that_is_let_go_lies_on_no_flaw() {
         size: [0.3, 0.5],
         clearance,
     };
-    let cloth = MarkerCloth {
-        flaws: vec![flaw],
+    let cloth = ClothSettings {
+        flaws: Some(vec![flaw]),
         ..session.project().pattern.marker(id).unwrap().cloth.clone()
     };
     let edits = plan::set_marker_cloth(&session.evaluation(), id, cloth).unwrap();

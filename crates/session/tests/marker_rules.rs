@@ -4,12 +4,12 @@
 #[path = "support/markers.rs"]
 mod markers;
 
-use markers::{pattern, settings};
+use markers::{pattern, rolls, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, GivenFlaw, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent,
-    SizeSelection, Spread, judge_marker_file, nest_instance, nest_patterns,
+    Budget, ClothSettings, GivenFlaw, MarkerFormat, MarkerSummary, NapRule, NestOptions,
+    SessionError, Silent, SizeSelection, Spread, judge_marker_file, nest_instance, nest_patterns,
 };
 
 fn options() -> NestOptions {
@@ -62,11 +62,17 @@ fn faults(made: &Made, name: &str) -> Vec<String> {
 fn fabric_at_hand_is_shared_by_the_plies() {
     for own in [
         NestOptions {
-            rolls: vec![(4.0, None)],
+            cloth: ClothSettings {
+                rolls: rolls(&[(4.0, None)]),
+                ..ClothSettings::default()
+            },
             ..options()
         },
         NestOptions {
-            length: Some(4.0),
+            cloth: ClothSettings {
+                length: Some(4.0),
+                ..ClothSettings::default()
+            },
             ..options()
         },
         NestOptions {
@@ -74,10 +80,8 @@ fn fabric_at_hand_is_shared_by_the_plies() {
             ..options()
         },
     ] {
-        let own = NestOptions {
-            plies: Some(4),
-            ..own
-        };
+        let mut own = own;
+        own.cloth.plies = Some(4);
         let made = nest(&["t-shirt"], &own).unwrap();
         assert!(made.summary[0].yardage <= 4.0 + 1e-9, "{:?}", made.summary);
     }
@@ -86,14 +90,14 @@ fn fabric_at_hand_is_shared_by_the_plies() {
 #[test]
 fn flaws_are_measured_on_the_open_fabric() {
     let mut options = options();
-    options.spread = Some(Spread::Folded);
+    options.cloth.spread = Some(Spread::Folded);
     options.flaws = vec![GivenFlaw::at([0.2, 1.2, 0.05, 0.05])];
     let made = nest(&["t-shirt"], &options).unwrap();
     let flaw = &made.marker("marker.json").fabric.flaws[0].outline;
     let low = flaw.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     assert!((low - 0.4).abs() < 1e-9, "{flaw:?}");
     assert!(faults(&made, "marker.json").is_empty());
-    options.spread = None;
+    options.cloth.spread = None;
     options.flaws = vec![GivenFlaw::at([0.0, 2.0, 0.05, 0.05])];
     let words = refused(&["t-shirt"], &options);
     assert!(
@@ -119,18 +123,15 @@ fn what_the_entry_of_a_fabric_leaves_open_is_that_of_all() {
 fn the_command_line_comes_first_or_is_refused() {
     let mut options = options();
     options.settings = settings(r#""pieces": { "*": { "tilt": 5 } }"#);
-    options.tilt = Some(0.0);
+    options.cloth.tilt = Some(0.0);
     let made = nest(&["t-shirt"], &options).unwrap();
     let straight = |p: &toile_interchange::MarkerFilePiece| p.turn % 180.0 == 0.0;
     assert!(made.marker("marker.json").pieces.iter().all(straight));
     options.settings =
         settings(r#""fabrics": { "*": { "rolls": [ { "length": "3m", "width": "150cm" } ] } }"#);
     for (width, length, what) in [(Some(1.4), None, "--width"), (None, Some(9.0), "--length")] {
-        let both = NestOptions {
-            width,
-            length,
-            ..options.clone()
-        };
+        let mut both = options.clone();
+        (both.cloth.width, both.cloth.length) = (width, length);
         let words = refused(&["t-shirt"], &both);
         assert!(words.contains(what), "{words}");
     }
@@ -181,7 +182,7 @@ fn a_fabric_goes_on_from_its_own_marker() {
     assert!(words.contains("\"front mirrored\""), "{words}");
     // Rolls have several markers: there is none to go on from.
     options.locked.clear();
-    options.rolls = vec![(3.0, None)];
+    options.cloth.rolls = rolls(&[(3.0, None)]);
     let words = refused(&["trousers"], &options);
     assert!(words.contains("rolls"), "{words}");
 }
@@ -189,7 +190,10 @@ fn a_fabric_goes_on_from_its_own_marker() {
 #[test]
 fn our_own_markers_are_sound_to_the_check() {
     let naps = NestOptions {
-        nap: Some(Nap::PerBundle),
+        cloth: ClothSettings {
+            nap: Some(NapRule::PerGarment),
+            ..ClothSettings::default()
+        },
         sizes: SizeSelection::Named(vec![("S".into(), 1), ("M".into(), 1)]),
         ..options()
     };
@@ -261,8 +265,8 @@ fn more_pieces_than_can_be_laid_are_refused_at_once() {
 #[test]
 fn two_at_once_belong_to_one_garment_where_each_runs_one_way() {
     let mut options = options();
-    options.spread = Some(Spread::Folded);
-    options.nap = Some(Nap::PerBundle);
+    options.cloth.spread = Some(Spread::Folded);
+    options.cloth.nap = Some(NapRule::PerGarment);
     options.settings =
         settings(r#""pieces": { "front": { "on_fold": false }, "back": { "on_fold": false } }"#);
     options.sizes = SizeSelection::Named(vec![("M".into(), 2)]);
@@ -293,7 +297,7 @@ fn pieces_of_several_patterns_are_told_apart() {
 #[test]
 fn what_lies_on_the_next_roll_is_not_missing() {
     let mut options = options();
-    options.rolls = vec![(0.8, Some(0.8)), (5.0, None)];
+    options.cloth.rolls = rolls(&[(0.8, Some(0.8)), (5.0, None)]);
     let made = nest(&["t-shirt"], &options).unwrap();
     assert_eq!(made.summary.len(), 2);
     for name in ["marker.json", "marker-2.json"] {
@@ -304,14 +308,14 @@ fn what_lies_on_the_next_roll_is_not_missing() {
 #[test]
 fn the_remedy_on_folded_fabric_is_its_open_width() {
     let mut options = options();
-    options.spread = Some(Spread::Folded);
-    options.width = Some(0.3);
+    options.cloth.spread = Some(Spread::Folded);
+    options.cloth.width = Some(0.3);
     let words = refused(&["t-shirt"], &options);
     let width = words.split("at least ").nth(1).unwrap();
     let width: f64 = width.split(' ').next().unwrap().parse().unwrap();
-    options.width = Some(width * 1e-3 + 0.001);
+    options.cloth.width = Some(width * 1e-3 + 0.001);
     assert!(!refused_width(&options), "{words}");
-    options.width = Some(width * 1e-3 - 0.01);
+    options.cloth.width = Some(width * 1e-3 - 0.01);
     assert!(refused_width(&options), "{words}");
 }
 
@@ -344,7 +348,10 @@ fn instances_take_no_options_of_fabric() {
     };
     assert_eq!(place(&plain).unwrap().pieces, 2);
     let gap = NestOptions {
-        gap: Some(0.01),
+        cloth: ClothSettings {
+            gap: Some(0.01),
+            ..ClothSettings::default()
+        },
         ..plain
     };
     let words = place(&gap).unwrap_err().to_string();
@@ -376,7 +383,7 @@ fn a_flaw_lies_on_one_fabric_and_one_roll() {
     let made = nest(&["t-shirt"], &options).unwrap();
     let flaws = |name: &str| made.marker(name).fabric.flaws.len();
     assert_eq!((flaws("marker.json"), flaws("marker-2.json")), (1, 0));
-    options.rolls = vec![(2.0, None), (3.0, None)];
+    options.cloth.rolls = rolls(&[(2.0, None), (3.0, None)]);
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("laid on 2 rolls"), "{words}");
 }
@@ -385,7 +392,7 @@ fn a_flaw_lies_on_one_fabric_and_one_roll() {
 fn what_an_instance_cannot_hold_is_told() {
     let mut options = options();
     options.formats = vec![MarkerFormat::Instance];
-    options.nap = Some(Nap::PerBundle);
+    options.cloth.nap = Some(NapRule::PerGarment);
     let made = nest(&["t-shirt"], &options).unwrap();
     let told = "marker-instance.json does not hold: gaps, the nap of each garment";
     let notes = &made.summary[0].notes;

@@ -5,7 +5,7 @@
 #[path = "support/markers.rs"]
 mod markers;
 
-use markers::{pattern, settings};
+use markers::{pattern, rolls, settings};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, MarkerSummary, Nap, NestOptions, SessionError, Silent, SizeSelection,
-    Watcher, judge_marker_file, nest_patterns,
+    Budget, ClothSettings, MarkerFormat, MarkerSummary, NapRule, NestOptions, SessionError, Silent,
+    SizeSelection, Watcher, judge_marker_file, nest_patterns,
 };
 
 fn options() -> NestOptions {
@@ -91,7 +91,10 @@ fn stopping_on_the_second_fabric_keeps_the_first() {
 fn copies_on_rolls_keep_the_numbers_of_the_fabric() {
     let folder = tempfile::tempdir().unwrap();
     let rolled = NestOptions {
-        rolls: vec![(1.2, Some(0.3)), (1.1, Some(0.8))],
+        cloth: ClothSettings {
+            rolls: rolls(&[(1.2, Some(0.3)), (1.1, Some(0.8))]),
+            ..ClothSettings::default()
+        },
         sizes: SizeSelection::Named(vec![("M".into(), 2)]),
         ..options()
     };
@@ -116,10 +119,13 @@ fn copies_on_rolls_keep_the_numbers_of_the_fabric() {
 #[test]
 fn a_piece_across_the_nap_is_a_fault() {
     let folder = tempfile::tempdir().unwrap();
-    for nap in [Nap::PerBundle, Nap::OneWay] {
+    for nap in [NapRule::PerGarment, NapRule::OneWay] {
         let napped = NestOptions {
-            nap: Some(nap),
-            tilt: Some(0.03),
+            cloth: ClothSettings {
+                nap: Some(nap),
+                tilt: Some(0.03),
+                ..ClothSettings::default()
+            },
             ..options()
         };
         nest(&["t-shirt"], &napped, (folder.path(), &mut Silent)).unwrap();

@@ -4,7 +4,7 @@
 #[path = "support/markers.rs"]
 mod markers;
 
-use markers::{pattern, settings};
+use markers::{pattern, rolls, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, MarkerSettings, read_marker_json};
 use toile_session::{
@@ -70,7 +70,7 @@ fn sides(file: &MarkerFile, name: &str) -> [f64; 2] {
 #[test]
 fn on_folded_fabric_halves_lie_on_the_fold_and_pairs_are_cut_at_once() {
     let mut options = options();
-    options.spread = Some(Spread::Folded);
+    options.cloth.spread = Some(Spread::Folded);
     let made = nest("t-shirt", &options).unwrap();
     let file = made.marker("marker.json");
     assert_eq!(file.fabric.width, 0.8);
@@ -84,7 +84,7 @@ fn on_folded_fabric_halves_lie_on_the_fold_and_pairs_are_cut_at_once() {
     let off = (half[1] - half[0]) - 0.5 * (widest[1] - widest[0]);
     assert!(off.abs() < 2e-6, "{off}");
     // A tube has a fold for each.
-    options.spread = Some(Spread::Tubular);
+    options.cloth.spread = Some(Spread::Tubular);
     let made = nest("t-shirt", &options).unwrap();
     let file = made.marker("marker.json");
     for name in ["front", "back"] {
@@ -101,8 +101,8 @@ fn on_folded_fabric_halves_lie_on_the_fold_and_pairs_are_cut_at_once() {
 #[test]
 fn face_to_face_pairs_lie_either_way_and_single_pieces_are_refused() {
     let mut options = options();
-    options.spread = Some(Spread::FaceToFace);
-    options.price_per_metre = Some(8.0);
+    options.cloth.spread = Some(Spread::FaceToFace);
+    options.cloth.price_per_metre = Some(8.0);
     let made = nest("trousers", &options).unwrap();
     let one = &made.summary[0];
     assert_eq!((one.pieces, one.plies), (5, 2));
@@ -110,9 +110,9 @@ fn face_to_face_pairs_lie_either_way_and_single_pieces_are_refused() {
     assert!((one.cost.unwrap() - 8.0 * one.yardage).abs() < 1e-12);
     let file = made.marker("marker.json");
     assert!(file.face_to_face && file.plies == 2);
-    options.plies = Some(3);
+    options.cloth.plies = Some(3);
     assert!(refused("trousers", &options).contains("even number"));
-    options.plies = None;
+    options.cloth.plies = None;
     options.settings = settings(
         r#""fabrics": { "lining": { "width": "140cm" } },
            "pieces": { "front mirrored": { "fabric": "lining" } }"#,
@@ -167,25 +167,25 @@ fn rolls_are_filled_in_turn_and_what_fits_none_is_named() {
              { "name": "bolt", "length": "1.15m", "price_per_metre": 9 } ] } }"#,
     );
     let made = nest("trousers", &options).unwrap();
-    let rolls: Vec<_> = made
+    let names: Vec<_> = made
         .summary
         .iter()
         .map(|n| n.roll.as_deref().unwrap())
         .collect();
-    assert_eq!(rolls, ["remnant", "bolt"]);
+    assert_eq!(names, ["remnant", "bolt"]);
     let laid: usize = made.summary.iter().map(|n| n.pieces).sum();
     assert_eq!(laid + made.summary[1].missing.len(), 5);
     assert!((made.summary[0].cost.unwrap() - 2.0 * made.summary[0].length).abs() < 1e-12);
     assert_eq!(made.marker("marker.json").roll.as_deref(), Some("remnant"));
     // On the command line.
     options.settings = MarkerSettings::default();
-    options.rolls = vec![(1.2, Some(0.3)), (1.1, Some(0.8))];
+    options.cloth.rolls = rolls(&[(1.2, Some(0.3)), (1.1, Some(0.8))]);
     let made = nest("trousers", &options).unwrap();
     let missing = &made.summary.last().unwrap().missing;
     let left =
         |[_, why]: &[String; 2]| why.contains("roll 1: it is") && why.contains("roll 2: no room");
     assert!(missing.iter().any(left), "{missing:?}");
-    options.rolls = vec![(0.2, None), (0.1, None)];
+    options.cloth.rolls = rolls(&[(0.2, None), (0.1, None)]);
     let words = refused("trousers", &options);
     assert!(words.contains("no piece fits any roll"), "{words}");
     assert!(words.contains("roll 2: it is"), "{words}");

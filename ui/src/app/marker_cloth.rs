@@ -3,7 +3,7 @@
 use super::ToileApp;
 use egui::{Color32, ComboBox, DragValue, Id, Label, TextStyle, Ui, vec2};
 use toile_pattern::plan;
-use toile_pattern::{FabricId, Marker, MarkerCloth, MarkerId, MarkerKeeps, OrderedSize};
+use toile_pattern::{ClothSettings, FabricId, Marker, MarkerId, MarkerKeeps, OrderedSize};
 use toile_session::{Shown, kept_words, other_sizes_words};
 
 /// Widths that differ by less are the same [m].
@@ -13,15 +13,23 @@ const FIELD_ROOM: f32 = 84.0;
 
 impl ToileApp {
     pub(super) fn cloth_fields(&mut self, ui: &mut Ui, marker: &Marker) {
+        let mut lies_on = (marker.fabric, marker.keeps_fabric);
+        self.fabric_choice(ui, marker, &mut lies_on);
+        if lies_on != (marker.fabric, marker.keeps_fabric) {
+            self.set_marker_fabric(marker.id, lies_on);
+        }
         let mut cloth = marker.cloth.clone();
-        self.fabric_choice(ui, marker, &mut cloth);
         self.width_field(ui, marker, &mut cloth);
+        let usual = cloth.spread.unwrap_or_default().usual_plies();
+        let mut plies = cloth.plies.unwrap_or(usual);
         let label = kept_label(ui, "Plies");
-        let field = DragValue::new(&mut cloth.plies)
+        let field = DragValue::new(&mut plies)
             .range(1..=500)
             .speed(0.05)
             .update_while_editing(false);
-        ui.add(field).labelled_by(label);
+        if ui.add(field).labelled_by(label).changed() {
+            cloth.plies = Some(plies);
+        }
         let mut price = cloth.price_per_metre.unwrap_or(0.0);
         let label = kept_label(ui, "Price per m");
         let field = DragValue::new(&mut price)
@@ -29,21 +37,33 @@ impl ToileApp {
             .speed(0.1)
             .max_decimals(2)
             .update_while_editing(false);
-        ui.add(field).labelled_by(label);
-        cloth.price_per_metre = (price > 0.0).then_some(price);
+        if ui.add(field).labelled_by(label).changed() {
+            cloth.price_per_metre = (price > 0.0).then_some(price);
+        }
         if cloth != marker.cloth {
             self.set_marker_cloth(marker.id, cloth);
         }
     }
 
-    fn set_marker_cloth(&mut self, id: MarkerId, cloth: MarkerCloth) {
+    fn set_marker_fabric(&mut self, id: MarkerId, lies_on: (FabricId, bool)) {
+        let planned = plan::set_marker_fabric(&self.base, id, lies_on);
+        self.edit(planned, "Set fabric of marker");
+        self.follow_marker();
+    }
+
+    pub(super) fn set_marker_cloth(&mut self, id: MarkerId, cloth: ClothSettings) {
         let planned = plan::set_marker_cloth(&self.base, id, cloth);
         self.edit(planned, "Set fabric of marker");
         self.follow_marker();
     }
 
     /// The fabric its pieces lie on: what the garment is cut from, or always its own.
-    fn fabric_choice(&self, ui: &mut Ui, marker: &Marker, cloth: &mut MarkerCloth) {
+    fn fabric_choice(
+        &self,
+        ui: &mut Ui,
+        marker: &Marker,
+        (fabric, keeps_fabric): &mut (FabricId, bool),
+    ) {
         let pattern = self.base.pattern();
         let garment = self.session.project().garment_cloth();
         let name = |marker: &Marker| {
@@ -51,22 +71,22 @@ impl ToileApp {
             fabric.map_or_else(|| "gone".to_owned(), |fabric| fabric.name)
         };
         let mut following = marker.clone();
-        following.cloth.keeps_fabric = false;
-        let own = pattern.fabric(cloth.fabric).map(|own| own.name.clone());
-        let others = self.fabrics_cut(marker.cloth.fabric);
+        following.keeps_fabric = false;
+        let own = pattern.fabric(*fabric).map(|own| own.name.clone());
+        let others = self.fabrics_cut(marker.fabric);
         let label = kept_label(ui, "Lies on");
         ComboBox::from_id_salt("marker fabric")
             .selected_text(name(marker))
             .show_ui(ui, |ui| {
                 let words = format!("as the garment: {}", name(&following));
-                ui.selectable_value(&mut cloth.keeps_fabric, false, words);
+                ui.selectable_value(keeps_fabric, false, words);
                 if let Some(own) = own {
                     let words = format!("always {own}");
-                    ui.selectable_value(&mut cloth.keeps_fabric, true, words);
+                    ui.selectable_value(keeps_fabric, true, words);
                 }
                 for (id, name) in others {
                     let words = format!("the pieces of {name}");
-                    ui.selectable_value(&mut cloth.fabric, id, words);
+                    ui.selectable_value(fabric, id, words);
                 }
             })
             .response
@@ -85,7 +105,7 @@ impl ToileApp {
     }
 
     /// Its width. That of the roll, or of the fabric, is followed; another is its own.
-    fn width_field(&self, ui: &mut Ui, marker: &Marker, cloth: &mut MarkerCloth) {
+    fn width_field(&self, ui: &mut Ui, marker: &Marker, cloth: &mut ClothSettings) {
         let pattern = self.base.pattern();
         let garment = self.session.project().garment_cloth();
         let width_of = |width: Option<f64>| {
@@ -117,12 +137,13 @@ impl ToileApp {
         let pattern = self.base.pattern().clone();
         let marker = pattern.marker(self.marker_id()?)?.clone();
         let garment = self.session.project().garment_cloth();
+        let mut lies_on = (marker.fabric, marker.keeps_fabric);
         let mut cloth = marker.cloth.clone();
         let (button, words) = match pattern.marker_keeps(&marker, &garment) {
             Some(keeps) => {
                 let button = match &keeps {
                     MarkerKeeps::Fabric { garments, .. } => {
-                        cloth.keeps_fabric = false;
+                        lies_on.1 = false;
                         format!("Lay on {garments}")
                     }
                     MarkerKeeps::Width { garments, .. } => {
@@ -139,13 +160,16 @@ impl ToileApp {
                 return Some(format!("The marker {words}"));
             }
             None => {
-                let (id, name) = self.fabrics_cut(cloth.fabric).into_iter().next()?;
-                cloth.fabric = id;
+                let (id, name) = self.fabrics_cut(marker.fabric).into_iter().next()?;
+                lies_on.0 = id;
                 (format!("Lay the pieces of {name}"), String::new())
             }
         };
         if ui.button(button).clicked() {
-            self.set_marker_cloth(marker.id, cloth);
+            match cloth == marker.cloth {
+                true => self.set_marker_fabric(marker.id, lies_on),
+                false => self.set_marker_cloth(marker.id, cloth),
+            }
         }
         Some(words)
     }
@@ -175,17 +199,19 @@ impl ToileApp {
         }
     }
 
-    /// Whether any panel is cut from the fabric of a marker.
+    /// Whether any panel is cut from the fabric of a marker, or any piece by its rules.
     fn has_pieces_to_lay(&self, marker: &Marker) -> bool {
-        let mut panels = self.base.pattern().panels.iter();
-        panels.any(|panel| panel.fabric == marker.cloth.fabric)
+        let pattern = self.base.pattern();
+        let mut panels = pattern.panels.iter();
+        panels.any(|panel| panel.fabric == marker.fabric)
+            || pattern.ordered_pieces(marker).next().is_some()
     }
 
     /// Why a marker has no pieces, and what to do, if that is so.
     pub(super) fn why_marker_is_empty(&self, id: MarkerId) -> Option<String> {
         let pattern = self.base.pattern();
         let marker = pattern.marker(id)?;
-        let own = pattern.fabric(marker.cloth.fabric)?;
+        let own = pattern.fabric(marker.fabric)?;
         let words = match () {
             () if pattern.panels.is_empty() => {
                 "The pieces are laid here: draw a panel first".to_owned()

@@ -28,6 +28,7 @@ impl ToileApp {
         at: Vec2,
         how: LetGoAs,
     ) {
+        let roll = self.marker_view.roll as u16;
         let laid = |app: &Self, by: Vec2| {
             let laid = PiecePlacement {
                 piece,
@@ -35,6 +36,7 @@ impl ToileApp {
                 turn: 0.0,
                 flipped: false,
                 locked: false,
+                roll,
             };
             plan::place_pieces(&app.base, id, &[laid])
         };
@@ -57,7 +59,8 @@ impl ToileApp {
                 return self.follow_marker();
             }
         }
-        let rest = match (how, self.session.marker(id)) {
+        let lies = self.session.marker_on_roll(id, self.marker_view.roll);
+        let rest = match (how, lies) {
             (LetGoAs::Butted(reach), Ok(laid)) => laid.let_go(pieces, reach),
             _ => LetGo::Apart(Vec2::zeros()),
         };

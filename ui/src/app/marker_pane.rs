@@ -83,7 +83,7 @@ impl ToileApp {
     pub(crate) fn new_marker(&mut self) {
         let pattern = self.base.pattern();
         let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
-        let has_marker = |id| pattern.markers.iter().any(|m| m.cloth.fabric == id);
+        let has_marker = |id| pattern.markers.iter().any(|m| m.fabric == id);
         let fabrics = pattern.fabrics.iter().map(|fabric| fabric.id);
         // The fabric without a marker that most panels are cut from.
         let Some(fabric) = fabrics.max_by_key(|id| (!has_marker(*id), count(*id))) else {
@@ -124,7 +124,7 @@ impl ToileApp {
         if let Some(words) = self.why_marker_is_empty(id) {
             return self.marker_view.clear(Ok(&words));
         }
-        match self.session.marker(id) {
+        match self.session.marker_on_roll(id, self.marker_view.roll) {
             Ok(laid) => self.marker_view.follow(&laid),
             Err(error) => self.marker_view.clear(Err(error.to_string())),
         }
@@ -134,6 +134,7 @@ impl ToileApp {
     pub(crate) fn marker_side(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| self.marker_bar(ui));
         ui.horizontal_wrapped(|ui| self.search_bar(ui));
+        self.laying_rows(ui);
         self.verdict_line(ui);
         for action in self.marker_view.show(ui) {
             self.do_marker(action);
@@ -159,6 +160,7 @@ impl ToileApp {
             .labelled_by(label);
         if chosen != marker.id {
             self.marker_view.chosen = Some(chosen);
+            self.marker_view.roll = 0;
             self.marker_view.fit();
             self.follow_marker();
         }
@@ -180,6 +182,8 @@ impl ToileApp {
         self.order_fields(ui, &marker);
         ui.separator();
         self.cloth_fields(ui, &marker);
+        ui.toggle_value(&mut self.marker_view.shows_laying, "Rolls and rules")
+            .on_hover_text("How the fabric is laid, its rolls, and rules for single pieces");
     }
 
     /// How many garments of the wearer, where that is none of the sizes, and of each size.
@@ -301,15 +305,18 @@ impl ToileApp {
             let marker = self
                 .marker_id()
                 .and_then(|id| self.base.pattern().marker(id));
-            let currency = marker.map_or("", |marker| &*marker.cloth.currency);
+            let currency = marker.and_then(|marker| marker.cloth.currency.as_deref());
+            let currency = currency.unwrap_or_default();
             words = format!("{words}, {cost:.2} {currency}");
         }
         if state.waiting > 0 {
-            words = format!(
-                "{words}; {} of {} wait",
-                state.waiting,
-                state.laid + state.waiting
-            );
+            words = match self.marker_view.rolls.len() > 1 {
+                true => format!("{words}; {} wait", state.waiting),
+                false => {
+                    let all = state.laid + state.waiting;
+                    format!("{words}; {} of {all} wait", state.waiting)
+                }
+            };
         }
         if let Some(overlap) = state.overlaps.first() {
             let pattern = self.base.pattern();

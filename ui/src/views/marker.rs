@@ -56,6 +56,12 @@ pub struct MarkerView {
     pub chosen: Option<MarkerId>,
     /// Pieces that are selected.
     pub selection: Vec<OrderedPiece>,
+    /// The roll on show, from 0.
+    pub roll: usize,
+    /// Names of all its rolls; none where it has none.
+    pub rolls: Vec<String>,
+    /// Whether the fields of its laying and its rules are shown.
+    pub shows_laying: bool,
     /// What keeps it from being cut as it lies.
     pub state: MarkerState,
     /// Why there is nothing to see, and whether that is a fault.
@@ -79,6 +85,9 @@ impl Default for MarkerView {
         Self {
             chosen: None,
             selection: Vec::new(),
+            roll: 0,
+            rolls: Vec::new(),
+            shows_laying: false,
             state: MarkerState::default(),
             nothing: None,
             camera: TableCamera::default(),
@@ -140,6 +149,8 @@ impl MarkerView {
     /// Follows a marker as it lies now. Pieces that lie as before are not drawn anew.
     pub fn follow(&mut self, laid: &DocumentMarker) {
         self.nothing = None;
+        self.roll = laid.roll();
+        self.rolls = laid.rolls().flatten().map(str::to_owned).collect();
         self.state = laid.state();
         let mut old: HashMap<OrderedPiece, PieceScene> = std::mem::take(&mut self.pieces)
             .into_iter()

@@ -4,8 +4,8 @@
 //! unit and angles in degrees, texts are formulas. Parts are referred to by id, in formulas by name.
 
 mod fitting;
-mod item;
-mod json;
+pub(crate) mod item;
+pub(crate) mod json;
 mod measurements;
 mod part_reader;
 mod part_writer;

@@ -52,6 +52,8 @@ enum Place<'a> {
         object: Option<Object<'a>>,
         /// The fields that are known: those asked for, and those of other kinds.
         known: Vec<&'static str>,
+        /// Whether the item is a value of its own, whose fields are not those of a part.
+        is_value: bool,
     },
     /// In a list: the next item of it.
     List(std::vec::IntoIter<Item<'a>>),
@@ -68,6 +70,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
             item,
             object: None,
             known,
+            is_value: false,
         };
         Self { reader, place }
     }
@@ -90,11 +93,15 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
         let (item, object, known) = match &mut self.place {
             Place::List(items) => return items.next(),
-            Place::Part { item, .. } if key == ITSELF => return Some(item.clone()),
+            Place::Part { item, is_value, .. } if key == ITSELF => {
+                *is_value = true;
+                return Some(item.clone());
+            }
             Place::Part {
                 item,
                 object,
                 known,
+                ..
             } => (item, object, known),
         };
         known.push(key);
@@ -144,10 +151,17 @@ impl<'r, 'a> PartReader<'r, 'a> {
 
     /// Notes the fields of the present object that are not known.
     fn note_unknown(self) {
-        let Place::Part { item, known, .. } = self.place else {
+        let Place::Part {
+            item,
+            known,
+            is_value,
+            ..
+        } = self.place
+        else {
             return;
         };
-        if self.reader.fault.is_none() && matches!(item.node.value, Json::Object(_)) {
+        let is_object = matches!(item.node.value, Json::Object(_)) && !is_value;
+        if self.reader.fault.is_none() && is_object {
             item.note_unknown(&known, &mut self.reader.notes);
         }
     }
@@ -264,9 +278,7 @@ impl<'a> VisitorMut for PartReader<'_, 'a> {
 
     fn list(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut)) {
         self.within(group, |reader, item| {
-            let mut count = Count(0);
-            walk(&mut count);
-            match item.exactly(count.0) {
+            match item.exactly(toile_pattern::fields::count(walk)) {
                 Ok(items) => walk(&mut PartReader {
                     reader,
                     place: Place::List(items.into_iter()),
@@ -339,69 +351,7 @@ fn set_value(
 
 /// Sets a value that a file leaves out, where that is not what an empty part has.
 fn set_absent(field: ValueField, value: ValueMut<'_>) {
-    match (value, field.absent_flag, field.absent_count) {
-        (ValueMut::Flag(flag), Some(absent), _) => *flag = absent,
-        (ValueMut::Count(_, set), _, Some(absent)) => set(absent),
-        _ => {}
-    }
-}
-
-/// Counts the fields of a list.
-struct Count(usize);
-
-impl VisitorMut for Count {
-    fn own(&mut self, _: &mut dyn AnyId) {
-        self.0 += 1;
-    }
-
-    fn id(&mut self, _: &'static str, _: &mut dyn AnyId) {
-        self.0 += 1;
-    }
-
-    fn number(&mut self, _: NumberField, _: &mut Number) {
-        self.0 += 1;
-    }
-
-    fn optional_number(&mut self, _: NumberField, _: &mut Option<Number>) {
-        self.0 += 1;
-    }
-
-    fn value(&mut self, _: ValueField, _: &mut dyn Value) {
-        self.0 += 1;
-    }
-
-    fn word(&mut self, _: &'static str) {
-        self.0 += 1;
-    }
-
-    fn measurements(&mut self, _: &'static str, _: &mut Measurements) {
-        self.0 += 1;
-    }
-
-    // What may be left out has no place in a list.
-    fn optional(&mut self, _: &'static str, _: &mut dyn Optional) {}
-
-    fn mark(&mut self, _: Group, _: &mut Mark) {
-        self.0 += 1;
-    }
-
-    fn part(&mut self, _: Group, _: &mut dyn Fields) {
-        self.0 += 1;
-    }
-
-    fn flat(&mut self, _: &mut dyn Fields) {
-        self.0 += 1;
-    }
-
-    fn object(&mut self, _: Group, _: &mut dyn FnMut(&mut dyn VisitorMut)) {
-        self.0 += 1;
-    }
-
-    fn list(&mut self, _: Group, _: &mut dyn FnMut(&mut dyn VisitorMut)) {
-        self.0 += 1;
-    }
-
-    fn each(&mut self, _: Group, _: &mut dyn List) {
-        self.0 += 1;
+    if let (ValueMut::Flag(flag), Some(absent)) = (value, field.absent_flag) {
+        *flag = absent;
     }
 }

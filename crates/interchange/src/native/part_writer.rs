@@ -187,7 +187,7 @@ impl<'v> Visitor<'v> for PartWriter<'_> {
 
     fn each(&mut self, group: Group, parts: &'v dyn List) {
         let is_item = matches!(self.form, Form::List(_));
-        if parts.count() == 0 && !is_item {
+        if parts.count() == 0 && !is_item && !group.even_empty {
             return;
         }
         let mut inner = self.inner(Form::List(Vec::with_capacity(parts.count())));

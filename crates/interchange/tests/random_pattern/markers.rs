@@ -38,23 +38,41 @@ fn marker(dice: &mut Dice, id: MarkerId, (k, pattern): (usize, &Pattern)) -> Mar
                     turn: dice.finite(),
                     flipped: dice.chance(30),
                     locked: dice.chance(30),
+                    roll: dice.below(3) as u16,
                 });
             }
         }
     }
+    let chosen = pattern.fabrics[dice.below(pattern.fabrics.len())].id;
     Marker {
         id,
         name: format!("marker {k}"),
-        cloth: cloth(dice, pattern),
+        fabric: chosen,
+        keeps_fabric: dice.chance(30),
+        cloth: cloth(dice),
+        rules: rules(dice, pattern),
+        matched: matched(dice, pattern),
         order,
         placements,
     }
 }
 
-fn cloth(dice: &mut Dice, pattern: &Pattern) -> MarkerCloth {
-    let usual = MarkerCloth::of(pattern.fabrics[dice.below(pattern.fabrics.len())].id);
+fn maybe(dice: &mut Dice) -> Option<f64> {
+    dice.chance(50).then(|| dice.finite().abs())
+}
+
+fn flaws(dice: &mut Dice) -> Option<Vec<Flaw>> {
     let length = |dice: &mut Dice| dice.finite().abs();
-    let maybe = |dice: &mut Dice| dice.chance(50).then(|| dice.finite().abs());
+    let some = (0..dice.below(3)).map(|_| Flaw {
+        at: [length(dice), length(dice)],
+        size: [length(dice), length(dice)],
+        clearance: length(dice),
+    });
+    let some = some.collect();
+    dice.chance(60).then_some(some)
+}
+
+fn cloth(dice: &mut Dice) -> ClothSettings {
     let spreads = [
         Spread::Open,
         Spread::Folded,
@@ -62,36 +80,93 @@ fn cloth(dice: &mut Dice, pattern: &Pattern) -> MarkerCloth {
         Spread::FaceToFace,
     ];
     let naps = [NapRule::None, NapRule::OneWay, NapRule::PerGarment];
-    let (width, at_hand, price_per_metre) = (maybe(dice), maybe(dice), maybe(dice));
     let print = dice.chance(30).then(|| Print {
         repeat: [dice.finite().abs(), 0.0],
         origin: [dice.finite(), dice.finite()],
     });
-    let flaws = (0..dice.below(3)).map(|_| Flaw {
-        at: [length(dice), length(dice)],
-        size: [length(dice), length(dice)],
-        clearance: length(dice),
+    let rolls = (0..dice.below(3)).map(|k| Roll {
+        name: dice.chance(50).then(|| format!("roll {k}")),
+        width: maybe(dice),
+        length: maybe(dice),
+        price_per_metre: maybe(dice),
+        flaws: flaws(dice),
     });
-    let flaws = flaws.collect();
-    MarkerCloth {
-        keeps_fabric: dice.chance(30),
-        width,
-        length: at_hand,
-        selvedge: if dice.chance(50) {
-            length(dice)
-        } else {
-            usual.selvedge
+    let rolls = rolls.collect();
+    ClothSettings {
+        width: maybe(dice),
+        length: maybe(dice),
+        // Also as it is by default, which stays given.
+        selvedge: match dice.chance(30) {
+            true => Some(DEFAULT_SELVEDGE),
+            false => maybe(dice),
         },
-        end_margin: length(dice),
-        gap: length(dice),
+        end_margin: maybe(dice),
+        gap: maybe(dice),
         nap: dice.chance(60).then(|| naps[dice.below(3)]),
-        tilt: if dice.chance(30) { length(dice) } else { 0.0 },
-        spread: spreads[dice.below(4)],
-        plies: 2 * (1 + dice.below(3) as u32),
-        price_per_metre,
-        currency: ["", "EUR", "\"kr\"\n"][dice.below(3)].to_owned(),
+        tilt: maybe(dice),
+        spread: dice.chance(60).then(|| spreads[dice.below(4)]),
+        plies: dice.chance(60).then(|| 2 * (1 + dice.below(3) as u32)),
+        price_per_metre: maybe(dice),
+        currency: dice
+            .chance(60)
+            .then(|| ["", "EUR", "\"kr\"\n"][dice.below(3)].to_owned()),
         print,
-        flaws,
-        ..usual
+        flaws: flaws(dice),
+        rolls: dice.chance(50).then_some(rolls),
+    }
+}
+
+/// Rules for all pieces, some panels and some copies, no two for the same.
+fn rules(dice: &mut Dice, pattern: &Pattern) -> Vec<PieceRule> {
+    let mut pieces = vec![RuledPieces::All];
+    for panel in &pattern.panels {
+        pieces.push(RuledPieces::Panel(panel.id));
+        pieces.push(RuledPieces::Copy(panel.id, dice.below(3) as u32));
+    }
+    let mut rules = Vec::new();
+    for pieces in pieces {
+        if dice.chance(70) {
+            continue;
+        }
+        let turns = (0..=dice.below(3)).map(|_| Turn(dice.finite()));
+        let turns = turns.collect();
+        let fabric = |dice: &mut Dice| pattern.fabrics[dice.below(pattern.fabrics.len())].id;
+        let also = FurtherFabric {
+            fabric: fabric(dice),
+            quantity: dice.below(3) as u32,
+        };
+        rules.push(PieceRule {
+            pieces,
+            rule: LayingRule {
+                gap: maybe(dice),
+                block: maybe(dice),
+                tilt: maybe(dice),
+                turns: dice.chance(40).then_some(turns),
+                turn_over: dice.chance(40).then(|| dice.chance(50)),
+                on_fold: dice.chance(40).then(|| dice.chance(50)),
+                over_flaws: dice.chance(40).then(|| dice.chance(50)),
+                on_print: dice.chance(40).then(|| dice.chance(50)),
+            },
+            fabric: dice.chance(20).then(|| fabric(dice)),
+            also: dice.chance(20).then(|| vec![also]),
+        });
+    }
+    rules
+}
+
+fn matched(dice: &mut Dice, pattern: &Pattern) -> Vec<MatchedMarks> {
+    let marks: Vec<MarkRef> = pattern
+        .panels
+        .iter()
+        .flat_map(|panel| {
+            panel.notches.iter().map(|notch| MarkRef {
+                panel: panel.id,
+                notch: notch.id,
+            })
+        })
+        .collect();
+    match marks.len() > 1 && dice.chance(40) {
+        true => vec![MatchedMarks(marks)],
+        false => Vec::new(),
     }
 }

@@ -2,30 +2,35 @@
 //!
 //! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
 
-use super::{Flaw, NapRule, Pattern, Print, Spread};
+use super::marker_record::MarkerRecord;
+use super::{ClothSettings, MatchedMarks, Panel, Pattern, PieceRule, RuledPieces};
 use crate::fields::{FieldFault, ValueField, group, key};
 use crate::{Fabric, FabricId, MarkerId, PanelId, SizeId, fields};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Unusable edge at either side of fabric where nothing else is said [m].
-pub const USUAL_SELVEDGE: f64 = 0.010;
-/// Room for the blade between two pieces where nothing else is said [m].
-pub const USUAL_GAP: f64 = 0.002;
-
 /// Most garments of a size on a marker.
 pub const MOST_GARMENTS: u32 = 2_000;
 
 /// Pieces of one fabric, laid to be cut together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "MarkerRecord", into = "MarkerRecord")]
 pub struct Marker {
     /// Its id.
     pub id: MarkerId,
     /// Name to show, unique among markers.
     pub name: String,
-    /// The fabric and how it is spread.
-    pub cloth: MarkerCloth,
+    /// The fabric; the pieces cut from it are laid.
+    pub fabric: FabricId,
+    /// Whether they lie on it whatever the garment is cut from.
+    pub keeps_fabric: bool,
+    /// How it is laid.
+    pub cloth: ClothSettings,
+    /// Rules for single pieces.
+    pub rules: Vec<PieceRule>,
+    /// Sets of marks that lie on the same place of the print.
+    pub matched: Vec<MatchedMarks>,
     /// How many garments of which sizes are cut.
     pub order: Vec<OrderedSize>,
     /// The placements. Pieces of the order that are not here wait to be laid.
@@ -35,130 +40,29 @@ pub struct Marker {
 fields!(
     Marker,
     |self, v| {
-        let Self { id, name, cloth, order, placements } = self;
+        let Self {
+            id,
+            name,
+            fabric,
+            keeps_fabric,
+            cloth,
+            rules,
+            matched,
+            order,
+            placements,
+        } = self;
         v.own(id);
         v.value(ValueField::NAME, name);
+        v.id("fabric", fabric);
+        v.value(key("keeps_fabric").left_out_if(!*keeps_fabric), keeps_fabric);
         v.flat(cloth);
+        v.each(group("rules"), rules);
+        v.each(group("match"), matched);
         v.each(group("order"), order);
         v.each(group("placements"), placements);
     },
     fault: |self| Self::fault(self)
 );
-
-/// Fabric as a marker takes it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MarkerCloth {
-    /// The fabric; the pieces cut from it are laid.
-    pub fabric: FabricId,
-    /// Whether they lie on it whatever the garment is cut from. Journals of older versions do not say it.
-    #[serde(default)]
-    pub keeps_fabric: bool,
-    /// Full width laid open, of a tube its girth [m]; nothing means the roll's, or the fabric's own.
-    pub width: Option<f64>,
-    /// Length at hand, all plies together [m]; nothing means as much as it takes.
-    pub length: Option<f64>,
-    /// Unusable edge at either side [m].
-    pub selvedge: f64,
-    /// Fabric left free at either end [m].
-    pub end_margin: f64,
-    /// Least distance between two pieces [m].
-    pub gap: f64,
-    /// Which way pieces may point; nothing means as the fabric's nap has it.
-    pub nap: Option<NapRule>,
-    /// How far the grain of a piece may lie off the warp [rad].
-    pub tilt: f64,
-    /// How it is spread.
-    pub spread: Spread,
-    /// Layers cut at once; a fold does not count.
-    pub plies: u32,
-    /// Price of a metre of length.
-    pub price_per_metre: Option<f64>,
-    /// Currency of the price, as in EUR.
-    pub currency: String,
-    /// Print that repeats.
-    pub print: Option<Print>,
-    /// Flaws no piece may lie on.
-    pub flaws: Vec<Flaw>,
-}
-
-impl Default for MarkerCloth {
-    fn default() -> Self {
-        Self::of(FabricId::default())
-    }
-}
-
-fields!(MarkerCloth, |self, v| {
-    let Self {
-        fabric,
-        keeps_fabric,
-        width,
-        length,
-        selvedge,
-        end_margin,
-        gap,
-        nap,
-        tilt,
-        spread,
-        plies,
-        price_per_metre,
-        currency,
-        print,
-        flaws,
-    } = self;
-    let same = |value: f64, usual: f64| value.to_bits() == usual.to_bits();
-    v.id("fabric", fabric);
-    v.value(
-        key("keeps_fabric").left_out_if(!*keeps_fabric),
-        keeps_fabric,
-    );
-    v.optional("width", width);
-    if let Some(width) = width {
-        v.value(key("width").length(), width);
-    }
-    v.optional("length", length);
-    if let Some(length) = length {
-        v.value(key("length").length(), length);
-    }
-    v.value(
-        key("selvedge")
-            .length()
-            .left_out_if(same(*selvedge, USUAL_SELVEDGE)),
-        selvedge,
-    );
-    v.value(
-        key("end_margin")
-            .length()
-            .left_out_if(same(*end_margin, 0.0)),
-        end_margin,
-    );
-    v.value(key("gap").length().left_out_if(same(*gap, USUAL_GAP)), gap);
-    v.optional("nap", nap);
-    if let Some(nap) = nap {
-        v.value(key("nap"), nap);
-    }
-    v.value(key("tilt").angle().left_out_if(same(*tilt, 0.0)), tilt);
-    v.value(
-        key("spread").left_out_if(*spread == Spread::default()),
-        spread,
-    );
-    let usual = spread.usual_plies();
-    v.value(
-        key("plies")
-            .left_out_if(*plies == usual)
-            .count_if_absent(usual),
-        plies,
-    );
-    v.optional("price_per_metre", price_per_metre);
-    if let Some(price) = price_per_metre {
-        v.value(key("price_per_metre"), price);
-    }
-    v.value(key("currency").left_out_if(currency.is_empty()), currency);
-    v.optional("print", print);
-    if let Some(print) = print {
-        v.part(group("print"), print);
-    }
-    v.each(group("flaws"), flaws);
-});
 
 /// What a whole garment is cut from, where that is chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -241,6 +145,14 @@ pub struct PiecePlacement {
     pub flipped: bool,
     /// Whether it stays where it is while others are laid.
     pub locked: bool,
+    /// The roll it lies on, from 0.
+    #[serde(default, skip_serializing_if = "is_first")]
+    pub roll: u16,
+}
+
+/// Whether it is the first roll, which is not written.
+fn is_first(roll: &u16) -> bool {
+    *roll == 0
 }
 
 fields!(PiecePlacement, |self, v| {
@@ -250,6 +162,7 @@ fields!(PiecePlacement, |self, v| {
         turn,
         flipped,
         locked,
+        roll,
     } = self;
     v.flat(piece);
     v.list(group("at"), &mut |v| {
@@ -259,6 +172,7 @@ fields!(PiecePlacement, |self, v| {
     v.value(key("turn").angle().left_out_if(turn.to_bits() == 0), turn);
     v.value(key("flipped").left_out_if(!*flipped), flipped);
     v.value(key("locked").left_out_if(!*locked), locked);
+    v.value(key("roll").left_out_if(*roll == 0), roll);
 });
 
 /// What a marker keeps though the garment is cut otherwise.
@@ -280,29 +194,6 @@ pub enum MarkerKeeps {
     },
 }
 
-impl MarkerCloth {
-    /// Fabric spread open in one ply, of its own width and nap.
-    pub fn of(fabric: FabricId) -> Self {
-        Self {
-            fabric,
-            keeps_fabric: false,
-            width: None,
-            length: None,
-            selvedge: USUAL_SELVEDGE,
-            end_margin: 0.0,
-            gap: USUAL_GAP,
-            nap: None,
-            tilt: 0.0,
-            spread: Spread::Open,
-            plies: 1,
-            price_per_metre: None,
-            currency: String::new(),
-            print: None,
-            flaws: Vec::new(),
-        }
-    }
-}
-
 impl Marker {
     /// Where a piece lies, if it is laid.
     pub fn placement(&self, piece: OrderedPiece) -> Option<&PiecePlacement> {
@@ -315,12 +206,59 @@ impl Marker {
         own.map(|ordered| ordered.quantity).sum()
     }
 
+    /// What is asked of a copy of a panel: what its own rule leaves open is that of its panel's, then of all.
+    pub fn rule_for(&self, panel: PanelId, copy: u32) -> PieceRule {
+        let pieces = [
+            RuledPieces::Copy(panel, copy),
+            RuledPieces::Panel(panel),
+            RuledPieces::All,
+        ];
+        let rules = pieces
+            .iter()
+            .filter_map(|pieces| self.rules.iter().find(|rule| rule.pieces == *pieces));
+        rules.fold(PieceRule::default(), |rule, below| PieceRule {
+            pieces: rule.pieces,
+            rule: rule.rule.over(&below.rule),
+            fabric: rule.fabric.or(below.fabric),
+            also: rule.also.or_else(|| below.also.clone()),
+        })
+    }
+
     /// The first thing that no marker may have.
     pub fn fault(&self) -> Option<FieldFault> {
         self.cloth
             .fault()
+            .or_else(|| self.rule_fault())
             .or_else(|| self.order_fault())
             .or_else(|| self.placement_fault())
+    }
+
+    fn rule_fault(&self) -> Option<FieldFault> {
+        let fault = |field, k, message: String, hint| FieldFault {
+            field,
+            item: Some(k),
+            message,
+            hint,
+        };
+        let rules = self.rules.iter().enumerate().find_map(|(k, rule)| {
+            let twice = self.rules[..k]
+                .iter()
+                .any(|other| other.pieces == rule.pieces);
+            match rule.rule.fault() {
+                Some((message, hint)) => Some(fault("rules", k, message, hint)),
+                None if twice => {
+                    let message = "the same pieces have two rules".to_owned();
+                    Some(fault("rules", k, message, "say it in one of them"))
+                }
+                None => None,
+            }
+        });
+        let few = |marks: &MatchedMarks| marks.0.len() < 2;
+        rules.or_else(|| {
+            let k = self.matched.iter().position(few)?;
+            let message = "it names fewer than two marks".to_owned();
+            Some(fault("match", k, message, "name two"))
+        })
     }
 
     fn order_fault(&self) -> Option<FieldFault> {
@@ -369,51 +307,6 @@ impl Marker {
     }
 }
 
-impl MarkerCloth {
-    fn fault(&self) -> Option<FieldFault> {
-        let sound = |value: f64| value.is_finite() && value >= 0.0;
-        let numbers = [
-            ("width", self.width.unwrap_or_default()),
-            ("length", self.length.unwrap_or_default()),
-            ("selvedge", self.selvedge),
-            ("end_margin", self.end_margin),
-            ("gap", self.gap),
-            ("tilt", self.tilt),
-            ("price_per_metre", self.price_per_metre.unwrap_or_default()),
-        ];
-        let fault = |field, item, message: String, hint| FieldFault {
-            field,
-            item,
-            message,
-            hint,
-        };
-        if let Some((field, value)) = numbers.iter().find(|(_, value)| !sound(*value)) {
-            let message = format!("the {} is {value}", field.replace('_', " "));
-            return Some(fault(field, None, message, "give 0 or more"));
-        }
-        if !self.spread.allows(self.plies) {
-            let message = format!("it is spread in {} plies", self.plies);
-            return Some(fault("plies", None, message, Spread::PLIES));
-        }
-        if let Some(print) = &self.print
-            && !(print.repeat.iter().all(|v| sound(*v))
-                && print.origin.iter().all(|v| v.is_finite()))
-        {
-            let message = "the repeat of the print is not 0 or more".to_owned();
-            return Some(fault("print", None, message, "give lengths"));
-        }
-        let flawed = |flaw: &Flaw| {
-            let at = flaw.at.iter().all(|v| v.is_finite());
-            at && flaw.size.iter().all(|v| sound(*v)) && sound(flaw.clearance)
-        };
-        let wrong = self.flaws.iter().position(|flaw| !flawed(flaw));
-        wrong.map(|k| {
-            let message = "the flaw's size or clearance is not 0 or more".to_owned();
-            fault("flaws", Some(k), message, "give lengths")
-        })
-    }
-}
-
 impl Pattern {
     /// The marker with that id.
     pub fn marker(&self, id: MarkerId) -> Option<&Arc<Marker>> {
@@ -428,8 +321,8 @@ impl Pattern {
     /// The fabric that a marker's pieces lie on, as wide as it is there: what the garment is cut from, unless the
     /// marker keeps its own. Nothing where its own is gone.
     pub fn marker_fabric(&self, marker: &Marker, garment: &GarmentCloth) -> Option<Fabric> {
-        let own = self.fabric(marker.cloth.fabric)?;
-        let (fabric, roll) = match (marker.cloth.keeps_fabric, &garment.fabric) {
+        let own = self.fabric(marker.fabric)?;
+        let (fabric, roll) = match (marker.keeps_fabric, &garment.fabric) {
             (true, _) => (own, None),
             (false, Some(chosen)) => (chosen, garment.width),
             (false, None) => (own, garment.width),
@@ -442,17 +335,13 @@ impl Pattern {
 
     /// What of a marker does not follow what the garment is cut from, in words.
     pub fn marker_keeps(&self, marker: &Marker, garment: &GarmentCloth) -> Option<MarkerKeeps> {
-        let own = self.fabric(marker.cloth.fabric)?;
+        let own = self.fabric(marker.fabric)?;
         let follows = Marker {
-            cloth: MarkerCloth {
-                keeps_fabric: false,
-                width: None,
-                ..marker.cloth.clone()
-            },
-            ..marker.clone()
+            fabric: marker.fabric,
+            ..Marker::default()
         };
         let garments = self.marker_fabric(&follows, garment)?;
-        let keeps_fabric = marker.cloth.keeps_fabric && garments.name != own.name;
+        let keeps_fabric = marker.keeps_fabric && garments.name != own.name;
         if keeps_fabric {
             return Some(MarkerKeeps::Fabric {
                 own: own.name.clone(),
@@ -480,14 +369,11 @@ impl Pattern {
             .order
             .iter()
             .flat_map(|ordered| (0..ordered.quantity).map(|garment| (ordered.size, garment)));
-        let fabric = marker.cloth.fabric;
         garments.flat_map(move |(size, garment)| {
-            let panels = self
-                .panels
-                .iter()
-                .filter(move |panel| panel.fabric == fabric);
+            let panels = self.panels.iter();
             panels.flat_map(move |panel| {
-                (0..panel.cut.quantity).map(move |copy| OrderedPiece {
+                let copies = copies_on(marker, panel);
+                copies.map(move |copy| OrderedPiece {
                     panel: panel.id,
                     copy,
                     size,
@@ -521,4 +407,24 @@ impl Pattern {
         }
         words
     }
+}
+
+/// The copies of a panel that are cut from a marker's fabric. Those that are cut from it besides, as interfacing is, are
+/// counted on from the copies of the panel itself.
+fn copies_on<'a>(marker: &'a Marker, panel: &'a Panel) -> impl Iterator<Item = u32> + 'a {
+    let own = move |copy: &u32| {
+        let rule = marker.rule_for(panel.id, *copy);
+        rule.fabric.unwrap_or(panel.fabric) == marker.fabric
+    };
+    let also = marker.rule_for(panel.id, 0).also.unwrap_or_default();
+    let further = also.iter().filter(|also| also.fabric == marker.fabric);
+    let further: u32 = further.map(|also| also.quantity).sum();
+    let quantity = panel.cut.quantity;
+    let beside = match quantity {
+        0 => 0,
+        _ => further,
+    };
+    (0..quantity)
+        .filter(own)
+        .chain(quantity..quantity.saturating_add(beside))
 }

@@ -4,28 +4,35 @@ mod builder;
 mod edge_corner;
 mod guide;
 mod lineage;
+#[macro_use]
+mod cloth_settings;
 mod marker;
+mod marker_record;
 mod operation;
 mod panel;
+mod piece_rule;
 mod seam;
 mod sheet;
-mod spread;
 
 pub use builder::PanelBuilder;
+pub use cloth_settings::{
+    ClothSettings, DEFAULT_GAP, DEFAULT_SELVEDGE, Flaw, LaidCloth, NapRule, Print, Roll, Spread,
+};
 pub use edge_corner::{Corner, EdgeCorner, MitreLimit};
 pub use guide::{Guide, GuideRun};
 pub(crate) use lineage::StageLineage;
 pub use marker::{
-    GarmentCloth, MOST_GARMENTS, Marker, MarkerCloth, MarkerKeeps, OrderedPiece, OrderedSize,
-    PiecePlacement, USUAL_GAP, USUAL_SELVEDGE,
+    GarmentCloth, MOST_GARMENTS, Marker, MarkerKeeps, OrderedPiece, OrderedSize, PiecePlacement,
 };
 pub use operation::{
     Apex, Bridge, Operation, OperationKind, PleatKind, PleatLine, Pressed, Side, SpreadCut, Turned,
 };
 pub use panel::{Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
+pub use piece_rule::{
+    FurtherFabric, LayingRule, MarkRef, MatchedMarks, PieceRule, RuledPieces, Turn,
+};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};
-pub use spread::{Flaw, NapRule, Print, Spread};
 
 use crate::fields::{Choice, ValueField, any, group, key};
 use crate::{

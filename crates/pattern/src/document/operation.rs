@@ -203,7 +203,7 @@ fields!(
                 v.number(length("depth").shown_first(), depth);
                 v.value(key("kind"), kind);
                 v.value(key("pressed").left_out_if(*pressed == Side::default()), pressed);
-                v.value(key("trued").left_out_if(*trued), trued);
+                v.value(key("trued").left_out_if(*trued).flag_if_absent(true), trued);
             }),
         }
     },

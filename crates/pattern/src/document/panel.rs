@@ -331,7 +331,7 @@ fields!(
             Self { quantity, mirrored: false } => v.value(key(ITSELF), quantity),
             Self { quantity, mirrored } => {
                 v.value(key("quantity"), quantity);
-                v.value(key("mirrored").off_if_absent(), mirrored);
+                v.value(key("mirrored").flag_if_absent(false), mirrored);
             }
         }
     },

@@ -1,7 +1,7 @@
 //! Diagnostics for markers that refer to removed parts.
 
-use crate::{Code, Diagnostic, Marker, PartId, Pattern, Place};
-use std::collections::BTreeMap;
+use crate::{Code, Diagnostic, Marker, PartId, Pattern, Place, RuledPieces};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What waits on markers for a fabric, panel or size to return: one finding for each marker and lost
 /// part. The rest of the marker can be cut.
@@ -33,7 +33,7 @@ fn of(pattern: &Pattern, marker: &Marker) -> Vec<Diagnostic> {
         found.push(Diagnostic::warning(code, place, message, hint));
     };
     let name = &marker.name;
-    let fabric = marker.cloth.fabric;
+    let fabric = marker.fabric;
     if pattern.fabric(fabric).is_none() {
         tell(
             format!("marker {name:?} is laid on {fabric}, which is gone"),
@@ -51,5 +51,40 @@ fn of(pattern: &Pattern, marker: &Marker) -> Vec<Diagnostic> {
             "undo, or take the pieces off the marker and out of its order",
         );
     }
+    for part in ruled(pattern, marker) {
+        tell(
+            format!("marker {name:?}: {part} is gone, and a rule of the marker names it"),
+            "undo, or take the rule out of the marker",
+        );
+    }
+    let marks = marker.matched.iter().flat_map(|set| &set.0);
+    let is_lost = |panel, notch| {
+        let owner = pattern.panel(panel);
+        !owner.is_some_and(|owner| owner.notches.iter().any(|own| own.id == notch))
+    };
+    let lost = marks.filter(|mark| is_lost(mark.panel, mark.notch)).count();
+    if lost > 0 {
+        tell(
+            format!("marker {name:?}: of the marks that match {lost} are gone"),
+            "undo, or take them out of the marker",
+        );
+    }
     found
+}
+
+/// Panels and fabrics that rules of a marker name and that are gone.
+fn ruled(pattern: &Pattern, marker: &Marker) -> BTreeSet<PartId> {
+    let mut lost = BTreeSet::new();
+    for rule in &marker.rules {
+        if let RuledPieces::Panel(panel) | RuledPieces::Copy(panel, _) = rule.pieces
+            && pattern.panel(panel).is_none()
+        {
+            lost.insert(panel.into());
+        }
+        let also = rule.also.iter().flatten().map(|also| also.fabric);
+        let fabrics = rule.fabric.into_iter().chain(also);
+        let gone = fabrics.filter(|fabric| pattern.fabric(*fabric).is_none());
+        lost.extend(gone.map(PartId::from));
+    }
+    lost
 }

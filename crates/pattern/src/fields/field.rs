@@ -127,8 +127,6 @@ pub struct ValueField {
     pub is_left_out: bool,
     /// What a flag is that is left out, if that is not what an empty part has.
     pub absent_flag: Option<bool>,
-    /// What a count is that is left out, if that is not what an empty part has.
-    pub absent_count: Option<u32>,
     /// The least and the most that it may be.
     pub range: Option<[f64; 2]>,
     /// Whether it is the name of a part.
@@ -147,7 +145,6 @@ pub const fn key(key: &'static str) -> ValueField {
         may_lack: false,
         is_left_out: false,
         absent_flag: None,
-        absent_count: None,
         range: None,
         is_name: false,
         largest: u32::MAX,
@@ -199,22 +196,12 @@ impl ValueField {
         }
     }
 
-    /// A flag that is off where it is left out.
+    /// A flag that is this where it is left out.
     #[must_use]
-    pub const fn off_if_absent(self) -> Self {
+    pub const fn flag_if_absent(self, flag: bool) -> Self {
         Self {
             may_lack: true,
-            absent_flag: Some(false),
-            ..self
-        }
-    }
-
-    /// A count that is this where it is left out.
-    #[must_use]
-    pub const fn count_if_absent(self, count: u32) -> Self {
-        Self {
-            may_lack: true,
-            absent_count: Some(count),
+            absent_flag: Some(flag),
             ..self
         }
     }
@@ -260,6 +247,8 @@ pub struct Group {
     pub may_lack: bool,
     /// Whether it is left out where it is written.
     pub is_left_out: bool,
+    /// Whether a list is written even where it is empty.
+    pub even_empty: bool,
     /// What is said whatever is wrong with it, and what to do.
     pub refusal: Option<[&'static str; 2]>,
 }
@@ -272,6 +261,7 @@ pub const fn group(key: &'static str) -> Group {
         share_label: None,
         may_lack: false,
         is_left_out: false,
+        even_empty: false,
         refusal: None,
     }
 }
@@ -310,6 +300,15 @@ impl Group {
         Self {
             may_lack: true,
             is_left_out: is_usual,
+            ..self
+        }
+    }
+
+    /// A list that is written even where it is empty.
+    #[must_use]
+    pub const fn even_empty(self) -> Self {
+        Self {
+            even_empty: true,
             ..self
         }
     }

@@ -6,6 +6,7 @@
 //! and the writer of files with the fields they know.
 
 mod choice;
+mod count;
 mod field;
 mod kind;
 mod measured;
@@ -15,6 +16,7 @@ mod references;
 mod remap;
 
 pub use choice::Choice;
+pub use count::count;
 pub use field::{
     Absent, Group, NumberField, Value, ValueField, ValueMut, ValueRef, angle, any, group, key,
     length, plain,

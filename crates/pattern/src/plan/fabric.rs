@@ -213,7 +213,7 @@ pub fn remove_fabric(evaluation: &Evaluation, id: FabricId) -> Result<Vec<Edit>,
     let panels = pattern.panels.iter().filter(|panel| panel.fabric == id);
     let panels = panels.map(|panel| format!("panel {:?}", panel.name));
     let markers = pattern.markers.iter();
-    let markers = markers.filter(|marker| marker.cloth.fabric == id);
+    let markers = markers.filter(|marker| marker.fabric == id);
     let users: Vec<String> = panels
         .chain(markers.map(|marker| format!("marker {:?}", marker.name)))
         .collect();

@@ -4,8 +4,8 @@
 use super::impossible;
 use super::names::{free_name, wished};
 use crate::{
-    Edit, EditError, Entity, Evaluation, FabricId, Marker, MarkerCloth, MarkerId, OrderedPiece,
-    OrderedSize, PiecePlacement,
+    ClothSettings, Edit, EditError, Entity, Evaluation, FabricId, Marker, MarkerId, MatchedMarks,
+    OrderedPiece, OrderedSize, PiecePlacement, PieceRule,
 };
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -39,12 +39,12 @@ pub fn add_marker(
     let marker = Marker {
         id,
         name,
-        cloth: MarkerCloth::of(fabric),
+        fabric,
         order: vec![OrderedSize {
             size: evaluation.wearer().size,
             quantity: 1,
         }],
-        placements: Vec::new(),
+        ..Marker::default()
     };
     Ok((vec![Edit::Put(Entity::Marker(Arc::new(marker)))], id))
 }
@@ -72,18 +72,87 @@ pub fn set_marker_order(
     put(Marker { order, ..marker })
 }
 
-/// The edits that lay a marker on other fabric, or spread it otherwise. Pieces keep their places.
+/// The edits that lay a marker on other fabric, whatever the garment is cut from or not. Pieces keep their places.
 ///
 /// # Errors
-/// The marker is not there; a length is negative or not finite, the plies do not go with the
-/// spread.
+/// The marker is not there.
+pub fn set_marker_fabric(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    (fabric, keeps_fabric): (FabricId, bool),
+) -> Result<Vec<Edit>, EditError> {
+    let marker = found(evaluation, id)?.clone();
+    put(Marker {
+        fabric,
+        keeps_fabric,
+        ..marker
+    })
+}
+
+/// The edits that lay the fabric of a marker otherwise. Pieces keep their places.
+///
+/// # Errors
+/// The marker is not there; a setting is none that fabric can be laid by.
 pub fn set_marker_cloth(
     evaluation: &Evaluation,
     id: MarkerId,
-    cloth: MarkerCloth,
+    cloth: ClothSettings,
 ) -> Result<Vec<Edit>, EditError> {
     let marker = found(evaluation, id)?.clone();
     put(Marker { cloth, ..marker })
+}
+
+/// The edits that take one of a marker's rolls away, counted from 0. What lay on it waits to be laid; without any roll
+/// pieces lie on as much as it takes, where they are.
+///
+/// # Errors
+/// The marker or the roll is not there.
+pub fn remove_marker_roll(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    roll: usize,
+) -> Result<Vec<Edit>, EditError> {
+    let mut marker = found(evaluation, id)?.clone();
+    let mut rolls = marker.cloth.rolls.take().unwrap_or_default();
+    if roll >= rolls.len() {
+        let what = format!("marker {:?} has no roll {}", marker.name, roll + 1);
+        return Err(impossible(what, "choose one of its rolls"));
+    }
+    rolls.remove(roll);
+    if !rolls.is_empty() {
+        let on = |laid: &PiecePlacement| usize::from(laid.roll);
+        marker.placements.retain(|laid| on(laid) != roll);
+        let after = marker.placements.iter_mut().filter(|laid| on(laid) > roll);
+        after.for_each(|laid| laid.roll -= 1);
+        marker.cloth.rolls = Some(rolls);
+    }
+    put(marker)
+}
+
+/// The edits that give a marker other rules for its pieces.
+///
+/// # Errors
+/// The marker is not there; a rule is none that a piece can be laid by; the same pieces have two.
+pub fn set_marker_rules(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    rules: Vec<PieceRule>,
+) -> Result<Vec<Edit>, EditError> {
+    let marker = found(evaluation, id)?.clone();
+    put(Marker { rules, ..marker })
+}
+
+/// The edits that give a marker other sets of marks that lie on the same place of the print.
+///
+/// # Errors
+/// The marker is not there; a set has fewer than two marks.
+pub fn set_matched_marks(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    matched: Vec<MatchedMarks>,
+) -> Result<Vec<Edit>, EditError> {
+    let marker = found(evaluation, id)?.clone();
+    put(Marker { matched, ..marker })
 }
 
 /// The edits that lay all of a marker anew, as a search found it. Locked pieces and those that the
@@ -103,7 +172,7 @@ pub fn place_marker(
         placements.iter().map(|laid| (laid.piece, *laid)).collect();
     let moves = |laid: &&PiecePlacement| {
         let new = new.get(&laid.piece);
-        let place = |laid: &PiecePlacement| (laid.at, laid.turn, laid.flipped);
+        let place = |laid: &PiecePlacement| (laid.at, laid.turn, laid.flipped, laid.roll);
         laid.locked && new.is_some_and(|new| place(new) != place(laid))
     };
     if let Some(laid) = marker.placements.iter().find(moves) {

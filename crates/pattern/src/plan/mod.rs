@@ -55,7 +55,8 @@ pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
 pub use guide::{add_guide, move_guide, remove_guides};
 pub use marker::{
     add_marker, flip_pieces, lock_pieces, move_pieces, place_marker, place_pieces, remove_marker,
-    set_marker_cloth, set_marker_order, take_off_pieces, turn_pieces,
+    remove_marker_roll, set_marker_cloth, set_marker_fabric, set_marker_order, set_marker_rules,
+    set_matched_marks, take_off_pieces, turn_pieces,
 };
 pub use marks::{NearMark, nearest_mark};
 pub use matched::{
