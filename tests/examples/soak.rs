@@ -81,7 +81,7 @@ struct Task {
     toile: PathBuf,
     peer: Option<String>,
     referee: Option<String>,
-    /// Wall limits of ours and of the other program [s].
+    /// Wall limits of ours and of the other program (s).
     limits: Vec<(f64, f64)>,
     seeds: RangeInclusive<u64>,
     threads: usize,
@@ -191,7 +191,7 @@ fn commit() -> String {
     }
 }
 
-/// Processor time of all children so far [s], where the system tells it.
+/// Processor time of all children so far (s), where the system tells it.
 fn children_cpu() -> f64 {
     let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields = text
@@ -257,7 +257,7 @@ struct Judged {
     /// Area over height times length, 0..=1.
     density: f64,
     sound: bool,
-    /// Deepest overlap, in the scale of a roll of fabric [m].
+    /// Deepest overlap, in the scale of a roll of fabric (m).
     deepest: f64,
 }
 
@@ -367,7 +367,7 @@ fn plan(task: &Task) -> Vec<(Run, PathBuf, f64)> {
     plan
 }
 
-/// Densities by instance and seconds, then by seed and program [%].
+/// Densities by instance and seconds, then by seed and program (%).
 type Table = BTreeMap<(String, String), BTreeMap<(String, String), f64>>;
 
 /// The densities of the sound rows of `runs.csv`, and rows to look at.

@@ -15,14 +15,14 @@ pub struct Hung {
     session: Session,
     job: GarmentJob,
     equilibrium: Equilibrium,
-    /// Processor time of its drape from the start [s].
+    /// Processor time of its drape from the start (s).
     pub fresh_cpu: f64,
 }
 
 /// What one edit took, and where it led.
 #[derive(Clone, Debug)]
 pub struct Trial {
-    /// Processor time of taking the edit, draft to rest data [s], of the prediction with it, and of going on to
+    /// Processor time of taking the edit, draft to rest data (s), of the prediction with it, and of going on to
     /// rest from there.
     pub taking_cpu: f64,
     /// Likewise.
@@ -45,7 +45,7 @@ pub struct Trial {
     pub ends: Ends,
 }
 
-/// Two measures of a garment at rest [m].
+/// Two measures of a garment at rest (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ends {
     /// Height of the lowest vertex.
@@ -54,7 +54,7 @@ pub struct Ends {
     pub girth: f64,
 }
 
-/// Height above the hem where the girth is taken [m].
+/// Height above the hem where the girth is taken (m).
 const ABOVE_HEM: f64 = 0.15;
 
 impl Ends {
@@ -127,7 +127,7 @@ impl Hung {
         })
     }
 
-    /// Moves a random point of a random sewn panel's sheet by `size` [m] in a random direction, and goes on to
+    /// Moves a random point of a random sewn panel's sheet by `size` (m) in a random direction, and goes on to
     /// rest. Points that cannot be moved, and edits whose panels need another mesh, are passed over.
     pub fn edit(&mut self, random: &mut Random, size: f64) -> Result<Trial, String> {
         for _ in 0..200 {

@@ -11,7 +11,7 @@ fn corners(mesh: &PieceMesh, triangle: usize) -> [Vec2; 3] {
     mesh.triangles[triangle].map(|v| mesh.points[v as usize])
 }
 
-/// Smallest angle of each triangle [degrees], negative where it is wound the other way than `like`.
+/// Smallest angle of each triangle (degrees), negative where it is wound the other way than `like`.
 fn angles(mesh: &PieceMesh, like: &PieceMesh) -> Vec<f64> {
     let area = |[a, b, c]: [Vec2; 3]| (b - a).perp(&(c - a));
     let signed = |t| {

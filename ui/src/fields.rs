@@ -16,7 +16,7 @@ use toile_pattern::Evaluation;
 const PROPOSED: usize = 8;
 /// Share of a field that its text has beside its value.
 const TEXT_SHARE: f32 = 0.5;
-/// Room that words under a field need above the lower rim of the window, and their least width [pixels].
+/// Room that words under a field need above the lower rim of the window, and their least width (pixels).
 const UNDER: f32 = 64.0;
 const LEAST_UNDER: f32 = 270.0;
 
@@ -29,7 +29,7 @@ pub struct Beside {
     pub value: String,
 }
 
-/// How large a field of one line was, and how long a text it has room for [pixels].
+/// How large a field of one line was, and how long a text it has room for (pixels).
 #[derive(Clone, Copy, Debug)]
 struct Room {
     size: egui::Vec2,
@@ -231,7 +231,7 @@ fn note_focus(ui: &Ui, id: egui::Id) {
     ui.data_mut(|data| data.insert_temp(id.with("had focus"), frame));
 }
 
-/// Width of labels left of their fields [pixels].
+/// Width of labels left of their fields (pixels).
 const LABEL: f32 = 92.0;
 
 /// A field with its label left of it, grey; `add` is given the label's id. Fields under each other stand in one

@@ -22,12 +22,12 @@ use toile_pattern::{
     PartId, Want,
 };
 
-/// Width of the inspector, and the room left round it [pixels].
+/// Width of the inspector, and the room left round it (pixels).
 const WIDTH: f32 = INSPECTOR_ROOM - FRAME - 2.0 * MARGIN;
 const MARGIN: f32 = 10.0;
-/// Room that its frame takes on both sides together [pixels].
+/// Room that its frame takes on both sides together (pixels).
 const FRAME: f32 = 14.0;
-/// Width and height of the table below which there is no room for it [pixels].
+/// Width and height of the table below which there is no room for it (pixels).
 const LEAST_TABLE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
 
 /// The part of the table that the inspector may take, at its right or at its left.

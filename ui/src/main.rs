@@ -38,7 +38,7 @@ fn show_figure(task: &FigureTask) -> Result<ExitCode, String> {
     Ok(ended(opened))
 }
 
-/// Size of each picture of a figure [pixels].
+/// Size of each picture of a figure (pixels).
 const PICTURE: [usize; 2] = [360, 640];
 
 fn open_document() -> ExitCode {

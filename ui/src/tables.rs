@@ -42,15 +42,15 @@ const FIRST: &[&str] = &[
     "wrist",
 ];
 
-/// Width of a measurement's value, and the least of its name [pixels].
+/// Width of a measurement's value, and the least of its name (pixels).
 const VALUE: f32 = 84.0;
 const LEAST_LABEL: f32 = 100.0;
 
-/// Width of the name of a variable and of its formula [pixels].
+/// Width of the name of a variable and of its formula (pixels).
 const NAME: f32 = 150.0;
 const FORMULA: f32 = 320.0;
 
-/// Room for the button beside the field of a new variable [pixels].
+/// Room for the button beside the field of a new variable (pixels).
 const ADD_BUTTON: f32 = 120.0;
 
 /// How many measurements are proposed at once.

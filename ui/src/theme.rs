@@ -99,7 +99,7 @@ pub const DARK: Palette = Palette {
     floor: Color32::from_rgb(0x43, 0x47, 0x4C),
 };
 
-/// How far to each side of the rim between two parts of the window it is taken hold of [pixels].
+/// How far to each side of the rim between two parts of the window it is taken hold of (pixels).
 pub const GRAB: f32 = 4.0;
 
 impl Palette {
@@ -144,7 +144,7 @@ pub fn seam(number: usize) -> Color32 {
     }
 }
 
-/// Font of that size [logical pixels].
+/// Font of that size (logical pixels).
 pub fn font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }

@@ -8,7 +8,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use toile_pattern::{LineKind, Name, Role, StageEdge};
 
-/// Length of the trued top with a dart of 2 by 15 cm in its middle [m]: closed, it is the chord
+/// Length of the trued top with a dart of 2 by 15 cm in its middle (m): closed, it is the chord
 /// between its corners.
 fn trued_top() -> f64 {
     let half = (0.1_f64 / 0.15).atan() - (0.01_f64 / 0.15).atan();
@@ -387,7 +387,7 @@ fn a_dart_with_two_points_is_taken_out_by_two_clicks_and_a_number() {
 }
 
 /// How far the last notch of the first panel is from both ends of a drawn edge, along that edge as it
-/// is finished: darts sewn, pleats folded, openings in between [m].
+/// is finished: darts sewn, pleats folded, openings in between (m).
 fn reaches(drafter: &Drafter, name: &str) -> [f64; 2] {
     let pattern = drafter.pattern();
     let edge = pattern.panels[0].edges().find(|edge| edge.name == name);

@@ -13,7 +13,7 @@ use toile_geometry::{Curve, Vec2};
 use toile_pattern::{CurveId, Draft, OperationKind, Pattern, PieceEdge};
 use toile_session::Project;
 
-/// How far places and lengths may be from those of the shipped pattern [m].
+/// How far places and lengths may be from those of the shipped pattern (m).
 const NEAR: f64 = 1e-9;
 
 /// What the shipped dress calls by a name, as far as its front needs it. Its `bust_front` is a
@@ -223,7 +223,7 @@ fn draft(pattern: &Pattern, size: &str) -> Draft {
 }
 
 /// How far the places along an outline are from those of another that has the same edges, wherever
-/// each begins; and how far the lengths and allowances of edges are from each other [m].
+/// each begins; and how far the lengths and allowances of edges are from each other (m).
 fn farthest(ours: &[PieceEdge], theirs: &[PieceEdge]) -> f64 {
     assert_eq!(ours.len(), theirs.len());
     let start = theirs[0].curve.start();

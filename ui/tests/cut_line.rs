@@ -10,9 +10,9 @@ use toile_pattern::{PanelId, Pattern, PointId};
 use toile_session::Command;
 use toile_ui::{Beginning, ToileApp, ToolEvent, ToolModifiers, named};
 
-/// Farthest the drawn line may be from the true one [m].
+/// Farthest the drawn line may be from the true one (m).
 const FARTHEST: f64 = 0.000_02;
-/// Between places of a line whose distance from the other is taken [m].
+/// Between places of a line whose distance from the other is taken (m).
 const APART: f64 = 0.001;
 /// Pixels a metre at true size on a screen of 96 an inch.
 const TRUE_SIZE: f64 = 96.0 / 0.0254;
@@ -39,7 +39,7 @@ fn view() -> Rect {
     Rect::from_min_size(pos2(190.0, 50.0), vec2(960.0, 800.0))
 }
 
-/// Lines of a panel as they are drawn on the screen, taken back to the panel's plane [m].
+/// Lines of a panel as they are drawn on the screen, taken back to the panel's plane (m).
 fn drawn(app: &ToileApp, panel: PanelId) -> Vec<Ring> {
     let (pattern_view, view) = (app.view(), view());
     let (centre, scale) = (pattern_view.camera.centre, pattern_view.camera.scale);
@@ -78,7 +78,7 @@ fn true_rings(app: &ToileApp) -> Vec<(PanelId, String, Vec<Ring>)> {
         .collect()
 }
 
-/// The farthest that any place of closed lines is from others [m].
+/// The farthest that any place of closed lines is from others (m).
 fn farthest(from: &[Ring], to: &[Ring]) -> f64 {
     let mut farthest = 0.0_f64;
     for [a, b] in from.iter().flat_map(|ring| ring.array_windows()) {

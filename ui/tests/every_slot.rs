@@ -16,7 +16,7 @@ use toile_ui::{
     commands,
 };
 
-/// What is typed for lengths [cm], angles [degrees] and plain numbers, and how much that is.
+/// What is typed for lengths (cm), angles (degrees) and plain numbers, and how much that is.
 const LENGTH: (&str, f64) = ("7.31", 0.0731);
 const ANGLE: (&str, f64) = ("37.3", 37.3);
 const PLAIN: (&str, f64) = ("2", 2.0);
@@ -178,7 +178,7 @@ impl Table {
         (select.does)(self.drafter.window.state_mut());
     }
 
-    /// A click at a place of the sheet [m].
+    /// A click at a place of the sheet (m).
     fn click(&mut self, at: Vec2) {
         let pointer = self.pointer(at);
         self.event(&ToolEvent::Click(pointer));
@@ -445,7 +445,7 @@ struct Seen {
     pattern: Pattern,
     /// Enlargement and middle of the view.
     camera: (f64, Vec2),
-    /// Lengths [m] and plain numbers in it.
+    /// Lengths (m) and plain numbers in it.
     values: Vec<f64>,
     places: Vec<Vec2>,
     sides: Vec<Vec2>,

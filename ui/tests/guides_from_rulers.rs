@@ -27,7 +27,7 @@ impl Drafter {
         drafter
     }
 
-    /// The guides, each with where it lies [m].
+    /// The guides, each with where it lies (m).
     fn guides(&self) -> Vec<(GuideRun, f64)> {
         let pattern = self.pattern();
         let guides = pattern.guides.iter();
@@ -42,12 +42,12 @@ impl Drafter {
         self.rect(name).center()
     }
 
-    /// Drags a guide out of the top ruler to a height [m].
+    /// Drags a guide out of the top ruler to a height (m).
     fn level(&mut self, y: f64) {
         self.drag(self.ruler("Top ruler"), self.place(0.3, y));
     }
 
-    /// Drags a guide out of the left ruler to a place so far to the right [m].
+    /// Drags a guide out of the left ruler to a place so far to the right (m).
     fn upright(&mut self, x: f64) {
         self.drag(self.ruler("Left ruler"), self.place(x, 0.4));
     }

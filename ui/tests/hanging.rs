@@ -12,7 +12,7 @@ use toile_session::{Command, Quality, Session, Silent};
 use toile_ui::{Beginning, Item};
 use worn::{Window, chord, hanging, hanging_begun, is_at_rest, is_grey, press, says, wait};
 
-/// Drags a point of the front by a way [mm].
+/// Drags a point of the front by a way (mm).
 fn drag(window: &mut Window, point: &str, [x, y]: [f32; 2]) {
     let scale = window.state().view().camera.scale as f32;
     let name = format!("Point {point} of front");

@@ -257,7 +257,7 @@ fn outlines(window: &Window) -> Vec<(String, PreparedPolygon)> {
     laid.laid().map(outline).collect()
 }
 
-/// The least distance of a piece to all others, once it is moved [m].
+/// The least distance of a piece to all others, once it is moved (m).
 fn apart(all: &[(String, PreparedPolygon)], name: &str, by: Vec2) -> f64 {
     let own = all.iter().find(|(own, _)| own == name).unwrap();
     let moved = PreparedPolygon::new(&own.1.polygon().translated(by));

@@ -131,7 +131,7 @@ fn six_pleats_lie_where_a_list_of_places_says() {
     }
 }
 
-/// Where the lines of a pleated panel's pleats start [m].
+/// Where the lines of a pleated panel's pleats start (m).
 fn starts(drafter: &Drafter) -> Vec<f64> {
     let stage = drafter.stage();
     let placed = stage.lines.iter().filter(|line| {

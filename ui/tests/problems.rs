@@ -8,7 +8,7 @@ use egui::Key;
 use toile_geometry::{Path, Vec2};
 use toile_pattern::plan;
 
-/// How near the answer is [m], [m2].
+/// How near the answer is (m), (m2).
 const NEAR: f64 = 1e-9;
 
 fn begun() -> Drafter {
@@ -47,7 +47,7 @@ impl Drafter {
         self.key(Key::Home);
     }
 
-    /// Corners of the first panel in order [m].
+    /// Corners of the first panel in order (m).
     fn corners(&self) -> Vec<Vec2> {
         let evaluation = self.evaluation();
         let pattern = self.pattern();

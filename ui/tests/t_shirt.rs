@@ -320,7 +320,7 @@ impl Drafter {
     }
 }
 
-/// Places along an edge of a panel in one size, from a corner of the panel [m].
+/// Places along an edge of a panel in one size, from a corner of the panel (m).
 fn places(pattern: &Pattern, size: usize, (panel, edge): (&str, &str)) -> Vec<Vec2> {
     let wearer = &pattern.sizes[size].measurements;
     let evaluation = Evaluation::new(pattern, wearer);

@@ -36,7 +36,7 @@ fn words(drafter: &Drafter) -> Vec<(String, Tone)> {
     labels.collect()
 }
 
-/// Where the pieces touch on the table [m].
+/// Where the pieces touch on the table (m).
 fn touch(drafter: &Drafter) -> Vec2 {
     let all = overlay(drafter).into_iter();
     let mut touches = all.filter_map(|mark| match mark {
@@ -46,7 +46,7 @@ fn touch(drafter: &Drafter) -> Vec2 {
     touches.next().unwrap()
 }
 
-/// The outline of the ghost on the table [m].
+/// The outline of the ghost on the table (m).
 fn ghost(drafter: &Drafter) -> Vec<Vec2> {
     let all = overlay(drafter).into_iter();
     let mut ghosts = all.filter_map(|mark| match mark {
@@ -56,7 +56,7 @@ fn ghost(drafter: &Drafter) -> Vec<Vec2> {
     ghosts.next().unwrap()
 }
 
-/// How far the middle of the ghost's corners lies above a place [m]: beyond a shoulder line, while
+/// How far the middle of the ghost's corners lies above a place (m): beyond a shoulder line, while
 /// the piece that stays hangs below it.
 fn above(ring: &[Vec2], at: Vec2) -> f64 {
     let sum: f64 = ring.iter().map(|corner| corner.y - at.y).sum();

@@ -86,7 +86,7 @@ fn is_kept(drafter: &mut Drafter, (before, file): (&Project, &Path)) {
     assert!(!again.is_unsaved());
 }
 
-/// A measurement of the wearer is so long [m].
+/// A measurement of the wearer is so long (m).
 fn measures(project: &Project, name: &str, length: f64) {
     let now = project.body_measurements().get(name).unwrap();
     assert!((now - length).abs() < 1e-12, "{name}: {now}");

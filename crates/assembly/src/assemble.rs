@@ -10,7 +10,7 @@ use toile_pattern::Draft;
 /// How a garment is assembled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AssemblyOptions {
-    /// Mean edge length of the triangles [m]; 10 mm shows folds, 20 mm is a preview.
+    /// Mean edge length of the triangles (m); 10 mm shows folds, 20 mm is a preview.
     pub edge_length: f64,
 }
 

@@ -19,7 +19,7 @@ fn inside(p: Vec2, polygon: &[Vec2]) -> bool {
 /// Sampled loops of one piece.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Boundary {
-    /// Vertices, loop after loop [m].
+    /// Vertices, loop after loop (m).
     pub points: Vec<Vec2>,
     /// Vertices of each loop: outline first.
     pub loops: Vec<Range<usize>>,

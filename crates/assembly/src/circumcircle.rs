@@ -2,7 +2,7 @@
 
 use toile_geometry::Vec2;
 
-/// Centre and radius of the circle through three points [m].
+/// Centre and radius of the circle through three points (m).
 pub(crate) fn circumcircle(a: Vec2, b: Vec2, c: Vec2) -> Option<(Vec2, f64)> {
     let (u, v) = (b - a, c - a);
     let d = 2.0 * u.perp(&v);

@@ -8,10 +8,10 @@ use toile_pattern::Draft;
 
 /// Least share of a normal that lies across the body, of a piece at its side.
 const SIDEWAYS: f64 = 0.7;
-/// How far such pieces are moved at most [m], and the step of the search [m].
+/// How far such pieces are moved at most (m), and the step of the search (m).
 const FARTHEST: f64 = 0.2;
 const STEP: f64 = 0.01;
-/// How much farther they are moved than where the seams are clear [m].
+/// How much farther they are moved than where the seams are clear (m).
 const SPARE: f64 = 0.02;
 
 /// The pieces with what is known of them.
@@ -103,7 +103,7 @@ impl PlacedPieces<'_> {
     }
 }
 
-/// How many ways, moved along the depth of the body [m], cross its skin.
+/// How many ways, moved along the depth of the body (m), cross its skin.
 fn blocked(ways: &[[Vec3; 2]], body: &PlacementBody, by: f64) -> usize {
     let mut slivers = TriangleMesh::default();
     for &[a, b] in ways {

@@ -18,7 +18,7 @@ pub(crate) struct LinePlace {
 }
 
 impl LinePlace {
-    /// Where it is on a piece [m]; none where the piece has no such curve.
+    /// Where it is on a piece (m); none where the piece has no such curve.
     pub fn point(&self, piece: &Piece) -> Option<Vec2> {
         let curve = piece
             .internal_lines
@@ -38,7 +38,7 @@ impl LinePlace {
 pub(crate) struct Creases {
     /// Pairs of vertices, numbered after the boundary's.
     pub segments: Vec<[usize; 2]>,
-    /// Their points [m].
+    /// Their points (m).
     pub points: Vec<Vec2>,
     /// Where on a line each point is.
     pub places: Vec<LinePlace>,

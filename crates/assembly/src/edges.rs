@@ -14,7 +14,7 @@ const ACROSS: f64 = 2.9;
 /// Outlines with more probes than this are not searched for narrow places, which takes the
 /// square of their number in time.
 const MOST_PROBES: usize = 30_000;
-/// Turning of the outline per sample [rad]: seven chords a circle at least.
+/// Turning of the outline per sample (rad): seven chords a circle at least.
 const TURN: f64 = 0.9;
 
 /// One edge of one piece.
@@ -26,16 +26,16 @@ pub(crate) struct Edge {
     pub contour: usize,
     /// The next edge of the loop, an index into the table.
     pub next: usize,
-    /// Its curve [m].
+    /// Its curve (m).
     pub curve: Curve,
-    /// Its arc length [m].
+    /// Its arc length (m).
     pub length: f64,
-    /// Size of triangle the shape asks for [m] at equal arc-length steps, ends included.
+    /// Size of triangle the shape asks for (m) at equal arc-length steps, ends included.
     pub shape_size: Vec<f64>,
 }
 
 impl Edge {
-    /// Point at an arc-length fraction [m]; the ends exactly.
+    /// Point at an arc-length fraction (m); the ends exactly.
     pub fn point(&self, fraction: f64) -> Vec2 {
         if fraction <= 0.0 {
             self.curve.start()
@@ -47,7 +47,7 @@ impl Edge {
         }
     }
 
-    /// Size the shape asks for at an arc-length fraction [m].
+    /// Size the shape asks for at an arc-length fraction (m).
     pub fn size_at(&self, fraction: f64) -> f64 {
         let last = self.shape_size.len() - 1;
         let place = fraction.clamp(0.0, 1.0) * last as f64;
@@ -171,7 +171,7 @@ impl EdgeTable {
 struct Probe {
     point: Vec2,
     tangent: Vec2,
-    /// Arc length from the start of its loop [m].
+    /// Arc length from the start of its loop (m).
     place: f64,
     contour: usize,
     edge: usize,
@@ -255,7 +255,7 @@ fn boundary_probes(edges: &[Edge], spacing: f64) -> Vec<Probe> {
     probes
 }
 
-/// Twice the signed area of the outline through the probes [m2].
+/// Twice the signed area of the outline through the probes (m2).
 fn signed_area(probes: &[Probe]) -> f64 {
     let outline: Vec<Vec2> = probes
         .iter()
@@ -265,7 +265,7 @@ fn signed_area(probes: &[Probe]) -> f64 {
     polygon_area(&outline)
 }
 
-/// Signed area of a closed polygon [m2]: positive when counter-clockwise.
+/// Signed area of a closed polygon (m2): positive when counter-clockwise.
 pub(crate) fn polygon_area(points: &[Vec2]) -> f64 {
     let Some(&origin) = points.first() else {
         return 0.0;

@@ -8,13 +8,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_geometry::Vec2;
 use toile_pattern::{BodyPart, Draft, Facing};
 
-/// Least angle of a sector that is laid out as one [rad]: flatter waists are wrapped as they are.
+/// Least angle of a sector that is laid out as one (rad): flatter waists are wrapped as they are.
 const LEAST_TURN: f64 = 0.6;
 /// Farthest that an inner edge lies off its circle, as a share of its radius.
 const OFF_CIRCLE: f64 = 0.08;
-/// Farthest that cloth reaches over the sides of a sector [rad].
+/// Farthest that cloth reaches over the sides of a sector (rad).
 const OVER_SIDE: f64 = 0.12;
-/// Neighbouring edges whose directions differ by less than this are one arc [rad].
+/// Neighbouring edges whose directions differ by less than this are one arc (rad).
 const SMOOTH: f64 = 0.35;
 /// Least length of an inner edge that is sewn to nothing, over the length round the waist.
 const ROUND_WAIST: f64 = 0.7;
@@ -24,7 +24,7 @@ const ROUND_WAIST: f64 = 0.7;
 struct InnerEdge {
     centre: Vec2,
     radius: f64,
-    /// Direction of its middle [rad], and the angle it spans [rad].
+    /// Direction of its middle (rad), and the angle it spans (rad).
     middle: f64,
     turn: f64,
     /// Edges of the piece that it is made of.
@@ -35,7 +35,7 @@ struct InnerEdge {
 pub(crate) struct Pieces<'a> {
     pub draft: &'a Draft,
     pub meshes: &'a PieceMeshes,
-    /// Length round the body's waist [m].
+    /// Length round the body's waist (m).
     pub waist: f64,
 }
 
@@ -132,7 +132,7 @@ impl Pieces<'_> {
 }
 
 impl InnerEdge {
-    /// Angle of a point from the middle [rad], and its distance from the centre [m]. The coordinates are those of the
+    /// Angle of a point from the middle (rad), and its distance from the centre (m). The coordinates are those of the
     /// piece as laid, seen from its right side.
     fn polar(&self, p: Vec2) -> [f64; 2] {
         let d = p - self.centre;

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::Facing;
 
-/// Distance of cloth from the hull of the skin to start with [m].
+/// Distance of cloth from the hull of the skin to start with (m).
 const FIRST_DISTANCE: f64 = 0.012;
 /// Most that the cone widens for each metre of cloth: half a right angle lies under arms that are held out so.
 const WIDEST: f64 = 0.5;
@@ -18,7 +18,7 @@ const WIDEST: f64 = 0.5;
 const LEVELS: usize = 24;
 /// Largest height of folds for each metre of cloth below the inner edge.
 const FOLDS: f64 = 0.45;
-/// Height above the floor below which no cloth is laid [m].
+/// Height above the floor below which no cloth is laid (m).
 const FLOOR: f64 = 0.03;
 
 /// The cone at one distance below the inner edge.
@@ -27,7 +27,7 @@ struct Level {
     curve: OutlineCurve,
 }
 
-/// Positions of every piece of a row of flared pieces [m], in the order of the row.
+/// Positions of every piece of a row of flared pieces (m), in the order of the row.
 pub(crate) fn wrap_flared(
     row: &Row,
     laid: &[FlatPiece],
@@ -56,7 +56,7 @@ pub(crate) fn wrap_flared(
     row.pieces.iter().map(place).collect()
 }
 
-/// The cone of a row from its top down [m]: as long at each level as the cloth, in so many folds everywhere that this
+/// The cone of a row from its top down (m): as long at each level as the cloth, in so many folds everywhere that this
 /// is so at the hem.
 fn cone(
     row: &Row,

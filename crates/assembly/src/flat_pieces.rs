@@ -7,27 +7,27 @@ use toile_geometry::Vec2;
 /// A piece seen from its right side, with its offsets in the plane in which rows are arranged.
 #[derive(Clone, Debug)]
 pub(crate) struct FlatPiece {
-    /// Points of the piece seen from the right side of the cloth [m].
+    /// Points of the piece seen from the right side of the cloth (m).
     pub points: Vec<Vec2>,
-    /// Box of the points [m].
+    /// Box of the points (m).
     pub low: Vec2,
     pub high: Vec2,
-    /// Added to the second coordinate: height in the part's frame [m].
+    /// Added to the second coordinate: height in the part's frame (m).
     pub rise: f64,
-    /// Added to the first coordinate: distance round the part from its first direction [m].
+    /// Added to the first coordinate: distance round the part from its first direction (m).
     pub shift: f64,
     /// How much longer it gets round for each metre down from its inner edge, which then is at height 0 of the
-    /// points: the angle of the sector of a ring that it is [rad]; 0 of a piece that is not flared.
+    /// points: the angle of the sector of a ring that it is (rad); 0 of a piece that is not flared.
     pub turn: f64,
 }
 
 impl FlatPiece {
-    /// Width [m].
+    /// Width (m).
     pub fn width(&self) -> f64 {
         self.high.x - self.low.x
     }
 
-    /// Lowest and highest place in the part's frame [m].
+    /// Lowest and highest place in the part's frame (m).
     pub fn span(&self) -> [f64; 2] {
         [self.low.y + self.rise, self.high.y + self.rise]
     }

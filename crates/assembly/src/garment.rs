@@ -7,9 +7,9 @@ use toile_pattern::{PieceId, SeamOrigin};
 /// All sewn pieces as one triangle mesh, not yet merged: every piece has its own vertices.
 #[derive(Clone, Debug, Default)]
 pub struct Garment {
-    /// Placed round the body [m].
+    /// Placed round the body (m).
     pub positions: Vec<Vec3>,
-    /// Place of each vertex in its piece's plane [m].
+    /// Place of each vertex in its piece's plane (m).
     pub flat: Vec<Vec2>,
     /// Corners; wound like the piece's outline, so that normals point to the right side.
     pub triangles: Vec<[u32; 3]>,
@@ -32,7 +32,7 @@ pub struct GarmentPanel {
     pub vertices: Range<usize>,
     /// Its triangles.
     pub triangles: Range<usize>,
-    /// Direction of the warp in the piece's plane [rad].
+    /// Direction of the warp in the piece's plane (rad).
     pub grain: f64,
     /// Index into the draft's fabrics.
     pub fabric: usize,

@@ -85,7 +85,7 @@ fn ring_from(first: usize, next: &[Option<usize>]) -> Vec<usize> {
     }
 }
 
-/// How far a ring is turned so that it faces as what it is sewn to [turns].
+/// How far a ring is turned so that it faces as what it is sewn to (turns).
 fn turn_of((ring, places): (&[usize], &[f64]), ties: &[Tie], told: &[Option<Facing>]) -> f64 {
     let mut turned = Vec2::zeros();
     for tie in ties {

@@ -79,7 +79,7 @@ impl HarmonicWeights {
         })
     }
 
-    /// Displacements [m] of all vertices from those of the given ones.
+    /// Displacements (m) of all vertices from those of the given ones.
     pub fn displacements(&mut self, given: &[Vec2]) -> Vec<Vec2> {
         let mut all = given.to_vec();
         if self.free == 0 {
@@ -112,7 +112,7 @@ impl fmt::Debug for SharedWeights {
 }
 
 impl SharedWeights {
-    /// Displacements [m] of all vertices from those of the first ones, by the weights that `make` gives.
+    /// Displacements (m) of all vertices from those of the first ones, by the weights that `make` gives.
     ///
     /// # Errors
     /// That of `make`.

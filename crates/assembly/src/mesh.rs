@@ -25,7 +25,7 @@ pub struct PieceMesh {
     pub piece: PieceId,
     /// Index into the draft's pieces.
     pub draft_piece: usize,
-    /// Vertices in the piece's plane [m]: boundary loops first.
+    /// Vertices in the piece's plane (m): boundary loops first.
     pub points: Vec<Vec2>,
     /// Corners, wound like the outline.
     pub triangles: Vec<[u32; 3]>,
@@ -48,14 +48,14 @@ pub struct PieceMeshes {
     pub stitches: Vec<Stitch>,
     /// Notes for the user.
     pub diagnostics: Vec<Diagnostic>,
-    /// The mean edge that was asked for [m].
+    /// The mean edge that was asked for (m).
     pub edge_length: f64,
 }
 
 /// Meshes the sewn pieces of a draft: seams sampled first, so that both sides match vertex to
 /// vertex, then each piece triangulated on its own.
 ///
-/// `edge_length` [m] is the mean edge asked for. The same draft gives the same meshes.
+/// `edge_length` (m) is the mean edge asked for. The same draft gives the same meshes.
 ///
 /// # Errors
 /// An edge length out of range, an outline that cannot be meshed, a seam to nothing.
@@ -229,7 +229,7 @@ fn wound(triangles: &[[usize; 3]], counter_clockwise: bool) -> Vec<[u32; 3]> {
 }
 
 impl PieceMesh {
-    /// Area of the triangles [m2].
+    /// Area of the triangles (m2).
     pub fn area(&self) -> f64 {
         self.triangles
             .iter()
@@ -302,7 +302,7 @@ impl PieceMesh {
         })
     }
 
-    /// Angle of the cloth at each boundary vertex [rad].
+    /// Angle of the cloth at each boundary vertex (rad).
     fn outline_angles(&self, boundary_count: usize) -> Vec<f64> {
         let mut angles = vec![0.0; boundary_count];
         for t in &self.triangles {

@@ -14,10 +14,10 @@ use std::collections::{HashMap, VecDeque};
 use toile_geometry::{Vec2, orient2d};
 use toile_pattern::{Draft, Piece, PieceId, SeamOrigin};
 
-/// Smallest angle of a triangle that follows an edit [rad], 15 degrees: membrane forces of sharper ones
+/// Smallest angle of a triangle that follows an edit (rad), 15 degrees: membrane forces of sharper ones
 /// are stiff across and inexact along them. Fresh meshes have angles over 25 degrees.
 const SMALLEST_ANGLE: f64 = 0.261_799_387_799_149_4;
-/// How much smaller the angle may become of a triangle that was made sharper than that [rad], 1 degree:
+/// How much smaller the angle may become of a triangle that was made sharper than that (rad), 1 degree:
 /// a narrow corner of an outline has such triangles in every mesh.
 const ANGLE_LOSS: f64 = 0.017_453_292_519_943_295;
 /// How long an edge may be as a share of its length when it was made, at least and at most.

@@ -3,9 +3,9 @@
 
 use toile_geometry::{Vec2, convex_hull, half_hull};
 
-/// Narrowest fold a ring is laid in [m].
+/// Narrowest fold a ring is laid in (m).
 const NARROWEST_FOLD: f64 = 0.04;
-/// Angle between neighbouring points of a rounded corner [rad].
+/// Angle between neighbouring points of a rounded corner (rad).
 const CORNER_STEP: f64 = 0.05;
 
 /// A polyline walked by arc length. Coordinates: first towards the left of the facing
@@ -13,13 +13,13 @@ const CORNER_STEP: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub(crate) struct OutlineCurve {
     points: Vec<Vec2>,
-    /// Arc length at each point, zero where the walk starts [m].
+    /// Arc length at each point, zero where the walk starts (m).
     lengths: Vec<f64>,
     closed: bool,
 }
 
 impl OutlineCurve {
-    /// The ring at `distance` [m] round the convex hull of points, walked from the front
+    /// The ring at `distance` (m) round the convex hull of points, walked from the front
     /// (first coordinate that of `centre`, second largest) towards the left.
     pub fn ring(points: &[Vec2], centre: Vec2, distance: f64) -> Self {
         let mut hull = convex_hull(points);
@@ -71,8 +71,8 @@ impl OutlineCurve {
         curve
     }
 
-    /// The ring laid in even folds that reach up to `amplitude` [m] outward, so that it is
-    /// `length` [m] long. Folds get no narrower than [`NARROWEST_FOLD`]: what does not fit then
+    /// The ring laid in even folds that reach up to `amplitude` (m) outward, so that it is
+    /// `length` (m) long. Folds get no narrower than [`NARROWEST_FOLD`]: what does not fit then
     /// is left out.
     pub fn folded(&self, length: f64, amplitude: f64) -> Self {
         self.in_folds(self.fold_count(length, amplitude), length, amplitude)
@@ -89,7 +89,7 @@ impl OutlineCurve {
         count
     }
 
-    /// The ring laid in so many even folds, that reach up to `amplitude` [m] outward, so that it is `length` [m] long.
+    /// The ring laid in so many even folds, that reach up to `amplitude` (m) outward, so that it is `length` (m) long.
     pub fn in_folds(&self, count: usize, length: f64, amplitude: f64) -> Self {
         let (mut low, mut high) = (0.0, amplitude);
         for _ in 0..30 {
@@ -126,7 +126,7 @@ impl OutlineCurve {
         curve
     }
 
-    /// Largest distance of its points from a centre [m].
+    /// Largest distance of its points from a centre (m).
     pub fn reach(&self, centre: Vec2) -> f64 {
         self.points
             .iter()
@@ -135,7 +135,7 @@ impl OutlineCurve {
     }
 
     /// The curve in front of points: their upper hull, no steeper than half a right angle,
-    /// moved `distance` [m] forward and walked from first coordinate `middle`.
+    /// moved `distance` (m) forward and walked from first coordinate `middle`.
     pub fn front(points: &[Vec2], middle: f64, distance: f64) -> Self {
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.y.total_cmp(&a.y)));
@@ -191,12 +191,12 @@ impl OutlineCurve {
         0.0
     }
 
-    /// Whole length of a ring [m].
+    /// Whole length of a ring (m).
     pub fn length(&self) -> f64 {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// The point at an arc length from the start of the walk [m]; a ring goes on round.
+    /// The point at an arc length from the start of the walk (m); a ring goes on round.
     pub fn at(&self, length: f64) -> Vec2 {
         let total = self.length();
         let wanted = if self.closed && total > 0.0 {

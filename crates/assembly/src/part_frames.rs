@@ -5,7 +5,7 @@ use crate::outline_curve::OutlineCurve;
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::{BodyPart, Facing};
 
-/// Radius at which a point counts as equally far from a part as any other [m].
+/// Radius at which a point counts as equally far from a part as any other (m).
 const fn usual_radius(part: BodyPart) -> f64 {
     match part {
         BodyPart::Trunk => 0.15,
@@ -20,7 +20,7 @@ const fn usual_radius(part: BodyPart) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartFrame {
     pub part: BodyPart,
-    /// A point on the axis; heights are measured from it along `up` [m].
+    /// A point on the axis; heights are measured from it along `up` (m).
     pub origin: Vec3,
     pub up: Vec3,
     facings: [Vec3; 4],
@@ -89,12 +89,12 @@ impl PartFrame {
         }
     }
 
-    /// Distance along the frame's upward direction [m].
+    /// Distance along the frame's upward direction (m).
     pub fn height(&self, p: Vec3) -> f64 {
         (p - self.origin).dot(&self.up)
     }
 
-    /// Place across the axis, seen with quarter `quarter` ahead: left of it, along it [m].
+    /// Place across the axis, seen with quarter `quarter` ahead: left of it, along it (m).
     pub fn across(&self, p: Vec3, quarter: usize) -> Vec2 {
         let offset = p - self.origin;
         Vec2::new(
@@ -103,7 +103,7 @@ impl PartFrame {
         )
     }
 
-    /// The point at a place across the axis and a height [m].
+    /// The point at a place across the axis and a height (m).
     pub fn point(&self, across: Vec2, quarter: usize, height: f64) -> Vec3 {
         self.origin
             + self.facings[(quarter + 1) % 4] * across.x
@@ -111,13 +111,13 @@ impl PartFrame {
             + self.up * height
     }
 
-    /// A point of cloth on a curve: `along` it, at a height [m].
+    /// A point of cloth on a curve: `along` it, at a height (m).
     pub fn on_curve(&self, curve: &OutlineCurve, quarter: usize, along: f64, height: f64) -> Vec3 {
         self.point(curve.at(along), quarter, height)
     }
 }
 
-/// Distance from a point to a polyline [m].
+/// Distance from a point to a polyline (m).
 fn polyline_distance(p: Vec3, line: &[Vec3]) -> f64 {
     let segment = |a: Vec3, b: Vec3| {
         let d = b - a;

@@ -16,9 +16,9 @@ use crate::{AssemblyError, Diagnostic, PlacementBody};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Draft, Facing};
 
-/// Distance every vertex keeps from the skin [m].
+/// Distance every vertex keeps from the skin (m).
 pub(crate) const SKIN_CLEARANCE: f64 = 0.005;
-/// How far from a vertex the skin is looked for [m].
+/// How far from a vertex the skin is looked for (m).
 const LOOK: f64 = 0.03;
 /// Steps of the search for a clear place.
 const CLEAR_STEPS: usize = 60;
@@ -26,18 +26,18 @@ const CLEAR_STEPS: usize = 60;
 const APART_STEPS: usize = 12;
 /// Steps in which collars and hoods only rise before they also widen.
 const HEAD_LIFTS: usize = 8;
-/// How far a piece placed by its file may be pushed [m].
+/// How far a piece placed by its file may be pushed (m).
 const LARGEST_PUSH: f64 = 0.3;
 
 /// Where all vertices go.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Placement {
-    /// Positions of each meshed piece's vertices [m].
+    /// Positions of each meshed piece's vertices (m).
     pub positions: Vec<Vec<Vec3>>,
 }
 
-/// A way a row was placed: how deep it is in the skin [m] and how often it crosses it, what was
-/// asked, and where its pieces came to lie [m].
+/// A way a row was placed: how deep it is in the skin (m) and how often it crosses it, what was
+/// asked, and where its pieces came to lie (m).
 type Attempt = ((f64, usize), Fit, Vec<Vec<Vec3>>);
 
 struct Placer<'a> {
@@ -136,7 +136,7 @@ fn has_parts(
     Ok(())
 }
 
-/// Length round the trunk at the waist [m].
+/// Length round the trunk at the waist (m).
 fn waist_length(body: &PlacementBody, labels: &[BodyPart]) -> f64 {
     let around = Surroundings {
         body,
@@ -169,7 +169,7 @@ impl Placer<'_> {
         }
     }
 
-    /// How far inside the distance kept from the skin a piece comes [m], and, where it keeps
+    /// How far inside the distance kept from the skin a piece comes (m), and, where it keeps
     /// that distance, how many of its triangles cross the skin all the same.
     fn trouble(&self, k: usize, positions: &[Vec3]) -> (f64, usize) {
         let skin = self.body.skin;

@@ -10,7 +10,7 @@ pub struct PlacementBody<'a> {
     pub skin: &'a SurfaceTree,
     /// Axes of the parts the body has, in the order of [`BodyPart`]: a dress form has trunk and neck.
     pub limbs: Vec<Limb>,
-    /// Heights above the floor [m].
+    /// Heights above the floor (m).
     pub levels: Levels,
 }
 
@@ -39,11 +39,11 @@ pub struct Limb {
     /// Which part.
     pub part: BodyPart,
     /// Points from the root outward: trunk from the crotch up to the neck, head from the neck up,
-    /// arm from the shoulder joint to the wrist, leg from the hip joint to the ankle [m].
+    /// arm from the shoulder joint to the wrist, leg from the hip joint to the ankle (m).
     pub axis: Vec<Vec3>,
 }
 
-/// Heights above the floor at which garments hang [m].
+/// Heights above the floor at which garments hang (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
     /// Crown of the head.

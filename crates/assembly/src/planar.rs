@@ -130,7 +130,7 @@ impl Planar {
         }
     }
 
-    /// Positions of a triangle's corners [m].
+    /// Positions of a triangle's corners (m).
     pub fn corners(&self, t: usize) -> [Vec2; 3] {
         self.triangles[t].map(|v| self.points[v])
     }

@@ -2,7 +2,7 @@
 
 use toile_geometry::Vec2;
 
-/// Smallest inner angle of a triangle [rad]; zero where it has no area.
+/// Smallest inner angle of a triangle (rad); zero where it has no area.
 pub fn smallest_angle(corners: [Vec2; 3]) -> f64 {
     let [a, b, c] = corners;
     let doubled = (b - a).perp(&(c - a)).abs();
@@ -15,19 +15,19 @@ pub fn smallest_angle(corners: [Vec2; 3]) -> f64 {
 pub struct MeshQuality {
     /// Number of triangles.
     pub triangles: usize,
-    /// Smallest angle [rad].
+    /// Smallest angle (rad).
     pub smallest_angle: f64,
-    /// Smallest angle over triangles that no narrow outline corner forces to be sharp [rad].
+    /// Smallest angle over triangles that no narrow outline corner forces to be sharp (rad).
     pub smallest_free_angle: f64,
     /// Triangles whose smallest angle is under 20 degrees, corner triangles left out.
     pub under_20: usize,
-    /// Mean of the smallest angles of all triangles [rad].
+    /// Mean of the smallest angles of all triangles (rad).
     pub mean_smallest_angle: f64,
-    /// Mean edge length [m].
+    /// Mean edge length (m).
     pub mean_edge: f64,
-    /// Shortest edge [m].
+    /// Shortest edge (m).
     pub shortest_edge: f64,
-    /// Longest edge [m].
+    /// Longest edge (m).
     pub longest_edge: f64,
     /// Triangles with all three corners on the boundary that do not cut off one corner of it.
     pub bridging: usize,

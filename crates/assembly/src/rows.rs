@@ -21,9 +21,9 @@ pub(crate) struct Row {
     pub part: BodyPart,
     /// Indices of meshed pieces.
     pub pieces: Vec<usize>,
-    /// Distance round that the pieces fill [m].
+    /// Distance round that the pieces fill (m).
     pub girth: f64,
-    /// How much longer it gets for each metre down: the sectors of its flared pieces together [rad].
+    /// How much longer it gets for each metre down: the sectors of its flared pieces together (rad).
     pub turn: f64,
 }
 

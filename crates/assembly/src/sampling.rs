@@ -46,9 +46,9 @@ struct Interval {
 /// Intervals that are sewn together and so get the same samples.
 struct Class {
     members: Vec<(usize, bool)>,
-    /// The length its samples are counted for [m].
+    /// The length its samples are counted for (m).
     length: f64,
-    /// Target interval [m] at equal steps along it.
+    /// Target interval (m) at equal steps along it.
     size: Vec<f64>,
     /// Whether it is sewn to itself end for end, so that its samples must be symmetric.
     symmetric: bool,

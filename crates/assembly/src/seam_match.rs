@@ -52,7 +52,7 @@ pub(crate) struct SeamChains {
     /// Index into the draft's seams.
     pub seam: usize,
     pub sides: [Vec<EdgeSpan>; 2],
-    /// Length of each chain [m].
+    /// Length of each chain (m).
     pub lengths: [f64; 2],
     pairs: Vec<[(usize, usize); 2]>,
 }
@@ -338,7 +338,7 @@ fn nearest_on_piece(table: &EdgeTable, piece: usize, point: Vec2) -> Option<(usi
     Some((edge, 0.5 * (low + high)))
 }
 
-/// A distance [m] that no point of a curve is nearer than: that of the box round the points that
+/// A distance (m) that no point of a curve is nearer than: that of the box round the points that
 /// define it, but for rounding; nought for arcs, which lie outside it.
 fn least_distance(curve: &Curve, point: Vec2) -> f64 {
     if matches!(curve, Curve::Arc { .. }) {

@@ -69,7 +69,7 @@ pub(crate) struct SizeField {
     near_segments: Grid,
 }
 
-/// Distance from a point to a segment [m].
+/// Distance from a point to a segment (m).
 fn segment_distance(p: Vec2, [a, b]: [Vec2; 2]) -> f64 {
     let d = b - a;
     let t = ((p - a).dot(&d) / d.norm_squared()).clamp(0.0, 1.0);
@@ -114,12 +114,12 @@ impl SizeField {
         }
     }
 
-    /// The edge length away from short intervals [m].
+    /// The edge length away from short intervals (m).
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// Target edge length at a point [m].
+    /// Target edge length at a point (m).
     pub fn size(&self, p: Vec2) -> f64 {
         self.near_sources
             .at(p)
@@ -132,7 +132,7 @@ impl SizeField {
     }
 
     /// Distance to the boundary and creases, right up to the edge length, at least the edge
-    /// length beyond [m].
+    /// length beyond (m).
     pub fn boundary_distance(&self, p: Vec2) -> f64 {
         self.near_segments
             .at(p)

@@ -6,9 +6,9 @@ use crate::quality::smallest_angle;
 use crate::size_field::SizeField;
 use toile_geometry::{Vec2, orient2d};
 
-/// Triangles with a smaller angle are worked on one by one [rad].
+/// Triangles with a smaller angle are worked on one by one (rad).
 const POOR: f64 = 0.56;
-/// Corners narrower than this keep their ear: a split would make two sharper ones [rad].
+/// Corners narrower than this keep their ear: a split would make two sharper ones (rad).
 const NARROW_EAR: f64 = 1.25;
 
 /// Sweeps of optimal Delaunay smoothing (Chen 2004): each vertex moves to the mean of the

@@ -18,7 +18,7 @@ pub(crate) struct EdgeSource {
     pub reversed: bool,
     /// Which closed loop of the piece: 0 the outline, then the holes.
     pub contour: usize,
-    /// Its curve [m].
+    /// Its curve (m).
     pub curve: Curve,
     /// Arc-length fractions of its samples, both ends included.
     pub fractions: Vec<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct EdgeSource {
 /// The shape a piece had when it was meshed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MeshSource {
-    /// Vertices [m]: boundary, points of internal lines, then those that are free.
+    /// Vertices (m): boundary, points of internal lines, then those that are free.
     pub points: Vec<Vec2>,
     /// Its edges: outline first, then each hole.
     pub edges: Vec<EdgeSource>,

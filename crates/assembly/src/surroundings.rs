@@ -6,9 +6,9 @@ use crate::part_frames::PartFrame;
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::BodyPart;
 
-/// Skin this far above and below a row is gone round too [m].
+/// Skin this far above and below a row is gone round too (m).
 pub(crate) const BAND: f64 = 0.03;
-/// Distance that rings round the trunk keep from the arms [m].
+/// Distance that rings round the trunk keep from the arms (m).
 const ARM_CLEARANCE: f64 = 0.015;
 
 /// The curve that a row goes round.
@@ -23,9 +23,9 @@ pub(crate) struct Surroundings<'a> {
 /// Parameters of a wrapped row, which the search for a clear place changes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fit {
-    /// Extra distance from the skin [m].
+    /// Extra distance from the skin (m).
     pub distance: f64,
-    /// Extra height [m].
+    /// Extra height (m).
     pub lift: f64,
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn obstacles(
 }
 
 /// Places across a part's axis of its skin between two heights, and a little above and below: that of the trunk with
-/// the legs [m].
+/// the legs (m).
 pub(crate) fn skin_outline(
     part: BodyPart,
     around: &Surroundings,
@@ -80,7 +80,7 @@ pub(crate) fn skin_outline(
     .collect()
 }
 
-/// How far from the trunk's axis cloth may reach between two heights without coming near the arms [m].
+/// How far from the trunk's axis cloth may reach between two heights without coming near the arms (m).
 pub(crate) fn arm_distance(
     part: BodyPart,
     around: &Surroundings,

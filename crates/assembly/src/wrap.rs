@@ -11,13 +11,13 @@ use crate::surroundings::{BAND, Fit, Surroundings, arm_distance, obstacles, skin
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Facing};
 
-/// Distance of cloth from the hull of the skin to start with [m].
+/// Distance of cloth from the hull of the skin to start with (m).
 const FIRST_DISTANCE: f64 = 0.012;
 /// Distance between neighbouring pieces of a row, as a share of their places' spread.
 const SPREAD: f64 = 1.02;
-/// Room for folds below which a ring is not folded [m].
+/// Room for folds below which a ring is not folded (m).
 const SMALLEST_FOLD: f64 = 0.04;
-/// Distance that pieces of one leg keep from the middle of the body [m].
+/// Distance that pieces of one leg keep from the middle of the body (m).
 const MIDDLE_CLEARANCE: f64 = 0.006;
 
 /// The shape a row is bent to.
@@ -51,7 +51,7 @@ fn facing_of(role: &Role) -> Facing {
     }
 }
 
-/// Positions of every piece of a row [m], in the order of the row.
+/// Positions of every piece of a row (m), in the order of the row.
 pub(crate) fn wrap_row(
     row: &Row,
     laid: &[FlatPiece],
@@ -246,7 +246,7 @@ pub(crate) fn lay_over(
     (piece.points.iter().map(|&p| at(p, place)).collect(), clear)
 }
 
-/// Whether a point lies inside a polygon at least `margin` [m] from its corners and edges.
+/// Whether a point lies inside a polygon at least `margin` (m) from its corners and edges.
 fn inside_by(p: Vec2, polygon: &[Vec2], margin: f64) -> bool {
     let mut inside = false;
     for k in 0..polygon.len() {

@@ -9,7 +9,7 @@ use toile_assembly::{Assembled, AssemblyOptions, assemble};
 use toile_geometry::{Curve, Vec2};
 use toile_pattern::{BodyPart, Draft, DraftSpan, Facing, Piece, Worn};
 
-/// Length round the waist, and of the skirt below it [m].
+/// Length round the waist, and of the skirt below it (m).
 const WAIST: f64 = 0.8;
 const LENGTH: f64 = 0.45;
 
@@ -98,7 +98,7 @@ fn made(draft: &Draft, doll: &Doll) -> Assembled {
 }
 
 /// Holds a skirt to standing round the waist: clear of the skin, with its inner edge level at the waist and its hem
-/// below, all round the trunk. Sewn edges lie less than `apart` from each other [m].
+/// below, all round the trunk. Sewn edges lie less than `apart` from each other (m).
 fn stands_apart(name: &str, made: &Assembled, doll: &Doll, apart: f64) {
     let skirts = made
         .garment

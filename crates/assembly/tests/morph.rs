@@ -12,7 +12,7 @@ use toile_assembly::{
 use toile_geometry::{Curve, Vec2};
 use toile_pattern::{Draft, EdgeId, EdgeOrigin, PieceId, Worn};
 
-/// Mean edge of quality `fit` [m].
+/// Mean edge of quality `fit` (m).
 const FIT: f64 = 0.015;
 
 /// Numbers from -1 to 1, the same for the same seed.
@@ -31,7 +31,7 @@ impl Random {
         ((self.next() * 0.5 + 0.5) * count as f64) as usize % count
     }
 
-    /// A vector no longer than `most` [m].
+    /// A vector no longer than `most` (m).
     fn vector(&mut self, most: f64) -> Vec2 {
         let (length, angle) = (self.next() * most, self.next() * 3.2);
         Vec2::new(angle.cos(), angle.sin()) * length

@@ -13,7 +13,7 @@ use toile_body::{Clip, Figure, Mannequin, template_skin};
 use toile_geometry::{SurfaceTree, Vec3};
 use toile_measure::{Measurements, Origin};
 
-/// Best and middle time of some repeats [ms].
+/// Best and middle time of some repeats (ms).
 fn timed(name: &str, repeats: usize, mut work: impl FnMut(usize)) {
     let mut times: Vec<f64> = (0..repeats)
         .map(|k| {

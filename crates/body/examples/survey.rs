@@ -25,7 +25,7 @@ struct Outcome {
     /// Pairs of triangles of the skin that cross; none when the skin is not a closed manifold.
     crossings: Option<usize>,
     held_out: [f64; HELD_OUT.len()],
-    /// Time of the solve [s].
+    /// Time of the solve (s).
     time: f64,
 }
 

@@ -3,7 +3,7 @@
 use crate::{Loop, Scan};
 use toile_geometry::Vec3;
 
-/// A section of the left arm: its middle [m] and girth [m].
+/// A section of the left arm: its middle (m) and girth (m).
 pub(crate) type Ring = (Vec3, f64);
 
 /// The tip of the left hand: what reaches farthest out and, less so, down.

@@ -8,13 +8,13 @@ use toile_geometry::{TriangleMesh, Vec3};
 /// The range in which a tape searches for triangles of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Near {
-    /// Heights above the floor [m].
+    /// Heights above the floor (m).
     Level([f64; 2]),
-    /// Heights square to a tape round the neck, which lies lower in front [m].
+    /// Heights square to a tape round the neck, which lies lower in front (m).
     Neck([f64; 2]),
-    /// Distances from the shoulder joint along the arm [m].
+    /// Distances from the shoulder joint along the arm (m).
     Arm([f64; 2]),
-    /// Distances from the middle, and heights above the floor [m].
+    /// Distances from the middle, and heights above the floor (m).
     Side([f64; 2], [f64; 2]),
 }
 
@@ -87,7 +87,7 @@ impl Bands {
     }
 }
 
-/// Height of a point square to a tape round the neck [m].
+/// Height of a point square to a tape round the neck (m).
 pub(crate) fn neck_height(p: Vec3) -> f64 {
     let (sin, cos) = NECK_TILT.sin_cos();
     p.y * cos + p.z * sin

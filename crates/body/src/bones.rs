@@ -33,7 +33,7 @@ pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     }))
 }
 
-/// Where a joint of the middle or the left side is on a template [m].
+/// Where a joint of the middle or the left side is on a template (m).
 pub(crate) fn place(joints: &Joints, joint: Joint) -> Vec3 {
     let [hip, pelvis, chest, neck, head] = [
         joints.hip,
@@ -129,7 +129,7 @@ pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
 /// Length of a hand over stature.
 const HAND: f64 = 0.1;
 
-/// Distance of a point from a straight bone [m].
+/// Distance of a point from a straight bone (m).
 fn distance_to_bone(point: Vec3, [from, to]: [Vec3; 2]) -> f64 {
     let along = to - from;
     let length = along.norm_squared();

@@ -11,7 +11,7 @@ use toile_realtime::{
 /// beside a crease would swell.
 const COVERED: f32 = 0.9;
 
-/// By how much an ellipsoid is enlarged at the most [m].
+/// By how much an ellipsoid is enlarged at the most (m).
 const MOST_ENLARGED: f32 = 0.03;
 
 /// The name of a part's group.

@@ -12,13 +12,13 @@ use toile_geometry::{MovingSurface, TriangleMesh, Vec3};
 pub struct Cleared {
     /// The clip; the one that was given to the bit where no limb had to be turned.
     pub clip: Clip,
-    /// The largest turn of a shoulder and of a hip [rad].
+    /// The largest turn of a shoulder and of a hip (rad).
     pub largest_turn: [f64; 2],
-    /// Times at which limbs come nearer all the same, for the largest turn is not enough [s].
+    /// Times at which limbs come nearer all the same, for the largest turn is not enough (s).
     pub unclear: Vec<f64>,
 }
 
-/// Largest outward turns of shoulders and hips [rad]: 25 and 8 degrees. Beyond them a figure no longer moves as the clip
+/// Largest outward turns of shoulders and hips (rad): 25 and 8 degrees. Beyond them a figure no longer moves as the clip
 /// says.
 const MOST_SHOULDER: f64 = 25.0 * std::f64::consts::PI / 180.0;
 const MOST_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
@@ -26,11 +26,11 @@ const MOST_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
 const JOINED: f64 = 0.075;
 /// Least number of poses a second that are looked at.
 const LOOKS: f64 = 30.0;
-/// Time over which turns are held at their largest and then smoothed, to both sides [s].
+/// Time over which turns are held at their largest and then smoothed, to both sides (s).
 const SPREAD: f64 = 0.1;
 /// Halvings in the search for the least turn: to 0.8 degrees of a shoulder.
 const HALVINGS: usize = 5;
-/// How far from the skin of another part it is looked for [m]: deeper than any limb sinks in at a moment that is not
+/// How far from the skin of another part it is looked for (m): deeper than any limb sinks in at a moment that is not
 /// preceded by one less deep.
 const DEEPEST: f64 = 0.08;
 
@@ -134,7 +134,7 @@ impl Watched {
         }
     }
 
-    /// Whether the limb keeps a gap [m] in a pose.
+    /// Whether the limb keeps a gap (m) in a pose.
     fn is_clear(&self, body: &Mannequin, pose: &Pose, gap: f64) -> bool {
         let skin = body.posed_skin(pose).positions;
         let places: Vec<Vec3> = self.of_skin.iter().map(|&v| skin[v as usize]).collect();
@@ -146,7 +146,7 @@ impl Watched {
         })
     }
 
-    /// The least outward turn [rad] at which the limb keeps a gap [m] in a pose; none where the largest is not enough.
+    /// The least outward turn (rad) at which the limb keeps a gap (m) in a pose; none where the largest is not enough.
     fn least_turn(&self, body: &Mannequin, pose: &Pose, gap: f64) -> Option<f64> {
         let is_clear = |angle: f64| {
             let mut turned = pose.clone();
@@ -172,7 +172,7 @@ impl Watched {
 }
 
 impl Clip {
-    /// The clip with shoulders and hips turned outward, pose by pose, by the least angle at which arms keep a gap [m] from
+    /// The clip with shoulders and hips turned outward, pose by pose, by the least angle at which arms keep a gap (m) from
     /// all else and legs from each other, away from where they join; at most 25 degrees at shoulders and 8 at hips. Turns
     /// are raised to their maximum over a tenth of a second and then smoothed, so that nothing jumps; a loop stays one.
     pub fn cleared(&self, body: &Mannequin, gap: f64) -> Cleared {

@@ -8,19 +8,19 @@ use toile_geometry::Vec3;
 /// motion fits every size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
-    /// Time from one pose to the next [s].
+    /// Time from one pose to the next (s).
     pub step: f64,
-    /// The poses; the root's place is over the leg length [1].
+    /// The poses; the root's place is over the leg length (1).
     pub poses: Vec<Pose>,
     /// Whether the first pose follows the last one.
     pub is_loop: bool,
-    /// How far a loop on the spot goes over the ground in one round, over the leg length [1]: the standing foot then
+    /// How far a loop on the spot goes over the ground in one round, over the leg length (1): the standing foot then
     /// stands still. Zero where the poses themselves move the root.
     pub advance: Vec3,
 }
 
 impl Clip {
-    /// Length [s]: of a loop with the way back to the first pose.
+    /// Length (s): of a loop with the way back to the first pose.
     pub fn duration(&self) -> f64 {
         let gaps = match self.is_loop {
             true => self.poses.len(),
@@ -29,7 +29,7 @@ impl Clip {
         self.step * gaps as f64
     }
 
-    /// The pose at a time [s], slerped between frames: held before the start and after the end,
+    /// The pose at a time (s), slerped between frames: held before the start and after the end,
     /// but for a loop. The root's place is over the leg length.
     pub fn at(&self, time: f64) -> Pose {
         let count = self.poses.len();
@@ -55,7 +55,7 @@ impl Clip {
         self.poses[low].blended(&self.poses[high], share)
     }
 
-    /// How far the figure has gone over the ground since the start of a loop at a time [s], over the leg length [1].
+    /// How far the figure has gone over the ground since the start of a loop at a time (s), over the leg length (1).
     pub fn travelled(&self, time: f64) -> Vec3 {
         match self.duration() {
             duration if duration > 0.0 => self.advance * (time / duration),
@@ -63,7 +63,7 @@ impl Clip {
         }
     }
 
-    /// The pose at a time [s] for a skeleton: the root's place in metres.
+    /// The pose at a time (s) for a skeleton: the root's place in metres.
     pub fn pose_for(&self, skeleton: &Skeleton, time: f64) -> Pose {
         let mut pose = self.at(time);
         pose.shift *= skeleton.leg_length();

@@ -8,13 +8,13 @@ use toile_measure::{Measurements, Origin};
 pub struct Conflict {
     /// The measurements, by their names.
     pub names: Vec<&'static str>,
-    /// By how much they disagree [m].
+    /// By how much they disagree (m).
     pub gap: f64,
     /// What does not fit, and what to change.
     pub why: &'static str,
 }
 
-/// A sum of measurements [m] that is at least a part of the stature on any body: names with their
+/// A sum of measurements (m) that is at least a part of the stature on any body: names with their
 /// factors, the part, and what is wrong otherwise.
 type Rule = (&'static [(&'static str, f64)], f64, &'static str);
 

@@ -17,7 +17,7 @@ pub(crate) struct CutPlane {
     pub(crate) near: Near,
 }
 
-/// How far from a plane's height triangles that cross it may begin [m]; by the thighs and shoulders,
+/// How far from a plane's height triangles that cross it may begin (m); by the thighs and shoulders,
 /// where heights are moved besides, farther.
 const REACH: f64 = 0.04;
 const FAR: f64 = 0.08;
@@ -29,10 +29,10 @@ const NECK: f64 = 0.045;
 /// The same from a tape across the arm, along it: a tilted one reaches farther than a ring.
 const ARM: f64 = 0.04;
 
-/// How far to both sides the way of an arm is taken from its middles [m].
+/// How far to both sides the way of an arm is taken from its middles (m).
 const ARM_WAY: f64 = 0.065;
 
-/// The middle of the template's arm at a distance from the shoulder joint [m].
+/// The middle of the template's arm at a distance from the shoulder joint (m).
 fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
     let place = (distance / marks.arm.wrist - ARM_BEGINS) / ARM_STEP;
     let before = (place.floor().max(0.0) as usize).min(ARM_MIDDLES - 2);
@@ -41,7 +41,7 @@ fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
 }
 
 impl CutPlane {
-    /// A cut at a place [m].
+    /// A cut at a place (m).
     pub(crate) fn of(cut: Cut, place: f64, marks: &TemplateMarks, warp: &Warp) -> Self {
         match cut {
             Cut::Trunk => Self::level(Part::Trunk, place, warp.near(place, REACH)),

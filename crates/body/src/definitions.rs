@@ -3,7 +3,7 @@
 
 use crate::girths::Girth;
 
-/// What says where the girths of a standing body lie [m].
+/// What says where the girths of a standing body lie (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BodyMarks {
     pub(crate) stature: f64,
@@ -39,7 +39,7 @@ enum Choice {
     Smallest,
 }
 
-/// Where a girth is taped: what round, between which places [m], and which of them.
+/// Where a girth is taped: what round, between which places (m), and which of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Taping {
     pub(crate) cut: Cut,
@@ -47,7 +47,7 @@ pub(crate) struct Taping {
     choice: Choice,
 }
 
-/// Tilt of a tape round the neck, lower in front [rad]: about square to the axis of a neck, so that
+/// Tilt of a tape round the neck, lower in front (rad): about square to the axis of a neck, so that
 /// necks have their least girth within 2 mm of it.
 pub(crate) const NECK_TILT: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// How far from the middle of the neck its tape may lie, over stature.
@@ -82,7 +82,7 @@ const WRIST: [f64; 2] = [0.60, 0.78];
 const STEPS: usize = 8;
 const NARROWINGS: usize = 5;
 
-/// Between which heights a girth round the trunk lies, over heights of crotch and crown [m]; none
+/// Between which heights a girth round the trunk lies, over heights of crotch and crown (m); none
 /// where lengths alone say its level.
 pub(crate) fn trunk_range(girth: Girth, [crotch, crown]: [f64; 2]) -> Option<[f64; 2]> {
     let shares = match girth {
@@ -135,7 +135,7 @@ impl Taping {
         Some(Self { cut, range, choice })
     }
 
-    /// The place of the girth by what a tape reads at each [m]; none where nothing is round which it
+    /// The place of the girth by what a tape reads at each (m); none where nothing is round which it
     /// could go.
     pub(crate) fn find(&self, around: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         let [low, high] = self.range;
@@ -173,12 +173,12 @@ impl Taping {
         found.map(|(_, at)| at)
     }
 
-    /// The place of a share of the range [m].
+    /// The place of a share of the range (m).
     pub(crate) fn at(&self, share: f64) -> f64 {
         self.range[0] + share * (self.range[1] - self.range[0])
     }
 
-    /// The share of the range at which a place lies [1].
+    /// The share of the range at which a place lies (1).
     pub(crate) fn share(&self, place: f64) -> f64 {
         let wide = self.range[1] - self.range[0];
         if wide > 0.0 {

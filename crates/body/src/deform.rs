@@ -13,7 +13,7 @@ use toile_geometry::Vec3;
 pub struct Deformation {
     /// The reference joint.
     pub joint: Joint,
-    /// The axis its angle is taken about, in the joint's frame: only the twist about it counts [1].
+    /// The axis its angle is taken about, in the joint's frame: only the twist about it counts (1).
     pub axis: [f64; 3],
     /// Keys by rising angle. At the angle zero, which is the rest pose, they change nothing.
     pub keys: Vec<DeformationKey>,
@@ -23,15 +23,15 @@ pub struct Deformation {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeformationKey {
-    /// The joint's angle [rad].
+    /// The joint's angle (rad).
     pub angle: f64,
-    /// How far the centre is moved, in the frame of the joint the primitive is fixed to [m].
+    /// How far the centre is moved, in the frame of the joint the primitive is fixed to (m).
     #[serde(default)]
     pub shift: [f64; 3],
-    /// Semi-axes over those at rest [1].
+    /// Semi-axes over those at rest (1).
     #[serde(default = "as_they_are")]
     pub stretch: [f64; 3],
-    /// Turn against that at rest, as axis times angle [rad].
+    /// Turn against that at rest, as axis times angle (rad).
     #[serde(default)]
     pub turn: [f64; 3],
 }
@@ -44,7 +44,7 @@ fn as_they_are() -> [f64; 3] {
 const MOST_KEYS: usize = 16;
 
 impl Deformation {
-    /// The reference joint's angle in a pose: its twist about the axis, from -pi to pi [rad].
+    /// The reference joint's angle in a pose: its twist about the axis, from -pi to pi (rad).
     pub fn angle(&self, pose: &Pose) -> f64 {
         let turn = pose.rotation(self.joint);
         let about = turn.imag().dot(&self.unit_axis());
@@ -59,7 +59,7 @@ impl Deformation {
             .unwrap_or_default()
     }
 
-    /// A primitive at an angle of the reference joint [rad].
+    /// A primitive at an angle of the reference joint (rad).
     pub fn at(&self, primitive: &Primitive, angle: f64) -> Primitive {
         let (shift, stretch, turn) = self.between(angle);
         let rotation = match turn == UnitQuaternion::identity() {

@@ -12,16 +12,16 @@ use toile_measure::{Origin, UnitKind, definition};
 pub struct Deviation {
     /// The measurement's name.
     pub name: &'static str,
-    /// Asked for or predicted [m] or [rad].
+    /// Asked for or predicted (m) or (rad).
     pub asked: f64,
-    /// Taken from the skin [m] or [rad].
+    /// Taken from the skin (m) or (rad).
     pub got: f64,
     /// Whether somebody asked for it or it was predicted from the others.
     pub origin: Origin,
 }
 
 impl Deviation {
-    /// Value taken from the skin minus value asked for [m] or [rad].
+    /// Value taken from the skin minus value asked for (m) or (rad).
     pub fn deviation(&self) -> f64 {
         self.got - self.asked
     }
@@ -37,7 +37,7 @@ impl Deviation {
     }
 }
 
-/// Largest deviation of a length [m] over stature before it is reported: a millimetre of an adult.
+/// Largest deviation of a length (m) over stature before it is reported: a millimetre of an adult.
 const NAMED: f64 = 5.7e-4;
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.
@@ -51,7 +51,7 @@ impl Mannequin {
         ))
     }
 
-    /// A measurement by its name in the catalogue, taken from the finished skin [m] or [rad]; none
+    /// A measurement by its name in the catalogue, taken from the finished skin (m) or (rad); none
     /// if the tape does not know it.
     pub fn taken(&self, name: &str) -> Option<f64> {
         let name = definition(name).map_or(name, |known| known.name);
@@ -132,7 +132,7 @@ mod tests {
     use crate::{Figure, Mannequin};
     use toile_measure::{Measurements, Origin};
 
-    /// What a tape that looks near its place reads less what it reads on the whole skin [m].
+    /// What a tape that looks near its place reads less what it reads on the whole skin (m).
     fn gaps(body: &Mannequin) -> Vec<(&'static str, f64)> {
         let skin = &body.template_body.skin;
         let place = |v: usize| body.whole.positions[v];

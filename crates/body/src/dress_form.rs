@@ -9,7 +9,7 @@ use toile_geometry::{TriangleMesh, Vec3};
 pub(crate) struct DressForm {
     pub(crate) mesh: TriangleMesh,
     pub(crate) parts: Vec<Part>,
-    /// Height of its top [m].
+    /// Height of its top (m).
     pub(crate) top: f64,
 }
 
@@ -29,7 +29,7 @@ const SKIRT: [[f64; 2]; 6] = [
     [0.06, 0.93],
     [0.061, 0.5],
 ];
-/// The stand: radius and height [m], from the form down. It is not scaled: a foot holds any of them.
+/// The stand: radius and height (m), from the form down. It is not scaled: a foot holds any of them.
 const STAND: [[f64; 2]; 5] = [
     [0.016, 0.06],
     [0.022, 0.045],
@@ -106,7 +106,7 @@ impl DressForm {
     }
 
     /// Keeps of a part what lies below a plane, a point and a normal, or all of it; what is nearer
-    /// to the plane than a distance [m] counts as in it.
+    /// to the plane than a distance (m) counts as in it.
     fn keep(
         &mut self,
         (skin, parts): (&TriangleMesh, &[Part]),

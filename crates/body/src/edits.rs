@@ -30,28 +30,28 @@ pub enum PrimitiveEdit {
     Move {
         /// Which.
         primitive: usize,
-        /// The centre [m].
+        /// The centre (m).
         centre: [f64; 3],
     },
     /// Turns a primitive; what is joined goes round its centre.
     Turn {
         /// Which.
         primitive: usize,
-        /// The rotation as axis times angle [rad].
+        /// The rotation as axis times angle (rad).
         rotation: [f64; 3],
     },
     /// Gives a primitive other semi-axes.
     Scale {
         /// Which.
         primitive: usize,
-        /// The effective semi-axes [m].
+        /// The effective semi-axes (m).
         radii: [f64; 3],
     },
     /// Gives a primitive another weight.
     Weigh {
         /// Which.
         primitive: usize,
-        /// What its density is multiplied by [1].
+        /// What its density is multiplied by (1).
         weight: f64,
     },
     /// Puts a primitive into a group, or into two.

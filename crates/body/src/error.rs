@@ -8,11 +8,11 @@ pub enum BodyError {
     OutOfRange {
         /// The measurement.
         name: &'static str,
-        /// The value refused [m] or [degrees].
+        /// The value refused (m) or (degrees).
         value: f64,
-        /// Smallest value accepted [m] or [degrees].
+        /// Smallest value accepted (m) or (degrees).
         low: f64,
-        /// Largest value accepted [m] or [degrees].
+        /// Largest value accepted (m) or (degrees).
         high: f64,
         /// `m` or `degrees`.
         unit: &'static str,
@@ -40,11 +40,11 @@ pub enum BodyError {
     Open {
         /// The part.
         part: &'static str,
-        /// Place on the axis [m].
+        /// Place on the axis (m).
         x: f64,
-        /// Place on the axis [m].
+        /// Place on the axis (m).
         y: f64,
-        /// Place on the axis [m].
+        /// Place on the axis (m).
         z: f64,
     },
     /// Landmarks of the skin that do not lie above each other as on a body.
@@ -52,7 +52,7 @@ pub enum BodyError {
         "the landmarks of the skin lie out of order at {level:.3} m on its template: give the primitives there back their places"
     )]
     Disordered {
-        /// Where: a height, or a way along the arm [m].
+        /// Where: a height, or a way along the arm (m).
         level: f64,
     },
     /// A mesh that cannot be measured as a body.

@@ -95,13 +95,13 @@ impl Blend {
 pub struct Primitive {
     /// The group it adds up with.
     pub part: Part,
-    /// Centre c [m].
+    /// Centre c (m).
     pub centre: [f64; 3],
-    /// Effective semi-axes, the diagonal of S, where the density reaches zero [m].
+    /// Effective semi-axes, the diagonal of S, where the density reaches zero (m).
     pub radii: [f64; 3],
-    /// Rotation R as axis times angle [rad].
+    /// Rotation R as axis times angle (rad).
     pub rotation: [f64; 3],
-    /// What the density is multiplied by [1].
+    /// What the density is multiplied by (1).
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub weight: f64,
     /// Whether its density adds to others.
@@ -122,7 +122,7 @@ fn is_one(weight: &f64) -> bool {
 
 impl Primitive {
     /// A blendable primitive of one part, its axes along the body's: centre and effective
-    /// semi-axes [m].
+    /// semi-axes (m).
     pub fn new(part: Part, centre: [f64; 3], radii: [f64; 3]) -> Self {
         Self {
             part,
@@ -180,15 +180,15 @@ impl Primitive {
 #[derive(Clone, Copy, Debug)]
 struct Density {
     centre: Vec3,
-    /// S^-1 R^T [1/m].
+    /// S^-1 R^T (1/m).
     unit_from_body: Matrix3<f64>,
-    /// Square of the largest semi-axis [m2].
+    /// Square of the largest semi-axis (m2).
     reach_squared: f64,
     weight: f64,
 }
 
 impl Density {
-    /// The density at a point [1].
+    /// The density at a point (1).
     fn at(&self, point: Vec3) -> f64 {
         let offset = point - self.centre;
         if offset.norm_squared() >= self.reach_squared {
@@ -199,7 +199,7 @@ impl Density {
         self.weight * within * within
     }
 
-    /// Its gradient [1/m]: `-4 w (1 - q) R S^-1 u`, `u = S^-1 R^T (x - c)`.
+    /// Its gradient (1/m): `-4 w (1 - q) R S^-1 u`, `u = S^-1 R^T (x - c)`.
     fn gradient(&self, point: Vec3) -> Vec3 {
         let unit = self.unit_from_body * (point - self.centre);
         let within = (1.0 - unit.norm_squared()).max(0.0);
@@ -255,7 +255,7 @@ impl Field {
         group.plain.iter().map(|d| d.at(point)).fold(sum, f64::max)
     }
 
-    /// Gradient of one part's density at a point [1/m].
+    /// Gradient of one part's density at a point (1/m).
     pub fn gradient(&self, part: Part, point: Vec3) -> Vec3 {
         let group = &self.parts[part as usize];
         let sum: f64 = group.blended.iter().map(|d| d.at(point)).sum();
@@ -287,11 +287,11 @@ impl Field {
             .any(|&part| self.density(part, point) >= THRESHOLD)
     }
 
-    /// Distance [m] from `origin` along the unit vector `direction` to where the ray first leaves
+    /// Distance (m) from `origin` along the unit vector `direction` to where the ray first leaves
     /// the union of some parts, to 1e-9 m; nothing when `origin` is outside or the way is longer
     /// than 0.6 m.
     pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
-        /// No limb is thicker, nor is half a trunk [m].
+        /// No limb is thicker, nor is half a trunk (m).
         const REACH: f64 = 0.6;
         let along = self.along(parts, [origin, direction]);
         let mut distance = 0.0;
@@ -304,7 +304,7 @@ impl Field {
         (distance > 0.0).then(|| along.exit([distance - STEP, distance]))
     }
 
-    /// Distance [m] along a ray to where it last leaves one part on its way of `reach` [m], to
+    /// Distance (m) along a ray to where it last leaves one part on its way of `reach` (m), to
     /// 1e-9 m: hollows inside are passed over. Nothing when the part is not met.
     pub fn last_exit(&self, part: Part, ray: [Vec3; 2], reach: f64) -> Option<f64> {
         let along = self.along(&[part], ray);
@@ -369,7 +369,7 @@ struct Along {
 }
 
 impl Along {
-    /// The largest sum of densities [1] and its slope along the ray [1/m].
+    /// The largest sum of densities (1) and its slope along the ray (1/m).
     fn strongest(&self, t: f64) -> [f64; 2] {
         let mut best = [0.0, 0.0];
         let mut from = 0;
@@ -402,7 +402,7 @@ impl Along {
         })
     }
 
-    /// The change from inside to outside between two distances [m], to 1e-9 m: Newton's method
+    /// The change from inside to outside between two distances (m), to 1e-9 m: Newton's method
     /// kept between the ends, by halves where it leaves them.
     fn exit(&self, [mut low, mut high]: [f64; 2]) -> f64 {
         let mut t = 0.5 * (low + high);
@@ -427,5 +427,5 @@ impl Along {
     }
 }
 
-/// Step of a march along a ray [m]: thinner gaps than this are not seen.
+/// Step of a march along a ray (m): thinner gaps than this are not seen.
 const STEP: f64 = 0.004;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Angle from the middle of the back or the palm of the hand to the outer grooves [rad].
+/// Angle from the middle of the back or the palm of the hand to the outer grooves (rad).
 const GROOVE: f64 = 44.0 * PI / 180.0;
 /// Columns from one groove to the next.
 const COLUMNS: usize = 3;

@@ -23,11 +23,11 @@ use toile_measure::Measurements;
 /// Our own body fitted to somebody's mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// All the body is made from: give it to [`Mannequin::from_description`].
+    /// All the body is made from: give it to [`crate::Mannequin::from_description`].
     pub description: Description,
     /// How far its skin lies from the mesh.
     pub misfit: FitMisfit,
-    /// How the mesh was moved to stand on y = 0 with its middle at x = 0 [m].
+    /// How the mesh was moved to stand on y = 0 with its middle at x = 0 (m).
     pub shift: Vec3,
     /// Measurements that the tape found as no body has them: they are not in the description.
     pub dropped: Vec<&'static str>,
@@ -223,7 +223,7 @@ const ROUNDS: usize = 5;
 struct SurfaceMiss {
     place: Vec3,
     normal: Vec3,
-    /// Along the normal [m].
+    /// Along the normal (m).
     miss: f64,
     weight: f64,
 }

@@ -10,19 +10,19 @@ use toile_geometry::{Vec2, closed_length, convex_hull};
 /// ankles to the chin, without the hands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitMisfit {
-    /// Root mean square of the distance along rays from the sections' middles [m].
+    /// Root mean square of the distance along rays from the sections' middles (m).
     pub radial: f64,
-    /// Its largest [m].
+    /// Its largest (m).
     pub radial_max: f64,
-    /// Root mean square of the difference of girths by a tight tape [m].
+    /// Root mean square of the difference of girths by a tight tape (m).
     pub girth: f64,
-    /// Its largest [m].
+    /// Its largest (m).
     pub girth_max: f64,
     /// Primitives of both sides.
     pub primitives: usize,
     /// Sections compared.
     pub sections: usize,
-    /// Radial root mean square of trunk with neck, legs and arms [m].
+    /// Radial root mean square of trunk with neck, legs and arms (m).
     pub parts: [f64; 3],
     /// Every section compared, from the floor up.
     pub levels: Vec<LevelMisfit>,
@@ -45,18 +45,18 @@ pub enum LevelPart {
 /// How far two level sections lie apart.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LevelMisfit {
-    /// Height of the section [m].
+    /// Height of the section (m).
     #[serde(rename = "height_m")]
     pub height: f64,
     /// What was cut.
     pub part: LevelPart,
-    /// Girth of the mesh by a tight tape [m].
+    /// Girth of the mesh by a tight tape (m).
     #[serde(rename = "girth_m")]
     pub girth: f64,
-    /// The fitted skin's girth less the mesh's [m].
+    /// The fitted skin's girth less the mesh's (m).
     #[serde(rename = "gap_m")]
     pub gap: f64,
-    /// Root mean square of the distance along rays [m].
+    /// Root mean square of the distance along rays (m).
     #[serde(rename = "radial_rms_m")]
     pub radial: f64,
 }
@@ -66,7 +66,7 @@ const RAYS: usize = 72;
 
 impl FitMisfit {
     /// One number to choose by: the larger of what misses by radius and by girth, against what
-    /// either may miss by, over stature [1]; a skin that crosses itself comes last.
+    /// either may miss by, over stature (1); a skin that crosses itself comes last.
     pub(crate) fn badness(&self, stature: f64) -> f64 {
         /// What an adult's fit may miss by, over stature: 2 mm and 3 mm.
         const MAY: [f64; 2] = [2e-3 / 1.7, 3e-3 / 1.7];
@@ -75,7 +75,7 @@ impl FitMisfit {
     }
 }
 
-/// Compares two bodies on the levels between two heights [m].
+/// Compares two bodies on the levels between two heights (m).
 pub(crate) fn misfit(
     mesh: &Scan,
     skin: &Scan,
@@ -157,13 +157,13 @@ pub(crate) fn pairs(
     all
 }
 
-/// Girth of a tight tape round all loops [m].
+/// Girth of a tight tape round all loops (m).
 pub(crate) fn tape(loops: &[Loop]) -> f64 {
     let points: Vec<Vec2> = loops.iter().flat_map(|l| &l.points).copied().collect();
     closed_length(&convex_hull(&points))
 }
 
-/// Distances along rays from the middle of the first to both: the outermost crossings [m].
+/// Distances along rays from the middle of the first to both: the outermost crossings (m).
 fn distances([mesh, skin]: &[Vec<Loop>; 2]) -> Vec<f64> {
     let longest = mesh.iter().max_by(|a, b| a.length().total_cmp(&b.length()));
     let Some(centre) = longest.map(Loop::centre) else {
@@ -182,7 +182,7 @@ fn distances([mesh, skin]: &[Vec<Loop>; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// Distance along a ray to where it crosses a loop last [m].
+/// Distance along a ray to where it crosses a loop last (m).
 pub(crate) fn outermost(section: &Loop, centre: Vec2, ray: Vec2) -> Option<f64> {
     let points = &section.points;
     let mut best: Option<f64> = None;

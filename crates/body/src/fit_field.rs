@@ -21,7 +21,7 @@ const WEIGHT: [f64; 2] = [0.3, 3.0];
 pub(crate) struct Goal<'a> {
     pub(crate) samples: &'a [Sample],
     pub(crate) girths: &'a [GirthResidual],
-    /// Stature [m].
+    /// Stature (m).
     pub(crate) height: f64,
 }
 
@@ -111,7 +111,7 @@ fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> Syst
         sum: 0.0,
     };
     let mut touched: Vec<Row> = Vec::new();
-    // Where the field is flat a residual counts as if it rose so [1/m].
+    // Where the field is flat a residual counts as if it rose so (1/m).
     let least = 6.0 / height;
     for sample in goal.samples {
         let (value, gradient) = surface.at(sample.place, &mut touched);
@@ -140,7 +140,7 @@ fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> Syst
 }
 
 impl System {
-    /// Adds a residual [m] whose derivatives are those of the density over its slope.
+    /// Adds a residual (m) whose derivatives are those of the density over its slope.
     fn add(&mut self, touched: &[Row], miss: f64, steep: f64, (weight, far): (f64, f64)) {
         let size = miss.abs();
         let (cost, factor) = match size <= far {
@@ -164,7 +164,7 @@ impl System {
         }
     }
 
-    /// Adds the residual of a tape [m]: what the surface's moves off its corners lengthen it by,
+    /// Adds the residual of a tape (m): what the surface's moves off its corners lengthen it by,
     /// less what is wanted.
     fn tape(&mut self, surface: &Surface, girth: &GirthResidual) {
         let mut touched = Vec::new();

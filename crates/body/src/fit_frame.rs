@@ -8,11 +8,11 @@ use toile_geometry::Vec3;
 /// A frame, with places of the arm and the chin that were found with it.
 pub(crate) struct FoundFrame {
     pub(crate) frame: BodyFrame,
-    /// The tip of the left hand [m].
+    /// The tip of the left hand (m).
     pub(crate) finger_tip: Vec3,
-    /// Where along the bone from the shoulder the arm's own sections begin [m].
+    /// Where along the bone from the shoulder the arm's own sections begin (m).
     pub(crate) arm_begins: f64,
-    /// Height below which there is no face [m].
+    /// Height below which there is no face (m).
     pub(crate) chin: f64,
 }
 
@@ -192,7 +192,7 @@ fn leg(scan: &Scan, crotch: f64) -> Option<[Vec3; 4]> {
 }
 
 /// The neck: height and depth of its base, a distance from the middle outside of it, and the
-/// height of its narrowest section [m].
+/// height of its narrowest section (m).
 struct Neck {
     base: f64,
     depth: f64,

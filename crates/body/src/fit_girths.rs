@@ -14,11 +14,11 @@ use toile_geometry::{Vec2, Vec3, convex_hull};
 
 /// The residual of one tape, of the hull corners that lie on one part.
 pub(crate) struct GirthResidual {
-    /// Corners of the mesh's hull, folded to the left [m], and the angle it turns by there [rad].
+    /// Corners of the mesh's hull, folded to the left (m), and the angle it turns by there (rad).
     pub(crate) corners: Vec<(Vec3, f64)>,
-    /// By how much the surface's moves off the corners should lengthen the tape [m].
+    /// By how much the surface's moves off the corners should lengthen the tape (m).
     pub(crate) target: f64,
-    /// Its share of the sum of squares [m2].
+    /// Its share of the sum of squares (m2).
     pub(crate) weight: f64,
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct GirthResidual {
 const SPACING: f64 = 0.005;
 /// How much more the mean of a section's misfit counts than the misfit itself, for each round.
 const STRESS: f64 = 8.0;
-/// Corners of a hull are taken together up to this turn [rad].
+/// Corners of a hull are taken together up to this turn (rad).
 const TURN: f64 = TAU / 64.0;
 /// The most a tape is asked to change by at a time, over stature.
 const FAR: f64 = 0.012;

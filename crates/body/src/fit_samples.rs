@@ -15,7 +15,7 @@ pub(crate) enum DensityTarget {
     Surface {
         /// Its outward normal.
         normal: Vec3,
-        /// The mesh's own place, wherever the sample has been drawn since [m].
+        /// The mesh's own place, wherever the sample has been drawn since (m).
         own: Vec3,
     },
     /// Above the threshold by a margin.
@@ -28,7 +28,7 @@ pub(crate) enum DensityTarget {
     Below,
 }
 
-/// A place of the left half with the target of the density there and its area [m2].
+/// A place of the left half with the target of the density there and its area (m2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) place: Vec3,
@@ -245,7 +245,7 @@ fn thinned(spots: Vec<Spot>, found: &FoundFrame) -> Vec<Spot> {
 struct Zones<'a> {
     found: &'a FoundFrame,
     focus: Vec3,
-    /// Elevation of the ray over the shoulder [rad].
+    /// Elevation of the ray over the shoulder (rad).
     top: f64,
 }
 

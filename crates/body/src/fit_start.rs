@@ -29,7 +29,7 @@ impl Side<'_> {
         }
     }
 
-    /// Half breadth, half depth and depth of the middle of the trunk at a height [m]: from crotch
+    /// Half breadth, half depth and depth of the middle of the trunk at a height (m): from crotch
     /// to armpit as they are, else those at the end.
     fn trunk(&self, y: f64) -> [f64; 3] {
         let f = self.frame;
@@ -42,7 +42,7 @@ impl Side<'_> {
         })
     }
 
-    /// Girth across a bone at a share of its way [m].
+    /// Girth across a bone at a share of its way (m).
     fn girth(&self, [from, to]: [Vec3; 2], share: f64) -> Option<f64> {
         let along = (to - from).try_normalize(1e-9)?;
         let first = along.cross(&Vec3::z()).try_normalize(1e-6)?;

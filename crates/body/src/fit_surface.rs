@@ -116,8 +116,8 @@ impl Surface {
         (value, gradient)
     }
 
-    /// How far the surface lies beyond a place in its level plane, to first order [m], and the
-    /// density's slope that way [1/m].
+    /// How far the surface lies beyond a place in its level plane, to first order (m), and the
+    /// density's slope that way (1/m).
     pub(crate) fn beyond(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, f64) {
         /// Of the slope: under it a surface is as good as level.
         const LEVEL: f64 = 0.15;
@@ -126,7 +126,7 @@ impl Surface {
         ((value - THRESHOLD) / steep.max(1e-6), steep.max(1e-6))
     }
 
-    /// By how much a tape is longer for where the surface lies beyond its corners [m].
+    /// By how much a tape is longer for where the surface lies beyond its corners (m).
     pub(crate) fn lengthening(&self, corners: &[(Vec3, f64)]) -> f64 {
         let mut touched = Vec::new();
         corners

@@ -52,7 +52,7 @@ impl Clip {
     }
 }
 
-/// A pose on both feet, 0 under the hips and 1 as far apart as at rest; the arms are held off by an angle [rad] from where
+/// A pose on both feet, 0 under the hips and 1 as far apart as at rest; the arms are held off by an angle (rad) from where
 /// they hang.
 fn standing(skeleton: &Skeleton, apart: f64, raised: f64) -> Pose {
     let scale = skeleton.leg_length();
@@ -84,7 +84,7 @@ fn standing(skeleton: &Skeleton, apart: f64, raised: f64) -> Pose {
     pose
 }
 
-/// How far the root may be above its place at rest [m] for a leg to reach an ankle's place [m].
+/// How far the root may be above its place at rest (m) for a leg to reach an ankle's place (m).
 fn highest_hip(skeleton: &Skeleton, leg: [Joint; 4], ankle: Vec3) -> f64 {
     let hip = skeleton.centre(leg[0]);
     let reach = REACH * length(skeleton, leg);
@@ -117,7 +117,7 @@ const SIDES: [Side; 2] = [
     },
 ];
 
-/// Angles of an arm [rad]: swung forward, bent at the elbow, raised sideways from where it hangs.
+/// Angles of an arm (rad): swung forward, bent at the elbow, raised sideways from where it hangs.
 struct ArmAngles {
     forward: f64,
     bend: f64,
@@ -140,21 +140,21 @@ impl ArmAngles {
     }
 }
 
-/// A wave over a stride: mean, then cosine and sine of once and twice round [rad].
+/// A wave over a stride: mean, then cosine and sine of once and twice round (rad).
 type Wave = [f64; 5];
 
 /// A gait: a foot stands still on the ground for a share of the stride and swings forward in the other; arms and trunk
 /// follow waves. Lengths are over the leg length; the right side is half a stride later.
 struct Gait {
-    /// Of a stride [s].
+    /// Of a stride (s).
     duration: f64,
-    /// Over the ground [1/s].
+    /// Over the ground (1/s).
     speed: f64,
     /// Share of the stride in which a foot is on the ground.
     duty: f64,
     /// How far before the hips the ankle is where its foot touches the ground.
     ahead: f64,
-    /// Heel over toes at strike (negative: toes up) and where the foot leaves the ground [rad].
+    /// Heel over toes at strike (negative: toes up) and where the foot leaves the ground (rad).
     pitch: [f64; 2],
     /// Shares of the standing time at which the foot lies flat, and at which the heel leaves the ground.
     flat: [f64; 2],
@@ -167,7 +167,7 @@ struct Gait {
     /// Elbow and shoulder forward.
     elbow: Wave,
     shoulder: Wave,
-    /// Turn of pelvis against chest, lean forward [rad].
+    /// Turn of pelvis against chest, lean forward (rad).
     twist: f64,
     lean: f64,
 }
@@ -221,7 +221,7 @@ impl Gait {
         -half * (2.0 * TAU * (phase - lowest)).cos()
     }
 
-    /// The mean height of the root over its place at rest [m]: as high as the standing legs reach.
+    /// The mean height of the root over its place at rest (m): as high as the standing legs reach.
     fn height(&self, skeleton: &Skeleton) -> f64 {
         let scale = skeleton.leg_length();
         let phases = (0..8 * FRAMES).map(|k| k as f64 / (8 * FRAMES) as f64);
@@ -232,7 +232,7 @@ impl Gait {
         highest.fold(0.0, f64::min)
     }
 
-    /// Heel over toes [rad] at a share of the standing time.
+    /// Heel over toes (rad) at a share of the standing time.
     fn standing_pitch(&self, share: f64) -> f64 {
         let ([strike, off], [flat, rise]) = (self.pitch, self.flat);
         match share {

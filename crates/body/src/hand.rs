@@ -9,7 +9,7 @@ use crate::template::Features;
 use crate::{BodyError, Part, THRESHOLD};
 use toile_geometry::Vec3;
 
-/// Distance between rings of the hand and of the thumb, for a stature of 1.7 m [m].
+/// Distance between rings of the hand and of the thumb, for a stature of 1.7 m (m).
 const SPACING: [f64; 2] = [0.0075, 0.0055];
 /// How flat a hand is, and over what share of its length it comes to that from a round wrist.
 const FLAT: f64 = 0.45;
@@ -72,7 +72,7 @@ impl Half<'_> {
         frames
     }
 
-    /// How far the middle of the arm lies from a point along an axis [m].
+    /// How far the middle of the arm lies from a point along an axis (m).
     fn off_the_middle(&self, point: Vec3, axis: Vec3) -> f64 {
         let exit = |d: Vec3| self.field.first_exit(&[Part::LeftArm], point, d);
         match (exit(axis), exit(-axis)) {

@@ -2,7 +2,7 @@
 
 use toile_geometry::Vec3;
 
-/// Steepest angle below the horizontal [rad].
+/// Steepest angle below the horizontal (rad).
 pub(crate) const STEEPEST: f64 = 1.15;
 /// Least distance between arm and trunk, over stature: arms swing and trunks turn.
 const CLEAR: f64 = 0.012;
@@ -11,7 +11,7 @@ const BAND: f64 = 0.01;
 /// Beside the shoulder skin folds; so much of the stature is left out.
 const SHOULDER: f64 = 0.075;
 
-/// The steepest angle below the horizontal [rad] at which the left arm, held `down` now, clears
+/// The steepest angle below the horizontal (rad) at which the left arm, held `down` now, clears
 /// trunk and legs; `arm` says how far each vertex follows it.
 pub(crate) fn hang(positions: &[Vec3], arm: &[f64], (shoulder, down): (Vec3, f64)) -> f64 {
     let stature = positions.iter().map(|p| p.y).fold(0.0, f64::max);

@@ -8,7 +8,7 @@ use crate::template_marks::middle_depth;
 use crate::warp::{Follow, Warp};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
-/// Named points of a body [m], on its skin but for the middle of the trunk. Pairs are left, +X,
+/// Named points of a body (m), on its skin but for the middle of the trunk. Pairs are left, +X,
 /// then right. The joints are in [`crate::Mannequin::skeleton`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmarks {
@@ -126,7 +126,7 @@ fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
     a + (b - a) * ((depth - a.z) / (b.z - a.z)).clamp(0.0, 1.0)
 }
 
-/// Largest `side * z` of a section near the middle [m].
+/// Largest `side * z` of a section near the middle (m).
 fn middle_extreme(section: &[Vec2], side: f64) -> f64 {
     let near = section.iter().filter(|p| p.x.abs() < 0.012);
     near.map(|p| side * p.y).fold(f64::NEG_INFINITY, f64::max)

@@ -3,9 +3,9 @@
 use crate::{Clip, Joint, Mannequin, Pose};
 use toile_geometry::Vec3;
 
-/// Fastest skin of trunk, arms and legs on the way [m/s]; hands, feet and head, on which no garment hangs, may be faster.
+/// Fastest skin of trunk, arms and legs on the way (m/s); hands, feet and head, on which no garment hangs, may be faster.
 const FASTEST_SKIN: f64 = 1.0;
-/// Shortest way [s].
+/// Shortest way (s).
 const SHORTEST: f64 = 0.4;
 /// Poses a second.
 const RATE: f64 = 240.0;

@@ -14,16 +14,16 @@ pub(crate) const RIGHT_LEG: [Joint; 4] =
 /// Share of its whole length to which a leg stretches: beyond it the knee would lock and jump.
 pub(crate) const REACH: f64 = 0.997;
 
-/// Where a foot is to be: its ankle \[m\], and how far the heel is raised over the toes \[rad\].
+/// Where a foot is to be: its ankle (m), and how far the heel is raised over the toes (rad).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FootPlace {
     pub ankle: Vec3,
     pub pitch: f64,
-    /// How far the toes are bent up against the foot \[rad\].
+    /// How far the toes are bent up against the foot (rad).
     pub toes: f64,
 }
 
-/// Length from the hip to the ankle of the stretched leg \[m\].
+/// Length from the hip to the ankle of the stretched leg (m).
 pub(crate) fn length(skeleton: &Skeleton, leg: [Joint; 4]) -> f64 {
     let [hip, knee, ankle, _] = leg.map(|joint| skeleton.centre(joint));
     (knee - hip).norm() + (ankle - knee).norm()
@@ -61,7 +61,7 @@ pub(crate) fn stand(skeleton: &Skeleton, pose: &mut Pose, leg: [Joint; 4], foot:
     pose.set(toes, about(Vec3::x(), -foot.toes));
 }
 
-/// The bend of the knee \[rad\] at which hip and ankle are a distance \[m\] apart.
+/// The bend of the knee (rad) at which hip and ankle are a distance (m) apart.
 fn knee_angle(thigh: Vec3, shank: Vec3, distance: f64) -> f64 {
     // |thigh + R shank|^2 = distance^2 with R a turn about x: p cos + q sin = s.
     let p = 2.0 * (thigh.y * shank.y + thigh.z * shank.z);

@@ -16,7 +16,7 @@ use Level::{
 
 const COUNT: usize = 13;
 
-/// Heights above the floor [m], and whether the waist is smaller than the girth under the bust.
+/// Heights above the floor (m), and whether the waist is smaller than the girth under the bust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Levels {
     heights: [f64; COUNT],
@@ -29,7 +29,7 @@ impl Levels {
     }
 
     /// Whether a girth round the trunk is looked for on a body of these levels with its crotch and crown
-    /// at heights [m]; else it is taped at its level, as a waist at the navel is. Hips always are.
+    /// at heights (m); else it is taped at its level, as a waist at the navel is. Hips always are.
     pub(crate) fn is_looked_for(&self, girth: Girth, [crotch, crown]: [f64; 2]) -> bool {
         let share = |level: Level| (self.at(level) - crotch) / (crown - crotch);
         let within = |level: Level, [low, high]: [f64; 2]| (low..=high).contains(&share(level));
@@ -53,7 +53,7 @@ const BUST_RANGE: [f64; 2] = [0.44, 0.56];
 /// Where the girth under the bust lies lower, the smallest girth below it is not the waist.
 const UNDERBUST_LEAST: f64 = 0.385;
 
-/// Differences of measurements on the skin from the differences of their levels [m].
+/// Differences of measurements on the skin from the differences of their levels (m).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SkinOffsets {
     /// Of the landmark on the skin over its level.

@@ -6,7 +6,7 @@ use crate::{BodyError, Part};
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_geometry::Vec3;
 
-/// Angle between the bones from which on an arm counts as bent [rad].
+/// Angle between the bones from which on an arm counts as bent (rad).
 pub(crate) const BENT: f64 = 0.02;
 
 /// Which of the places where a ray leaves a limb a ring goes through.
@@ -35,7 +35,7 @@ impl Frame {
         (self.first * angle.cos() + self.second * angle.sin()).normalize()
     }
 
-    /// Angle of a point about the centre [rad].
+    /// Angle of a point about the centre (rad).
     fn angle(&self, point: Vec3) -> f64 {
         let offset = point - self.centre;
         offset.dot(&self.second).atan2(offset.dot(&self.first))
@@ -166,10 +166,10 @@ impl Half<'_> {
         }
     }
 
-    /// Rings across a bent arm from a place along its bones [m]: square to them, turning evenly
+    /// Rings across a bent arm from a place along its bones (m): square to them, turning evenly
     /// round the elbow.
     fn bent_frames(&self, path: &[Vec3; 4], start: f64) -> Vec<Frame> {
-        /// Half the way over which the rings turn, for a stature of 1.7 m [m].
+        /// Half the way over which the rings turn, for a stature of 1.7 m (m).
         const TURN: f64 = 0.045;
         let scale = self.template.height / 1.7;
         let [upper, lower] = [path[1] - path[0], path[3] - path[1]];
@@ -310,7 +310,7 @@ impl Half<'_> {
         Ok(ring)
     }
 
-    /// Angle of each column of a limb's rings [rad].
+    /// Angle of each column of a limb's rings (rad).
     pub(crate) fn angles(&self, limb: &Limb) -> Vec<f64> {
         let points: Vec<Vec3> = (limb.border.iter())
             .map(|&v| self.positions[v as usize])
@@ -380,7 +380,7 @@ impl Half<'_> {
     /// Where a ray of a ring leaves the limb.
     fn outermost(&self, part: Part, frame: &Frame, angle: f64) -> Result<Vec3, BodyError> {
         /// Beyond any arm's and any leg's radius, short of the next limb, for a stature of
-        /// 1.7 m [m].
+        /// 1.7 m (m).
         const REACH: [f64; 2] = [0.11, 0.17];
         let (origin, direction) = (frame.centre, frame.direction(angle));
         // Of what was fitted to a mesh, specks off the limb are not meant.
@@ -407,7 +407,7 @@ impl Half<'_> {
     }
 
     fn ring_point(&mut self, part: Part, mut position: Vec3, number: f64) -> u32 {
-        /// Half the least gap between the legs [m].
+        /// Half the least gap between the legs (m).
         const GAP: f64 = 0.004;
         if part == Part::LeftLeg {
             position.x = position.x.max(GAP);

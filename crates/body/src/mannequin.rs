@@ -73,7 +73,7 @@ impl TemplateBody {
 static TEMPLATE_BODIES: [OnceLock<Result<Arc<TemplateBody>, BodyError>>; 3] =
     [const { OnceLock::new() }; 3];
 
-/// The skin of a figure's own primitives, before any measurement is applied: cast anew [m].
+/// The skin of a figure's own primitives, before any measurement is applied: cast anew (m).
 ///
 /// # Errors
 /// A part whose primitives leave its axis bare.

@@ -42,21 +42,21 @@ pub(crate) struct TapedSkin<'a> {
     armpit: &'a [u32],
 }
 
-/// Shares of their ranges at which girths lie [1].
+/// Shares of their ranges at which girths lie (1).
 pub(crate) type Shares = PerGirth<Option<f64>>;
 
 /// The tight way in the middle from the waist in front round the crotch to the waist behind.
 struct Around {
-    /// Its length [m].
+    /// Its length (m).
     length: f64,
-    /// Hull of the section under the waist: height, depth [m].
+    /// Hull of the section under the waist: height, depth (m).
     hull: Vec<Vec2>,
-    /// Depth of its front end [m].
+    /// Depth of its front end (m).
     front: f64,
 }
 
 impl Around {
-    /// The part before a depth [m].
+    /// The part before a depth (m).
     fn before(&self, depth: f64) -> f64 {
         part_of(&self.hull, 1.0, depth) - (self.front - depth)
     }
@@ -72,7 +72,7 @@ const BELOW: f64 = 0.006;
 /// Halvings of a range: to a billionth of it.
 const HALVINGS: usize = 30;
 
-/// The part of a hull on one side of a place of its second axis, without the chord [m].
+/// The part of a hull on one side of a place of its second axis, without the chord (m).
 fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
     let moved: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.x, p.y - place)).collect();
     half_length(&moved, side)
@@ -107,17 +107,17 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The end of the left shoulder [m].
+    /// The end of the left shoulder (m).
     pub(crate) fn tip(&self) -> Vec3 {
         self.marks.shoulder.tip_on.on(self.skinned)
     }
 
-    /// The left side of the neck [m].
+    /// The left side of the neck (m).
     pub(crate) fn neck_side(&self) -> Vec3 {
         self.marks.neck.side_on.on(self.skinned)
     }
 
-    /// Height of a landmark on the skin [m].
+    /// Height of a landmark on the skin (m).
     pub(crate) fn height(&self, level: Level) -> f64 {
         match level {
             Level::Tip => self.tip().y,
@@ -132,7 +132,7 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The middle of the left armpit [m].
+    /// The middle of the left armpit (m).
     fn armpit_fold(&self) -> Vec3 {
         self.skinned.at(self.armpit[self.armpit.len() / 2])
     }
@@ -179,7 +179,7 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Girth of a taping at a place [m].
+    /// Girth of a taping at a place (m).
     pub(crate) fn taped(&self, taping: &Taping, place: f64) -> f64 {
         closed_length(&self.taped_hull(taping, place))
     }
@@ -190,7 +190,7 @@ impl<'a> TapedSkin<'a> {
         self.skinned.hull(cut.part, cut.plane, Some(cut.near))
     }
 
-    /// How far a girth round the trunk lies to the side, and its height, where it is taped [m].
+    /// How far a girth round the trunk lies to the side, and its height, where it is taped (m).
     fn side_of(&self, girth: Girth, level: Level) -> [f64; 2] {
         match self.taping(girth).zip(self.place(girth)) {
             Some((taping, place)) => [0.5 * extent(&self.taped_hull(&taping, place))[0], place],
@@ -209,7 +209,7 @@ impl<'a> TapedSkin<'a> {
         Taping::of(girth, body)
     }
 
-    /// The place of a girth [m]; none where lengths alone say it.
+    /// The place of a girth (m); none where lengths alone say it.
     fn place(&self, girth: Girth) -> Option<f64> {
         if let Some(known) = self.places.borrow()[girth] {
             return Some(known);
@@ -223,7 +223,7 @@ impl<'a> TapedSkin<'a> {
         Some(place)
     }
 
-    /// What a girth of the trunk that is looked for is at the level lengths give it [m].
+    /// What a girth of the trunk that is looked for is at the level lengths give it (m).
     pub(crate) fn at_level(&self, girth: Girth) -> Option<f64> {
         self.taping(girth)?;
         girth.level()?;
@@ -231,7 +231,7 @@ impl<'a> TapedSkin<'a> {
     }
 
     /// What it is where its scale is set: at that level, or at the end of where it may lie that is
-    /// nearest to it [m].
+    /// nearest to it (m).
     pub(crate) fn at_section(&self, girth: Girth) -> Option<f64> {
         let taping = self.taping(girth)?;
         let y = self.levels.at(girth.level()?);
@@ -248,7 +248,7 @@ impl<'a> TapedSkin<'a> {
         self.place(Girth::Hips).is_some_and(|place| place < level)
     }
 
-    /// Height of the hips: where lengths have them, if they are as large there [m].
+    /// Height of the hips: where lengths have them, if they are as large there (m).
     fn hip_height(&self) -> f64 {
         let level = self.levels.at(Level::Hips);
         let most = self.girth(Girth::Hips);
@@ -280,7 +280,7 @@ impl<'a> TapedSkin<'a> {
         self
     }
 
-    /// A girth [m].
+    /// A girth (m).
     pub(crate) fn girth(&self, girth: Girth) -> f64 {
         let found = girth
             .level()
@@ -291,7 +291,7 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The point of the bust on the left [m].
+    /// The point of the bust on the left (m).
     pub(crate) fn bust_point(&self) -> Option<Vec3> {
         *self.bust.get_or_init(|| self.taken_bust_point())
     }
@@ -310,12 +310,12 @@ impl<'a> TapedSkin<'a> {
         Some(Vec3::new(on.x, y, on.y))
     }
 
-    /// Where triangles that cross a height [m] lie.
+    /// Where triangles that cross a height (m) lie.
     fn around(&self, height: f64) -> Option<Near> {
         Some(self.warp.near(height, 0.08))
     }
 
-    /// Heights of the template where triangles between two heights [m] lie.
+    /// Heights of the template where triangles between two heights (m) lie.
     fn between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
         match (self.around(low)?, self.around(high)?) {
             (Near::Level([from, _]), Near::Level([_, to])) => Some([from, to]),
@@ -360,7 +360,7 @@ impl<'a> TapedSkin<'a> {
         fall(&section, bust, floor, Vec3::z())
     }
 
-    /// The way along the skin from the bust point straight down to the level under the bust [m].
+    /// The way along the skin from the bust point straight down to the level under the bust (m).
     fn under_bust(&self) -> Option<f64> {
         let bust = self.bust_point()?;
         let floor = self.levels.at(Level::Underbust);
@@ -441,7 +441,7 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Depth of the crotch point at which the part before it has a length [m].
+    /// Depth of the crotch point at which the part before it has a length (m).
     pub(crate) fn crotch_point_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
         let around = self.crotch_lengths()?;
         let (mut low, mut high) = (low, high);
@@ -455,12 +455,12 @@ impl<'a> TapedSkin<'a> {
         Some(0.5 * (low + high))
     }
 
-    /// The part of a girth before its sides or behind them [m].
+    /// The part of a girth before its sides or behind them (m).
     fn part(&self, girth: Girth, side: f64) -> f64 {
         part_of(&self.hull(girth), side, self.warp.side_of(girth))
     }
 
-    /// Depth of the sides of a girth at which its part on one side has a length [m].
+    /// Depth of the sides of a girth at which its part on one side has a length (m).
     pub(crate) fn sides_of(&self, girth: Girth, side: f64, length: f64, limit: f64) -> f64 {
         let hull = self.hull(girth);
         let (mut low, mut high) = (-limit, limit);
@@ -476,7 +476,7 @@ impl<'a> TapedSkin<'a> {
     }
 
     /// The tight way from the side of the neck straight down to the level of the waist, in front or
-    /// behind [m].
+    /// behind (m).
     fn to_waist(&self, outward: Vec3) -> Option<f64> {
         let (neck, waist) = (self.neck_side(), self.levels.at(Level::Waist));
         let section = self
@@ -485,7 +485,7 @@ impl<'a> TapedSkin<'a> {
         hanging(section, neck, waist, outward)
     }
 
-    /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.
+    /// A measurement by its name in the catalogue (m) or (rad); none if the tape does not know it.
     pub(crate) fn value(&self, name: &str) -> Option<f64> {
         let known = |row: &&(String, Option<f64>)| row.0 == name;
         if let Some(row) = self.known.borrow().iter().find(known) {
@@ -552,14 +552,14 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie [m]:
+    /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie (m):
     /// before the muscles that run on into arm and back.
     pub(crate) fn between_folds(&self) -> Option<f64> {
         let fold = self.skinned.at(self.marks.armpit.front_fold);
         breadth_at(&self.hull(Girth::Bust), fold.z)
     }
 
-    /// The hindmost point of the left buttock [m].
+    /// The hindmost point of the left buttock (m).
     fn hindmost(&self) -> Option<Vec3> {
         let y = self.hip_height();
         self.skinned

@@ -10,11 +10,11 @@ pub struct PartAxis {
     /// Which part.
     pub part: Part,
     /// Points from the root outward: trunk from the crotch to the neck, head from the neck to the
-    /// crown, arm from the shoulder joint to the wrist, leg from the hip joint to the ankle [m].
+    /// crown, arm from the shoulder joint to the wrist, leg from the hip joint to the ankle (m).
     pub axis: Vec<Vec3>,
 }
 
-/// Heights above the floor [m].
+/// Heights above the floor (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyLevels {
     /// Top of the head.

@@ -13,11 +13,11 @@ pub enum PlayCommand {
     Start,
     /// The clock comes to rest; the figure keeps its pose.
     Stop,
-    /// Another clip is faded in within a time [s]. While a fade lasts the last of such commands waits.
+    /// Another clip is faded in within a time (s). While a fade lasts the last of such commands waits.
     Change {
         /// The number of the clip.
         clip: usize,
-        /// Length of the fade [s].
+        /// Length of the fade (s).
         fade: f64,
     },
     /// How fast the clock goes, from 0 to [`MOST_RATE`].
@@ -26,14 +26,14 @@ pub enum PlayCommand {
 
 /// Largest rate of a player.
 pub const MOST_RATE: f64 = 2.0;
-/// Longest fade [s].
+/// Longest fade (s).
 pub const MOST_FADE: f64 = 60.0;
-/// Fastest turn of a joint that a player shows [rad/s]; where a clip or a fade is faster its clock goes slower. Runners'
+/// Fastest turn of a joint that a player shows (rad/s); where a clip or a fade is faster its clock goes slower. Runners'
 /// knees turn at 20 rad/s (Novacheck 1998).
 pub const FASTEST_TURN: f64 = 25.0;
-/// Time in which the clock comes from rest to a rate of 1 [s].
+/// Time in which the clock comes from rest to a rate of 1 (s).
 const CLOCK_START: f64 = 0.2;
-/// Shortest fade [s]: a shorter one is lengthened to it.
+/// Shortest fade (s): a shorter one is lengthened to it.
 const SHORTEST_FADE: f64 = 0.1;
 /// Halvings in the search for the longest step of the clock that is not too fast.
 const HALVINGS: usize = 12;
@@ -75,7 +75,7 @@ struct Shown {
 #[serde(deny_unknown_fields)]
 struct Fade {
     to: Shown,
-    /// Its length and how much of it is over [s].
+    /// Its length and how much of it is over (s).
     length: f64,
     gone: f64,
 }
@@ -120,12 +120,12 @@ impl Playback {
         self.fade.map_or(self.shown, |fade| fade.to).clip
     }
 
-    /// Way over the ground so far, over the leg length [1].
+    /// Way over the ground so far, over the leg length (1).
     pub fn travelled(&self) -> Vec3 {
         self.travelled
     }
 
-    /// Time of the clip that still goes by if the clock is stopped now [s].
+    /// Time of the clip that still goes by if the clock is stopped now (s).
     pub fn coming_to_rest(&self) -> f64 {
         0.5 * CLOCK_START * self.rate * self.rate
     }
@@ -221,7 +221,7 @@ impl Player {
         });
     }
 
-    /// Goes on by a time [s], in which no joint turns faster than [`FASTEST_TURN`]: where it would, the clocks of clip and
+    /// Goes on by a time (s), in which no joint turns faster than [`FASTEST_TURN`]: where it would, the clocks of clip and
     /// fade go slower.
     pub fn advance(&mut self, time: f64) {
         let from = self.pose();
@@ -253,7 +253,7 @@ impl Player {
         }
     }
 
-    /// Where it is after a time [s] in which the clocks of clip and fade go on by a share of it.
+    /// Where it is after a time (s) in which the clocks of clip and fade go on by a share of it.
     fn later(&self, time: f64, share: f64) -> Playback {
         let mut next = self.playback.clone();
         let aim = if next.goes { next.asked } else { 0.0 };

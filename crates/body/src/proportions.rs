@@ -17,18 +17,18 @@ pub struct ProportionBox {
     /// Whose it is; both sexes' where left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sex: Option<Sex>,
-    /// Age [years]; an adult's where left out.
+    /// Age (years); an adult's where left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub age: Option<f64>,
-    /// Stature in head lengths [1].
+    /// Stature in head lengths (1).
     pub heads: f64,
-    /// Height of the crotch in head lengths [1].
+    /// Height of the crotch in head lengths (1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crotch: Option<f64>,
-    /// Distance between the ends of the shoulders in head lengths [1].
+    /// Distance between the ends of the shoulders in head lengths (1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shoulders: Option<f64>,
-    /// Breadth of the hips in head lengths [1].
+    /// Breadth of the hips in head lengths (1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hips: Option<f64>,
     /// Where the numbers are from.
@@ -46,15 +46,15 @@ pub enum Sex {
     Male,
 }
 
-/// Head counts a body may be given: beyond those of any source [1].
+/// Head counts a body may be given: beyond those of any source (1).
 const HEADS: [f64; 2] = [3.0, 10.0];
-/// Shares of the stature a crotch may lie at [1].
+/// Shares of the stature a crotch may lie at (1).
 const CROTCH: [f64; 2] = [0.25, 0.6];
-/// Breadths in head lengths a body may have [1].
+/// Breadths in head lengths a body may have (1).
 const BREADTH: [f64; 2] = [0.5, 4.0];
-/// How near the measured box comes to the one asked for [1].
+/// How near the measured box comes to the one asked for (1).
 const NEAR: f64 = 5e-4;
-/// How far off the best may stay [1].
+/// How far off the best may stay (1).
 const MISS: f64 = 0.01;
 /// Rounds of measuring at the most: each leaves under a tenth of what was missed.
 const ROUNDS: usize = 12;
@@ -62,13 +62,13 @@ const ROUNDS: usize = 12;
 /// One map of a body's places: heights by a broken line, breadths by two ratios, the head alike
 /// in all directions.
 struct Map {
-    /// Heights that are kept apart, and what becomes of them: floor, crotch, chin, crown [m].
+    /// Heights that are kept apart, and what becomes of them: floor, crotch, chin, crown (m).
     heights: [[f64; 2]; 4],
-    /// Ratio of the head [1].
+    /// Ratio of the head (1).
     head: f64,
-    /// Ratios of breadth at the hips and at the shoulders [1].
+    /// Ratios of breadth at the hips and at the shoulders (1).
     across: [f64; 2],
-    /// Ratio of the arms' lengths and girths [1].
+    /// Ratio of the arms' lengths and girths (1).
     arm: f64,
     frame: BodyFrame,
 }
@@ -127,9 +127,9 @@ impl ProportionBox {
     }
 
     /// What a body with proportions `got` misses of these by more than a hundredth of a head: its
-    /// name, asked and got in head lengths [1].
+    /// name, asked and got in head lengths (1).
     pub fn missed_by(&self, got: &Self) -> Vec<(&'static str, f64, f64)> {
-        /// What no eye sees, and what words with two decimals do not show [1].
+        /// What no eye sees, and what words with two decimals do not show (1).
         const SEEN: f64 = 0.01;
         let rows = [
             ("heads", Some(self.heads), Some(got.heads)),
@@ -193,7 +193,7 @@ impl ProportionBox {
         }
     }
 
-    /// Height of the frame's crotch to begin with [m].
+    /// Height of the frame's crotch to begin with (m).
     fn wanted_crotch(&self, has: &Self, height: f64) -> f64 {
         // Without one, the share of what lies below the chin.
         let own = |b: &Self| b.crotch.unwrap_or_default() / (b.heads - 1.0);
@@ -267,20 +267,20 @@ impl Map {
         [self.heights[k], self.heights[k + 1]]
     }
 
-    /// What becomes of a height [m].
+    /// What becomes of a height (m).
     fn height(&self, y: f64) -> f64 {
         let [a, _] = self.segment(y);
         a[1] + (y - a[0]) * self.steep(y)
     }
 
-    /// Ratio of upright lengths at a height [1].
+    /// Ratio of upright lengths at a height (1).
     fn steep(&self, y: f64) -> f64 {
         let [a, b] = self.segment(y);
         (b[1] - a[1]) / (b[0] - a[0])
     }
 
     /// Ratio of breadths at a height: the hips' up to the pelvis, the shoulders' from the
-    /// chest [1].
+    /// chest (1).
     fn broad(&self, y: f64) -> f64 {
         let [low, high] = [self.frame.joints.pelvis[1], self.frame.joints.chest[1]];
         let share = smooth_step((y - low) / (high - low));
@@ -288,14 +288,14 @@ impl Map {
     }
 
     /// Ratio of the neck's and head's breadth and depth at a height: the trunk's up to half the
-    /// neck, the head's from the chin on [1].
+    /// neck, the head's from the chin on (1).
     fn round(&self, y: f64) -> f64 {
         let chin = self.heights[2][0];
         let half = 0.5 * (self.frame.joints.neck[1] + chin);
         1.0 + (self.head - 1.0) * smooth_step((y - half) / (chin - half).max(1e-6))
     }
 
-    /// Depth of the axis of neck and head at a height [m]: it stays where it is.
+    /// Depth of the axis of neck and head at a height (m): it stays where it is.
     fn axis(&self, y: f64) -> f64 {
         let [neck, head] = [self.frame.joints.neck, self.frame.joints.head];
         let share = ((y - neck[1]) / (head[1] - neck[1])).clamp(0.0, 1.0);

@@ -59,7 +59,7 @@ fn sides(primitive: &Primitive) -> [Vec3; 2] {
     [centre, twin]
 }
 
-/// S^-1 R^T [1/m].
+/// S^-1 R^T (1/m).
 fn inverse(primitive: &Primitive) -> Matrix3<f64> {
     let inverse = Matrix3::from_diagonal(&Vec3::from(primitive.radii).map(|r| 1.0 / r));
     inverse * primitive.rotation().matrix().transpose()

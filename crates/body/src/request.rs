@@ -14,13 +14,13 @@ pub(crate) struct Request {
     pub(crate) conflicts: Vec<Conflict>,
 }
 
-/// Limits of a length over stature and of an angle [rad]: wider than any body, so that only slips
+/// Limits of a length over stature and of an angle (rad): wider than any body, so that only slips
 /// of unit or typing are refused.
 const LENGTH: [f64; 2] = [0.004, 2.2];
 const ANGLE: [f64; 2] = [-0.2, 1.3];
-/// Limits of the angle of the arms [rad]: from straight out to the sides, as many programs hold them.
+/// Limits of the angle of the arms (rad): from straight out to the sides, as many programs hold them.
 const ARM_POSE: [f64; 2] = [0.0, 1.4];
-/// Limits of the stature [m]: dolls and giants.
+/// Limits of the stature (m): dolls and giants.
 const STATURE: [f64; 2] = [0.12, 6.0];
 
 /// Closer limits over stature of what decides most.
@@ -108,7 +108,7 @@ impl Request {
         Ok(Self { table, conflicts })
     }
 
-    /// A value of the completed table [m] or [rad].
+    /// A value of the completed table (m) or (rad).
     pub(crate) fn get(&self, name: &str) -> f64 {
         self.table.get(name).unwrap_or_default()
     }

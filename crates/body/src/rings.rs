@@ -18,19 +18,19 @@ use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 const HALF: usize = 24;
 /// Points of the crotch line between front and back middle.
 pub(crate) const CROTCH_POINTS: usize = 7;
-/// Distance between rings of arms and legs [m].
+/// Distance between rings of arms and legs (m).
 pub(crate) const SPACING: f64 = 0.0165;
 /// Rings that lead from a border to the first plane ring of a limb.
 pub(crate) const TRANSITION: usize = 5;
 
-/// Distance of the rows over the shoulder along the side, for a stature of 1.7 m [m].
+/// Distance of the rows over the shoulder along the side, for a stature of 1.7 m (m).
 pub(crate) const FAN: f64 = 0.0145;
 
-/// Distance of the rows across the face, for a stature of 1.7 m [m].
+/// Distance of the rows across the face, for a stature of 1.7 m (m).
 const FACE: f64 = 0.0055;
-/// Depth under the crown up to which they reach, for a stature of 1.7 m [m].
+/// Depth under the crown up to which they reach, for a stature of 1.7 m (m).
 const ABOVE_BROW: f64 = 0.08;
-/// How far rays gather at nose and ears [rad], and over how many rows they come to it.
+/// How far rays gather at nose and ears (rad), and over how many rows they come to it.
 const GATHERING: f64 = 0.09;
 const GATHERED: usize = 4;
 /// The number of a vertex of a grid that is left open for a limb.
@@ -61,10 +61,10 @@ pub(crate) struct TemplateSkin {
 #[derive(Clone, Copy)]
 struct Row {
     origin: Vec3,
-    /// Angle of the rays above the horizontal [rad].
+    /// Angle of the rays above the horizontal (rad).
     elevation: f64,
     part: Part,
-    /// Of a row across the face, how far its rays gather at nose and ears [rad]: it has twice
+    /// Of a row across the face, how far its rays gather at nose and ears (rad): it has twice
     /// the columns.
     gathering: Option<f64>,
 }
@@ -78,7 +78,7 @@ impl Row {
         }
     }
 
-    /// Angle of a column from the front [rad].
+    /// Angle of a column from the front (rad).
     fn azimuth(&self, column: usize) -> f64 {
         let even = std::f64::consts::PI * column as f64 / self.columns() as f64;
         even - self.gathering.unwrap_or_default() * (4.0 * even).sin()
@@ -227,7 +227,7 @@ impl Half<'_> {
         }
     }
 
-    /// Height where the underside of the arm meets the side of the trunk [m].
+    /// Height where the underside of the arm meets the side of the trunk (m).
     fn armpit(&self) -> f64 {
         let shoulder = Vec3::from(self.template.joints.shoulder);
         let step = 0.002;
@@ -319,7 +319,7 @@ impl Half<'_> {
         rows
     }
 
-    /// Middle of the front and back surface of the trunk at a height, seen from a joint [m].
+    /// Middle of the front and back surface of the trunk at a height, seen from a joint (m).
     fn middle_z(&self, joint: [f64; 3], y: f64) -> f64 {
         let origin = Vec3::new(0.0, y, joint[2]);
         let front = self.field.first_exit(&[Part::Trunk], origin, Vec3::z());
@@ -542,7 +542,7 @@ fn along(path: &[Vec3], spacing: f64) -> Vec<Vec3> {
         .collect()
 }
 
-/// The point at a length along a polyline [m].
+/// The point at a length along a polyline (m).
 pub(crate) fn at_length(path: &[Vec3], mut length: f64) -> Vec3 {
     for w in path.windows(2) {
         let step = (w[1] - w[0]).norm();

@@ -22,7 +22,7 @@ pub(crate) struct Scales {
 pub(crate) struct TrunkScales {
     /// Of girths round the trunk.
     pub(crate) section: PerGirth<SectionForm>,
-    /// How much fuller the front corners of the chest are, and how much less full the back ones [1].
+    /// How much fuller the front corners of the chest are, and how much less full the back ones (1).
     pub(crate) chest_asymmetry: f64,
     /// Scale at the crotch over that at the hips: less than 1 so that nothing there is larger round
     /// than they are.
@@ -34,11 +34,11 @@ pub(crate) struct TrunkScales {
 pub(crate) struct SectionForm {
     /// Square of lateral over frontal scale.
     pub(crate) aspect: f64,
-    /// How much fuller the corners are [1].
+    /// How much fuller the corners are (1).
     pub(crate) corner_fullness: f64,
     /// The front's share of the frontal scale beyond one half.
     pub(crate) front_share: f64,
-    /// Depth of the sides, before which the front part of the girth lies [m].
+    /// Depth of the sides, before which the front part of the girth lies (m).
     pub(crate) side_depth: f64,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct SectionForm {
 pub(crate) struct NeckScales {
     /// Lateral scale at the sides of the neck.
     pub(crate) breadth: f64,
-    /// How far it stands forward of the template's [m].
+    /// How far it stands forward of the template's (m).
     pub(crate) forward: f64,
 }
 
@@ -56,11 +56,11 @@ pub(crate) struct NeckScales {
 pub(crate) struct ShoulderScales {
     /// Lateral scale at their outer ends.
     pub(crate) breadth: f64,
-    /// Rise of the armpits over what the levels say [m].
+    /// Rise of the armpits over what the levels say (m).
     pub(crate) armpit_rise: f64,
 }
 
-/// Distances along the arm from the shoulder joint [m].
+/// Distances along the arm from the shoulder joint (m).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ArmScales {
     pub(crate) elbow: f64,

@@ -10,17 +10,17 @@ use toile_geometry::Vec3;
 /// nearest to, its tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    /// Global: all three directions [1].
+    /// Global: all three directions (1).
     pub global: f64,
-    /// Frontal: depth [1].
+    /// Frontal: depth (1).
     pub frontal: f64,
     /// High lateral: breadth of arms, head and what of the trunk lies above the spine's
-    /// origin [1].
+    /// origin (1).
     pub high_lateral: f64,
     /// Spine origin: how much higher it lies at the same stature; trunk and legs are stretched
-    /// against each other [1].
+    /// against each other (1).
     pub spine_origin: f64,
-    /// Low lateral: breadth of legs and what of the trunk lies below [1].
+    /// Low lateral: breadth of legs and what of the trunk lies below (1).
     pub low_lateral: f64,
 }
 
@@ -50,7 +50,7 @@ enum Step {
 const LIMITS: [f64; 2] = [0.1, 10.0];
 
 impl Scaling {
-    /// The scaling that brings a body to a stature [mm], all else in proportion.
+    /// The scaling that brings a body to a stature (mm), all else in proportion.
     pub fn to_stature(frame: &BodyFrame, millimetres: f64) -> Self {
         Self {
             global: millimetres * 1e-3 / frame.height,

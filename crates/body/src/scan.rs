@@ -12,27 +12,27 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 /// One closed loop of a section of a mesh by a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// Its corners in order, in the plane's coordinates; of a level plane (x, z) [m].
+    /// Its corners in order, in the plane's coordinates; of a level plane (x, z) (m).
     pub points: Vec<Vec2>,
 }
 
 impl Loop {
-    /// Length of the loop itself [m].
+    /// Length of the loop itself (m).
     pub fn length(&self) -> f64 {
         closed_length(&self.points)
     }
 
-    /// Length of a tight tape round it: its convex hull's [m].
+    /// Length of a tight tape round it: its convex hull's (m).
     pub fn girth(&self) -> f64 {
         closed_length(&convex_hull(&self.points))
     }
 
-    /// Its extent along both axes of the plane [m].
+    /// Its extent along both axes of the plane (m).
     pub fn extent(&self) -> [f64; 2] {
         extent(&self.points)
     }
 
-    /// The middle of its extent [m].
+    /// The middle of its extent (m).
     pub fn centre(&self) -> Vec2 {
         let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
             self.points.iter().map(|p| p[k]).fold(start, pick)
@@ -44,32 +44,32 @@ impl Loop {
     }
 }
 
-/// Where landmarks of a mesh lie: heights above its lowest point, and points [m]. What is left out
+/// Where landmarks of a mesh lie: heights above its lowest point, and points (m). What is left out
 /// is found, or goes unmeasured where it cannot be.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScanLandmarks {
-    /// Height of the crotch [m].
+    /// Height of the crotch (m).
     pub crotch: Option<f64>,
-    /// Height of the fullest hips [m].
+    /// Height of the fullest hips (m).
     pub hips: Option<f64>,
-    /// Height of the waist [m].
+    /// Height of the waist (m).
     pub waist: Option<f64>,
-    /// Height under the bust [m].
+    /// Height under the bust (m).
     pub underbust: Option<f64>,
-    /// Height of the fullest bust or chest [m].
+    /// Height of the fullest bust or chest (m).
     pub bust: Option<f64>,
-    /// Height of the armpits [m].
+    /// Height of the armpits (m).
     pub armpit: Option<f64>,
-    /// Height of the knees [m].
+    /// Height of the knees (m).
     pub knee: Option<f64>,
-    /// Base of the neck at the back [m].
+    /// Base of the neck at the back (m).
     pub nape: Option<[f64; 3]>,
-    /// Left end of the shoulders, +X [m].
+    /// Left end of the shoulders, +X (m).
     pub shoulder_tip: Option<[f64; 3]>,
-    /// Left side of the neck, +X [m].
+    /// Left side of the neck, +X (m).
     pub neck_side: Option<[f64; 3]>,
-    /// Left wrist [m].
+    /// Left wrist (m).
     pub wrist: Option<[f64; 3]>,
 }
 
@@ -149,12 +149,12 @@ impl Scan {
         Ok(scan)
     }
 
-    /// What moves it to stand on y = 0 with its middle at x = 0 [m].
+    /// What moves it to stand on y = 0 with its middle at x = 0 (m).
     pub(crate) fn shift(&self) -> Vec3 {
         -Vec3::new(self.middle, self.floor, 0.0)
     }
 
-    /// The same mesh elsewhere [m].
+    /// The same mesh elsewhere (m).
     pub(crate) fn moved(&self, shift: Vec3) -> Result<Self, BodyError> {
         let mut mesh = self.mesh.clone();
         for p in &mut mesh.positions {
@@ -177,7 +177,7 @@ impl Scan {
         &self.mesh
     }
 
-    /// Floor to crown [m].
+    /// Floor to crown (m).
     pub fn height(&self) -> f64 {
         self.height
     }
@@ -187,7 +187,7 @@ impl Scan {
         &self.landmarks
     }
 
-    /// The loops of the level section at a height above the lowest point [m].
+    /// The loops of the level section at a height above the lowest point (m).
     pub fn level(&self, height: f64) -> Vec<Loop> {
         let origin = Vec3::new(0.0, self.floor + height, 0.0);
         self.section(origin, [Vec3::x(), Vec3::z()])

@@ -16,10 +16,10 @@ const LIMB: f64 = 0.04;
 /// A shorter loop of a neck is of the mouth, over stature.
 const LEAST_NECK: f64 = 0.12;
 
-/// The middle of the left arm from the shoulder to the finger tips [m].
+/// The middle of the left arm from the shoulder to the finger tips (m).
 struct ArmPath {
     middles: Vec<Vec3>,
-    /// Distance of each from the first along the arm [m].
+    /// Distance of each from the first along the arm (m).
     along: Vec<f64>,
 }
 
@@ -61,7 +61,7 @@ impl ArmPath {
 
 impl Scan {
     /// Every measurement the landmarks allow, as a table to make a body from or to draft a
-    /// pattern to [m]: girths as on our own bodies.
+    /// pattern to (m): girths as on our own bodies.
     pub fn measurements(&self) -> Measurements {
         let mut table = Measurements::new();
         let mut put = |name: &str, value: Option<f64>| {
@@ -101,7 +101,7 @@ impl Scan {
         table
     }
 
-    /// Every girth the tape knows [m].
+    /// Every girth the tape knows (m).
     fn girths(&self) -> Vec<(Girth, Option<f64>)> {
         let mut body = self.body();
         let l = self.landmarks();
@@ -131,7 +131,7 @@ impl Scan {
         found.collect()
     }
 
-    /// The fold between the left arm and the trunk [m].
+    /// The fold between the left arm and the trunk (m).
     fn fold(&self, body: &BodyMarks) -> Vec3 {
         let beside = self.trunk(body.armpit - 0.002 * body.stature);
         let side = beside.map_or(0.1 * body.stature, |l| {
@@ -140,7 +140,7 @@ impl Scan {
         Vec3::new(self.middle + side, self.floor + body.armpit, 0.0)
     }
 
-    /// The middle of the narrowest level section between shoulders and head [m].
+    /// The middle of the narrowest level section between shoulders and head (m).
     fn neck_middle(&self, body: &BodyMarks) -> Option<Vec3> {
         let h = body.stature;
         let [low, high] = [body.armpit + NECK[0] * h, (1.0 - NECK[1]) * h];
@@ -153,21 +153,21 @@ impl Scan {
         Some(Vec3::new(self.middle, self.floor + y, middle.y))
     }
 
-    /// Girth of a neck through a place in its middle [m].
+    /// Girth of a neck through a place in its middle (m).
     fn around_neck(&self, middle: Vec3) -> Option<f64> {
         let (sin, cos) = NECK_TILT.sin_cos();
         let loops = self.section(middle, [Vec3::x(), Vec3::new(0.0, -sin, cos)]);
         self.round_the_middle(loops, LEAST_NECK)
     }
 
-    /// Girth across the arm through a place in its middle [m].
+    /// Girth across the arm through a place in its middle (m).
     fn across_arm(&self, [middle, along]: [Vec3; 2]) -> Option<f64> {
         let first = along.cross(&Vec3::z()).try_normalize(1e-9)?;
         self.round_the_middle(self.section(middle, [first, first.cross(&along)]), LIMB)
     }
 
     /// Girth of the loop whose middle lies nearest to a section's origin, of those of a least length
-    /// over stature [m].
+    /// over stature (m).
     fn round_the_middle(&self, loops: Vec<Loop>, least: f64) -> Option<f64> {
         let far = |l: &Loop| l.centre().norm();
         let nearest = loops

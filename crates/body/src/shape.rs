@@ -5,7 +5,7 @@ use crate::girths::PerGirth;
 use crate::template_marks::TemplateMarks;
 use std::cmp::Ordering;
 
-/// Points of a curve from below: a place on the template [m] and the value there.
+/// Points of a curve from below: a place on the template (m) and the value there.
 pub(crate) type Curve = Vec<[f64; 2]>;
 
 /// A body over its template, by its parts.
@@ -13,7 +13,7 @@ pub(crate) type Curve = Vec<[f64; 2]>;
 pub(crate) struct Shape {
     /// Ratio of statures, body to template.
     pub(crate) stature_ratio: f64,
-    /// Heights on the body over those on the template, from the floor up [m].
+    /// Heights on the body over those on the template, from the floor up (m).
     pub(crate) heights: Curve,
     pub(crate) trunk: TrunkShape,
     pub(crate) shoulder: ShoulderShape,
@@ -26,39 +26,39 @@ pub(crate) struct Shape {
 /// Sections of trunk, neck and head: curves over template height.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TrunkShape {
-    /// Lateral scale [1].
+    /// Lateral scale (1).
     pub(crate) lateral: Curve,
-    /// Frontal scale before the plane z = 0 [1].
+    /// Frontal scale before the plane z = 0 (1).
     pub(crate) front: Curve,
     /// The same behind it.
     pub(crate) back: Curve,
-    /// How much farther out the corners of a section lie at equal breadth and depth [1].
+    /// How much farther out the corners of a section lie at equal breadth and depth (1).
     pub(crate) corner_fullness: Curve,
-    /// By how much the corners before the middle are fuller than that, and those behind less full [1].
+    /// By how much the corners before the middle are fuller than that, and those behind less full (1).
     pub(crate) corner_asymmetry: Curve,
-    /// Depth on the template about which sections are scaled [m].
+    /// Depth on the template about which sections are scaled (m).
     pub(crate) middle_on_template: Curve,
     /// The same on the body.
     pub(crate) middle_on_body: Curve,
-    /// Depth of the sides before which the front part of a girth lies [m].
+    /// Depth of the sides before which the front part of a girth lies (m).
     pub(crate) side_depth: PerGirth<f64>,
 }
 
 /// What rises at the shoulders over what the levels say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ShoulderShape {
-    /// Of the outer ends of the shoulders [m].
+    /// Of the outer ends of the shoulders (m).
     pub(crate) tip_rise: f64,
-    /// Of the armpits [m].
+    /// Of the armpits (m).
     pub(crate) armpit_rise: f64,
 }
 
 /// The bust over what the sections of the trunk say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BustForm {
-    /// By what share the bust points are farther apart [1].
+    /// By what share the bust points are farther apart (1).
     pub(crate) spread: f64,
-    /// How far the bust points stand forward [m].
+    /// How far the bust points stand forward (m).
     pub(crate) projection: f64,
 }
 
@@ -68,34 +68,34 @@ pub(crate) struct CrotchForm {
     /// How flat it lies from front to back: 0 is as on the template, 1 is level.
     pub(crate) flatness: f64,
     /// How far before its lowest place the crotch point lies, where the crotch length is parted
-    /// into front and back [m].
+    /// into front and back (m).
     pub(crate) point_offset: f64,
 }
 
 /// The arm: curves over the distance from the shoulder joint on the template.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ArmShape {
-    /// Scale about the axis [1].
+    /// Scale about the axis (1).
     pub(crate) scale: Curve,
-    /// Distance from the shoulder joint on the body [m].
+    /// Distance from the shoulder joint on the body (m).
     pub(crate) length: Curve,
-    /// Angle below the horizontal [rad].
+    /// Angle below the horizontal (rad).
     pub(crate) angle: f64,
 }
 
 /// The leg.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LegShape {
-    /// Scale about the axis over template height [1].
+    /// Scale about the axis over template height (1).
     pub(crate) scale: Curve,
-    /// Sideways scale of where the axis stands [1].
+    /// Sideways scale of where the axis stands (1).
     pub(crate) stance: f64,
-    /// How much broader the top is, and how much less deep [1].
+    /// How much broader the top is, and how much less deep (1).
     pub(crate) top_breadth: f64,
 }
 
 impl Shape {
-    /// The template's own, with an arm of a length [m] at an angle below the horizontal [rad].
+    /// The template's own, with an arm of a length (m) at an angle below the horizontal (rad).
     pub(crate) fn of_template(marks: &TemplateMarks, [length, angle]: [f64; 2]) -> Self {
         let even = |value: f64| vec![[0.0, value], [marks.crown, value]];
         let same = |end: f64| vec![[0.0, 0.0], [end, end]];

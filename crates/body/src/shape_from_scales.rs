@@ -13,7 +13,7 @@ use crate::template_marks::{TemplateMarks, UNDERBUST};
 /// How far apart the legs stand at least, over the scale of the thighs: thicker ones would meet.
 const ASTRIDE: f64 = 0.75;
 
-/// Scales at one level of the trunk: height on the template [m], lateral, front, back.
+/// Scales at one level of the trunk: height on the template (m), lateral, front, back.
 type Section = [f64; 4];
 
 /// Least distance between sections that are scaled apart, over stature.
@@ -66,7 +66,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
     shape.in_order()
 }
 
-/// Heights from the floor up, on the template and on the body [m].
+/// Heights from the floor up, on the template and on the body (m).
 fn heights(input: &SolveInput, levels: &Levels) -> Result<Curve, BodyError> {
     let (m, q, t) = (&input.marks, &input.request, input.template);
     let height = levels.at(Level::Crown);
@@ -301,7 +301,7 @@ fn arm(input: &SolveInput, s: &Scales) -> Curve {
     rows
 }
 
-/// Distance from the shoulder joint on the body over that on the template [m].
+/// Distance from the shoulder joint on the body over that on the template (m).
 fn arm_length(input: &SolveInput, s: &Scales) -> Curve {
     let (on_template, on_body) = (&input.marks.arm, &s.arm);
     let wrist = on_body.wrist;

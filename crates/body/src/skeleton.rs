@@ -19,7 +19,7 @@ pub struct Skeleton {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     rotations: [UnitQuaternion<f64>; Joint::COUNT],
-    /// How far the root is moved from its place at rest [m].
+    /// How far the root is moved from its place at rest (m).
     pub shift: Vec3,
 }
 
@@ -68,12 +68,12 @@ pub struct JointFrames {
 }
 
 impl JointFrames {
-    /// The map from a joint's frame to the body's [m].
+    /// The map from a joint's frame to the body's (m).
     pub fn body_from_joint(&self, joint: Joint) -> &Rigid {
         &self.body_from_joint[joint as usize]
     }
 
-    /// The joint's centre [m].
+    /// The joint's centre (m).
     pub fn centre(&self, joint: Joint) -> Vec3 {
         self.body_from_joint[joint as usize].translation.vector
     }
@@ -85,12 +85,12 @@ impl Skeleton {
         Self { rest, hang }
     }
 
-    /// The same with the angle at which straight arms hang [rad].
+    /// The same with the angle at which straight arms hang (rad).
     pub(crate) fn hanging(self, hang: f64) -> Self {
         Self { hang, ..self }
     }
 
-    /// The steepest angle below the horizontal at which straight arms clear the body [rad].
+    /// The steepest angle below the horizontal at which straight arms clear the body (rad).
     pub fn hang(&self) -> f64 {
         self.hang
     }
@@ -100,19 +100,19 @@ impl Skeleton {
         Joint::ALL.into_iter().zip(self.rest)
     }
 
-    /// Centre of a joint at rest [m].
+    /// Centre of a joint at rest (m).
     pub fn centre(&self, joint: Joint) -> Vec3 {
         self.rest[joint as usize]
     }
 
-    /// From the centre of the joint it hangs on to a joint's centre, at rest [m]; for the root
+    /// From the centre of the joint it hangs on to a joint's centre, at rest (m); for the root
     /// from the body's origin.
     pub fn offset(&self, joint: Joint) -> Vec3 {
         let parent = joint.parent().map(|parent| self.centre(parent));
         self.centre(joint) - parent.unwrap_or_default()
     }
 
-    /// Height of the hip joints above the floor [m].
+    /// Height of the hip joints above the floor (m).
     pub fn leg_length(&self) -> f64 {
         self.centre(Joint::LHip).y
     }

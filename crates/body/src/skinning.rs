@@ -19,7 +19,7 @@ const SMALL: f64 = 0.026;
 const KNEE: f64 = 0.035;
 const SPINE: f64 = 0.04;
 
-/// A chain of joints with the place of each along it [m] and half the width of its passage [m].
+/// A chain of joints with the place of each along it (m) and half the width of its passage (m).
 struct Chain(Vec<(Joint, f64, f64)>);
 
 impl Chain {
@@ -47,7 +47,7 @@ impl Skinning {
         Self { shares }
     }
 
-    /// Hangs the skin at rest of a body of a height [m] on the joints: along the bones by the place
+    /// Hangs the skin at rest of a body of a height (m) on the joints: along the bones by the place
     /// of the vertex beside them, at shoulders and hips by how far it follows arm and leg.
     pub(crate) fn new(
         (skeleton, height): (&Skeleton, f64),

@@ -104,7 +104,7 @@ impl SolveInput<'_> {
         TapedSkin::new(skinned, (&self.marks, &self.skin.armpit), on, crotch)
     }
 
-    /// Corrects scales and offsets by the values of the tape. Returns the largest error [m].
+    /// Corrects scales and offsets by the values of the tape. Returns the largest error (m).
     fn correct(&self, scales: &mut Scales, offsets: &mut SkinOffsets, taken: &TapedSkin) -> f64 {
         let q = &self.request;
         let mut miss: f64 = 0.0;
@@ -241,7 +241,7 @@ impl SolveInput<'_> {
 
     /// Corrects where the neck stands between front and back lengths, where side lines, armpits and
     /// the crotch point lie, how flat the crotch is, and how far the bust points stand out and are
-    /// apart. Returns the largest miss that can still be corrected [m].
+    /// apart. Returns the largest miss that can still be corrected (m).
     fn posture(&self, scales: &mut Scales, taken: &TapedSkin, round: usize) -> f64 {
         let q = &self.request;
         let height = q.get("height");
@@ -250,7 +250,7 @@ impl SolveInput<'_> {
             let asked = q.is_asked(name).then(|| q.get(name))?;
             Some(asked - taken.value(name)?)
         };
-        // Moves an unknown by a step between limits, each worth so much [m].
+        // Moves an unknown by a step between limits, each worth so much (m).
         let mut step = |unknown: &mut f64, by: f64, [low, high]: [f64; 2], worth: f64| {
             let before = *unknown;
             *unknown = (before + by).clamp(low, high);
@@ -325,7 +325,7 @@ impl SolveInput<'_> {
         miss
     }
 
-    /// Where a vertex of the template is on a body of a height [m]; the left half and the middle only.
+    /// Where a vertex of the template is on a body of a height (m); the left half and the middle only.
     fn place(&self, warp: &Warp, height: f64, v: usize) -> Vec3 {
         let follow = Follow {
             arm: self.skin.arm[v],

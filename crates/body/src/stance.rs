@@ -68,7 +68,7 @@ pub enum MeshUnit {
 impl MeshUnit {
     const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// Its length \[m\].
+    /// Its length (m).
     pub fn metres(self) -> f64 {
         match self {
             Self::Metre => 1.0,
@@ -134,7 +134,7 @@ impl FromStr for MeshUnit {
     }
 }
 
-/// Statures of persons, and of dolls in metres \[m\].
+/// Statures of persons, and of dolls in metres (m).
 const PERSON: std::ops::RangeInclusive<f64> = 0.45..=2.5;
 const DOLL: std::ops::Range<f64> = 0.12..0.45;
 

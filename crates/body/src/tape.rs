@@ -44,7 +44,7 @@ impl<'a> Skinned<'a> {
         }
     }
 
-    /// Where a vertex is [m].
+    /// Where a vertex is (m).
     #[inline]
     pub(crate) fn at(&self, vertex: u32) -> Vec3 {
         let known = self.placed[vertex as usize].get();
@@ -139,12 +139,12 @@ impl<'a> Skinned<'a> {
     }
 }
 
-/// Girth of one part by a tight tape in a plane [m]; zero where it has no section.
+/// Girth of one part by a tight tape in a plane (m); zero where it has no section.
 pub(crate) fn girth(skinned: &Skinned, part: Part, plane: [Vec3; 2], near: Option<Near>) -> f64 {
     closed_length(&skinned.hull(part, plane, near))
 }
 
-/// The part of a closed hull with `side * y >= 0`, without the chord [m].
+/// The part of a closed hull with `side * y >= 0`, without the chord (m).
 pub(crate) fn half_length(hull: &[Vec2], side: f64) -> f64 {
     let mut sum = 0.0;
     for (k, &a) in hull.iter().enumerate() {
@@ -161,7 +161,7 @@ pub(crate) fn half_length(hull: &[Vec2], side: f64) -> f64 {
     sum
 }
 
-/// Extent of a hull along its two axes [m].
+/// Extent of a hull along its two axes (m).
 pub(crate) fn extent(hull: &[Vec2]) -> [f64; 2] {
     [0, 1].map(|k| {
         let low = hull.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
@@ -170,7 +170,7 @@ pub(crate) fn extent(hull: &[Vec2]) -> [f64; 2] {
     })
 }
 
-/// Breadth of a hull along its first axis at a place of the second [m]; none beyond its ends.
+/// Breadth of a hull along its first axis at a place of the second (m); none beyond its ends.
 pub(crate) fn breadth_at(hull: &[Vec2], place: f64) -> Option<f64> {
     let mut ends: Option<[f64; 2]> = None;
     for (k, a) in hull.iter().enumerate() {
@@ -185,7 +185,7 @@ pub(crate) fn breadth_at(hull: &[Vec2], place: f64) -> Option<f64> {
 }
 
 /// Length of a tight tape from a point over segments of an upright section down to a level, on
-/// the side of the unit vector `outward` [m]: the hull of what lies between.
+/// the side of the unit vector `outward` (m): the hull of what lies between.
 pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3) -> Option<f64> {
     let flat = |p: Vec3| Vec2::new(p.y, p.dot(&outward));
     let flat: Vec<[Vec2; 2]> = segments.iter().map(|s| s.map(flat)).collect();
@@ -194,7 +194,7 @@ pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3
 }
 
 /// Length of a tape from a point over segments of an upright section down to a level, on the side
-/// of the unit vector `outward`, that hangs straight down from the outermost place [m].
+/// of the unit vector `outward`, that hangs straight down from the outermost place (m).
 pub(crate) fn hanging(
     segments: &[[Vec3; 2]],
     from: Vec3,
@@ -210,7 +210,7 @@ pub(crate) fn hanging(
     Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
 }
 
-/// Length of the front of an upright section between two heights, along the skin [m].
+/// Length of the front of an upright section between two heights, along the skin (m).
 pub(crate) fn along(segments: &[[Vec3; 2]], [low, high]: [f64; 2]) -> f64 {
     let front = |s: &&[Vec3; 2]| s[0].z + s[1].z > 0.0;
     let length = |[a, b]: &[Vec3; 2]| {
@@ -241,7 +241,7 @@ pub(crate) fn outermost(segments: &[[Vec2; 2]], along: f64) -> Option<Vec2> {
         .max_by(|a, b| a.y.total_cmp(&b.y))
 }
 
-/// Length of a tight tape from one point to another over a section on its outward side [m].
+/// Length of a tight tape from one point to another over a section on its outward side (m).
 /// Points are (place along, outward), the first end before the second.
 pub(crate) fn stretched(segments: &[[Vec2; 2]], from: Vec2, to: Vec2) -> f64 {
     let between = |p: &&Vec2| p.x > from.x && p.x < to.x;
@@ -271,13 +271,13 @@ pub(crate) struct OnEdge {
 }
 
 impl OnEdge {
-    /// Where it is [m].
+    /// Where it is (m).
     pub(crate) fn on(&self, skinned: &Skinned) -> Vec3 {
         let [a, b] = self.ends.map(|v| skinned.at(v));
         a + (b - a) * self.share
     }
 
-    /// Where it is on a mesh [m].
+    /// Where it is on a mesh (m).
     pub(crate) fn at(&self, positions: &[Vec3]) -> Vec3 {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
         a + (b - a) * self.share
@@ -285,7 +285,7 @@ impl OnEdge {
 }
 
 /// The highest point of the skin over a place on the left side, searched along z at fixed `x`
-/// above height `from` [m], leaving out the head above `to` [m].
+/// above height `from` (m), leaving out the head above `to` (m).
 pub(crate) fn ridge(mesh: &TriangleMesh, x: f64, [from, to]: [f64; 2]) -> Option<OnEdge> {
     let mut best: Option<(f64, OnEdge)> = None;
     for triangle in &mesh.triangles {

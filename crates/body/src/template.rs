@@ -65,7 +65,7 @@ figures! {
 }
 
 impl Figure {
-    /// Age of a child [years]; none for an adult.
+    /// Age of a child (years); none for an adult.
     pub fn age(self) -> Option<u8> {
         match self {
             Figure::Woman | Figure::Man | Figure::Mean | Figure::DressForm => None,
@@ -93,27 +93,27 @@ impl Figure {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Joints {
-    /// Shoulder joint [m].
+    /// Shoulder joint (m).
     pub shoulder: [f64; 3],
-    /// Elbow [m].
+    /// Elbow (m).
     pub elbow: [f64; 3],
-    /// Wrist [m].
+    /// Wrist (m).
     pub wrist: [f64; 3],
-    /// Hip joint [m].
+    /// Hip joint (m).
     pub hip: [f64; 3],
-    /// Knee [m].
+    /// Knee (m).
     pub knee: [f64; 3],
-    /// Ankle [m].
+    /// Ankle (m).
     pub ankle: [f64; 3],
-    /// Tip of the foot [m].
+    /// Tip of the foot (m).
     pub toe: [f64; 3],
-    /// Middle of the pelvis [m].
+    /// Middle of the pelvis (m).
     pub pelvis: [f64; 3],
-    /// Spine at the chest [m].
+    /// Spine at the chest (m).
     pub chest: [f64; 3],
-    /// Base of the neck [m].
+    /// Base of the neck (m).
     pub neck: [f64; 3],
-    /// Base of the skull [m].
+    /// Base of the skull (m).
     pub head: [f64; 3],
 }
 
@@ -121,15 +121,15 @@ pub struct Joints {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFrame {
-    /// Floor to crown [m].
+    /// Floor to crown (m).
     pub height: f64,
-    /// Height of the crotch [m].
+    /// Height of the crotch (m).
     pub crotch: f64,
-    /// Height of the armpits [m].
+    /// Height of the armpits (m).
     pub armpit: f64,
-    /// From the wrist to where the last ring of the hand is cast [m].
+    /// From the wrist to where the last ring of the hand is cast (m).
     pub hand: f64,
-    /// A distance from the middle outside the neck and under the shoulder's slope [m].
+    /// A distance from the middle outside the neck and under the shoulder's slope (m).
     pub neck_radius: f64,
     /// Joint centres.
     pub joints: Joints,
@@ -142,17 +142,17 @@ pub struct BodyFrame {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Features {
-    /// Middle of the left thumb where it stands clear of the palm, and near its tip [m].
+    /// Middle of the left thumb where it stands clear of the palm, and near its tip (m).
     pub thumb: [[f64; 3]; 2],
 }
 
-/// A template as it is stored. Rows: centre, effective semi-axes [m], rotation vector [rad]. Rows
+/// A template as it is stored. Rows: centre, effective semi-axes (m), rotation vector (rad). Rows
 /// of trunk and head off the middle stand for a pair; arm and leg are the left ones.
 pub(crate) struct Table {
     height: f64,
     crotch: f64,
     joints: Joints,
-    /// Middle of the thumb where it stands clear of the palm, and near its tip [m].
+    /// Middle of the thumb where it stands clear of the palm, and near its tip (m).
     thumb: [[f64; 3]; 2],
     trunk: &'static [[f64; 9]],
     /// Neck and skull.
@@ -168,17 +168,17 @@ pub(crate) struct Table {
 
 /// A template figure.
 pub(crate) struct Template {
-    /// Floor to crown [m].
+    /// Floor to crown (m).
     pub(crate) height: f64,
-    /// Height of the crotch [m].
+    /// Height of the crotch (m).
     pub(crate) crotch: f64,
     pub(crate) joints: Joints,
-    /// Height of the armpits [m]; none where they are found on the primitives.
+    /// Height of the armpits (m); none where they are found on the primitives.
     pub(crate) armpit: Option<f64>,
-    /// From the wrist to where the last ring of the hand is cast [m].
+    /// From the wrist to where the last ring of the hand is cast (m).
     pub(crate) hand: f64,
     /// A distance from the middle outside the neck and under the shoulder's slope: the rays of
-    /// shoulders and neck cross beyond it [m].
+    /// shoulders and neck cross beyond it (m).
     pub(crate) neck_radius: f64,
     /// Face and thumbs, where it has any.
     pub(crate) features: Option<Features>,
@@ -188,7 +188,7 @@ pub(crate) struct Template {
     pub(crate) rigging: Rigging,
 }
 
-/// Of a body of 1.7 m: from the wrist to the last ring of the hand, and the neck's radius [m].
+/// Of a body of 1.7 m: from the wrist to the last ring of the hand, and the neck's radius (m).
 pub(crate) const HAND: f64 = 0.176;
 pub(crate) const NECK_RADIUS: f64 = 0.082;
 

@@ -8,10 +8,10 @@ use crate::template::Template;
 use crate::{BodyError, Part};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
-/// Three points of a plane of a template [m].
+/// Three points of a plane of a template (m).
 pub(crate) type Plane = [Vec3; 3];
 
-/// Places of a template by the parts of its body [m]: of pairs the left one.
+/// Places of a template by the parts of its body (m): of pairs the left one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TemplateMarks {
     /// Height of the top of the head.
@@ -29,9 +29,9 @@ pub(crate) struct TemplateMarks {
 /// The neck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NeckMarks {
-    /// Its middle [m].
+    /// Its middle (m).
     pub(crate) middle: Vec3,
-    /// Where it meets the shoulder [m].
+    /// Where it meets the shoulder (m).
     pub(crate) side: Vec3,
     /// The same on the skin.
     pub(crate) side_on: OnEdge,
@@ -40,7 +40,7 @@ pub(crate) struct NeckMarks {
 /// The shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShoulderMarks {
-    /// Its outer end [m].
+    /// Its outer end (m).
     pub(crate) tip: Vec3,
     /// The same on the skin.
     pub(crate) tip_on: OnEdge,
@@ -49,7 +49,7 @@ pub(crate) struct ShoulderMarks {
 /// The armpit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ArmpitMarks {
-    /// Its height [m].
+    /// Its height (m).
     pub(crate) height: f64,
     /// Vertex of the skin at its front fold.
     pub(crate) front_fold: u32,
@@ -58,36 +58,36 @@ pub(crate) struct ArmpitMarks {
 /// The bust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BustMarks {
-    /// Its height [m].
+    /// Its height (m).
     pub(crate) height: f64,
-    /// The bust point [m].
+    /// The bust point (m).
     pub(crate) point: Vec3,
 }
 
 /// The trunk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TrunkMarks {
-    /// Depth of its middle [m].
+    /// Depth of its middle (m).
     pub(crate) middle_depth: f64,
-    /// Sections from crotch to bust: height, half the breadth, depth before and behind the middle [m].
+    /// Sections from crotch to bust: height, half the breadth, depth before and behind the middle (m).
     pub(crate) sections: [[f64; 4]; SECTIONS],
 }
 
 /// The crotch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CrotchMarks {
-    /// Its height [m].
+    /// Its height (m).
     pub(crate) height: f64,
-    /// Rise of the body's middle over it, at [`CROTCH_PLACES`] even depths from back to front [m].
+    /// Rise of the body's middle over it, at [`CROTCH_PLACES`] even depths from back to front (m).
     pub(crate) rise: [f64; CROTCH_PLACES],
-    /// Depth of the hindmost of them [m].
+    /// Depth of the hindmost of them (m).
     pub(crate) hindmost: f64,
 }
 
-/// The arm: distances from the shoulder joint along it [m].
+/// The arm: distances from the shoulder joint along it (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ArmMarks {
-    /// Middles at even distances from the shoulder joint, from [`ARM_BEGINS`] of the wrist's on [m].
+    /// Middles at even distances from the shoulder joint, from [`ARM_BEGINS`] of the wrist's on (m).
     pub(crate) middles: [Vec3; ARM_MIDDLES],
     pub(crate) upper_arm: f64,
     pub(crate) elbow: f64,
@@ -97,7 +97,7 @@ pub(crate) struct ArmMarks {
     pub(crate) finger_tip: u32,
 }
 
-/// The leg: heights [m].
+/// The leg: heights (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegMarks {
     pub(crate) lower_thigh: f64,
@@ -221,13 +221,13 @@ impl TemplateMarks {
         })
     }
 
-    /// Depth of one of the [`CROTCH_PLACES`] [m].
+    /// Depth of one of the [`CROTCH_PLACES`] (m).
     pub(crate) fn crotch_depth(&self, k: usize) -> f64 {
         self.crotch.hindmost + k as f64 * CROTCH_STEP * self.crown
     }
 }
 
-/// Mean depth of the middle of the trunk between two heights [m].
+/// Mean depth of the middle of the trunk between two heights (m).
 fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
     let middle = |y: f64| {
         let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
@@ -241,7 +241,7 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
 /// How far out a point of the bust lies, over the end of the shoulder's distance.
 const BUST_POINT: [f64; 2] = [0.45, 0.6];
 
-/// The point of the bust at a height on the left [m]: the foremost one, but on a flat chest no
+/// The point of the bust at a height on the left (m): the foremost one, but on a flat chest no
 /// nearer to the middle than the points of others.
 fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
@@ -256,7 +256,7 @@ fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     Vec3::new(x, y, near.map_or(0.0, |p| p.y))
 }
 
-/// How the body's middle rises behind and before a crotch at a height, on a body of a stature [m].
+/// How the body's middle rises behind and before a crotch at a height, on a body of a stature (m).
 fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
     let most = CROTCH_RISE * stature;
     let is_middle = |v: u32| skin.mirror[v as usize] == v;
@@ -286,7 +286,7 @@ fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
     }
 }
 
-/// Extents of the trunk at even heights about a depth [m].
+/// Extents of the trunk at even heights about a depth (m).
 fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]; SECTIONS] {
     std::array::from_fn(|k| {
         let y = low + (high - low) * k as f64 / (SECTIONS - 1) as f64;
@@ -338,13 +338,13 @@ fn finger_tip(skin: &TemplateSkin, [shoulder, along]: [Vec3; 2]) -> u32 {
         .unwrap_or_default()
 }
 
-/// Height of the lowest of some vertices [m].
+/// Height of the lowest of some vertices (m).
 fn lowest(mesh: &TriangleMesh, vertices: &[u32]) -> f64 {
     let heights = vertices.iter().map(|&v| mesh.positions[v as usize].y);
     heights.fold(f64::INFINITY, f64::min)
 }
 
-/// Height of the lowest point in the middle [m].
+/// Height of the lowest point in the middle (m).
 fn crotch(skin: &TemplateSkin) -> f64 {
     (0..skin.mesh.positions.len())
         .filter(|&v| skin.mirror[v] as usize == v)
@@ -352,7 +352,7 @@ fn crotch(skin: &TemplateSkin) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Middle between the foremost and the hindmost point of a section [m].
+/// Middle between the foremost and the hindmost point of a section (m).
 pub(crate) fn middle_depth(section: &[Vec2]) -> f64 {
     let low = section.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     let high = section

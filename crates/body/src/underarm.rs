@@ -8,8 +8,8 @@ use toile_geometry::{TriangleMesh, Vec3};
 const PASSES: usize = 10;
 const PRESSED: usize = 80;
 
-/// Least distance of the arm from the side of the trunk: so much [1/m of stature] and so much for
-/// each metre below the armpit [1].
+/// Least distance of the arm from the side of the trunk: so much (1/m of stature) and so much for
+/// each metre below the armpit (1).
 const CLEAR: [f64; 2] = [0.0016, 0.1];
 
 /// Vertices under the left arm.
@@ -31,11 +31,11 @@ struct Row {
 
 impl Underarm {
     /// Finds them on a template: of the arm's first rings, which follow the arm in part, what lies
-    /// lower than the shoulder, less and less towards it [m].
+    /// lower than the shoulder, less and less towards it (m).
     pub(crate) fn of(mesh: &TriangleMesh, arm: &[f64], side: &[Vec<u32>], shoulder: f64) -> Self {
         /// Shares of following of the rings meant: the border and the trunk follow less.
         const FOLLOW: [f64; 2] = [0.5, 0.999];
-        /// How far below the armpit an arm may lie against the trunk [m].
+        /// How far below the armpit an arm may lie against the trunk (m).
         const BELOW: f64 = 0.12;
         let top_of = |column: &Vec<u32>| column.last().map(|&v| mesh.positions[v as usize].y);
         let armpit = side.iter().filter_map(top_of).fold(0.0, f64::max);
@@ -76,7 +76,7 @@ impl Underarm {
         }
     }
 
-    /// Draws them even on a body of a stature [m], clear of the trunk.
+    /// Draws them even on a body of a stature (m), clear of the trunk.
     pub(crate) fn draw(&self, positions: &mut [Vec3], stature: f64) {
         let mut moved = vec![Vec3::zeros(); self.rows.len()];
         let mut presses = true;

@@ -33,7 +33,7 @@ pub(crate) struct Warp {
     leg: LegWarp,
     /// Shoulder, elbow and wrist, where the map leaves everything as it is.
     still: Option<[Vec3; 3]>,
-    /// The lowest place of the crotch on the template [m].
+    /// The lowest place of the crotch on the template (m).
     crotch: Vec3,
 }
 
@@ -82,18 +82,18 @@ impl Warp {
         mapped
     }
 
-    /// Depth of the sides of a girth, before which its front part lies [m].
+    /// Depth of the sides of a girth, before which its front part lies (m).
     pub(crate) fn side_of(&self, girth: Girth) -> f64 {
         self.trunk.shape().trunk.side_depth[girth]
     }
 
-    /// Depth of the crotch point on the body [m].
+    /// Depth of the crotch point on the body (m).
     pub(crate) fn crotch_point(&self) -> f64 {
         let offset = self.trunk.shape().crotch.point_offset;
         self.apply(self.crotch, Follow::default()).z + offset
     }
 
-    /// Least and largest sideways scale of any place of trunk and head [1].
+    /// Least and largest sideways scale of any place of trunk and head (1).
     pub(crate) fn sideways(&self) -> [f64; 2] {
         match self.is_still() {
             true => [1.0; 2],
@@ -101,17 +101,17 @@ impl Warp {
         }
     }
 
-    /// The template's height of a height of the body [m].
+    /// The template's height of a height of the body (m).
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.trunk.template_level(height)
     }
 
-    /// Where on the template lies what may cross a height of the body [m], within a reach.
+    /// Where on the template lies what may cross a height of the body (m), within a reach.
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         self.trunk.near(height, reach)
     }
 
-    /// The shoulder joint on the body [m].
+    /// The shoulder joint on the body (m).
     fn shoulder(&self) -> Vec3 {
         self.trunk.apply(self.arm.shoulder)
     }
@@ -135,7 +135,7 @@ impl Warp {
         [self.shoulder() + along, self.arm.to[0]]
     }
 
-    /// The template distance of a distance along the body's arm from the shoulder joint [m].
+    /// The template distance of a distance along the body's arm from the shoulder joint (m).
     pub(crate) fn arm_distance(&self, along: f64) -> f64 {
         match self.is_still() {
             true => along,
@@ -143,7 +143,7 @@ impl Warp {
         }
     }
 
-    /// The distance along the body's arm from the shoulder joint at which a point lies [m].
+    /// The distance along the body's arm from the shoulder joint at which a point lies (m).
     pub(crate) fn along_arm(&self, p: Vec3) -> f64 {
         let [shoulder, along] = match self.still {
             Some([shoulder, _, wrist]) => [shoulder, (wrist - shoulder).normalize()],

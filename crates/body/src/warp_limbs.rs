@@ -14,9 +14,9 @@ const LEG_TOP: f64 = 0.09;
 pub(crate) struct ArmWarp {
     /// Scale about the axis over the template's distance from the shoulder joint.
     scale: Monotone,
-    /// Distance from the shoulder joint on the body over that on the template [m].
+    /// Distance from the shoulder joint on the body over that on the template (m).
     pub(crate) length: Monotone,
-    /// The shoulder joint of the template [m].
+    /// The shoulder joint of the template (m).
     pub(crate) shoulder: Vec3,
     /// On the template, unit vectors along the arm and across it upward.
     from: [Vec3; 2],
@@ -39,7 +39,7 @@ impl ArmWarp {
         }
     }
 
-    /// Where a place of the template comes to on a body with its shoulder joint at a place [m].
+    /// Where a place of the template comes to on a body with its shoulder joint at a place (m).
     pub(crate) fn apply(&self, p: Vec3, shoulder: Vec3) -> Vec3 {
         let offset = p - self.shoulder;
         let distance = offset.dot(&self.from[0]);
@@ -56,11 +56,11 @@ impl ArmWarp {
 pub(crate) struct LegWarp {
     /// Scale about the axis over template height.
     scale: Monotone,
-    /// Joints of hip, knee and ankle of the template [m].
+    /// Joints of hip, knee and ankle of the template (m).
     axis: [Vec3; 3],
-    /// Sideways scale of where the axis stands [1].
+    /// Sideways scale of where the axis stands (1).
     stance: f64,
-    /// How much broader the top is, and how much less deep [1].
+    /// How much broader the top is, and how much less deep (1).
     top_breadth: f64,
     /// Ratio of statures, body to template.
     stature_ratio: f64,
@@ -92,7 +92,7 @@ impl LegWarp {
         }
     }
 
-    /// Where a place of the template comes to whose height on the body is given [m].
+    /// Where a place of the template comes to whose height on the body is given (m).
     pub(crate) fn apply(&self, p: Vec3, height: f64) -> Vec3 {
         let m = &self.marks;
         let axis = self.axis_at(p.y);

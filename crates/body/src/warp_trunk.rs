@@ -17,26 +17,26 @@ const CROTCH_REACH: [f64; 3] = [0.06, 0.15, 0.10];
 /// The map, for points of the left half, x >= 0. Curves are over template height.
 #[derive(Clone)]
 pub(crate) struct TrunkWarp {
-    /// Height on the body [m].
+    /// Height on the body (m).
     height: Monotone,
-    /// Scales of sections, and how their corners differ from the template's [1].
+    /// Scales of sections, and how their corners differ from the template's (1).
     lateral: Monotone,
     front: Monotone,
     back: Monotone,
     corner_fullness: Monotone,
     corner_asymmetry: Monotone,
-    /// Half the breadth, and depth before and behind the middle, on the template [m].
+    /// Half the breadth, and depth before and behind the middle, on the template (m).
     extents: [Monotone; 3],
-    /// Depth about which sections are scaled [m].
+    /// Depth about which sections are scaled (m).
     middle_on_template: Monotone,
     middle_on_body: Monotone,
-    /// Rise of the body's middle over the crotch, over its depth on the template [m].
+    /// Rise of the body's middle over the crotch, over its depth on the template (m).
     crotch_rise: Monotone,
     marks: TemplateMarks,
     shape: Shape,
 }
 
-/// Rises of the body's middle over the crotch by their depth [m].
+/// Rises of the body's middle over the crotch by their depth (m).
 fn crotch_rise(marks: &TemplateMarks) -> Vec<[f64; 2]> {
     (0..CROTCH_PLACES)
         .map(|k| [marks.crotch_depth(k), marks.crotch.rise[k]])
@@ -87,12 +87,12 @@ impl TrunkWarp {
     }
 
     /// Height on the body of a place of the template, without what shoulder and armpit raise it by
-    /// [m].
+    /// (m).
     pub(crate) fn height(&self, p: Vec3) -> f64 {
         self.height.at(p.y - self.sunk(p))
     }
 
-    /// How far a place stands forward with its bust point [m]: all of it there, nothing beyond the
+    /// How far a place stands forward with its bust point (m): all of it there, nothing beyond the
     /// bust.
     fn projection(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
@@ -151,7 +151,7 @@ impl TrunkWarp {
         self.shape.bust.spread * ((1.0 - u) * (1.0 - v)).powi(2) * before
     }
 
-    /// Rise of a place with the end of the shoulder and with the armpit [m]: all of it there, nothing
+    /// Rise of a place with the end of the shoulder and with the armpit (m): all of it there, nothing
     /// at the neck and at the bust.
     fn rise(&self, p: Vec3) -> [f64; 2] {
         let m = &self.marks;
@@ -167,7 +167,7 @@ impl TrunkWarp {
         [self.shape.shoulder.tip_rise * up * out, armpit * out]
     }
 
-    /// How much lower on the template a place comes from where the crotch lies flatter [m]: the
+    /// How much lower on the template a place comes from where the crotch lies flatter (m): the
     /// body's middle sinks by a share of its rise over the crotch, what is beside it less.
     fn sunk(&self, p: Vec3) -> f64 {
         let m = &self.marks;
@@ -187,7 +187,7 @@ impl TrunkWarp {
         self.shape.crotch.flatness * self.crotch_rise.at(p.z.clamp(ends[0], ends[1])) * beside * far
     }
 
-    /// Least and largest sideways scale of any place of trunk and head [1].
+    /// Least and largest sideways scale of any place of trunk and head (1).
     pub(crate) fn sideways(&self) -> [f64; 2] {
         let s = &self.shape;
         let most = |rows: &[[f64; 2]]| rows.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
@@ -202,12 +202,12 @@ impl TrunkWarp {
         ]
     }
 
-    /// The template's height of a height of the body [m].
+    /// The template's height of a height of the body (m).
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.height.inverse(height)
     }
 
-    /// Where on the template lies what may cross a height of the body [m], within a reach: what
+    /// Where on the template lies what may cross a height of the body (m), within a reach: what
     /// rises or sinks with shoulders and armpits comes from farther off.
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         let (m, s) = (&self.marks, &self.shape);

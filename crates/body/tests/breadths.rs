@@ -9,7 +9,7 @@ use common::survey::{HELD_OUT, Person, held_out, people};
 use toile_body::{Figure, Mannequin};
 use toile_measure::Origin;
 
-/// What the tape finds of what was not asked [m].
+/// What the tape finds of what was not asked (m).
 fn found(person: &Person) -> [f64; HELD_OUT.len()] {
     let body = Mannequin::new(&person.asked_with_navel(), person.figure).unwrap();
     HELD_OUT.map(|(_, name)| body.taken(name).unwrap())

@@ -14,7 +14,7 @@ fn scan(path: &std::path::Path) -> Scan {
 }
 
 /// Girths of trunk and leg of the finished skin against the mesh's by a tape of this test's own:
-/// hulls of level cuts between those the fit was judged by. Root mean square [m].
+/// hulls of level cuts between those the fit was judged by. Root mean square (m).
 fn independent_tape(mesh: &Scan, body: &Mannequin) -> f64 {
     let height = mesh.height();
     let marks = mesh.landmarks();

@@ -14,7 +14,7 @@ fn bodies() -> Vec<Mannequin> {
     people.iter().map(new).collect()
 }
 
-/// The lowest places of both feet [m] at a time: heel and ball of each.
+/// The lowest places of both feet (m) at a time: heel and ball of each.
 fn soles(body: &Mannequin, clip: &Clip, time: f64) -> [[Vec3; 2]; 2] {
     let skeleton = body.skeleton();
     let frames = skeleton.frames(&clip.pose_for(skeleton, time));
@@ -75,7 +75,7 @@ fn a_standing_foot_stands_still_while_the_figure_goes_on() {
     }
 }
 
-/// Signed angle of a joint about x [rad].
+/// Signed angle of a joint about x (rad).
 fn about_x(pose: &Pose, joint: Joint) -> f64 {
     pose.rotation(joint).scaled_axis().x
 }

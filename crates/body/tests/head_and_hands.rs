@@ -22,7 +22,7 @@ fn is_symmetric(mesh: &TriangleMesh) -> bool {
     mesh.positions.iter().all(|p| all.contains(&key(p, -1.0)))
 }
 
-/// Breadth and depth of the head at a share of the stature [m].
+/// Breadth and depth of the head at a share of the stature (m).
 fn head_at(scan: &Scan, share: f64) -> [f64; 2] {
     let loops = scan.level(share * scan.height());
     let largest = loops

@@ -8,7 +8,7 @@ use common::{obj, shared};
 use toile_body::{Figure, Mannequin, Scan, ScanLandmarks};
 use toile_measure::{Measurements, Origin};
 
-/// What given, reported and measured girths may differ by [m].
+/// What given, reported and measured girths may differ by (m).
 const MAY: f64 = 5e-3;
 
 /// The girths that the tape knows on any mesh.

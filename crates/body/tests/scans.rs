@@ -9,7 +9,7 @@ use toile_body::{Figure, Mannequin, Scan, ScanLandmarks};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_measure::Origin;
 
-/// A closed tube of height 1.7 m with half-axes `a` and `b` [m], turned about Y.
+/// A closed tube of height 1.7 m with half-axes `a` and `b` (m), turned about Y.
 fn tube([a, b]: [f64; 2], sides: usize, turn: f64) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
     let rings = 34;

@@ -10,7 +10,7 @@ use toile_body::{Conflict, Figure, Mannequin, Part};
 use toile_geometry::{closed_length, convex_hull, horizontal_section};
 use toile_measure::{Measurements, Origin};
 
-/// Names that contradict one another, and by how much each may be missed for it [m].
+/// Names that contradict one another, and by how much each may be missed for it (m).
 type Contradiction = (&'static [&'static str], f64);
 
 /// What cannot be together by what was asked alone. The waist's height is rise and inside leg

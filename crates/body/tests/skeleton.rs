@@ -20,7 +20,7 @@ fn figures() -> [(Figure, Measurements); 3] {
     ]
 }
 
-/// Largest difference of any number of two primitives [m], [rad].
+/// Largest difference of any number of two primitives (m), (rad).
 fn difference(a: &Primitive, b: &Primitive) -> f64 {
     assert_eq!((a.part, a.radii), (b.part, b.radii));
     let centre = (Vec3::from(a.centre) - Vec3::from(b.centre)).amax();

@@ -12,7 +12,7 @@ use toile_measure::Measurements;
 /// Largest change of a section's scale within 1 % of the stature that no girth asks for.
 const SWING: f64 = 0.15;
 
-/// Girth, breadth and depth [m] of the trunk's level section.
+/// Girth, breadth and depth (m) of the trunk's level section.
 fn section(mesh: &TriangleMesh, parts: &[Part], height: f64) -> [f64; 3] {
     let own = |part: Part| matches!(part, Part::Trunk | Part::LeftLeg | Part::RightLeg);
     let triangles = (0..mesh.triangles.len()).filter(|&t| own(parts[t]));
@@ -35,7 +35,7 @@ fn line(points: &[[f64; 2]], x: f64) -> f64 {
     y0 + (y1 - y0) * (x - x0) / (x1 - x0)
 }
 
-/// Heights of the front middle of the trunk on a body and on its template [m], from below.
+/// Heights of the front middle of the trunk on a body and on its template (m), from below.
 fn heights(body: &TriangleMesh, template: &TriangleMesh, low: f64) -> Vec<[f64; 2]> {
     let mut pairs: Vec<[f64; 2]> = (body.positions.iter().zip(&template.positions))
         .filter(|(b, t)| t.x == 0.0 && t.z > 0.02 && b.y > low)
@@ -45,7 +45,7 @@ fn heights(body: &TriangleMesh, template: &TriangleMesh, low: f64) -> Vec<[f64; 
     pairs
 }
 
-/// Girths asked for with their heights on a body [m], from below.
+/// Girths asked for with their heights on a body (m), from below.
 fn girths(body: &Mannequin, table: &Measurements) -> Vec<[f64; 2]> {
     let levels = body.levels();
     let get = |name: &str| table.get(name).unwrap();
@@ -65,7 +65,7 @@ fn girths(body: &Mannequin, table: &Measurements) -> Vec<[f64; 2]> {
 }
 
 /// The largest swing of a body's sections in girth, breadth or depth, with its
-/// height [m] and which of them.
+/// height (m) and which of them.
 fn largest(body: &Mannequin, template: &TriangleMesh, asked: &[[f64; 2]]) -> [f64; 3] {
     let (skin, parts) = (body.skin(), body.part_of_triangle());
     let levels = body.levels();

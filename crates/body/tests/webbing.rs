@@ -41,7 +41,7 @@ fn share(body: &Mannequin, vertex: u32, joints: &[Joint]) -> f64 {
 const ARM: [Joint; 3] = [Joint::LShoulder, Joint::LElbow, Joint::LWrist];
 
 /// Places of the left arm below the waist that lie near the rest of the left half, each
-/// with the closest place there and their distance [m].
+/// with the closest place there and their distance (m).
 fn beside(body: &Mannequin) -> Vec<(Vec3, Vec3, f64)> {
     let mesh = body.skin();
     let far = body.levels().waist;

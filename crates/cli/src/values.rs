@@ -80,7 +80,7 @@ pub fn panel_origin(text: &str) -> Result<PanelOrigin, String> {
     }
 }
 
-/// Lengths with commas between [m].
+/// Lengths with commas between (m).
 fn lengths(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|part| {
@@ -166,7 +166,7 @@ pub fn repeat(text: &str) -> Result<Print, String> {
     }
 }
 
-/// A flaw: four lengths with commas between [m], after the name of its fabric if there are several.
+/// A flaw: four lengths with commas between (m), after the name of its fabric if there are several.
 pub fn flaw(text: &str) -> Result<GivenFlaw, String> {
     let (fabric, place) = match text.rsplit_once(':') {
         Some((fabric, place)) => (Some(fabric.to_owned()), place),

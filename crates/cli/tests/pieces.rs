@@ -151,7 +151,7 @@ fn prints_are_written_and_told() {
 
 #[test]
 fn edges_of_the_shipped_patterns_go_on_across_their_seams() {
-    // Necklines, armholes, waists and hems turn by less than what a walk tells as a kink [deg]. A straight
+    // Necklines, armholes, waists and hems turn by less than what a walk tells as a kink (deg). A straight
     // edge with a dart in it turns on purpose, and the dress's side seam where it meets the waist seam.
     let most = 2.0;
     let meets_waist = serde_json::json!(["side", "side_hip"]);

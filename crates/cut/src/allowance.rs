@@ -31,7 +31,7 @@ struct Trim {
     corner: usize,
 }
 
-/// Largest bend [rad] with a single tip: where tangents of an arc of radius w meet at an angle t,
+/// Largest bend (rad) with a single tip: where tangents of an arc of radius w meet at an angle t,
 /// their tip is w t^2 / 8 beyond it, here no more than [`FLATNESS`].
 fn wedge_step(width: f64) -> f64 {
     (8.0 * FLATNESS / width).sqrt().min(1.0)

@@ -5,7 +5,7 @@ use crate::{CutError, EdgeIndex, SeamEdge, SeamLine};
 use toile_geometry::{Polygon, PolygonDefect};
 use toile_pattern::MitreLimit;
 
-/// Ends of edges may lie this far apart \[m\]: rounding of formulas and files, and far below what
+/// Ends of edges may lie this far apart (m): rounding of formulas and files, and far below what
 /// can be cut.
 const CLOSED: f64 = 1e-6;
 

@@ -57,7 +57,7 @@ impl Corner {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HalfPlane {
     pub normal: Vec2,
-    /// [m] where `normal` has length 1.
+    /// (m) where `normal` has length 1.
     pub limit: f64,
 }
 
@@ -94,9 +94,9 @@ impl HalfPlane {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outcome {
     AsAsked,
-    /// It would have reached this far [m] and is cut off.
+    /// It would have reached this far (m) and is cut off.
     CutOff(f64),
-    /// Its kind would reach this far [m]: mitred instead.
+    /// Its kind would reach this far (m): mitred instead.
     Mitred(f64),
 }
 
@@ -124,7 +124,7 @@ struct Turn {
     after: Side,
     sin: f64,
     cos: f64,
-    /// Farthest reach [m].
+    /// Farthest reach (m).
     limit: f64,
 }
 

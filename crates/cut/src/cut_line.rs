@@ -27,7 +27,7 @@ pub struct Origin {
 /// A closed line to cut along.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutRing {
-    /// Its corners \[m\]; the first is not repeated.
+    /// Its corners (m); the first is not repeated.
     pub points: Vec<Vec2>,
     /// Where the segment from each corner to the next comes from, one each.
     pub origins: Vec<Origin>,

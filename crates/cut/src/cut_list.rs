@@ -21,12 +21,12 @@ pub struct CutListPiece {
     pub quantity: u32,
     /// How many of these are pairs, one of two turned over.
     pub pairs: u32,
-    /// Area of one as cut, holes taken out \[m2\].
+    /// Area of one as cut, holes taken out (m2).
     pub area: f64,
 }
 
 impl CutList {
-    /// Area of all its pieces \[m2\].
+    /// Area of all its pieces (m2).
     pub fn area(&self) -> f64 {
         let all = self.pieces.iter().map(|p| f64::from(p.quantity) * p.area);
         all.sum()

@@ -35,7 +35,7 @@ impl Axis {
         self.on + self.along * (2.0 * d.dot(&self.along)) - d
     }
 
-    /// Signed distance, positive at the left [m].
+    /// Signed distance, positive at the left (m).
     fn side(&self, p: Vec2) -> f64 {
         self.along.perp(&(p - self.on))
     }
@@ -61,7 +61,7 @@ struct Flank {
     out: Vec2,
     /// The neighbour's offset line from the mouth on.
     offset: Vec<Vec2>,
-    /// Its width [m].
+    /// Its width (m).
     width: f64,
 }
 

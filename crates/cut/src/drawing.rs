@@ -51,7 +51,7 @@ pub struct Stroke {
     pub kind: StrokeKind,
     /// The part of the piece that it shows.
     pub name: StrokeName,
-    /// Its corners \[m\].
+    /// Its corners (m).
     pub points: Vec<Vec2>,
     /// Whether the last is joined to the first.
     pub closed: bool,
@@ -73,15 +73,15 @@ pub struct Drawing {
 pub struct Writing<'w> {
     /// The lines, the first one largest.
     pub lines: &'w [&'w str],
-    /// Largest letters \[m\], where they are to be smaller than usual.
+    /// Largest letters (m), where they are to be smaller than usual.
     pub most: Option<f64>,
-    /// Lines that words do not lie on, besides those of the piece \[m\].
+    /// Lines that words do not lie on, besides those of the piece (m).
     pub clear_of: &'w [[Vec2; 2]],
 }
 
-/// Size of the letters on the largest pieces \[m\], and on the smallest.
+/// Size of the letters on the largest pieces (m), and on the smallest.
 const LETTERS: [f64; 2] = [0.022, 0.004];
-/// Arm of the cross at the end of a dart \[m\].
+/// Arm of the cross at the end of a dart (m).
 const DRILL: f64 = 0.003;
 
 impl StrokeKind {
@@ -238,7 +238,7 @@ fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
     parts
 }
 
-/// Size of the first line at a spot \[m\].
+/// Size of the first line at a spot (m).
 fn letters(spot: &Spot) -> f64 {
     (spot.room * 0.3).clamp(LETTERS[1], LETTERS[0])
 }

@@ -27,7 +27,7 @@ pub enum Finding {
     Swallowed {
         /// The edge.
         edge: EdgeIndex,
-        /// The span, from and to \[m\].
+        /// The span, from and to (m).
         span: [f64; 2],
         /// Whether it starts or ends at an inner corner or a dart, where allowances always
         /// overlap.
@@ -38,43 +38,43 @@ pub enum Finding {
     Narrow {
         /// The edge.
         edge: EdgeIndex,
-        /// The span, from and to \[m\].
+        /// The span, from and to (m).
         span: [f64; 2],
-        /// Least width \[m\].
+        /// Least width (m).
         least: f64,
     },
     /// A corner is too sharp for its allowance and cut off.
     CutOff {
         /// The edge that starts at the corner.
         corner: EdgeIndex,
-        /// How far from the seam line's corner it would reach \[m\].
+        /// How far from the seam line's corner it would reach (m).
         asked: f64,
-        /// How far it reaches \[m\].
+        /// How far it reaches (m).
         kept: f64,
     },
     /// A corner is too blunt for its kind, which would reach too far, and is mitred.
     Mitred {
         /// The edge that starts at the corner.
         corner: EdgeIndex,
-        /// How far from the seam line's corner it would reach \[m\].
+        /// How far from the seam line's corner it would reach (m).
         asked: f64,
     },
     /// The allowances of a slit's sides meet: it is not cut open.
     SlitShut {
         /// The edges with the slit's mouth, in the cloth's order.
         edges: [EdgeIndex; 2],
-        /// Middle of the mouth on the seam line \[m\].
+        /// Middle of the mouth on the seam line (m).
         mouth: Vec2,
-        /// Greatest distance of the shut seam line from the cut line \[m\].
+        /// Greatest distance of the shut seam line from the cut line (m).
         depth: f64,
-        /// Length of seam line shut in \[m\].
+        /// Length of seam line shut in (m).
         length: f64,
     },
     /// The allowances round a bay meet at its mouth and leave a hole in the piece.
     BayShut {
         /// Its number in [`crate::CutLine::holes`].
         hole: usize,
-        /// Area of the hole \[m2\].
+        /// Area of the hole (m2).
         area: f64,
     },
     /// A hole is filled by its allowance, or falls into parts.
@@ -95,7 +95,7 @@ pub enum Finding {
     NotchesShort {
         /// The notches.
         notches: Vec<NotchId>,
-        /// The least depth \[m\].
+        /// The least depth (m).
         depth: f64,
     },
     /// Notches are drawn on the seam line, as there is no allowance to cut them into.

@@ -8,19 +8,19 @@ use toile_geometry::{
 
 /// Outlines that differ by less than this part of their area are the same.
 const SAME_SHAPE: f64 = 1e-4;
-/// Directions that differ by less are the same \[rad\].
+/// Directions that differ by less are the same (rad).
 const SAME_WAY: f64 = 1e-6;
-/// Points this near to a line lie on it \[m\]: some steps of the grid that halves are cut on.
+/// Points this near to a line lie on it (m): some steps of the grid that halves are cut on.
 const ON_LINE: f64 = 1e-6;
 
 impl HalfPlane {
-    /// Whether the line runs along a direction \[rad\].
+    /// Whether the line runs along a direction (rad).
     pub fn runs_along(&self, direction: f64) -> bool {
         let (sin, cos) = direction.sin_cos();
         self.inward.dot(&Vec2::new(cos, sin)).abs() < SAME_WAY
     }
 
-    /// How far inside a point lies \[m\].
+    /// How far inside a point lies (m).
     fn depth(&self, point: Vec2) -> f64 {
         (point - self.at).dot(&self.inward)
     }

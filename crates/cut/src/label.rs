@@ -8,9 +8,9 @@ const CELLS: u32 = 24;
 /// A place far inside a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spot {
-    /// The place \[m\].
+    /// The place (m).
     pub at: Vec2,
-    /// Distance to the nearest line \[m\]; 0 where there is no room.
+    /// Distance to the nearest line (m); 0 where there is no room.
     pub room: f64,
 }
 

@@ -17,15 +17,15 @@ const FILLED: f64 = 0.85;
 /// How far below the spot words begin, and how far down they go, over its distance to the outline.
 const GAP: f64 = 0.05;
 const LINES: f64 = 0.85;
-/// Letters that are read with ease \[m\]; words are written by the grain line if they are no smaller.
+/// Letters that are read with ease (m); words are written by the grain line if they are no smaller.
 const EASY: f64 = 0.003;
-/// Words are shortened rather than written in smaller letters \[m\].
+/// Words are shortened rather than written in smaller letters (m).
 const SMALL: f64 = 0.0018;
 /// Length that a shortened line has at the least, over the size of its letters.
 const SHORTEST: f64 = 3.0;
 /// Upright words are read less well: they must be so much larger.
 const UPRIGHT: f64 = 1.6;
-/// Smallest size that counts \[m\].
+/// Smallest size that counts (m).
 const LEAST: f64 = 1e-6;
 /// Steps by which the largest size is found.
 const STEPS: u32 = 12;
@@ -35,11 +35,11 @@ const STEPS: u32 = 12;
 pub struct Words {
     /// The text.
     pub text: String,
-    /// Middle of the baseline \[m\].
+    /// Middle of the baseline (m).
     pub at: Vec2,
-    /// Height of the letters \[m\].
+    /// Height of the letters (m).
     pub size: f64,
-    /// Direction of the baseline \[rad\]: 0 or upwards.
+    /// Direction of the baseline (rad): 0 or upwards.
     pub angle: f64,
 }
 
@@ -49,7 +49,7 @@ impl Words {
         Vec2::new(-self.angle.sin(), self.angle.cos())
     }
 
-    /// A box that holds them \[m\].
+    /// A box that holds them (m).
     fn bounds(&self) -> Bounds2 {
         let (up, half) = (self.up(), 0.5 * width(&self.text) / FILLED * self.size);
         let along = Vec2::new(up.y, -up.x) * half;
@@ -183,7 +183,7 @@ impl Room<'_> {
         self.largest(near, most, |size| whole * size)
     }
 
-    /// Lines of words somewhere inside, the first in letters of a size at the most \[m\]. They are
+    /// Lines of words somewhere inside, the first in letters of a size at the most (m). They are
     /// smaller, upright or shortened where they must, and end with an ellipsis where they are cut.
     fn words(&self, lines: &[&str], (near, most): (Vec2, f64)) -> Vec<Words> {
         let block = Block {
@@ -212,7 +212,7 @@ impl Room<'_> {
     }
 }
 
-/// The first lines, each no longer than a length \[m\] and with an ellipsis if it or what follows is
+/// The first lines, each no longer than a length (m) and with an ellipsis if it or what follows is
 /// cut.
 fn shortened_block(lines: &[&str], count: usize, (length, fit): (f64, Fit)) -> Vec<Words> {
     let short: Vec<String> = lines[..count]
@@ -286,7 +286,7 @@ pub(crate) struct Label {
 
 /// Lines of words inside a polygon, clear of other lines: by the roomiest spot, the grain line above
 /// them, where they are read with ease there, else wherever they fit best. The first line's letters
-/// have a size at the most \[m\], by the spot.
+/// have a size at the most (m), by the spot.
 pub(crate) fn label(
     polygon: &Polygon,
     others: &[[Vec2; 2]],

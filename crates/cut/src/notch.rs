@@ -3,7 +3,7 @@
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeOrigin, NotchId, NotchKind};
 
-/// Depth of a notch \[m\]: seen from an arm's length, and short of a 10 mm seam.
+/// Depth of a notch (m): seen from an arm's length, and short of a 10 mm seam.
 pub const NOTCH_DEPTH: f64 = 0.006;
 
 /// A notch of a cut piece. At a corner of the seam line there is one for each cut line that meets
@@ -16,24 +16,24 @@ pub struct CutNotch {
     pub edge: EdgeOrigin,
     /// Its shape.
     pub kind: NotchKind,
-    /// Where on the seam line \[m\].
+    /// Where on the seam line (m).
     pub point: Vec2,
     /// Unit vector into the piece.
     pub inward: Vec2,
-    /// Where on the edge's cut line \[m\]: straight out from the seam line; at a corner where the
+    /// Where on the edge's cut line (m): straight out from the seam line; at a corner where the
     /// seam line of the other edge, drawn on, meets it. The place on the seam line where that is
     /// nowhere.
     pub on_cut: Vec2,
     /// Unit vector along the edge as drawn: the side to which a check mark slopes.
     pub along: Vec2,
-    /// How deep it is cut \[m\]; 0 where it is drawn, as there is no allowance to cut.
+    /// How deep it is cut (m); 0 where it is drawn, as there is no allowance to cut.
     pub depth: f64,
-    /// The lines to cut along, each through points \[m\], from the cut line into the allowance.
+    /// The lines to cut along, each through points (m), from the cut line into the allowance.
     pub cut: Vec<Vec<Vec2>>,
 }
 
 impl CutNotch {
-    /// Lines drawn on the seam line, each through points \[m\].
+    /// Lines drawn on the seam line, each through points (m).
     pub fn on_seam_line(&self) -> Vec<Vec<Vec2>> {
         let place = |[along, inward]: [f64; 2]| {
             self.point + (self.along * along + self.inward * inward) * NOTCH_DEPTH

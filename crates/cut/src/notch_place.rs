@@ -7,7 +7,7 @@ use crate::seams::{NamedSeam, Plane};
 use toile_geometry::{Vec2, ring_area};
 use toile_pattern::{EdgeOrigin, Piece, PieceNotch};
 
-/// A notch this near to a corner of the seam line is at it \[m\].
+/// A notch this near to a corner of the seam line is at it (m).
 pub(crate) const AT_CORNER: f64 = 1e-6;
 
 /// Unit vectors and width at a place of an edge.
@@ -18,7 +18,7 @@ struct Side {
     way: Vec2,
     /// Away from the cloth.
     out: Vec2,
-    /// Width of the allowance \[m\].
+    /// Width of the allowance (m).
     width: f64,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct Corner {
     after: Side,
 }
 
-/// Where a notch stands: its edge, from the seam line to the cut line \[m\], and into the piece.
+/// Where a notch stands: its edge, from the seam line to the cut line (m), and into the piece.
 struct Stand {
     edge: EdgeOrigin,
     outwards: Vec2,

@@ -16,13 +16,13 @@ const CLEAR: f64 = 0.66;
 const WITHIN: f64 = 0.3;
 /// Next depth that is tried over the last.
 const SHALLOWER: f64 = 0.85;
-/// A notch less deep is not cut \[m\]: it is no wider than the cut of a knife.
+/// A notch less deep is not cut (m): it is no wider than the cut of a knife.
 const LEAST: f64 = 0.000_25;
-/// How far from the seam line a cut line is looked for \[m\].
+/// How far from the seam line a cut line is looked for (m).
 const REACH: f64 = 0.5;
-/// Cut lines nearer to the seam line are the same line, flattened \[m\].
+/// Cut lines nearer to the seam line are the same line, flattened (m).
 const ON_SEAM: f64 = 1e-4;
-/// A cut line passes through a place that is no farther away \[m\].
+/// A cut line passes through a place that is no farther away (m).
 const ON_CUT: f64 = 2e-5;
 
 /// A piece's cut line, and the cloth inside its seam lines.
@@ -40,7 +40,7 @@ struct Near<'a> {
 
 impl Room {
     /// Where a notch at a place of the seam line stands on the cut line that should lie beyond it
-    /// by a vector \[m\]; nothing where that line does not lie before other cloth.
+    /// by a vector (m); nothing where that line does not lie before other cloth.
     pub fn cut_line(&self, from: Vec2, outwards: Vec2) -> Option<Vec2> {
         let at = self
             .there(from + outwards)
@@ -150,7 +150,7 @@ impl<'a> Near<'a> {
     }
 
     /// The place of the cut line straight out or in from a place that should be on it, no farther
-    /// than a depth inwards \[m\].
+    /// than a depth inwards (m).
     fn on_cut_line(&self, place: Vec2, inwards: Vec2) -> Option<Vec2> {
         let (from, to) = (place + inwards * 0.9, place - inwards * 0.9);
         let way = to - from;
@@ -168,14 +168,14 @@ impl<'a> Near<'a> {
         first.map(|at| from + way * at)
     }
 
-    /// Whether a place lies in the piece as cut, so far from the cut line \[m\].
+    /// Whether a place lies in the piece as cut, so far from the cut line (m).
     fn is_within(&self, place: Vec2, far: f64) -> bool {
         let near = |edge: &[Vec2; 2]| point_segment_distance(place, *edge) < far;
         self.room.cut.contains(place) && !self.cut.iter().any(near)
     }
 
     /// Whether a line from or to the cut line crosses it nowhere else, and keeps so far from what
-    /// is sewn \[m\].
+    /// is sewn (m).
     fn is_clear(&self, line: [Vec2; 2], far: f64) -> bool {
         let short = (line[1] - line[0]) * 0.02;
         let inner = [line[0] + short, line[1] - short];

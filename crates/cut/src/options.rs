@@ -30,6 +30,6 @@ impl Shrinkage {
 pub struct CutOptions {
     /// What the cloth loses in the wash. The seam line grows; allowances keep their widths.
     pub shrinkage: Shrinkage,
-    /// Cloth all round beyond the allowances \[m\], for pieces that are cut again after fusing.
+    /// Cloth all round beyond the allowances (m), for pieces that are cut again after fusing.
     pub block: f64,
 }

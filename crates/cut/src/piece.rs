@@ -16,7 +16,7 @@ use toile_pattern::{
     Role,
 };
 
-/// A notch that is less deep is told \[m\]: the allowance is then narrower than a notch is deep.
+/// A notch that is less deep is told (m): the allowance is then narrower than a notch is deep.
 const SHORT_NOTCH: f64 = 0.0035;
 
 /// The kind of a segment of a cut piece's line.
@@ -37,7 +37,7 @@ pub enum PieceSegment {
 /// A closed line of a cut piece.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceRing {
-    /// Its corners \[m\]; the first is not repeated.
+    /// Its corners (m); the first is not repeated.
     pub points: Vec<Vec2>,
     /// The kind of the segment from each corner to the next.
     pub segments: Vec<PieceSegment>,
@@ -48,7 +48,7 @@ pub struct PieceRing {
 pub struct InsideLine {
     /// The line of the panel, or what an operation made.
     pub name: LineName,
-    /// Its corners \[m\].
+    /// Its corners (m).
     pub points: Vec<Vec2>,
 }
 
@@ -59,7 +59,7 @@ pub struct Drill {
     pub name: CornerName,
     /// Which half of a folded panel it is on.
     pub half: u8,
-    /// Where \[m\].
+    /// Where (m).
     pub at: Vec2,
 }
 
@@ -101,9 +101,9 @@ pub struct CutPiece {
     pub inside: Vec<InsideLine>,
     /// The fold line it was unfolded in last, with the half as drawn kept.
     pub fold: Option<HalfPlane>,
-    /// Whether this is a half, to be laid on the fold of the cloth: from and to \[m\].
+    /// Whether this is a half, to be laid on the fold of the cloth: from and to (m).
     pub on_fold: Option<[Vec2; 2]>,
-    /// Direction of the warp \[rad\], from +x counter-clockwise.
+    /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: f64,
     /// Notches.
     pub notches: Vec<CutNotch>,
@@ -119,7 +119,7 @@ pub struct CutPiece {
     pub findings: Vec<Finding>,
     /// The edge each number in a finding stands for.
     pub(crate) names: Vec<Vec<EdgeOrigin>>,
-    /// The width asked beside each of them [m].
+    /// The width asked beside each of them (m).
     pub(crate) widths: Vec<Vec<f64>>,
     /// The dart each number in a finding stands for: its first leg.
     pub(crate) darts: Vec<EdgeOrigin>,
@@ -128,7 +128,7 @@ pub struct CutPiece {
 /// The side of a line that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfPlane {
-    /// On the line \[m\].
+    /// On the line (m).
     pub at: Vec2,
     /// Unit vector to the side that is kept.
     pub inward: Vec2,
@@ -286,7 +286,7 @@ impl CutPiece {
         polygon_of(&self.sew)
     }
 
-    /// Its extent as cut \[m\].
+    /// Its extent as cut (m).
     pub fn bounds(&self) -> Bounds2 {
         self.outer().bounds()
     }
@@ -297,7 +297,7 @@ impl CutPiece {
         found.map(|text| &*text.text)
     }
 
-    /// The width of allowance asked beside an edge of a finding \[m\].
+    /// The width of allowance asked beside an edge of a finding (m).
     pub(crate) fn width(&self, index: EdgeIndex) -> Option<f64> {
         self.widths.get(index.ring)?.get(index.edge).copied()
     }

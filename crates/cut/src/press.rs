@@ -25,7 +25,7 @@ pub(crate) fn pressed(piece: &Piece, plane: &Plane) -> Vec<PressArrow> {
 /// A short line where a leg of a dart or a line of a pleat ends at the cut line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldTick {
-    /// From the cut line inwards [m].
+    /// From the cut line inwards (m).
     pub ends: [Vec2; 2],
     /// Whether it lies in the allowance, where it may be cut as a notch is; without an allowance it leads into the
     /// cloth and is drawn alone.

@@ -4,10 +4,10 @@ use crate::chain::Chain;
 use crate::ring::Ring;
 use toile_geometry::{Bounds2, Polygon, Vec2, point_segment_distance, ring_area, wound_region};
 
-/// Points given to the union are multiples of this [m], a hundredth of its own grid, and its
+/// Points given to the union are multiples of this (m), a hundredth of its own grid, and its
 /// result then is too: no rounding comes between the grid, where rings do not cross, and us.
 const STEP: f64 = 1.0 / (1u64 << 36) as f64;
-/// The origin is a multiple of this [m], so that moving back is exact up to 8 km from there.
+/// The origin is a multiple of this (m), so that moving back is exact up to 8 km from there.
 const ORIGIN_STEP: f64 = 1.0 / (1u64 << 20) as f64;
 /// Grid steps of the union over half its extent: 2^28 to 2^29.
 const GRID: f64 = 1.0 / (1u64 << 28) as f64;
@@ -16,7 +16,7 @@ const GRID: f64 = 1.0 / (1u64 << 28) as f64;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub origin: Vec2,
-    /// Distance up to which the union moves a point [m]: some of its grid steps.
+    /// Distance up to which the union moves a point (m): some of its grid steps.
     pub tolerance: f64,
 }
 
@@ -53,7 +53,7 @@ fn largest(polygons: Vec<Polygon>) -> Option<Polygon> {
         .max_by(|a, b| a.area().total_cmp(&b.area()))
 }
 
-/// Slivers narrower than the grid are none [m2].
+/// Slivers narrower than the grid are none (m2).
 fn is_real(ring: &[Vec2], tolerance: f64) -> bool {
     let length: f64 = Bounds2::of(ring.iter().copied()).size().sum();
     ring_area(ring).abs() > tolerance * length

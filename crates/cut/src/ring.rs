@@ -3,7 +3,7 @@
 use crate::{Corner, EdgeIndex, SeamEdge};
 use toile_geometry::{Curve, Vec2, orient2d, ring_area};
 
-/// Chords stay this near to the curves \[m\]: a tenth of what a cutter resolves.
+/// Chords stay this near to the curves (m): a tenth of what a cutter resolves.
 pub const FLATNESS: f64 = 5e-6;
 
 /// Tight edges are flattened finer by this.
@@ -16,9 +16,9 @@ pub(crate) struct Chord {
     pub to: Vec2,
     /// Number of its edge in [`Ring::edges`].
     pub edge: usize,
-    /// Length of the edge before it, in the ring's direction [m].
+    /// Length of the edge before it, in the ring's direction (m).
     pub at: f64,
-    /// Its length [m], above 0.
+    /// Its length (m), above 0.
     pub length: f64,
     /// Away from the cloth, of length 1.
     pub normal: Vec2,
@@ -36,7 +36,7 @@ impl Chord {
 pub(crate) struct RingEdge {
     /// Its number in the given loop.
     pub source: usize,
-    /// Width of its allowance [m].
+    /// Width of its allowance (m).
     pub width: f64,
     /// The corner at its start, previous and next in the ring's direction.
     pub corner: Corner,
@@ -44,7 +44,7 @@ pub(crate) struct RingEdge {
     pub limit: f64,
     /// Its chords, as a range of [`Ring::chords`].
     pub chords: std::ops::Range<usize>,
-    /// Length of its chords [m].
+    /// Length of its chords (m).
     pub length: f64,
     /// Outward normals of the curve at its start and end: those of the chords there are turned
     /// by up to some hundredths, half a millimetre at the end of a wide allowance.
@@ -207,7 +207,7 @@ impl Ring {
         &self.chords[self.edges[edge].chords.end - 1]
     }
 
-    /// From a chord's start (0) or end (1) to the end of its allowance [m].
+    /// From a chord's start (0) or end (1) to the end of its allowance (m).
     pub fn out(&self, k: usize, end: usize) -> Vec2 {
         let edge = &self.edges[self.chords[k].edge];
         let at_end = match end {
@@ -220,7 +220,7 @@ impl Ring {
         }
     }
 
-    /// A place on an edge, counted in the given direction [m], from one in the ring's direction.
+    /// A place on an edge, counted in the given direction (m), from one in the ring's direction.
     pub fn given_place(&self, edge: usize, at: f64) -> f64 {
         if self.reversed {
             self.edges[edge].length - at

@@ -6,14 +6,14 @@ use toile_geometry::{Curve, Vec2};
 /// An edge of a seam line, and the allowance beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeamEdge {
-    /// Where it is sewn \[m\]; it ends where the next edge of its loop starts.
+    /// Where it is sewn (m); it ends where the next edge of its loop starts.
     pub curve: Curve,
-    /// Width of the allowance \[m\], measured square to the curve; 0 for none.
+    /// Width of the allowance (m), measured square to the curve; 0 for none.
     pub width: f64,
     /// How the cut line turns at the edge's start.
     pub corner: Corner,
     /// How many times the wider allowance the cut line may reach from there: [`crate::MITRE_LIMIT`]
-    /// usually, 1 to 100.
+    /// usually, 1 to 100 (1).
     pub limit: f64,
 }
 

@@ -24,7 +24,7 @@ impl NamedSeam {
         all.map(|(edges, names)| (edges.as_slice(), names.as_slice()))
     }
 
-    /// The width of the allowance beside an edge \[m\].
+    /// The width of the allowance beside an edge (m).
     pub fn width_of(&self, edge: EdgeOrigin) -> f64 {
         let all = self
             .loops()
@@ -86,7 +86,7 @@ impl Plane {
             .unwrap_or(n)
     }
 
-    /// Direction of the warp as it is cut \[rad\].
+    /// Direction of the warp as it is cut (rad).
     pub fn grain(&self, drawn: f64) -> f64 {
         match self.turned {
             true => std::f64::consts::PI - drawn,

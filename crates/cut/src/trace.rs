@@ -20,7 +20,7 @@ pub(crate) struct Sides {
 
 /// A ring with the side each of its segments lies on.
 pub(crate) struct Traced {
-    /// [m], no longer in the frame.
+    /// (m), no longer in the frame.
     pub points: Vec<Vec2>,
     pub sides: Vec<usize>,
     /// Where on its side each segment starts and ends (shares of the side's length).
@@ -29,7 +29,7 @@ pub(crate) struct Traced {
 
 /// A span of a segment that lies on a side.
 struct Overlap {
-    /// Along the segment [m].
+    /// Along the segment (m).
     from: f64,
     to: f64,
     side: usize,

@@ -7,9 +7,9 @@ use crate::trace::{Sides, Traced};
 use crate::{CutRing, Finding};
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 
-/// Shorter spans are ignored: they come from flattening at bends of tight curves \[m\].
+/// Shorter spans are ignored: they come from flattening at bends of tight curves (m).
 const SHORTEST: f64 = 1e-4;
-/// Shorter gaps between spans are rounding \[m\].
+/// Shorter gaps between spans are rounding (m).
 const ROUNDING: f64 = 1e-7;
 /// A slit counts as shut where the cut line is this many widths from its end: an inner corner of
 /// 60 degrees between equal allowances.
@@ -19,11 +19,11 @@ const SLIT_DEPTH: f64 = 2.0;
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     edge: usize,
-    /// Along the edge in the ring's direction [m].
+    /// Along the edge in the ring's direction (m).
     from: f64,
     to: f64,
     swallowed: bool,
-    /// Least width met on it [m].
+    /// Least width met on it (m).
     least: f64,
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn covered(ring: &Ring, sides: &Sides, traced: &[Traced]) -> Vec<Vec<
     covered
 }
 
-/// The spans of a chord [m] that sorted shares leave uncovered.
+/// The spans of a chord (m) that sorted shares leave uncovered.
 fn uncovered(covered: &[[f64; 2]], length: f64) -> Vec<[f64; 2]> {
     let mut left = Vec::new();
     let mut at = 0.0;
@@ -151,7 +151,7 @@ impl<'a> Piece<'a> {
         self.cut.contains(p) == (self.ring.number == 0)
     }
 
-    /// Cloth beside a point of the seam line, square to it [m]; infinite where the cut line is
+    /// Cloth beside a point of the seam line, square to it (m); infinite where the cut line is
     /// not met.
     fn width(&self, p: Vec2, normal: Vec2) -> f64 {
         let hit = |&[a, b]: &[Vec2; 2]| {
@@ -166,7 +166,7 @@ impl<'a> Piece<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// A span of a chord [m], divided where its own cut line would cross the border.
+    /// A span of a chord (m), divided where its own cut line would cross the border.
     fn divided(&self, k: usize, [from, to]: [f64; 2]) -> Vec<f64> {
         let chord = &self.ring.chords[k];
         let width = self.ring.edges[chord.edge].width;
@@ -205,7 +205,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// Point of an edge at a length from its start [m].
+    /// Point of an edge at a length from its start (m).
     fn point(&self, edge: usize, at: f64) -> Vec2 {
         let chords = &self.ring.chords[self.ring.edges[edge].chords.clone()];
         let k = chords.partition_point(|chord| chord.at <= at).max(1) - 1;

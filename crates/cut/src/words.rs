@@ -8,9 +8,9 @@ use toile_pattern::{
     Code, Diagnostic, Draft, EdgeOrigin, Name, NotchId, Panel, Pattern, Place, Severity,
 };
 
-/// Missing or narrow allowance along less than this is not worth a word \[m\].
+/// Missing or narrow allowance along less than this is not worth a word (m).
 const SHORT: f64 = 0.002;
-/// Allowances that are this much narrower than asked are as good as those asked \[m\].
+/// Allowances that are this much narrower than asked are as good as those asked (m).
 const NARROWER: f64 = 5e-4;
 
 /// Diagnostics of the cut lines of a draft, once for all copies and halves of a panel, and of the pieces

@@ -18,11 +18,11 @@ use toile_geometry::{CrossingKind, Curve, Polygon, Vec2, closest_on_segment, rin
 const CASES: u32 = 1000;
 /// 0.01 mm.
 const TOLERANCE: f64 = 1e-5;
-/// Between samples of the seam line [m].
+/// Between samples of the seam line (m).
 const SAMPLE: f64 = 4e-3;
-/// Stretches shorter than 0.1 mm are not listed; the cut line is then no farther away than this [m].
+/// Stretches shorter than 0.1 mm are not listed; the cut line is then no farther away than this (m).
 const SHORT: f64 = 1e-3;
-/// Ends of stretches are found to this [m]: where a curve's cut line leaves at a grazing angle,
+/// Ends of stretches are found to this (m): where a curve's cut line leaves at a grazing angle,
 /// flattening to 5 um moves the place by some millimetres.
 const SLACK: f64 = 4e-3;
 
@@ -72,7 +72,7 @@ impl<'a> Loop<'a> {
 }
 
 /// Distance of a point from the parallel of an edge in its width, continued straight at both ends
-/// as far as corners reach \[m\].
+/// as far as corners reach (m).
 fn off_parallel(p: Vec2, edge: &SeamEdge, sign: f64) -> f64 {
     let normal = |t: f64| {
         let along = edge.curve.derivative(t).normalize() * sign;
@@ -256,7 +256,7 @@ fn check_corners(seam: &SeamLine, cut: &CutLine) -> usize {
     found
 }
 
-/// Cloth beside a point of the seam line along its normal [m], up to the first border.
+/// Cloth beside a point of the seam line along its normal (m), up to the first border.
 fn cloth_beside(p: Vec2, normal: Vec2, border: &[[Vec2; 2]]) -> f64 {
     let hits = border.iter().filter_map(|&[a, b]| {
         let (from, to) = (normal.perp(&(a - p)), normal.perp(&(b - p)));

@@ -18,9 +18,9 @@ pub enum Action {
     Pull {
         /// Where it holds the cloth.
         spot: Spot,
-        /// Where it draws it to [m].
+        /// Where it draws it to (m).
         to: Vec3,
-        /// Its largest force [N].
+        /// Its largest force (N).
         force: f64,
     },
     /// The hand lets go of a spot; one that is not held stays as it is.
@@ -54,13 +54,13 @@ pub struct Input {
     pub action: Action,
 }
 
-/// Stiffness of a hand [N/m]: its usual force over 5 cm.
+/// Stiffness of a hand (N/m): its usual force over 5 cm.
 pub const HAND_STIFFNESS: f64 = 100.0;
 
-/// Usual largest force of a hand [N]: some times the weight of a garment, so that cloth is drawn and not torn.
+/// Usual largest force of a hand (N): some times the weight of a garment, so that cloth is drawn and not torn.
 pub const HAND_FORCE: f64 = 5.0;
 
-/// Farthest place cloth may be drawn to, along each axis [m]: no room is larger.
+/// Farthest place cloth may be drawn to, along each axis (m): no room is larger.
 pub const FARTHEST_PULL: f64 = 100.0;
 
 impl Spot {
@@ -121,11 +121,11 @@ impl Spot {
 pub(crate) struct Hand {
     /// Where it holds the cloth.
     pub spot: Spot,
-    /// Where it is [m].
+    /// Where it is (m).
     pub to: Vec3,
-    /// Its largest force [N].
+    /// Its largest force (N).
     pub force: f64,
-    /// Vertices of the spot seen from it when the hand took hold of it [m].
+    /// Vertices of the spot seen from it when the hand took hold of it (m).
     corners: Vec<Vec3>,
 }
 

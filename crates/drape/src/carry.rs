@@ -69,7 +69,7 @@ impl Carry {
         Ok(Self { coordinates })
     }
 
-    /// Positions of the new vertices on the old mesh in a shape of it [m], with Phong tessellation (Boubekeur and Alexa
+    /// Positions of the new vertices on the old mesh in a shape of it (m), with Phong tessellation (Boubekeur and Alexa
     /// 2008) so that the facets of a coarse mesh do not show on the finer one. `shape` has the triangles of the old
     /// mesh in the same order.
     pub fn apply(&self, shape: &TriangleMesh) -> Vec<Vec3> {

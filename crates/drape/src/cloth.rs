@@ -9,11 +9,11 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cloth {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: Vec<Vec3>,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
-    /// Corners of each triangle in its material plane, warp along the first axis [m]. Two
+    /// Corners of each triangle in its material plane, warp along the first axis (m). Two
     /// triangles need not agree on a shared corner: panels keep their own planes when merged.
     pub rest: Vec<[Vec2; 3]>,
     /// Index into `materials` for each triangle.

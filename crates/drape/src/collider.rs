@@ -24,7 +24,7 @@ pub struct Collider {
     moving: Arc<OnceLock<MovingSurface>>,
 }
 
-/// Cell of a collider's distance field [m]: a third of the radius of the sharpest crease that holds cloth.
+/// Cell of a collider's distance field (m): a third of the radius of the sharpest crease that holds cloth.
 const FIELD_CELL: f64 = 6e-3;
 
 impl Collider {
@@ -56,7 +56,7 @@ impl Collider {
             && self.track == other.track
     }
 
-    /// Its pose at a time [s]; none without a motion.
+    /// Its pose at a time (s); none without a motion.
     pub fn pose(&self, time: f64) -> Option<Pose> {
         self.motion.as_ref().map(|motion| motion.pose(time))
     }
@@ -66,13 +66,13 @@ impl Collider {
         self.motion.is_some() || self.track.is_some()
     }
 
-    /// Places of its vertices at a time [s] [m].
+    /// Places of its vertices at a time (s) (m).
     pub fn positions(&self, time: f64) -> Vec<Vec3> {
         let loaded = &self.surface.mesh().positions;
         animated_positions(loaded, self.track.as_ref(), self.motion.as_deref(), time)
     }
 
-    /// Poses of the frames of its track at a time [s], moved with it as a whole.
+    /// Poses of the frames of its track at a time (s), moved with it as a whole.
     pub fn frames(&self, time: f64) -> Vec<Pose> {
         let Some(track) = &self.track else {
             return Vec::new();
@@ -96,7 +96,7 @@ impl Collider {
         self.moving.get_or_init(build).clone()
     }
 
-    /// The surface at a time [s].
+    /// The surface at a time (s).
     pub fn at(&self, time: f64) -> PlacedSolid<'_> {
         PlacedSolid {
             solid: self,
@@ -129,7 +129,7 @@ impl PlacedSolid<'_> {
         self.pose.as_ref().map_or(point, |pose| pose.undo(point))
     }
 
-    /// Signed distance [m] of a point [m] and its gradient: smooth, but exact where vertices move one by one; none far
+    /// Signed distance (m) of a point (m) and its gradient: smooth, but exact where vertices move one by one; none far
     /// away.
     pub fn distance(&self, point: Vec3) -> Option<(f64, Vec3)> {
         if let Some(surface) = &self.tracked {
@@ -144,7 +144,7 @@ impl PlacedSolid<'_> {
         Some((distance, slope))
     }
 
-    /// Hessian of the smooth distance [1/m] at a point [m]; none where the distance is exact.
+    /// Hessian of the smooth distance (1/m) at a point (m); none where the distance is exact.
     pub fn curvature(&self, point: Vec3) -> Option<Matrix3<f64>> {
         if self.tracked.is_some() {
             return None;
@@ -175,20 +175,20 @@ impl PlacedSolid<'_> {
         }
     }
 
-    /// Area of a triangle of a surface whose vertices move one by one, where it is partly inside another part of it [m2].
+    /// Area of a triangle of a surface whose vertices move one by one, where it is partly inside another part of it (m2).
     pub fn buried_area(&self, triangle: u32) -> Option<f64> {
         let surface = self.tracked.as_ref()?;
         let area = || triangle_area(surface.corners(triangle, 1.0));
         surface.has_buried(triangle, 1.0).then(area)
     }
 
-    /// Exact signed distance of a point from the surface [m].
+    /// Exact signed distance of a point from the surface (m).
     pub fn exact_distance(&self, point: Vec3) -> f64 {
         let closest = self.closest_point(point);
         closest.map_or(f64::INFINITY, |c| c.signed_distance)
     }
 
-    /// The closest point of the surface to a point [m], in the frame of a solid that moves rigidly; none to a point that
+    /// The closest point of the surface to a point (m), in the frame of a solid that moves rigidly; none to a point that
     /// is not finite.
     pub(crate) fn closest_point(&self, point: Vec3) -> Option<ClosestPoint> {
         match &self.tracked {
@@ -203,7 +203,7 @@ impl PlacedSolid<'_> {
 pub struct PrescribedVertex {
     /// The vertex.
     pub vertex: u32,
-    /// Its position under the identity pose of the motion [m].
+    /// Its position under the identity pose of the motion (m).
     pub home: Vec3,
     /// The motion.
     pub motion: Arc<Motion>,

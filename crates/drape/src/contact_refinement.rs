@@ -4,7 +4,7 @@ use crate::contact_settings::MOST_EXTRA;
 use crate::{ContactSample, Model, State};
 use std::sync::Arc;
 
-/// Extra contact offset added each time a refined triangle still crosses a solid [m]: a quarter of the default offset.
+/// Extra contact offset added each time a refined triangle still crosses a solid (m): a quarter of the default offset.
 const EXTRA_OFFSET: f64 = 1e-3;
 
 impl State {

@@ -4,29 +4,29 @@ use crate::laws::contact::{ContactLaw, TANGENTIAL_RATIO};
 use crate::{DrapeError, Material};
 use serde::{Deserialize, Serialize};
 
-/// Distance from a solid to which its distance field extends [m].
+/// Distance from a solid to which its distance field extends (m).
 pub(crate) const FIELD_REACH: f64 = 0.03;
 
-/// Largest extra offset of the contact samples of a triangle that crosses a solid [m]: a crossing that remains then is
+/// Largest extra offset of the contact samples of a triangle that crosses a solid (m): a crossing that remains then is
 /// not cured by distance.
 pub(crate) const MOST_EXTRA: f64 = 8e-3;
 
-/// Largest contact offset from solids [m]: the extent of the distance field less the largest extra offset.
+/// Largest contact offset from solids (m): the extent of the distance field less the largest extra offset.
 pub const MOST_OFFSET: f64 = FIELD_REACH - MOST_EXTRA;
 
 /// Settings of contact with solids and of cloth with cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSettings {
-    /// Distance of the middle of the cloth from a solid at which contact begins [m], at most [`MOST_OFFSET`]; half the
+    /// Distance of the middle of the cloth from a solid at which contact begins (m), at most [`MOST_OFFSET`]; half the
     /// cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an edge on the
     /// tightest curve of the body, e^2 / (8 R).
     pub offset: f64,
-    /// Normal stiffness per area of cloth [N/m3]: pressure per depth.
+    /// Normal stiffness per area of cloth (N/m3): pressure per depth.
     pub stiffness: f64,
     /// Whether friction acts.
     pub friction: bool,
-    /// Distance between the middles of two cloths at which contact begins [m], the cloth's thickness where that is
+    /// Distance between the middles of two cloths at which contact begins (m), the cloth's thickness where that is
     /// more; at 0 cloth passes through cloth.
     pub cloth_offset: f64,
 }
@@ -62,7 +62,7 @@ impl ContactSettings {
         }
     }
 
-    /// The laws of contact of an area of cloth [m2] with a coefficient of friction, soft at any depth.
+    /// The laws of contact of an area of cloth (m2) with a coefficient of friction, soft at any depth.
     pub fn law(&self, area: f64, friction: f64) -> ContactLaw {
         let normal = self.stiffness * area;
         ContactLaw {

@@ -35,7 +35,7 @@ pub struct Contacts {
     detector: ContactDetector,
     clearances: Vec<Clearance>,
     measured_for: Option<MeasuredFor>,
-    /// Positions at the start of the present step in time [m].
+    /// Positions at the start of the present step in time (m).
     step_start: Option<Vec<Vec3>>,
 }
 
@@ -43,9 +43,9 @@ pub struct Contacts {
 /// contacts, it makes no contact.
 #[derive(Clone, Copy)]
 struct Clearance {
-    /// Position at the measurement [m].
+    /// Position at the measurement (m).
     position: Vec3,
-    /// Lower bound of the distance from all solids there [m].
+    /// Lower bound of the distance from all solids there (m).
     distance: f64,
 }
 
@@ -79,7 +79,7 @@ impl Contacts {
         self.refresh_surfaces(model, state, positions);
     }
 
-    /// Begins a step in time at some positions [m]. Until [`Self::end_step`] a contact without memory of an earlier step
+    /// Begins a step in time at some positions (m). Until [`Self::end_step`] a contact without memory of an earlier step
     /// is anchored where it was then, and its friction follows its present normal force instead of the last one.
     pub(crate) fn begin_step(&mut self, positions: &[Vec3]) {
         self.step_start = Some(positions.to_vec());
@@ -163,7 +163,7 @@ impl Contacts {
         self.active.extend(found.into_iter().flatten());
     }
 
-    /// Adds the damping of contact with solids to the forces [N], for explicit methods in substeps of `h` [s], and
+    /// Adds the damping of contact with solids to the forces (N), for explicit methods in substeps of `h` (s), and
     /// limits the force on buried samples, which would throw the cloth off.
     pub fn damp(&self, model: &Model, state: &State, h: f64, force: &mut [Vec3]) {
         for contact in &self.active {

@@ -14,7 +14,7 @@ use toile_geometry::Vec3;
 pub struct Attachment {
     /// The vertex.
     pub vertex: u32,
-    /// The point it is pulled to [m].
+    /// The point it is pulled to (m).
     pub place: Vec3,
     /// Its force law.
     pub law: ElasticLaw,
@@ -26,7 +26,7 @@ pub struct Attachment {
 pub struct FrameAttachment {
     /// The vertex.
     pub vertex: u32,
-    /// The point in the frame of the solid [m].
+    /// The point in the frame of the solid (m).
     pub point: Vec3,
     /// The motion of the solid.
     pub motion: Arc<Motion>,
@@ -35,7 +35,7 @@ pub struct FrameAttachment {
 }
 
 impl FrameAttachment {
-    /// The point that the vertex is pulled to at a time \[s\], in metres.
+    /// The point that the vertex is pulled to at a time (s), in metres.
     pub fn target(&self, time: f64) -> Vec3 {
         self.motion.pose(time).apply(self.point)
     }
@@ -93,9 +93,9 @@ impl FromIterator<Attachment> for Attachments {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Control {
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     pub gravity: Vec3,
-    /// Drag per mass, of the air and of Rayleigh damping together [1/s]: a free velocity falls by
+    /// Drag per mass, of the air and of Rayleigh damping together (1/s): a free velocity falls by
     /// exp(-drag t).
     pub air_drag: f64,
     /// Drag of the air on triangles; its own `drag` is part of [`Control::air_drag`].

@@ -8,7 +8,7 @@ use toile_geometry::Vec3;
 pub enum ElasticEnd {
     /// A vertex of the cloth.
     Vertex(u32),
-    /// A fixed point [m].
+    /// A fixed point (m).
     Point(Vec3),
 }
 
@@ -24,7 +24,7 @@ pub struct Elastic {
 }
 
 impl ElasticEnd {
-    /// Its position [m].
+    /// Its position (m).
     pub(crate) fn position(self, x: &[Vec3]) -> Vec3 {
         match self {
             Self::Vertex(v) => x[v as usize],
@@ -34,7 +34,7 @@ impl ElasticEnd {
 }
 
 impl Elastic {
-    /// Vector from the second end to the first [m].
+    /// Vector from the second end to the first (m).
     pub(crate) fn gap(&self, x: &[Vec3]) -> Vec3 {
         x[self.from as usize] - self.to.position(x)
     }

@@ -9,9 +9,9 @@ use toile_geometry::Vec3;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Damping {
-    /// Coefficient of mass [1/s].
+    /// Coefficient of mass (1/s).
     pub mass: f64,
-    /// Coefficient of stiffness, added to that of each material [s].
+    /// Coefficient of stiffness, added to that of each material (s).
     pub stiffness: f64,
 }
 
@@ -19,7 +19,7 @@ pub struct Damping {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     pub gravity: Vec3,
     /// The air.
     pub air: Air,
@@ -27,10 +27,10 @@ pub struct Environment {
     pub damping: Damping,
     /// Contact settings.
     pub contact: ContactSettings,
-    /// Extra contact offset from solids of each layer over that of the next inner one [m], while layers pass through
+    /// Extra contact offset from solids of each layer over that of the next inner one (m), while layers pass through
     /// each other; none where contact keeps their order. It applies when a structure is compiled.
     pub(crate) layers_apart: Option<f64>,
-    /// By how much solids are thinner than they are drawn [m]: contact with them begins so much deeper. A garment that
+    /// By how much solids are thinner than they are drawn (m): contact with them begins so much deeper. A garment that
     /// is tight is sewn round a thinner body; the steps of sewing heed it, XPBD and explicit methods do not.
     pub(crate) recess: f64,
 }
@@ -39,7 +39,7 @@ pub struct Environment {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     Gravity(Vec3),
     /// The air with its wind.
     Air(Air),

@@ -25,12 +25,12 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Predicted positions of the vertices [m].
+    /// Predicted positions of the vertices (m).
     pub fn positions(&self) -> &[Vec3] {
         &self.step.positions
     }
 
-    /// Energy above the new equilibrium in the quadratic model [J]: half the square of Newton's decrement.
+    /// Energy above the new equilibrium in the quadratic model (J): half the square of Newton's decrement.
     pub fn energy(&self) -> f64 {
         self.step.predicted_decrease
     }
@@ -67,7 +67,7 @@ impl Equilibrium {
         self.continuation.residual()
     }
 
-    /// The system with other rest shapes for the triangles of the panels [m].
+    /// The system with other rest shapes for the triangles of the panels (m).
     ///
     /// # Errors
     /// Those of [`System::reshaped`].
@@ -76,7 +76,7 @@ impl Equilibrium {
         self.system.reshaped("garment", merged.collect())
     }
 
-    /// Predicts the equilibrium under other rest shapes for the triangles of the panels [m], by one gradient and one
+    /// Predicts the equilibrium under other rest shapes for the triangles of the panels (m), by one gradient and one
     /// solution with the last factor. Only caches change.
     ///
     /// # Errors

@@ -72,9 +72,9 @@ pub enum DrapeError {
         stage: &'static str,
         /// The fastest vertex.
         vertex: usize,
-        /// Its speed [m/s].
+        /// Its speed (m/s).
         speed: f64,
-        /// The substep [s].
+        /// The substep (s).
         substep: f64,
     },
     /// A step ended with far more energy than initial energy, weight and air can have supplied.
@@ -86,9 +86,9 @@ pub enum DrapeError {
         stage: &'static str,
         /// The fastest vertex after the step.
         vertex: usize,
-        /// Energy of motion, strain, elastics and contact after the step [J].
+        /// Energy of motion, strain, elastics and contact after the step (J).
         energy: f64,
-        /// Largest energy that can have been supplied [J].
+        /// Largest energy that can have been supplied (J).
         possible: f64,
     },
     /// An explicit method that would need too many substeps to be stable.
@@ -118,7 +118,7 @@ pub enum DrapeError {
         "seams are still {gap_mm:.1} mm apart after {steps} steps of sewing; the garment may be too tight for the body, or a panel hangs behind it: check the measurements and the placement"
     )]
     SeamsOpen {
-        /// Largest remaining gap [mm].
+        /// Largest remaining gap (mm).
         gap_mm: f64,
         /// Steps taken.
         steps: usize,
@@ -128,7 +128,7 @@ pub enum DrapeError {
         "the garment fell off the body: the highest point of a part that hangs together is {top:.2} m above the soles; check where its panels are worn, its size, and what should hold it"
     )]
     LeftBody {
-        /// Highest point of the part over the body's lowest [m].
+        /// Highest point of the part over the body's lowest (m).
         top: f64,
     },
     /// The caller asked to stop.

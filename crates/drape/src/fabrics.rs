@@ -16,19 +16,19 @@ pub struct LibraryFabric {
     pub about: &'static str,
     /// A colour such cloth is often seen in: red, green and blue of sRGB, 0 to 1.
     pub colour: [f64; 3],
-    /// Mass per area [kg/m2].
+    /// Mass per area (kg/m2).
     pub density: f64,
-    /// Thickness [m].
+    /// Thickness (m).
     pub thickness: f64,
-    /// Stiffness [N/m] and hardening of warp and weft.
+    /// Stiffness (N/m) and hardening of warp and weft.
     pub stretch: [(f64, f64); 2],
-    /// Shear stiffness [N/m].
+    /// Shear stiffness (N/m).
     pub shear: f64,
     /// Poisson ratio.
     pub poisson: f64,
-    /// Bending stiffness along warp, weft and bias [N m].
+    /// Bending stiffness along warp, weft and bias (N m).
     pub bend: [f64; 3],
-    /// Coulomb friction coefficient \[1\].
+    /// Coulomb friction coefficient (1).
     pub friction: f64,
     /// Where each figure comes from.
     pub sources: FabricSources,
@@ -86,7 +86,7 @@ const DENIM: &str = "mean of six denims of regenerated cellulose: Kumari and Khu
 const COTTON_DENIM: &str = "measured: Mondal and Khan 2014, Fashion and Textiles 1:19, table 1, trousers of \
      cotton twill washed with 2 % of enzyme, 334 g/m2, stiffness 2.62 cm, read as the bending length; \
      one direction, not named";
-/// Mass per area [kg/m2] and bending length [m] of that.
+/// Mass per area (kg/m2) and bending length (m) of that.
 const WASHED_DENIM: (f64, f64) = (0.334, 0.0262);
 const QUANTILES: &str = "5 % quantiles of 618 fabrics: Feng, Huang, Xu, Wang 2022, Learning-based \
                          Bending Stiffness Parameter Estimation by a Drape Tester, data set";

@@ -16,7 +16,7 @@ pub struct Hessian<'a> {
     pub bending: &'a ScalarMatrix,
     /// Blocks over the mesh's pattern; the diagonal ones include all terms but bending.
     pub blocks: &'a [Matrix3<f64>],
-    /// Stiffness of each elastic [N/m].
+    /// Stiffness of each elastic (N/m).
     pub secants: &'a [f64],
     /// Blocks between vertices coupled by contact of cloth with cloth.
     pub touching: &'a Couplings,
@@ -162,7 +162,7 @@ pub struct Direct {
 
 impl Direct {
     /// Symbolic factorisation for a model and contact pairs of vertices; `layout` are positions of the vertices, for
-    /// nested dissection [m].
+    /// nested dissection (m).
     pub fn new(system: &System, layout: &[Vec3], touching: &[[u32; 2]]) -> Self {
         let unknowns = Unknowns::new(system);
         let graph = unknowns.graph(system, touching);

@@ -34,7 +34,7 @@ struct StretchTerm {
     internal: [f64; 3],
     /// Strain when the step began.
     start: [f64; 3],
-    /// Viscous matrix over the step: uu, vv, uu-vv, gamma-gamma [N/m].
+    /// Viscous matrix over the step: uu, vv, uu-vv, gamma-gamma (N/m).
     viscous: [f64; 4],
 }
 
@@ -83,15 +83,15 @@ impl StrainLaw for IncrementalLaw<'_> {
 /// (g.(w - w_0) + 1/2 (w - w_0).H.(w - w_0)) h, convex, its steady state that of the full law.
 #[derive(Clone, Copy, Debug)]
 struct AirTerm {
-    /// The middle of the triangle when the step began [m].
+    /// The middle of the triangle when the step began (m).
     start: Vec3,
-    /// 1/h [1/s]; 0 while nothing moves.
+    /// 1/h (1/s); 0 while nothing moves.
     rate: f64,
-    /// Velocity of the triangle then [m/s].
+    /// Velocity of the triangle then (m/s).
     velocity: Vec3,
-    /// g [N].
+    /// g (N).
     gradient: Vec3,
-    /// H [N s/m].
+    /// H (N s/m).
     hessian: Matrix3<f64>,
 }
 
@@ -143,7 +143,7 @@ impl IncrementalPotential {
         self.begin_step(system, state, 0.0);
     }
 
-    /// Sets the terms of a step from a state; `rate` is 1/h [1/s], 0 in statics.
+    /// Sets the terms of a step from a state; `rate` is 1/h (1/s), 0 in statics.
     pub fn begin_step(&mut self, system: &System, state: &State, rate: f64) {
         let x = &state.positions;
         let count = system.topology.triangles.len();
@@ -226,7 +226,7 @@ impl IncrementalPotential {
         self.bending.as_ref().unwrap_or(&system.rest.bending)
     }
 
-    /// Energy of folds and air at some positions [J].
+    /// Energy of folds and air at some positions (J).
     pub fn energy(&self, system: &System, x: &[Vec3]) -> f64 {
         if self.fold.is_empty() && self.air.is_empty() {
             return 0.0;
@@ -275,7 +275,7 @@ impl IncrementalPotential {
 }
 
 impl AirTerm {
-    /// Change of velocity since the step began [m/s].
+    /// Change of velocity since the step began (m/s).
     fn change(&self, corners: [Vec3; 3]) -> Vec3 {
         (corners.iter().sum::<Vec3>() / 3.0 - self.start) * self.rate - self.velocity
     }
@@ -316,7 +316,7 @@ fn add_fold(system: &System, t: usize, term: &FoldTerm, x: &[Vec3], gradient: &m
 }
 
 /// Adds the forces that depend on velocity, for explicit methods: viscosity and the change that
-/// motion makes to the force of the air [N].
+/// motion makes to the force of the air (N).
 pub(crate) fn add_forces_of_motion(system: &System, state: &State, force: &mut [Vec3]) {
     let (x, v) = (&state.positions, &state.velocities);
     let viscous = system.materials.have_viscous_stretch();
@@ -362,7 +362,7 @@ pub(crate) fn add_forces_of_motion(system: &System, state: &State, force: &mut [
     }
 }
 
-/// Integrates the internal strain over `h` [s], the strain being constant:
+/// Integrates the internal strain over `h` (s), the strain being constant:
 /// v <- E + (v - E) exp(-h / tau).
 pub(crate) fn relax(system: &System, state: &mut State, h: f64) {
     if !system.materials.keep_strain() {

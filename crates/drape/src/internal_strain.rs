@@ -9,6 +9,6 @@ use serde::{Deserialize, Serialize};
 pub struct InternalStrain {
     /// Green strain E_uu, E_vv, gamma.
     pub stretch: [f64; 3],
-    /// Curvatures along the normal: uu, uv, vv [1/m].
+    /// Curvatures along the normal: uu, uv, vv (1/m).
     pub curvature: [f64; 3],
 }

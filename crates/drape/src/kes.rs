@@ -3,38 +3,38 @@
 use crate::Material;
 use std::f64::consts::PI;
 
-/// One gram force [N].
+/// One gram force (N).
 const GRAM_FORCE: f64 = 9.80665e-3;
 
-/// Largest load of KES-FB1: 500 gf/cm as force per length [N/m].
+/// Largest load of KES-FB1: 500 gf/cm as force per length (N/m).
 pub const KES_LOAD: f64 = 500.0 * GRAM_FORCE / 1e-2;
 
-/// Curvature to which KES-FB2 bends [1/m]: 2.5 per cm.
+/// Curvature to which KES-FB2 bends (1/m): 2.5 per cm.
 const KES_CURVATURE: f64 = 250.0;
 
-/// Acceleration of gravity [m/s2].
+/// Acceleration of gravity (m/s2).
 const GRAVITY: f64 = 9.80665;
 
 /// Values of the Kawabata evaluation system (Kawabata 1980) in its own units, warp and weft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KesValues {
-    /// B: bending stiffness [gf cm2/cm].
+    /// B: bending stiffness (gf cm2/cm).
     pub bending: [f64; 2],
-    /// 2HB: hysteresis of the bending moment at 1/cm [gf cm/cm].
+    /// 2HB: hysteresis of the bending moment at 1/cm (gf cm/cm).
     pub bending_hysteresis: [f64; 2],
-    /// G: shear stiffness, mean of warp and weft [gf/(cm deg)].
+    /// G: shear stiffness, mean of warp and weft (gf/(cm deg)).
     pub shear: f64,
-    /// 2HG: hysteresis of the shear force at half a degree [gf/cm].
+    /// 2HG: hysteresis of the shear force at half a degree (gf/cm).
     pub shear_hysteresis: f64,
-    /// EM or EMT: extension at 500 gf/cm [%].
+    /// EM or EMT: extension at 500 gf/cm (%).
     pub extension: [f64; 2],
-    /// LT: linearity of the load-extension curve \[1\], above 0.5 to 1.
+    /// LT: linearity of the load-extension curve (1), above 0.5 to 1.
     pub linearity: [f64; 2],
-    /// RT: share of the tensile energy recovered [%].
+    /// RT: share of the tensile energy recovered (%).
     pub resilience: [f64; 2],
-    /// T0: thickness at 0.5 gf/cm2 [mm].
+    /// T0: thickness at 0.5 gf/cm2 (mm).
     pub thickness: f64,
-    /// W: weight [mg/cm2].
+    /// W: weight (mg/cm2).
     pub weight: f64,
     /// MIU: coefficient of friction against the instrument's piano wires.
     pub friction: f64,
@@ -71,17 +71,17 @@ impl KesValues {
     }
 }
 
-/// B of KES [gf cm2/cm] as bending stiffness [N m].
+/// B of KES (gf cm2/cm) as bending stiffness (N m).
 pub const fn bending(b: f64) -> f64 {
     b * GRAM_FORCE * 1e-2
 }
 
-/// G of KES [gf/(cm deg)] as shear stiffness [N/m per rad].
+/// G of KES (gf/(cm deg)) as shear stiffness (N/m per rad).
 pub const fn shear(g: f64) -> f64 {
     g * GRAM_FORCE / 1e-2 * 180.0 / PI
 }
 
-/// W of KES [mg/cm2] as density [kg/m2].
+/// W of KES (mg/cm2) as density (kg/m2).
 pub const fn weight(w: f64) -> f64 {
     w * 1e-2
 }
@@ -89,8 +89,8 @@ pub const fn weight(w: f64) -> f64 {
 /// Least linearity of the cubic curve: a pure cube has 1/2.
 const LEAST_LINEARITY: f64 = 0.51;
 
-/// Stiffness C [N/m] and hardening k of the curve S = C (E + k E^3) that reaches 500 gf/cm at an
-/// extension [%] with a linearity LT.
+/// Stiffness C (N/m) and hardening k of the curve S = C (E + k E^3) that reaches 500 gf/cm at an
+/// extension (%) with a linearity LT.
 ///
 /// LT is the area under the curve over that of the triangle, so with e the extension
 /// LT = (1 + k e^2 / 2) / (1 + k e^2) and k = (1 - LT) / ((LT - 1/2) e^2); the difference between
@@ -105,12 +105,12 @@ pub const fn tensile_curve(extension: f64, linearity: f64) -> (f64, f64) {
     (stress / (green * (1.0 + k * green * green)), k)
 }
 
-/// Bending stiffness [N m] from a bending length [m] (Peirce 1930): B = rho g c^3.
+/// Bending stiffness (N m) from a bending length (m) (Peirce 1930): B = rho g c^3.
 pub const fn bending_of_length(density: f64, bending_length: f64) -> f64 {
     density * GRAVITY * (bending_length * bending_length * bending_length)
 }
 
-/// Bending stiffness [N m] of a strip whose overhang [m] sinks to an angle [rad] below the level,
+/// Bending stiffness (N m) of a strip whose overhang (m) sinks to an angle (rad) below the level,
 /// measured from the edge to the tip (ASTM D1388 at 41.5 degrees).
 ///
 /// Exact for the heavy elastica, theta'' = -Gamma (1 - s) cos theta. Measured from the tip in
@@ -162,7 +162,7 @@ fn elastica(tip: f64) -> (f64, f64) {
     (t.powi(3), y[3].atan2(y[2]))
 }
 
-/// Cusick's drape coefficient [%] (BS 5058, ISO 9073-9): the share of the overhanging ring that the
+/// Cusick's drape coefficient (%) (BS 5058, ISO 9073-9): the share of the overhanging ring that the
 /// draped specimen's shadow still covers. Areas in one unit; radii in its root.
 pub fn drape_coefficient(shadow_area: f64, specimen_radius: f64, disc_radius: f64) -> f64 {
     let disc = PI * disc_radius * disc_radius;

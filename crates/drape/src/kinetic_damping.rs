@@ -12,7 +12,7 @@ use toile_geometry::Vec3;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KineticDamping {
-    /// Substep [s].
+    /// Substep (s).
     substep: f64,
     /// Rounds of substeps taken.
     rounds: u32,
@@ -20,7 +20,7 @@ pub struct KineticDamping {
     energy: f64,
     calm: bool,
     longest: f64,
-    /// Lowest peak of kinetic energy [J], and the number of peaks since.
+    /// Lowest peak of kinetic energy (J), and the number of peaks since.
     #[serde(with = "crate::exact")]
     lowest: f64,
     waited: u32,
@@ -53,17 +53,17 @@ impl SwingWorkspace {
 /// Courant number: edges that a wave in the cloth passes in a substep. The error of one XPBD sweep makes the cloth
 /// softer by the square of this number, so it is below 1.
 const COURANT: f64 = 0.7;
-/// Longest substep [s].
+/// Longest substep (s).
 const LONGEST_SUBSTEP: f64 = 5e-4;
 /// Substeps between two measurements of the kinetic energy.
 const ROUND: u32 = 20;
-/// Drag while swinging [1/s].
+/// Drag while swinging (1/s).
 const DRAG: f64 = 3.0;
-/// Longest simulated time [s] on the coarsest mesh, and on a finer one, which starts from the interpolated shape of a
+/// Longest simulated time (s) on the coarsest mesh, and on a finer one, which starts from the interpolated shape of a
 /// coarser one at rest.
 const LONGEST: f64 = 3.0;
 const LONGEST_CARRIED: f64 = 0.3;
-/// Mean speed [m/s] whose kinetic energy a peak must not exceed for the swing to end.
+/// Mean speed (m/s) whose kinetic energy a peak must not exceed for the swing to end.
 const CALM: f64 = 0.0015;
 /// A peak of kinetic energy is a new low below this share of the lowest before. With crossings left, the swing ends
 /// after more than `PATIENCE` peaks without a new low.
@@ -181,7 +181,7 @@ fn stop(state: &mut State) {
     }
 }
 
-/// Substep for the mean edge of a model and the speed of waves in its cloth [s].
+/// Substep for the mean edge of a model and the speed of waves in its cloth (s).
 fn substep(system: &System) -> f64 {
     let crossing = |t: usize| {
         let material = system.materials.of(t);
@@ -204,7 +204,7 @@ mod tests {
     use crate::{Cloth, Material, PseudoTransientContinuation, RestSettings, Workspace};
     use toile_geometry::TriangleMesh;
 
-    /// A strip of 3 x 20 cells of an edge [m], held level by its first row.
+    /// A strip of 3 x 20 cells of an edge (m), held level by its first row.
     fn strip(edge: f64) -> (System, State) {
         let mut mesh = TriangleMesh::default();
         for j in 0..=20u32 {

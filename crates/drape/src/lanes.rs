@@ -7,7 +7,7 @@ use crate::lane_arithmetic::{F32s, Triple};
 use pulp::Simd;
 use pulp::bytemuck::cast;
 
-/// A point: x, y, z [m] relative to an origin, and its inverse mass [1/kg] where it is used.
+/// A point: x, y, z (m) relative to an origin, and its inverse mass (1/kg) where it is used.
 pub type Point = [f32; 4];
 
 /// Constraints solved side by side.

@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Mass per area [kg/m2].
+    /// Mass per area (kg/m2).
     pub density: f64,
-    /// Thickness [m]: contact offsets are at least half of it from solids and all of it between two cloths
+    /// Thickness (m): contact offsets are at least half of it from solids and all of it between two cloths
     /// ([`crate::ContactSettings::for_cloth`]).
     pub thickness: f64,
-    /// Stretch stiffness along warp and weft [N/m].
+    /// Stretch stiffness along warp and weft (N/m).
     pub stretch: [f64; 2],
-    /// Shear stiffness [N/m]: force per length at a shear angle of one radian.
+    /// Shear stiffness (N/m): force per length at a shear angle of one radian.
     pub shear: f64,
     /// Poisson ratio of warp to weft, at most 0.95 of the limit of a stable membrane.
     pub poisson: f64,
@@ -30,21 +30,21 @@ pub struct Material {
     pub strain_limit: [f64; 2],
     /// Law of the membrane under compression.
     pub compression: Compression,
-    /// Bending stiffness of strips cut along warp, weft and bias [N m].
+    /// Bending stiffness of strips cut along warp, weft and bias (N m).
     pub bend: [f64; 3],
     /// Poisson ratio in bending: curvature of the weft opposed to that of the warp. Rarely measured; 0 for
     /// cloth.
     pub bend_poisson: f64,
-    /// Viscosity of stretch and shear (Kelvin-Voigt) [N s/m].
+    /// Viscosity of stretch and shear (Kelvin-Voigt) (N s/m).
     pub viscosity: f64,
-    /// Viscosity of bending (Kelvin-Voigt) [N m s].
+    /// Viscosity of bending (Kelvin-Voigt) (N m s).
     pub bend_viscosity: f64,
-    /// Rayleigh damping: viscosity in proportion to stiffness [s].
+    /// Rayleigh damping: viscosity in proportion to stiffness (s).
     pub stiffness_damping: f64,
     /// Relaxed fraction p of the stress of stretch and of bending, 0 to 0.95: under constant strain the stress falls to
     /// 1 - p of its first value, and released the cloth retains p of the strain at first.
     pub relaxed_fraction: [f64; 2],
-    /// Time tau over which the internal strain follows the strain [s].
+    /// Time tau over which the internal strain follows the strain (s).
     pub relaxation_time: f64,
     /// Coulomb friction coefficient against solids; between two cloths the mean of both is used.
     pub friction: f64,
@@ -113,7 +113,7 @@ impl Material {
         }
     }
 
-    /// Bending stiffness of curvature along warp, along weft, and of twist [N m]. The twist term
+    /// Bending stiffness of curvature along warp, along weft, and of twist (N m). The twist term
     /// gives a fold at 45 degrees the bias stiffness (Cooper 1960):
     /// D_bias = (D_warp + D_weft + 2 D_nu + 2 D_twist) / 4, clamped to zero or above.
     pub fn bending(&self) -> [f64; 3] {
@@ -126,7 +126,7 @@ impl Material {
         bending_matrix(self.plate())
     }
 
-    /// D_warp, D_weft, D_nu, D_twist [N m]. A strip can curl across, so it is softer than a plate by the factor 1 -
+    /// D_warp, D_weft, D_nu, D_twist (N m). A strip can curl across, so it is softer than a plate by the factor 1 -
     /// nu^2: D_warp = B_warp / (1 - nu^2), D_nu = nu sqrt(D_warp D_weft).
     fn plate(&self) -> [f64; 4] {
         let spread = 1.0 - self.bend_poisson * self.bend_poisson;
@@ -136,7 +136,7 @@ impl Material {
         [warp, weft, coupling, twist]
     }
 
-    /// Viscous matrix of the membrane: uu, vv, uu-vv, gamma-gamma [N s/m].
+    /// Viscous matrix of the membrane: uu, vv, uu-vv, gamma-gamma (N s/m).
     pub(crate) fn viscous_stretch(&self) -> [f64; 4] {
         let [c11, c22, c12, g] = self.membrane().stiffness;
         let (eta, beta) = (self.viscosity, self.stiffness_damping);
@@ -148,7 +148,7 @@ impl Material {
         ]
     }
 
-    /// Viscous matrix of bending over the three curvatures [N m s].
+    /// Viscous matrix of bending over the three curvatures (N m s).
     pub(crate) fn viscous_bend(&self) -> BendingMatrix {
         let eta = self.bend_viscosity;
         bending_matrix([eta, eta, 0.0, eta]) + self.bending_matrix() * self.stiffness_damping

@@ -13,7 +13,7 @@ pub struct Measures {
     /// Norm of the net forces over the norm of the weights, over free vertices; contact and
     /// friction inside its cone are part of the net force.
     pub residual: f64,
-    /// Kinetic energy [J].
+    /// Kinetic energy (J).
     pub kinetic_energy: f64,
     /// Largest stretch along warp and weft.
     pub strain_max: [f64; 2],
@@ -21,16 +21,16 @@ pub struct Measures {
     pub strain_p99: [f64; 2],
     /// Largest shortening along warp and weft, as a positive number.
     pub compression_max: [f64; 2],
-    /// Largest shear angle [rad].
+    /// Largest shear angle (rad).
     pub shear_max: f64,
-    /// Deepest vertex below a solid surface [m].
+    /// Deepest vertex below a solid surface (m).
     pub penetration_max: f64,
     /// Pairs of a cloth triangle and a solid triangle that intersect, exactly.
     pub body_intersections: usize,
     /// Those of them with a solid triangle that is partly inside another part of its solid, where a figure's skin goes
     /// through itself: there cloth has nowhere to be.
     pub buried_intersections: usize,
-    /// Area of those triangles over that of the solids.
+    /// Area of those triangles over that of the solids (1).
     pub buried_share: f64,
     /// Edges of cloth with both ends more than 5 mm inside a solid that lie nearest to opposite sides of it (outward
     /// normals there more than 90 degrees apart): such cloth is not pressed in from one side, it goes through.
@@ -56,9 +56,9 @@ pub struct LayerMeasures {
     pub astray: usize,
 }
 
-/// Distance from a layer within which outer vertices on its inside are counted [m].
+/// Distance from a layer within which outer vertices on its inside are counted (m).
 const ORDER_REACH: f64 = 0.05;
-/// Depth inside a solid from which the side that a vertex lies nearest to counts [m].
+/// Depth inside a solid from which the side that a vertex lies nearest to counts (m).
 const DEPTH_OF_SIDES: f64 = 5e-3;
 /// Cosine between the normals of two sides of a solid below which they are opposite: at the edge of a block it is 0 up
 /// to rounding.
@@ -71,7 +71,7 @@ pub fn residual(system: &System, state: &State, workspace: &mut Workspace) -> f6
     force.sqrt() / weight_norm(system)
 }
 
-/// Norm of the weights of the free vertices [N]; without gravity that of their weights on earth.
+/// Norm of the weights of the free vertices (N); without gravity that of their weights on earth.
 pub(crate) fn weight_norm(system: &System) -> f64 {
     let free = system
         .rest

@@ -14,11 +14,11 @@ pub enum Memory {
     Nothing,
     /// The state before the last step, for methods of two steps.
     Previous {
-        /// Positions before the last step [m].
+        /// Positions before the last step (m).
         positions: Vec<Vec3>,
-        /// Velocities before the last step [m/s].
+        /// Velocities before the last step (m/s).
         velocities: Vec<Vec3>,
-        /// Length of the last step [s].
+        /// Length of the last step (s).
         step: f64,
     },
     /// Buried contact samples, ascending: a solid was put over them, and they have not come out since.
@@ -52,7 +52,7 @@ impl Memory {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestMemory {
-    /// Next pseudo time step [s], and its bound.
+    /// Next pseudo time step (s), and its bound.
     pub(crate) pseudo_step: f64,
     pub(crate) longest_step: f64,
     pub(crate) steps: usize,
@@ -71,11 +71,11 @@ pub struct RestMemory {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationMemory {
-    /// Displacements per iteration, half an iteration earlier [m].
+    /// Displacements per iteration, half an iteration earlier (m).
     pub(crate) moves: Vec<Vec3>,
-    /// Fictitious masses, with the iteration as unit of time [N/m].
+    /// Fictitious masses, with the iteration as unit of time (N/m).
     pub(crate) masses: Vec<f64>,
-    /// Fictitious kinetic energy half an iteration earlier [J].
+    /// Fictitious kinetic energy half an iteration earlier (J).
     pub(crate) kinetic: f64,
     /// Whether the next iteration starts without velocity.
     pub(crate) still: bool,

@@ -23,7 +23,7 @@ pub struct StepReport {
 /// search skips. `implicit-midpoint` stores a bound of the energy of its run, and refuses a step with more than ten
 /// times as much.
 pub trait Method: Send {
-    /// Advances the state by `step` [s]. Equilibrium methods take one iteration; their time does
+    /// Advances the state by `step` (s). Equilibrium methods take one iteration; their time does
     /// not run and `step` is ignored.
     ///
     /// # Errors
@@ -187,7 +187,7 @@ pub struct MethodSettings {
     pub substeps: Option<u32>,
     /// Most iterations in a (sub)step.
     pub iterations: Option<usize>,
-    /// Where iterations stop: norm of the gradient [N] in time, net force over weight for rest.
+    /// Where iterations stop: norm of the gradient (N) in time, net force over weight for rest.
     pub tolerance: Option<f64>,
 }
 

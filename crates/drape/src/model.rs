@@ -78,7 +78,7 @@ impl Model {
 }
 
 impl ModelParts {
-    /// Mass of the cloth at each vertex [kg]; zero for a vertex on no triangle, which has a mass in the model.
+    /// Mass of the cloth at each vertex (kg); zero for a vertex on no triangle, which has a mass in the model.
     pub(crate) fn cloth_mass(&self) -> Vec<f64> {
         let corners = self.topology.corner_start.windows(2);
         let own = self.rest.mass.iter().zip(corners);
@@ -110,7 +110,7 @@ impl ModelParts {
         self.rest.mass.len()
     }
 
-    /// Area of a triangle at rest [m2].
+    /// Area of a triangle at rest (m2).
     pub fn rest_area(&self, triangle: usize) -> f64 {
         self.rest.elements[triangle].area
     }

@@ -8,11 +8,11 @@ use toile_geometry::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionKey {
-    /// The time [s], ascending from key to key.
+    /// The time (s), ascending from key to key.
     pub time: f64,
-    /// Translation from the position as loaded [m].
+    /// Translation from the position as loaded (m).
     pub translation: Vec3,
-    /// Rotation about the pivot: axis times angle [rad], which may exceed a full turn.
+    /// Rotation about the pivot: axis times angle (rad), which may exceed a full turn.
     pub rotation: Vec3,
 }
 
@@ -21,7 +21,7 @@ pub struct MotionKey {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// The centre of rotation, as loaded [m].
+    /// The centre of rotation, as loaded (m).
     pub pivot: Vec3,
     /// The keys.
     pub keys: Vec<MotionKey>,
@@ -32,17 +32,17 @@ pub struct Motion {
 pub struct Pose {
     /// R.
     pub rotation: Rotation3<f64>,
-    /// s [m].
+    /// s (m).
     pub shift: Vec3,
 }
 
 impl Pose {
-    /// Image of a point [m].
+    /// Image of a point (m).
     pub fn apply(&self, point: Vec3) -> Vec3 {
         self.rotation * point + self.shift
     }
 
-    /// The point with a given image [m].
+    /// The point with a given image (m).
     pub fn undo(&self, image: Vec3) -> Vec3 {
         self.rotation
             .inverse_transform_vector(&(image - self.shift))
@@ -50,7 +50,7 @@ impl Pose {
 }
 
 impl Motion {
-    /// The pose at a time [s].
+    /// The pose at a time (s).
     pub fn pose(&self, time: f64) -> Pose {
         let (translation, rotation_vector) = self.at(time);
         let rotation = Rotation3::from_scaled_axis(rotation_vector);
@@ -60,12 +60,12 @@ impl Motion {
         }
     }
 
-    /// The translation at a time [s], [m].
+    /// The translation at a time (s), (m).
     pub fn translation(&self, time: f64) -> Vec3 {
         self.at(time).0
     }
 
-    /// Translation [m] and rotation vector [rad] at a time.
+    /// Translation (m) and rotation vector (rad) at a time.
     fn at(&self, time: f64) -> (Vec3, Vec3) {
         let next = self.keys.partition_point(|key| key.time <= time);
         let Some(after) = self.keys.get(next) else {

@@ -24,7 +24,7 @@ pub struct RestSettings {
     pub residual: f64,
     /// Most steps.
     pub steps: usize,
-    /// Longest displacement of a vertex in one step [m].
+    /// Longest displacement of a vertex in one step (m).
     pub longest_move: f64,
 }
 
@@ -53,11 +53,11 @@ const PATIENCE: usize = 60;
 const CHORDS: usize = 24;
 /// Chord steps end when the net force is below this share of the one that counts as rest.
 const CHORD_END: f64 = 0.5;
-/// First pseudo time step [s]: a drop of 4 mm under gravity.
+/// First pseudo time step (s): a drop of 4 mm under gravity.
 const FIRST_STEP: f64 = 0.02;
-/// First pseudo time step near rest, after a swing [s].
+/// First pseudo time step near rest, after a swing (s).
 const NEAR_STEP: f64 = 0.1;
-/// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
+/// Bounds of the pseudo time step (s): at the upper one inertia is 1e-6 of gravity over a metre.
 const SHORTEST_STEP: f64 = 1e-6;
 const LONGEST_STEP: f64 = 100.0;
 
@@ -99,7 +99,7 @@ impl PseudoTransientContinuation {
         self.memory.residual
     }
 
-    /// Next pseudo step [s].
+    /// Next pseudo step (s).
     pub(crate) fn pseudo_step(&self) -> f64 {
         self.memory.pseudo_step
     }

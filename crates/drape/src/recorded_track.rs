@@ -14,7 +14,7 @@ pub struct RecordedTrack {
 }
 
 impl RecordedTrack {
-    /// The track through frames: their times [s] with the positions of all vertices [m].
+    /// The track through frames: their times (s) with the positions of all vertices (m).
     ///
     /// # Errors
     /// No frame, times that do not ascend, frames of different lengths, a number that is not finite.

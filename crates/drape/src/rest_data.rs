@@ -17,7 +17,7 @@ use toile_sparse::ScalarMatrix;
 pub struct RestData {
     /// Membrane element of each triangle.
     pub(crate) elements: Vec<MembraneElement>,
-    /// Bending matrix over the vertices, the same for x, y and z [N/m].
+    /// Bending matrix over the vertices, the same for x, y and z (N/m).
     pub(crate) bending: ScalarMatrix,
     /// Viscous matrix of bending in the pattern of `bending`; none without viscosity.
     pub(crate) viscous_bending: Option<ScalarMatrix>,
@@ -25,7 +25,7 @@ pub struct RestData {
     pub(crate) stencils: Vec<BendingStencil>,
     /// The shared stencils where the topology has a structure of bending; else empty.
     pub(crate) curvatures: Stencils,
-    /// Mass of each vertex [kg].
+    /// Mass of each vertex (kg).
     pub mass: Vec<f64>,
     /// Contact samples at the vertices. A state adds more in triangles that cross a solid.
     pub samples: Arc<Vec<ContactSample>>,
@@ -94,7 +94,7 @@ impl RestData {
         })
     }
 
-    /// The rest shape of each triangle, warp along the first axis [m].
+    /// The rest shape of each triangle, warp along the first axis (m).
     pub(crate) fn shapes(&self) -> Vec<[Vec2; 3]> {
         self.elements.iter().map(MembraneElement::rest).collect()
     }

@@ -9,19 +9,19 @@ use toile_geometry::{TriangleMesh, Vec3};
 /// A simulation: objects, elastics, grips, environment, duration and method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     pub gravity: Vec3,
     /// The air.
     pub air: Air,
     /// Rayleigh damping.
     pub damping: Damping,
-    /// Time simulated before time 0, in which figures go into their clips [s].
+    /// Time simulated before time 0, in which figures go into their clips (s).
     pub lead_in: f64,
-    /// Time simulated from 0 on [s].
+    /// Time simulated from 0 on (s).
     pub duration: f64,
-    /// Step in time [s].
+    /// Step in time (s).
     pub step: f64,
-    /// Time between saved frames [s]; none to save only the last state.
+    /// Time between saved frames (s); none to save only the last state.
     pub frame_step: Option<f64>,
     /// The method.
     pub method: MethodSettings,
@@ -104,7 +104,7 @@ pub struct SceneObject {
     pub name: String,
     /// The cause of its motion.
     pub kind: ObjectKind,
-    /// Its surface [m].
+    /// Its surface (m).
     pub mesh: TriangleMesh,
     /// Rest shape of a garment's panels; none where the mesh itself is the rest shape.
     pub cloth: Option<Cloth>,
@@ -137,7 +137,7 @@ pub enum SceneEnd {
         /// The vertex.
         vertex: u32,
     },
-    /// A point in space [m].
+    /// A point in space (m).
     Point(Vec3),
 }
 
@@ -148,9 +148,9 @@ pub struct SceneElastic {
     pub from: SceneEnd,
     /// The second end.
     pub to: SceneEnd,
-    /// Stiffness [N/m].
+    /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Distance below which the two vertices are merged [m]; none where they never are.
+    /// Distance below which the two vertices are merged (m); none where they never are.
     pub merge_within: Option<f64>,
 }
 

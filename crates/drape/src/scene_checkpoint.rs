@@ -19,7 +19,7 @@ pub struct SceneCheckpoint {
     pub(crate) world: SavedWorld,
     /// Hands on the cloth.
     pub(crate) hands: Vec<Hand>,
-    /// Positions of the vertices when the structure was compiled [m].
+    /// Positions of the vertices when the structure was compiled (m).
     pub(crate) layout: Vec<Vec3>,
     pub(crate) state: State,
     pub(crate) control: Control,

@@ -20,18 +20,18 @@ use toile_geometry::{SurfaceTree, TriangleMesh};
 /// Duration, step and method of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeSettings {
-    /// Time simulated before time 0 [s].
+    /// Time simulated before time 0 (s).
     pub lead_in: f64,
-    /// Time simulated from 0 on [s].
+    /// Time simulated from 0 on (s).
     pub duration: f64,
-    /// Step in time [s].
+    /// Step in time (s).
     pub step: f64,
     /// The method.
     pub method: MethodSettings,
 }
 
 impl TimeSettings {
-    /// All simulated time [s].
+    /// All simulated time (s).
     pub fn whole(&self) -> f64 {
         self.lead_in + self.duration
     }
@@ -542,7 +542,7 @@ impl SceneRun {
         Some(whole)
     }
 
-    /// Largest gap of an elastic or of an attachment [m].
+    /// Largest gap of an elastic or of an attachment (m).
     pub fn elastic_gap(&self) -> f64 {
         let gap = |elastic: Elastic| elastic.gap(&self.state.positions).norm();
         let frames = self.system.control.frames.iter().map(|frame| {
@@ -557,7 +557,7 @@ impl SceneRun {
         all.fold(0.0, f64::max)
     }
 
-    /// Energy of motion, strain, weight, elastics and contact [J]; heights count from the origin.
+    /// Energy of motion, strain, weight, elastics and contact (J); heights count from the origin.
     pub fn energy(&mut self) -> f64 {
         let Simulation { system, state, .. } = &self.simulation;
         whole_energy(system, state, &mut self.workspace)
@@ -593,7 +593,7 @@ impl SceneRun {
 pub struct Surface {
     /// The objects with their ranges of triangles.
     pub objects: Vec<(ObjectId, Range<usize>)>,
-    /// Vertices [m] and triangles.
+    /// Vertices (m) and triangles.
     pub mesh: TriangleMesh,
     /// The triangle of its object's own mesh that each triangle is.
     pub origin: Vec<u32>,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SewSettings {
-    /// Largest gap of a seam at which its sides are merged [m].
+    /// Largest gap of a seam at which its sides are merged (m).
     pub merge_within: f64,
     /// Most steps.
     pub steps: usize,
@@ -45,11 +45,11 @@ pub struct SewRun {
     waited: usize,
 }
 
-/// Step in time while sewing [s].
+/// Step in time while sewing (s).
 const STEP: f64 = 1.0 / 60.0;
-/// Drag while sewing [1/s]: motion dies out in a few tenths of a second.
+/// Drag while sewing (1/s): motion dies out in a few tenths of a second.
 const DRAG: f64 = 5.0;
-/// Speed limit while sewing [m/s]: 20 mm a step, less than the body's thinnest half limb.
+/// Speed limit while sewing (m/s): 20 mm a step, less than the body's thinnest half limb.
 const SPEED_LIMIT: f64 = 1.2;
 /// Strain of the cloth beside a seam under the largest force of its springs, before that force is raised.
 const PULL_STRAIN: f64 = 0.2;
@@ -100,14 +100,14 @@ impl SewRun {
         system.couple(self.stitches.iter().map(|&ends| (ends, law)).collect());
     }
 
-    /// Largest gap between two stitched vertices [m].
+    /// Largest gap between two stitched vertices (m).
     pub fn gap(&self, state: &State) -> f64 {
         let gap =
             |&[a, b]: &[u32; 2]| (state.positions[a as usize] - state.positions[b as usize]).norm();
         self.stitches.iter().map(gap).fold(0.0, f64::max)
     }
 
-    /// The largest gap after the last step [m].
+    /// The largest gap after the last step (m).
     pub fn last_gap(&self) -> f64 {
         self.gap
     }

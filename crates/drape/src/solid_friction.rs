@@ -11,9 +11,9 @@ pub struct SolidFriction {
     pub sample: u32,
     /// Index of the solid among the model's.
     pub solid: u32,
-    /// Friction anchor: the place to which the sample sticks [m].
+    /// Friction anchor: the place to which the sample sticks (m).
     pub anchor: Vec3,
-    /// Normal force in the last step \[N\].
+    /// Normal force in the last step (N).
     pub force: f64,
 }
 

@@ -11,9 +11,9 @@ use toile_geometry::Vec3;
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct State {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: Vec<Vec3>,
-    /// Velocities [m/s].
+    /// Velocities (m/s).
     pub velocities: Vec<Vec3>,
     /// Contact samples: at the vertices, and within triangles that crossed a solid.
     pub samples: Arc<Vec<ContactSample>>,
@@ -23,7 +23,7 @@ pub struct State {
     pub cloth: ClothMemory,
     /// Internal strain of each triangle's standard linear solid; empty unless a material relaxes.
     pub internal_strain: Vec<InternalStrain>,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
     /// Memory of the method.
     pub memory: Memory,
@@ -60,7 +60,7 @@ impl Clone for State {
 }
 
 impl State {
-    /// A state at rest at some positions [m].
+    /// A state at rest at some positions (m).
     pub fn at_rest(model: &Model, positions: Vec<Vec3>) -> Self {
         Self {
             velocities: vec![Vec3::zeros(); positions.len()],
@@ -164,7 +164,7 @@ impl State {
             .position(|(x, v)| !finite(x) || !finite(v))
     }
 
-    /// Kinetic energy [J].
+    /// Kinetic energy (J).
     pub fn kinetic_energy(&self, model: &Model) -> f64 {
         self.velocities
             .iter()

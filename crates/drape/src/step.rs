@@ -7,11 +7,11 @@ use toile_geometry::Vec3;
 /// Settings of a step in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepSettings {
-    /// Step [s].
+    /// Step (s).
     pub step: f64,
-    /// Drag per mass [1/s]: a free velocity falls by exp(-drag t).
+    /// Drag per mass (1/s): a free velocity falls by exp(-drag t).
     pub drag: f64,
-    /// Limit of the speed of a vertex after a step [m/s].
+    /// Limit of the speed of a vertex after a step (m/s).
     pub speed_limit: f64,
     /// Newton iterations, tolerance, longest displacement, linear solver.
     pub newton: NewtonSettings,

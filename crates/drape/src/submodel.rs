@@ -150,7 +150,7 @@ fn own_friction(
 
 impl SubModel {
     /// The submodel of some free vertices; `contacts` are those of cloth with cloth. It has no viscosity, no internal
-    /// strain of bending and no wind: [`crate::newton::elimination`] refuses systems with these.
+    /// strain of bending and no wind: the elimination of `newton` refuses systems with these.
     pub fn new(system: &System, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
         let corners = (own.iter()).flat_map(|&v| system.topology.corners_of(v as usize));
         let mut used: Vec<u32> = corners.map(|corner| corner / 3).collect();
@@ -237,7 +237,7 @@ impl SubModel {
         }
     }
 
-    /// Its own vertices, as numbered in the whole, with their positions [m].
+    /// Its own vertices, as numbered in the whole, with their positions (m).
     pub fn own_positions(&self) -> impl Iterator<Item = (u32, Vec3)> + '_ {
         let own = self.vertices[..self.own].iter().copied();
         own.zip(self.state.positions.iter().copied())

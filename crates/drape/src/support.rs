@@ -11,9 +11,9 @@ use toile_geometry::{TriangleMesh, Vec3};
 pub struct Support {
     /// Its vertices, ascending.
     pub vertices: Vec<u32>,
-    /// Distance of its nearest vertex from a solid [m]; infinite without solids.
+    /// Distance of its nearest vertex from a solid (m); infinite without solids.
     pub clearance: f64,
-    /// Heights of its lowest and its highest vertex [m].
+    /// Heights of its lowest and its highest vertex (m).
     pub heights: [f64; 2],
     /// Net force against gravity over its weight: 1 in free fall, 0 at rest or without gravity.
     pub uncarried: f64,
@@ -30,8 +30,8 @@ impl Support {
         !self.is_held && (self.uncarried - 1.0).abs() < CARRIED_IN_FALL
     }
 
-    /// Whether it left the solids: it falls without touching one from within `reach` [m], or all of it is below `floor`
-    /// [m].
+    /// Whether it left the solids: it falls without touching one from within `reach` (m), or all of it is below `floor`
+    /// (m).
     pub fn has_left(&self, reach: f64, floor: f64) -> bool {
         !self.is_held
             && (self.heights[1] < floor || (self.clearance > reach && self.uncarried > 0.5))

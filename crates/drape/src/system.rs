@@ -70,7 +70,7 @@ impl System {
         builder.build()
     }
 
-    /// The system with other rest shapes for the triangles of [`Topology::surface_triangles`], in the same order [m].
+    /// The system with other rest shapes for the triangles of [`Topology::surface_triangles`], in the same order (m).
     /// The topology is shared; at the first change it is replaced by one with a structure of bending.
     ///
     /// # Errors
@@ -171,7 +171,7 @@ impl System {
         }
     }
 
-    /// Sum of the stiffnesses of the elastics at a vertex at small gaps [N/m].
+    /// Sum of the stiffnesses of the elastics at a vertex at small gaps (N/m).
     pub(crate) fn elastic_stiffness(&self, v: usize) -> f64 {
         let between = self.couplings.at(v).iter();
         let between = between.map(|&e| self.couplings.all[e as usize].1.stiffness);
@@ -258,7 +258,7 @@ impl SystemBuilder {
         self.pinned.len()
     }
 
-    /// Enlarges the contact offset of outer layers from solids, by `apart` [m] for each layer inside of them; `layer`
+    /// Enlarges the contact offset of outer layers from solids, by `apart` (m) for each layer inside of them; `layer`
     /// has the layer of each vertex, or is empty.
     pub(crate) fn offset_layers(&mut self, layer: &[u16], apart: f64) {
         let mut layers = layer.to_vec();

@@ -25,21 +25,21 @@ impl TrianglePoint {
         }
     }
 
-    /// Its place where the vertices are at some places [m].
+    /// Its place where the vertices are at some places (m).
     pub fn of(&self, positions: &[Vec3]) -> Vec3 {
         let terms = self.vertices.iter().zip(self.weights);
         terms.map(|(&v, w)| positions[v as usize] * w).sum()
     }
 }
 
-/// What a point of cloth is tied to. Solids are numbered as in [`crate::Model::colliders`].
+/// What a point of cloth is tied to. Solids are numbered as in [`crate::ModelParts::colliders`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum TieEnd {
-    /// A point in space [m].
+    /// A point in space (m).
     Place(Vec3),
     /// A point that moves as a whole.
     Frame {
-        /// The point in the frame [m].
+        /// The point in the frame (m).
         point: Vec3,
         /// The motion of the frame.
         motion: Arc<Motion>,
@@ -57,7 +57,7 @@ pub enum TieEnd {
         solid: u32,
         /// The frame.
         frame: u16,
-        /// The point in the frame [m].
+        /// The point in the frame (m).
         point: Vec3,
     },
     /// A point of cloth.

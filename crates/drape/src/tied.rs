@@ -22,7 +22,7 @@ impl System {
         to && tie.vertices().all(|v| v < count)
     }
 
-    /// Where an end of a tie is in a state [m].
+    /// Where an end of a tie is in a state (m).
     pub fn place_of(&self, end: &TieEnd, state: &State) -> Vec3 {
         let time = state.time;
         match end {

@@ -15,7 +15,7 @@ pub struct Topology {
     pub triangles: Vec<[u32; 3]>,
     /// Triangles of the surface before the exchange; none without caps.
     pub(crate) surface: Option<Vec<[u32; 3]>>,
-    /// Positions of the vertices at compilation [m], by which nested dissection orders the unknowns.
+    /// Positions of the vertices at compilation (m), by which nested dissection orders the unknowns.
     pub layout: Vec<Vec3>,
     /// Sparsity pattern of a matrix that couples the corners of each triangle.
     pub(crate) pattern: BlockPattern,
@@ -30,7 +30,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// The topology of triangles between vertices at the positions `layout` [m].
+    /// The topology of triangles between vertices at the positions `layout` (m).
     pub(crate) fn new(layout: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let (corner_start, corners) = corner_lists(layout.len(), &triangles);
         Self {

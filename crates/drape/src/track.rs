@@ -7,10 +7,10 @@ use toile_geometry::Vec3;
 
 /// Places of the vertices of a surface over time.
 pub trait Track: Send + Sync {
-    /// Places of the vertices at a time [s], as many at every time [m].
+    /// Places of the vertices at a time (s), as many at every time (m).
     fn positions(&self, time: f64) -> Vec<Vec3>;
 
-    /// Poses of the frames that move with the surface at a time [s], as many at every time: the bones of a figure. At
+    /// Poses of the frames that move with the surface at a time (s), as many at every time: the bones of a figure. At
     /// first none.
     fn frames(&self, _time: f64) -> Vec<Pose> {
         Vec::new()
@@ -46,8 +46,8 @@ impl SharedTrack {
     }
 }
 
-/// Places of the vertices of an animated surface at a time [s]: those of its track, or as it was loaded, moved as a
-/// whole [m].
+/// Places of the vertices of an animated surface at a time (s): those of its track, or as it was loaded, moved as a
+/// whole (m).
 pub(crate) fn animated_positions(
     loaded: &[Vec3],
     track: Option<&SharedTrack>,

@@ -14,7 +14,7 @@ use toile_drape::{
 };
 use toile_geometry::{SurfaceTree, Vec3};
 
-/// A step [s].
+/// A step (s).
 const STEP: f64 = 1.0 / 120.0;
 
 fn collider(low: [f64; 3], high: [f64; 3]) -> Collider {
@@ -145,7 +145,7 @@ fn the_first_step_of_a_contact_has_friction() {
 }
 
 /// How far a small cloth moves in a fifth of a second on a cloth that is held, under gravity inclined to a share of the
-/// tangent of friction, after a tenth [m].
+/// tangent of friction, after a tenth (m).
 fn moves_on_cloth(kind: MethodKind, share: f64) -> f64 {
     let friction = 0.4;
     let mut mesh = sheet([9, 9], [0.4; 2], |x, z| Vec3::new(x - 0.1, 0.0, z - 0.2));

@@ -16,7 +16,7 @@ use toile_drape::{
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Size of the sheets and radius of the sphere [m].
+/// Size of the sheets and radius of the sphere (m).
 const WIDTH: f64 = 0.3;
 const RADIUS: f64 = 0.07;
 
@@ -70,7 +70,7 @@ fn finish(scene: Scene) -> (SceneRun, Measures) {
     (run, measures)
 }
 
-/// Least signed distance [m] of the vertices of `outer` from `inner`, those near the border of `inner`
+/// Least signed distance (m) of the vertices of `outer` from `inner`, those near the border of `inner`
 /// left out; and how many count. By the nearest point, not as the simulation decides it.
 fn least_distance(outer: &TriangleMesh, inner: &TriangleMesh) -> (f64, usize) {
     let border: Vec<Vec3> = {

@@ -17,10 +17,10 @@ use toile_drape::{
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// A step [s].
+/// A step (s).
 const STEP: f64 = 1.0 / 120.0;
 
-/// Square sheets of one mesh, each with its corner at a place [m] and rising along x by a slope: the mesh and
+/// Square sheets of one mesh, each with its corner at a place (m) and rising along x by a slope: the mesh and
 /// where the vertices of each begin, and the end.
 fn sheets_at(places: &[(Vec3, f64)], cells: usize, width: f64) -> (TriangleMesh, Vec<usize>) {
     let (mut mesh, mut starts) = (TriangleMesh::default(), vec![0]);
@@ -40,7 +40,7 @@ fn objects(starts: &[usize]) -> Vec<u16> {
     each.collect()
 }
 
-/// Lowest and highest vertex of a sheet [m].
+/// Lowest and highest vertex of a sheet (m).
 fn heights(state: &State, starts: &[usize], sheet: usize) -> [f64; 2] {
     let own = &state.positions[starts[sheet]..starts[sheet + 1]];
     let heights = own.iter().map(|x| x.y);
@@ -104,7 +104,7 @@ fn sheets_that_ignore_each_other_pass_and_nothing_is_recovered() {
     }
 }
 
-/// Surfaces at these heights [m], in order of the colliders.
+/// Surfaces at these heights (m), in order of the colliders.
 const FLOORS: [f64; 2] = [0.0, -0.15];
 
 /// Two sheets side by side above two floors.

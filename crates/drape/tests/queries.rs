@@ -22,8 +22,8 @@ const NEVER_CLEAR: Clearance = Clearance {
     max_drift: -1.0,
 };
 
-/// Pairs of features within a distance of each other [m], where vertices are marked only those with one of them; and
-/// their distance [m].
+/// Pairs of features within a distance of each other (m), where vertices are marked only those with one of them; and
+/// their distance (m).
 fn within(
     surface: &ClothSurface,
     x: &[Vec3],

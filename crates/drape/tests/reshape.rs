@@ -8,7 +8,7 @@ use toile_drape::{
 };
 use toile_geometry::{Vec2, Vec3};
 
-/// Cells of a sheet along each side, and their edge [m].
+/// Cells of a sheet along each side, and their edge (m).
 const CELLS: u32 = 24;
 const EDGE: f64 = 0.015;
 

@@ -310,7 +310,7 @@ fn a_sheet_that_falls_on_a_sheet_stays_on_it() {
     }
 }
 
-/// A sheet and one that lies on it, kept `offset` [m] apart by a contact that bears a `share` of its weight, edges
+/// A sheet and one that lies on it, kept `offset` (m) apart by a contact that bears a `share` of its weight, edges
 /// against edges not counted: they bear several times as much.
 fn pressed(offset: f64, share: f64) -> ([TriangleMesh; 2], ContactSettings) {
     let low = sheet([4, 4], [0.12; 2], |u, v| Vec3::new(u, 0.0, v));
@@ -327,7 +327,7 @@ fn pressed(offset: f64, share: f64) -> ([TriangleMesh; 2], ContactSettings) {
 }
 
 /// The way of the two to rest: the net force it ends with, the steps it takes, and how near the sheets come
-/// at the least [m].
+/// at the least (m).
 fn pressed_to_rest() -> (f64, usize, f64) {
     let ([mut mesh, high], contact) = pressed(2e-3, 0.5);
     let pinned = mesh.positions.len();
@@ -360,7 +360,7 @@ fn cloth_pressed_harder_than_its_contact_bears_still_comes_to_rest_apart() {
 }
 
 /// How far the upper of two pressed sheets slides on the lower by substeps, and how high it lies at the least and
-/// the most, after so many seconds on so steep a slope [m].
+/// the most, after so many seconds on so steep a slope (m).
 fn pressed_by_substeps(slope: f64, duration: f64) -> (f64, [f64; 2]) {
     let ([low, high], contact) = pressed(2e-3, 0.1);
     let every = (0..low.positions.len() as u32).collect();

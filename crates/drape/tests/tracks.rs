@@ -235,7 +235,7 @@ fn a_ridge_that_rises_lifts_the_edges_that_lie_across_it() {
     assert!(highest > ridge, "{highest} {ridge}");
 }
 
-/// Two balls beside an upright sheet, as one surface, with so much room between them \[m\].
+/// Two balls beside an upright sheet, as one surface, with so much room between them (m).
 fn jaws(room: f64) -> TriangleMesh {
     let mut both = TriangleMesh::default();
     for side in [-1.0, 1.0] {

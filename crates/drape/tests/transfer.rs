@@ -106,7 +106,7 @@ fn remembered(run: &SceneRun, id: ObjectId) -> Vec<u64> {
     bits
 }
 
-/// Momentum [kg m/s], the sum of the sizes of its shares, and kinetic energy [J].
+/// Momentum (kg m/s), the sum of the sizes of its shares, and kinetic energy (J).
 fn motion(run: &SceneRun) -> (Vec3, f64, f64) {
     let moving = run.state.velocities.iter().zip(&run.system.rest.mass);
     let mut sums = (Vec3::zeros(), 0.0, 0.0);

@@ -38,7 +38,7 @@ fn momentum(system: &System, state: &State) -> Vec3 {
     terms.map(|(v, m)| v * *m).sum()
 }
 
-/// Mean velocity [m/s].
+/// Mean velocity (m/s).
 fn velocity(system: &System, state: &State) -> Vec3 {
     momentum(system, state) / system.rest.mass.iter().sum::<f64>()
 }
@@ -109,7 +109,7 @@ fn a_sheet_at_rest_is_carried_by_the_wind_in_the_time_of_the_law() {
     }
 }
 
-/// Force of the air on all triangles by the law [N].
+/// Force of the air on all triangles by the law (N).
 fn force(system: &System, state: &State) -> Vec3 {
     let mut sum = Vec3::zeros();
     for triangle in &system.topology.triangles {

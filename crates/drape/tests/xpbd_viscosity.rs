@@ -38,7 +38,7 @@ fn clamped(kind: Kind, length: f64, material: Material) -> (Cloth, System) {
     (cloth, builder.build())
 }
 
-/// Mean along an axis over the vertices at the free end [m].
+/// Mean along an axis over the vertices at the free end (m).
 fn end(cloth: &Cloth, state: &State, axis: usize) -> f64 {
     let far = cloth.positions.iter().map(|x| x.x).fold(0.0, f64::max);
     let at: Vec<_> = (0..cloth.positions.len())
@@ -62,7 +62,7 @@ fn decrement(course: &[f64]) -> f64 {
     (tops[0] / tops[count]).ln() / count as f64
 }
 
-/// How far the end is from its rest along an axis one step before the start, at it and after each step [m]; the motion
+/// How far the end is from its rest along an axis one step before the start, at it and after each step (m); the motion
 /// before the start is that after it mirrored in time.
 fn course(
     (cloth, system): &(Cloth, System),

@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// Points worked on at once.
 pub const LANES: usize = 8;
 
-/// Coordinates of eight points, axis by axis \[m\].
+/// Coordinates of eight points, axis by axis (m).
 pub type Points = [[f64; LANES]; 3];
 
 /// Height of a triangle by its longest side below which it counts as its sides alone: its normal is
@@ -47,7 +47,7 @@ impl Facet {
         }
     }
 
-    /// Squared distances of eight points \[m2\]: that from the plane where a point lies over the
+    /// Squared distances of eight points (m2): that from the plane where a point lies over the
     /// face, else that from the nearest side.
     #[inline(always)]
     fn squared_distances(&self, points: &Points) -> [f64; LANES] {

@@ -8,38 +8,38 @@ use lyon::geom::{CubicBezierSegment, QuadraticBezierSegment, point};
 pub enum Curve {
     /// A straight line.
     Line {
-        /// First point \[m\].
+        /// First point (m).
         start: Vec2,
-        /// Last point \[m\].
+        /// Last point (m).
         end: Vec2,
     },
     /// A circular arc. `bulge` is the tangent of a quarter of the swept angle, positive when
     /// the arc turns counter-clockwise (so it bulges to the right of start to end); 0 is a line,
     /// 1 a half circle.
     Arc {
-        /// First point \[m\].
+        /// First point (m).
         start: Vec2,
-        /// Last point \[m\].
+        /// Last point (m).
         end: Vec2,
         /// Tangent of a quarter of the swept angle.
         bulge: f64,
     },
     /// A quadratic Bezier curve.
     Quadratic {
-        /// First point \[m\].
+        /// First point (m).
         start: Vec2,
-        /// Control point \[m\].
+        /// Control point (m).
         control: Vec2,
-        /// Last point \[m\].
+        /// Last point (m).
         end: Vec2,
     },
     /// A cubic Bezier curve.
     Cubic {
-        /// First point \[m\].
+        /// First point (m).
         start: Vec2,
-        /// Control points \[m\].
+        /// Control points (m).
         controls: [Vec2; 2],
-        /// Last point \[m\].
+        /// Last point (m).
         end: Vec2,
     },
 }
@@ -60,7 +60,7 @@ const GAUSS_8: [(f64, f64); 4] = [
 const LENGTH_PIECES: usize = 16;
 
 impl Curve {
-    /// First point \[m\].
+    /// First point (m).
     pub fn start(&self) -> Vec2 {
         match *self {
             Self::Line { start, .. }
@@ -70,7 +70,7 @@ impl Curve {
         }
     }
 
-    /// Last point \[m\].
+    /// Last point (m).
     pub fn end(&self) -> Vec2 {
         match *self {
             Self::Line { end, .. }
@@ -91,7 +91,7 @@ impl Curve {
             }
     }
 
-    /// Start, control points and end, in order \[m\].
+    /// Start, control points and end, in order (m).
     pub fn defining_points(&self) -> Vec<Vec2> {
         match *self {
             Self::Line { start, end } | Self::Arc { start, end, .. } => vec![start, end],
@@ -108,7 +108,7 @@ impl Curve {
         }
     }
 
-    /// Centre \[m\], start angle \[rad\] and swept angle \[rad\] of an arc that is not flat.
+    /// Centre (m), start angle (rad) and swept angle (rad) of an arc that is not flat.
     fn arc_frame(start: Vec2, end: Vec2, bulge: f64) -> (Vec2, f64, f64) {
         let chord = end - start;
         let left = Vec2::new(-chord.y, chord.x);
@@ -117,7 +117,7 @@ impl Curve {
         (centre, from.y.atan2(from.x), 4.0 * bulge.atan())
     }
 
-    /// Point at parameter `t` \[m\].
+    /// Point at parameter `t` (m).
     pub fn point(&self, t: f64) -> Vec2 {
         let u = 1.0 - t;
         match *self {
@@ -155,7 +155,7 @@ impl Curve {
         }
     }
 
-    /// Derivative by the parameter at `t` \[m\].
+    /// Derivative by the parameter at `t` (m).
     pub fn derivative(&self, t: f64) -> Vec2 {
         let u = 1.0 - t;
         match *self {
@@ -186,12 +186,12 @@ impl Curve {
         }
     }
 
-    /// Arc length \[m\]: exact for lines and arcs, by quadrature for Bezier curves.
+    /// Arc length (m): exact for lines and arcs, by quadrature for Bezier curves.
     pub fn length(&self) -> f64 {
         self.length_until(1.0)
     }
 
-    /// Arc length from the start to parameter `t` \[m\].
+    /// Arc length from the start to parameter `t` (m).
     pub fn length_until(&self, t: f64) -> f64 {
         match *self {
             Self::Line { start, end } => (end - start).norm() * t,
@@ -224,7 +224,7 @@ impl Curve {
             * half
     }
 
-    /// Parameter at which the arc length from the start reaches `length` \[m\], clamped to 0..=1.
+    /// Parameter at which the arc length from the start reaches `length` (m), clamped to 0..=1.
     ///
     /// Safeguarded Newton on the quadrature: right to 1e-12 of the curve's length.
     pub fn parameter_at_length(&self, length: f64) -> f64 {
@@ -259,7 +259,7 @@ impl Curve {
     }
 
     /// `count + 1` points at equal arc lengths between two arc-length fractions, ends included
-    /// exactly \[m\]. `from` may be larger than `to`: the points then run backwards.
+    /// exactly (m). `from` may be larger than `to`: the points then run backwards.
     pub fn sample(&self, from: f64, to: f64, count: usize) -> Vec<Vec2> {
         let total = self.length();
         (0..=count)
@@ -372,12 +372,12 @@ impl Curve {
         }
     }
 
-    /// The curve moved by `offset` \[m\].
+    /// The curve moved by `offset` (m).
     pub fn translated(&self, offset: Vec2) -> Self {
         self.mapped(|p| p + offset, 1.0)
     }
 
-    /// The curve turned about the origin by `angle` \[rad\], counter-clockwise.
+    /// The curve turned about the origin by `angle` (rad), counter-clockwise.
     pub fn rotated(&self, angle: f64) -> Self {
         let rotation = nalgebra::Rotation2::new(angle);
         self.mapped(|p| rotation * p, 1.0)
@@ -400,7 +400,7 @@ impl Curve {
         )
     }
 
-    /// Points along the curve, both ends included, whose chords stay within `tolerance` \[m\].
+    /// Points along the curve, both ends included, whose chords stay within `tolerance` (m).
     /// The number of points is bounded (1e5), however small the tolerance.
     pub fn flatten(&self, tolerance: f64) -> Vec<Vec2> {
         let tolerance = tolerance.max(self.length() * 1e-10).max(1e-12);
@@ -449,7 +449,7 @@ impl Curve {
         points
     }
 
-    /// Chords of equal parameter steps that stay within `tolerance` \[m\] of the curve, 1 to 1e5.
+    /// Chords of equal parameter steps that stay within `tolerance` (m) of the curve, 1 to 1e5.
     pub fn chord_count(&self, tolerance: f64) -> usize {
         // The error of a chord is at most the second derivative over 8, times the step squared.
         let bend = match *self {
@@ -507,7 +507,7 @@ impl Curve {
         t
     }
 
-    /// Twice the signed area swept from the origin \[m2\]: summed over a closed outline it is
+    /// Twice the signed area swept from the origin (m2): summed over a closed outline it is
     /// twice the enclosed area, positive when counter-clockwise. Exact.
     pub fn swept_area(&self) -> f64 {
         let cross = |a: Vec2, b: Vec2| a.perp(&b);

@@ -13,7 +13,7 @@ const SIDE: usize = 4;
 /// metres needs no fine grid).
 const MOST_BLOCKS: usize = 4_000_000;
 
-/// A signed distance \[m\] with a continuous gradient, negative inside.
+/// A signed distance (m) with a continuous gradient, negative inside.
 ///
 /// The distance to the closest point has kinks wherever two points are equally close, as in an
 /// armpit: forces along its gradient jump there. This one is sampled exactly at the nodes of a
@@ -49,7 +49,7 @@ struct Candidate {
 const NEEDLE: f64 = 1e-4;
 
 impl Candidate {
-    /// Whether it may come within some distance \[m\] of a point.
+    /// Whether it may come within some distance (m) of a point.
     fn may_reach(&self, point: Vec3, distance: f64) -> bool {
         let to = point - self.centre;
         let far = to.norm_squared();
@@ -66,8 +66,8 @@ impl Candidate {
 }
 
 impl DistanceField {
-    /// A field over a surface on cells of `cell` \[m\] or, where that takes too many, larger
-    /// ones, out to `reach` \[m\] from it.
+    /// A field over a surface on cells of `cell` (m) or, where that takes too many, larger
+    /// ones, out to `reach` (m) from it.
     pub fn new(surface: Arc<SurfaceTree>, cell: f64, reach: f64) -> Self {
         let [low, high] = surface.mesh().bounds().unwrap_or_default();
         let mut cell = cell;
@@ -218,7 +218,7 @@ impl DistanceField {
         Some(values)
     }
 
-    /// Smooth signed distance \[m\] and its gradient at a point; nothing farther outside than the
+    /// Smooth signed distance (m) and its gradient at a point; nothing farther outside than the
     /// field reaches.
     pub fn distance(&self, point: Vec3) -> Option<(f64, Vec3)> {
         let stencil = self.stencil(point)?;
@@ -238,7 +238,7 @@ impl DistanceField {
         Some((dot(along_y, z), gradient / self.cell))
     }
 
-    /// Second derivative of the distance at a point \[1/m\]: the curvatures of the surface through
+    /// Second derivative of the distance at a point (1/m): the curvatures of the surface through
     /// it, negative where it is hollow. It jumps from cell to cell.
     pub fn curvature(&self, point: Vec3) -> Option<Matrix3<f64>> {
         let stencil = self.stencil(point)?;

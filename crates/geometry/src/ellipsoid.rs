@@ -6,9 +6,9 @@ use nalgebra::Rotation3;
 /// A solid ellipsoid: the points with `|S^-1 R^T (p - c)| <= 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
-    /// Centre c \[m\].
+    /// Centre c (m).
     pub centre: Vec3,
-    /// Semi-axes, the diagonal of S, all above zero \[m\].
+    /// Semi-axes, the diagonal of S, all above zero (m).
     pub semi_axes: Vec3,
     /// Rotation R from the ellipsoid's axes to the world's.
     pub rotation: Rotation3<f64>,
@@ -70,7 +70,7 @@ impl Ellipsoid {
         self.rotation * x + self.centre
     }
 
-    /// Distance to the surface, negative inside \[m\].
+    /// Distance to the surface, negative inside (m).
     pub fn signed_distance(&self, point: Vec3) -> f64 {
         let distance = (self.closest_point(point) - point).norm();
         if self.contains(point) {

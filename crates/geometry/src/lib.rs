@@ -59,9 +59,9 @@ pub use triangle::{Feature, closest_point_on_triangle, tetrahedron_volume, trian
 pub use triangulate::{TriangulationError, delaunay_triangles, polygon_triangles};
 pub use units::{Angle, Duration, Length, UnitError};
 
-/// Point or vector in the plane \[m\].
+/// Point or vector in the plane (m).
 pub type Vec2 = nalgebra::Vector2<f64>;
-/// Point or vector in space \[m\], Y up.
+/// Point or vector in space (m), Y up.
 pub type Vec3 = nalgebra::Vector3<f64>;
 /// Rotation followed by translation.
 pub type Rigid = nalgebra::Isometry3<f64>;

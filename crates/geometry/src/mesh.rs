@@ -6,7 +6,7 @@ use std::collections::HashMap;
 /// An indexed triangle mesh. Triangles are counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    /// Vertex positions \[m\].
+    /// Vertex positions (m).
     pub positions: Vec<Vec3>,
     /// Corners of each triangle, as indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
@@ -62,7 +62,7 @@ impl Topology {
 }
 
 impl TriangleMesh {
-    /// A closed box along the axes between two corners [m], faces outward.
+    /// A closed box along the axes between two corners (m), faces outward.
     pub fn cuboid(low: Vec3, high: Vec3) -> Self {
         let side = |k: usize, axis: usize| [low, high][k >> axis & 1][axis];
         let quads = [
@@ -84,7 +84,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Positions of a triangle's corners \[m\].
+    /// Positions of a triangle's corners (m).
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|v| self.positions[v as usize])
     }
@@ -127,21 +127,21 @@ impl TriangleMesh {
         self.positions.extend_from_slice(&other.positions);
     }
 
-    /// Surface area \[m2\].
+    /// Surface area (m2).
     pub fn area(&self) -> f64 {
         (0..self.triangles.len())
             .map(|t| triangle_area(self.corners(t)))
             .sum()
     }
 
-    /// Signed enclosed volume \[m3\]: positive when closed and facing outward.
+    /// Signed enclosed volume (m3): positive when closed and facing outward.
     pub fn volume(&self) -> f64 {
         (0..self.triangles.len())
             .map(|t| tetrahedron_volume(self.corners(t)))
             .sum()
     }
 
-    /// Smallest and largest coordinate of all vertices \[m\]; nothing for an empty mesh.
+    /// Smallest and largest coordinate of all vertices (m); nothing for an empty mesh.
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         let first = *self.positions.first()?;
         Some(

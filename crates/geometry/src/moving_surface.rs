@@ -95,7 +95,7 @@ impl MovingSurface {
         }
     }
 
-    /// Begins a step from some places of the vertices to others \[m\].
+    /// Begins a step from some places of the vertices to others (m).
     ///
     /// # Panics
     /// Where there are not as many places as vertices.
@@ -119,17 +119,17 @@ impl MovingSurface {
         self.connectivity.is_closed
     }
 
-    /// Places of the vertices at the start of the step \[m\].
+    /// Places of the vertices at the start of the step (m).
     pub fn starts(&self) -> &[Vec3] {
         &self.starts
     }
 
-    /// Places of the vertices at the end of the step \[m\].
+    /// Places of the vertices at the end of the step (m).
     pub fn ends(&self) -> &[Vec3] {
         &self.ends
     }
 
-    /// Length of the longest side of a triangle at the start of the step \[m\].
+    /// Length of the longest side of a triangle at the start of the step (m).
     pub fn longest_side(&self) -> f64 {
         let place = |v: u32| self.starts[v as usize];
         let sides = (self.connectivity.triangles.iter())
@@ -138,7 +138,7 @@ impl MovingSurface {
         sides.fold(0.0, f64::max).sqrt()
     }
 
-    /// A vertex at a time of the step \[m\].
+    /// A vertex at a time of the step (m).
     pub fn vertex(&self, vertex: u32, time: f64) -> Vec3 {
         let (start, end) = (self.starts[vertex as usize], self.ends[vertex as usize]);
         match time {
@@ -147,18 +147,18 @@ impl MovingSurface {
         }
     }
 
-    /// The corners of a triangle at a time of the step \[m\].
+    /// The corners of a triangle at a time of the step (m).
     pub fn corners(&self, triangle: u32, time: f64) -> [Vec3; 3] {
         self.connectivity.triangles[triangle as usize].map(|v| self.vertex(v, time))
     }
 
-    /// How a point of a triangle, given by its barycentric weights, is moved between two times of the step \[m\].
+    /// How a point of a triangle, given by its barycentric weights, is moved between two times of the step (m).
     pub fn displacement(&self, triangle: u32, weights: [f64; 3], times: [f64; 2]) -> Vec3 {
         let [from, to] = times.map(|time| weighted(self.corners(triangle, time), weights));
         to - from
     }
 
-    /// The closest point at a time of the step, no farther than `reach` \[m\]; none for a point that is not finite.
+    /// The closest point at a time of the step, no farther than `reach` (m); none for a point that is not finite.
     /// Its side is told by the pseudo-normal of the closest feature (Baerentzen and Aanaes 2005), exact where
     /// the surface is closed and does not cross itself. A triangle that is likely to be near makes it faster
     /// and changes nothing else.
@@ -180,7 +180,7 @@ impl MovingSurface {
         Some(self.closest_on(triangle, point, time))
     }
 
-    /// A distance that no point of the surface comes nearer than at any time of the step, at most `reach` \[m\].
+    /// A distance that no point of the surface comes nearer than at any time of the step, at most `reach` (m).
     pub fn clearance(&self, point: Vec3, reach: f64) -> f64 {
         self.tree.clearance(point, reach)
     }
@@ -265,14 +265,14 @@ impl MovingSurface {
         sum.try_normalize(0.0).unwrap_or_default()
     }
 
-    /// From the closest point of a triangle at a time of the step to a point \[m\].
+    /// From the closest point of a triangle at a time of the step to a point (m).
     pub(crate) fn away_from_triangle(&self, triangle: u32, point: Vec3, time: f64) -> Vec3 {
         let corners = self.corners(triangle, time);
         let (weights, _) = closest_point_on_triangle(point, corners);
         point - weighted(corners, weights)
     }
 
-    /// The triangle of the least squared distance from a point, among those within `reach` \[m\] of it.
+    /// The triangle of the least squared distance from a point, among those within `reach` (m) of it.
     pub(crate) fn closest_by(
         &self,
         point: Vec3,
@@ -288,7 +288,7 @@ impl MovingSurface {
         across.try_normalize(0.0).unwrap_or_default()
     }
 
-    /// Triangles that come within `margin` \[m\] of the box from `low` to `high` \[m\] at some time of the step, or may.
+    /// Triangles that come within `margin` (m) of the box from `low` to `high` (m) at some time of the step, or may.
     pub fn near_box(&self, low: Vec3, high: Vec3, margin: f64, found: impl FnMut(u32)) {
         let margin = Vec3::repeat(margin);
         self.tree.near_box([low - margin, high + margin], found);
@@ -322,7 +322,7 @@ mod tests {
     const ROUND: usize = 24;
     const ACROSS: usize = 12;
 
-    /// A ring of thickness `tube`, every vertex moved by `moved` \[m\].
+    /// A ring of thickness `tube`, every vertex moved by `moved` (m).
     fn ring(tube: f64, moved: impl Fn(Vec3) -> Vec3) -> TriangleMesh {
         let at = |i: usize, j: usize| ((i % ROUND) * ACROSS + j % ACROSS) as u32;
         let mut mesh = TriangleMesh::default();

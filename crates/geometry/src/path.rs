@@ -15,7 +15,7 @@ const SAME_CROSSING: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Path {
     curves: Vec<Curve>,
-    /// Arc length at the end of each curve \[m\].
+    /// Arc length at the end of each curve (m).
     ends: Vec<f64>,
 }
 
@@ -26,7 +26,7 @@ pub struct PathPlace {
     pub curve: usize,
     /// Parameter on it, 0..=1.
     pub t: f64,
-    /// Arc length from the start of the path \[m\].
+    /// Arc length from the start of the path (m).
     pub along: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct PathCrossing {
     pub here: PathPlace,
     /// Place on the second path.
     pub there: PathPlace,
-    /// Where \[m\].
+    /// Where (m).
     pub point: Vec2,
     /// Whether the second path goes from the right of the first to its left.
     pub leftwards: bool,
@@ -68,12 +68,12 @@ impl Path {
         &self.curves
     }
 
-    /// Arc length \[m\].
+    /// Arc length (m).
     pub fn length(&self) -> f64 {
         self.ends.last().copied().unwrap_or(0.0)
     }
 
-    /// Arc length from the start of the path to the start of a curve \[m\].
+    /// Arc length from the start of the path to the start of a curve (m).
     pub fn length_before(&self, curve: usize) -> f64 {
         match curve {
             0 => 0.0,
@@ -81,7 +81,7 @@ impl Path {
         }
     }
 
-    /// The place at an arc length \[m\], clamped to the path; nothing if the path is empty. Where
+    /// The place at an arc length (m), clamped to the path; nothing if the path is empty. Where
     /// two curves meet it is the start of the second.
     pub fn at_length(&self, along: f64) -> Option<PathPlace> {
         let last = self.curves.len().checked_sub(1)?;
@@ -100,7 +100,7 @@ impl Path {
         }
     }
 
-    /// Where a place lies \[m\].
+    /// Where a place lies (m).
     pub fn point(&self, place: PathPlace) -> Vec2 {
         self.curves[place.curve].point(place.t)
     }
@@ -111,7 +111,7 @@ impl Path {
         along.try_normalize(1e-15)
     }
 
-    /// The curves between two arc lengths \[m\], in order; `from` after `to` gives them walked
+    /// The curves between two arc lengths (m), in order; `from` after `to` gives them walked
     /// backwards. Pieces shorter than 1e-12 of the path are left out.
     pub fn between(&self, from: f64, to: f64) -> Self {
         if from > to {
@@ -141,7 +141,7 @@ impl Path {
         Self::new(self.curves.iter().rev().map(Curve::reversed).collect())
     }
 
-    /// Points along the path, both ends included, whose chords stay within `tolerance` \[m\].
+    /// Points along the path, both ends included, whose chords stay within `tolerance` (m).
     pub fn flatten(&self, tolerance: f64) -> Vec<Vec2> {
         let mut points: Vec<Vec2> = Vec::new();
         for curve in &self.curves {
@@ -191,7 +191,7 @@ impl Path {
         best.map(|(_, curve, t)| self.at_parameter(curve, t))
     }
 
-    /// Largest side of the bounds of its defining points \[m\].
+    /// Largest side of the bounds of its defining points (m).
     fn extent(&self) -> f64 {
         let points = self.curves.iter().flat_map(Curve::defining_points);
         let size = Bounds2::of(points).size();

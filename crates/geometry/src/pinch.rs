@@ -10,7 +10,7 @@ use std::cell::Cell;
 pub enum Room {
     /// No wall that faces it is within reach.
     Free,
-    /// Distance to the nearest wall that faces it \[m\].
+    /// Distance to the nearest wall that faces it (m).
     Pinch(f64),
     /// It lies inside another part of the surface.
     Buried,
@@ -19,12 +19,12 @@ pub enum Room {
 /// Cosine between two normals below which their walls face each other: 120 degrees.
 const FACING: f64 = -0.5;
 /// Distance in front of a place from where it is told whether it is inside of another part, and from where something is
-/// in front of it \[m\].
+/// in front of it (m).
 const IN_FRONT: f64 = 1e-6;
 
 impl MovingSurface {
     /// The room in front of a place, along its normal, at a time of the step: the nearest wall that faces it within
-    /// `reach` \[m\].
+    /// `reach` (m).
     pub fn room(&self, place: &ClosestPoint, time: f64, reach: f64) -> Room {
         let is_behind = Cell::new(false);
         let distance2 = |triangle: u32| {
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::TriangleMesh;
 
-    /// Boxes between corners \[m\], as one surface.
+    /// Boxes between corners (m), as one surface.
     fn boxes(all: &[[[f64; 3]; 2]]) -> MovingSurface {
         let mut mesh = TriangleMesh::default();
         for [low, high] in all {
@@ -134,7 +134,7 @@ mod tests {
         MovingSurface::new(&mesh)
     }
 
-    /// What is in front of the point of a surface that is nearest to a point \[m\].
+    /// What is in front of the point of a surface that is nearest to a point (m).
     fn room(surface: &MovingSurface, point: [f64; 3]) -> Room {
         let point = Vec3::from(point);
         let place = surface

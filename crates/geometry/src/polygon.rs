@@ -2,25 +2,25 @@
 
 use crate::{Vec2, orient2d};
 
-/// A region of the plane bounded by one outer ring and any number of holes \[m\].
+/// A region of the plane bounded by one outer ring and any number of holes (m).
 ///
 /// Rings are closed implicitly (the first point is not repeated) and may run either way;
 /// [`Polygon::oriented`] gives the standard form. Nothing is checked on construction:
 /// see [`Polygon::defects`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polygon {
-    /// The outer ring \[m\].
+    /// The outer ring (m).
     pub outer: Vec<Vec2>,
-    /// The rings of the holes \[m\].
+    /// The rings of the holes (m).
     pub holes: Vec<Vec<Vec2>>,
 }
 
-/// A rectangle with sides along the axes \[m\].
+/// A rectangle with sides along the axes (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds2 {
-    /// Corner with the least coordinates \[m\].
+    /// Corner with the least coordinates (m).
     pub min: Vec2,
-    /// Corner with the greatest coordinates \[m\].
+    /// Corner with the greatest coordinates (m).
     pub max: Vec2,
 }
 
@@ -63,12 +63,12 @@ impl Bounds2 {
         }
     }
 
-    /// Extent along x and y \[m\].
+    /// Extent along x and y (m).
     pub fn size(&self) -> Vec2 {
         self.max - self.min
     }
 
-    /// The middle \[m\].
+    /// The middle (m).
     pub fn centre(&self) -> Vec2 {
         self.min + (self.max - self.min) * 0.5
     }
@@ -97,13 +97,13 @@ impl Bounds2 {
             && point.y <= self.max.y
     }
 
-    /// Distance between the rectangles \[m\], 0 where they meet.
+    /// Distance between the rectangles (m), 0 where they meet.
     pub fn distance(&self, other: &Self) -> f64 {
         let gap = (other.min - self.max).sup(&(self.min - other.max));
         gap.sup(&Vec2::zeros()).norm()
     }
 
-    /// The same rectangle moved \[m\].
+    /// The same rectangle moved (m).
     pub fn translated(&self, by: Vec2) -> Self {
         Self {
             min: self.min + by,
@@ -111,7 +111,7 @@ impl Bounds2 {
         }
     }
 
-    /// The same rectangle grown by a margin on every side \[m\].
+    /// The same rectangle grown by a margin on every side (m).
     pub fn grown(&self, margin: f64) -> Self {
         let margin = Vec2::new(margin, margin);
         Self {
@@ -121,7 +121,7 @@ impl Bounds2 {
     }
 }
 
-/// Signed area of a ring \[m2\], positive when it runs counter-clockwise.
+/// Signed area of a ring (m2), positive when it runs counter-clockwise.
 pub fn ring_area(ring: &[Vec2]) -> f64 {
     let Some(&origin) = ring.first() else {
         return 0.0;
@@ -183,13 +183,13 @@ impl Polygon {
         self.rings().flat_map(|ring| ring_edges(ring))
     }
 
-    /// Area of the outer ring less the holes \[m2\], whichever way the rings run.
+    /// Area of the outer ring less the holes (m2), whichever way the rings run.
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|h| ring_area(h).abs()).sum();
         ring_area(&self.outer).abs() - holes
     }
 
-    /// Length of all edges \[m\].
+    /// Length of all edges (m).
     pub fn perimeter(&self) -> f64 {
         self.edges().map(|[a, b]| (b - a).norm()).sum()
     }
@@ -236,12 +236,12 @@ impl Polygon {
         }
     }
 
-    /// The polygon moved \[m\].
+    /// The polygon moved (m).
     pub fn translated(&self, by: Vec2) -> Self {
         self.mapped(|p| p + by)
     }
 
-    /// The polygon turned about the origin by an angle \[rad\], counter-clockwise.
+    /// The polygon turned about the origin by an angle (rad), counter-clockwise.
     pub fn rotated(&self, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         self.mapped(|p| Vec2::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y))

@@ -14,9 +14,9 @@ use geo::{Coord, LineString, MultiPolygon};
 /// How an offset outline turns a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Corner {
-    /// The edges run on until they meet, cut square where the corner is sharper than `limit` \[rad\].
+    /// The edges run on until they meet, cut square where the corner is sharper than `limit` (rad).
     Mitre {
-        /// Least angle between the edges that is still mitred \[rad\].
+        /// Least angle between the edges that is still mitred (rad).
         limit: f64,
     },
     /// An arc of chords no longer than this fraction of the distance.
@@ -123,7 +123,7 @@ pub fn wound_region(loops: &[Vec<Vec2>]) -> Vec<Polygon> {
     )
 }
 
-/// The polygon grown by a distance \[m\], or shrunk by a negative one; it may fall into several or
+/// The polygon grown by a distance (m), or shrunk by a negative one; it may fall into several or
 /// into none.
 pub fn offset(polygon: &Polygon, distance: f64, corner: Corner) -> Vec<Polygon> {
     if !usable(polygon) || !distance.is_finite() {
@@ -145,7 +145,7 @@ pub fn offset(polygon: &Polygon, distance: f64, corner: Corner) -> Vec<Polygon> 
     )
 }
 
-/// Total area \[m2\].
+/// Total area (m2).
 pub fn total_area(polygons: &[Polygon]) -> f64 {
     polygons.iter().map(Polygon::area).sum()
 }

@@ -99,7 +99,7 @@ impl PreparedPolygon {
         inside(here, b0) || inside(here, b1) || inside(there, here[0]) || inside(there, here[2])
     }
 
-    /// Least distance between the regions \[m\]; 0 where they touch or overlap.
+    /// Least distance between the regions (m); 0 where they touch or overlap.
     pub fn distance(&self, other: &Self) -> f64 {
         let apart = self.tree.distance(&other.tree);
         if apart > 0.0 && (self.reaches_into(other) || other.reaches_into(self)) {
@@ -125,7 +125,7 @@ impl PreparedPolygon {
             }) == ControlFlow::Continue(())
     }
 
-    /// The shortest move of `other` that ends the overlap \[m\]: zero if the interiors do not meet
+    /// The shortest move of `other` that ends the overlap (m): zero if the interiors do not meet
     /// (exact), else to the nearest point of the no-fit polygon's boundary (Cameron and Culley
     /// 1986), right to about 1e-8 of the extents. Holes count as filled.
     pub fn separation(&self, other: &Self) -> Vec2 {
@@ -154,7 +154,7 @@ impl PreparedPolygon {
         ways.into_iter().fold(ways[0], shorter)
     }
 
-    /// Length of [`PreparedPolygon::separation`] \[m\].
+    /// Length of [`PreparedPolygon::separation`] (m).
     pub fn penetration_depth(&self, other: &Self) -> f64 {
         self.separation(other).norm()
     }

@@ -22,7 +22,7 @@ pub struct Crossing {
     pub first: [usize; 2],
     /// Ring and number of the second edge's start point.
     pub second: [usize; 2],
-    /// Where \[m\], rounded.
+    /// Where (m), rounded.
     pub point: Vec2,
     /// How.
     pub kind: CrossingKind,
@@ -99,7 +99,7 @@ pub(crate) fn cross_properly(a: [Vec2; 2], b: [Vec2; 2]) -> bool {
     opposite(a, b) && opposite(b, a)
 }
 
-/// Where two segments that cross properly meet \[m\], rounded.
+/// Where two segments that cross properly meet (m), rounded.
 pub fn crossing_point(a: [Vec2; 2], b: [Vec2; 2]) -> Vec2 {
     let from = orient2d(b[0], b[1], a[0]);
     let to = orient2d(b[0], b[1], a[1]);

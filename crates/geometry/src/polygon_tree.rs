@@ -71,7 +71,7 @@ impl EdgeTree {
     }
 
     /// Calls `visit` for every pair of an edge here and an edge there whose boxes, moved apart by
-    /// less than `reach` \[m\], meet. Stops when `visit` breaks.
+    /// less than `reach` (m), meet. Stops when `visit` breaks.
     pub fn pairs(
         &self,
         other: &Self,
@@ -146,7 +146,7 @@ impl EdgeTree {
         ControlFlow::Continue(())
     }
 
-    /// Least distance between an edge here and an edge there \[m\]; infinite without edges.
+    /// Least distance between an edge here and an edge there (m); infinite without edges.
     pub fn distance(&self, other: &Self) -> f64 {
         let mut best = f64::INFINITY;
         self.shrink(0, other, 0, &mut best);
@@ -189,12 +189,12 @@ impl EdgeTree {
     }
 }
 
-/// Distance from a point to a closed segment \[m\].
+/// Distance from a point to a closed segment (m).
 pub fn point_segment_distance(point: Vec2, segment: [Vec2; 2]) -> f64 {
     (point - closest_on_segment(point, segment)).norm()
 }
 
-/// The point of a closed segment nearest to a point \[m\].
+/// The point of a closed segment nearest to a point (m).
 pub fn closest_on_segment(point: Vec2, [a, b]: [Vec2; 2]) -> Vec2 {
     let along = b - a;
     let squared = along.norm_squared();
@@ -204,7 +204,7 @@ pub fn closest_on_segment(point: Vec2, [a, b]: [Vec2; 2]) -> Vec2 {
     a + along * ((point - a).dot(&along) / squared).clamp(0.0, 1.0)
 }
 
-/// Distance between two closed segments \[m\], 0 exactly where they meet.
+/// Distance between two closed segments (m), 0 exactly where they meet.
 pub fn segment_distance(a: [Vec2; 2], b: [Vec2; 2]) -> f64 {
     if crate::segments_cross(a, b) {
         return 0.0;

@@ -3,13 +3,13 @@
 use crate::{Vec2, Vec3};
 use robust::{Coord, Coord3D};
 
-/// Twice the signed area of the triangle `abc` \[m2\]: positive when counter-clockwise. Sign exact.
+/// Twice the signed area of the triangle `abc` (m2): positive when counter-clockwise. Sign exact.
 pub fn orient2d(a: Vec2, b: Vec2, c: Vec2) -> f64 {
     let coord = |p: Vec2| Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
-/// Six times the signed volume of the tetrahedron `abcd` \[m3\]: positive when `d` lies below the
+/// Six times the signed volume of the tetrahedron `abcd` (m3): positive when `d` lies below the
 /// plane through `abc` seen counter-clockwise from above. Sign exact.
 pub fn orient3d(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
     let coord = |p: Vec3| Coord3D {

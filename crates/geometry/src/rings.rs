@@ -12,7 +12,7 @@ pub struct Rings {
 
 /// What looking for crossings found.
 pub struct RingCrossings {
-    /// Pairs of parts and a point near where they meet \[m\], at most as many as asked for.
+    /// Pairs of parts and a point near where they meet (m), at most as many as asked for.
     pub found: Vec<([usize; 2], Vec2)>,
     /// Whether the whole search was done within the budget.
     pub complete: bool,
@@ -92,7 +92,7 @@ impl Rings {
         segments_cross(first, second).then(|| (parts, crossing_point(first, second)))
     }
 
-    /// Whether a point is inside the rings (even-odd) or within `tolerance` \[m\] of one.
+    /// Whether a point is inside the rings (even-odd) or within `tolerance` (m) of one.
     pub fn holds(&self, point: Vec2, tolerance: f64) -> bool {
         let mut inside = false;
         let mut touches = false;

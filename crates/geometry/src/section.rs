@@ -2,7 +2,7 @@
 
 use crate::{TriangleMesh, Vec2, Vec3};
 
-/// Points where the edges of some triangles cross the horizontal plane at `height` \[m\], as
+/// Points where the edges of some triangles cross the horizontal plane at `height` (m), as
 /// (x, z). Vertices that lie in the plane count as above it.
 pub fn horizontal_section(
     mesh: &TriangleMesh,
@@ -31,7 +31,7 @@ fn crossing(a: Vec3, b: Vec3, height: f64) -> Option<Vec3> {
     Some(low + (high - low) * ((height - low.y) / (high.y - low.y)))
 }
 
-/// Length of a closed polygon \[m\].
+/// Length of a closed polygon (m).
 pub fn closed_length(polygon: &[Vec2]) -> f64 {
     (0..polygon.len())
         .map(|k| (polygon[(k + 1) % polygon.len()] - polygon[k]).norm())

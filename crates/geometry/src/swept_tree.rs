@@ -27,7 +27,7 @@ impl Node {
         (self.count > 0).then(|| first..first + self.count as usize)
     }
 
-    /// Square of the distance of a point from the box \[m2\].
+    /// Square of the distance of a point from the box (m2).
     fn distance2(&self, point: Vec3) -> f64 {
         let outside = (self.low - point).sup(&(point - self.high));
         outside.sup(&Vec3::zeros()).norm_squared()
@@ -114,7 +114,7 @@ impl SweptTree {
         }
     }
 
-    /// The closest triangle no farther than `reach` \[m\], the lowest of several that are equally close.
+    /// The closest triangle no farther than `reach` (m), the lowest of several that are equally close.
     pub fn closest(
         &self,
         point: Vec3,
@@ -165,7 +165,7 @@ impl SweptTree {
         (best.1 != u32::MAX).then_some(best.1)
     }
 
-    /// Distance of a point from the nearest box of a leaf, at most `reach` \[m\].
+    /// Distance of a point from the nearest box of a leaf, at most `reach` (m).
     pub fn clearance(&self, point: Vec3, reach: f64) -> f64 {
         let mut least = reach * reach;
         let mut waiting = [(0_u32, 0.0_f64); WAITING];
@@ -191,7 +191,7 @@ impl SweptTree {
         least.sqrt()
     }
 
-    /// Triangles of leaves whose boxes meet a box \[m\].
+    /// Triangles of leaves whose boxes meet a box (m).
     pub fn near_box(&self, [low, high]: [Vec3; 2], mut found: impl FnMut(u32)) {
         let meets = |node: &Node| {
             (0..3).all(|axis| node.low[axis] <= high[axis] && low[axis] <= node.high[axis])

@@ -25,9 +25,9 @@ pub struct SurfaceTree {
 /// The closest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
-    /// The point on the surface \[m\].
+    /// The point on the surface (m).
     pub point: Vec3,
-    /// Distance, negative inside a closed surface \[m\].
+    /// Distance, negative inside a closed surface (m).
     pub signed_distance: f64,
     /// Outward unit direction: from the surface point to the query point, turned outward; the
     /// pseudo-normal where the two coincide.
@@ -128,7 +128,7 @@ impl SurfaceTree {
         &self.vertex_normals
     }
 
-    /// Closest point of the surface no farther than `reach` \[m\]. Exact up to rounding.
+    /// Closest point of the surface no farther than `reach` (m). Exact up to rounding.
     pub fn closest_point(&self, point: Vec3, reach: f64) -> Option<ClosestPoint> {
         if !point.iter().all(|x| x.is_finite()) {
             return None;
@@ -170,7 +170,7 @@ impl SurfaceTree {
             .is_some_and(|c| c.signed_distance < 0.0)
     }
 
-    /// Triangles whose boxes come within `margin` \[m\] of the box from `low` to `high` \[m\].
+    /// Triangles whose boxes come within `margin` (m) of the box from `low` to `high` (m).
     pub fn near_box(&self, low: Vec3, high: Vec3, margin: f64) -> Vec<u32> {
         let query = Aabb::new(
             vector(low - Vec3::repeat(margin)),

@@ -14,14 +14,14 @@ pub enum Feature {
     Face,
 }
 
-/// Area of the triangle \[m2\].
+/// Area of the triangle (m2).
 pub fn triangle_area(corners: [Vec3; 3]) -> f64 {
     0.5 * (corners[1] - corners[0])
         .cross(&(corners[2] - corners[0]))
         .norm()
 }
 
-/// Signed volume of the tetrahedron from the origin to the triangle \[m3\].
+/// Signed volume of the tetrahedron from the origin to the triangle (m3).
 pub fn tetrahedron_volume(corners: [Vec3; 3]) -> f64 {
     corners[0].dot(&corners[1].cross(&corners[2])) / 6.0
 }

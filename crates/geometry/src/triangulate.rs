@@ -29,7 +29,7 @@ impl HasPosition for Numbered {
     }
 }
 
-/// The constrained Delaunay triangulation of the hull of points \[m\] (Delaunay 1934, Chew 1989): every segment is an
+/// The constrained Delaunay triangulation of the hull of points (m) (Delaunay 1934, Chew 1989): every segment is an
 /// edge. Triangles are counter-clockwise, in ascending order.
 ///
 /// # Errors
@@ -64,7 +64,7 @@ const SLIVER: f64 = 1e-3;
 /// An area below this of the square of the extent is none.
 const NO_AREA: f64 = 1e-12;
 
-/// Triangles of one polygon in space \[m\], as indices of its corners, two fewer than these and turning as it does.
+/// Triangles of one polygon in space (m), as indices of its corners, two fewer than these and turning as it does.
 /// It may be concave, have corners on a straight side, and be bent a little out of its plane, which is that of its
 /// vector area (Newell). A quad is cut along its first diagonal where that is sound, larger ones by Delaunay.
 ///

@@ -35,61 +35,61 @@ pub enum UnitError {
 const INCH: f64 = 0.0254;
 
 impl Length {
-    /// From metres \[m\].
+    /// From metres (m).
     pub const fn metres(value: f64) -> Self {
         Self(value)
     }
-    /// From centimetres \[cm\].
+    /// From centimetres (cm).
     pub const fn centimetres(value: f64) -> Self {
         Self(value / 100.0)
     }
-    /// From millimetres \[mm\].
+    /// From millimetres (mm).
     pub const fn millimetres(value: f64) -> Self {
         Self(value / 1000.0)
     }
-    /// From inches \[in\].
+    /// From inches (in).
     pub const fn inches(value: f64) -> Self {
         Self(value * INCH)
     }
-    /// In metres \[m\].
+    /// In metres (m).
     pub const fn as_metres(self) -> f64 {
         self.0
     }
-    /// In centimetres \[cm\].
+    /// In centimetres (cm).
     pub const fn as_centimetres(self) -> f64 {
         self.0 * 100.0
     }
-    /// In millimetres \[mm\].
+    /// In millimetres (mm).
     pub const fn as_millimetres(self) -> f64 {
         self.0 * 1000.0
     }
 }
 
 impl Angle {
-    /// From radians \[rad\].
+    /// From radians (rad).
     pub const fn radians(value: f64) -> Self {
         Self(value)
     }
-    /// From degrees \[deg\].
+    /// From degrees (deg).
     pub const fn degrees(value: f64) -> Self {
         Self(value.to_radians())
     }
-    /// In radians \[rad\].
+    /// In radians (rad).
     pub const fn as_radians(self) -> f64 {
         self.0
     }
-    /// In degrees \[deg\].
+    /// In degrees (deg).
     pub const fn as_degrees(self) -> f64 {
         self.0.to_degrees()
     }
 }
 
 impl Duration {
-    /// From seconds \[s\].
+    /// From seconds (s).
     pub const fn seconds(value: f64) -> Self {
         Self(value)
     }
-    /// In seconds \[s\].
+    /// In seconds (s).
     pub const fn as_seconds(self) -> f64 {
         self.0
     }

@@ -59,7 +59,7 @@ impl DxfWriter {
         self.group(code + 20, "0");
     }
 
-    /// A line through points \[m\].
+    /// A line through points (m).
     pub fn polyline(&mut self, layer: &str, points: &[Vec2], closed: bool) {
         if points.len() < 2 {
             return;
@@ -80,8 +80,8 @@ impl DxfWriter {
         self.group(8, layer);
     }
 
-    /// Words with their baseline's middle at a point \[m\], letters of a height \[m\], turned by an
-    /// angle \[rad\].
+    /// Words with their baseline's middle at a point (m), letters of a height (m), turned by an
+    /// angle (rad).
     pub fn text(&mut self, layer: &str, words: &str, (at, height, angle): (Vec2, f64, f64)) {
         let at = [at.x * 1e3, at.y * 1e3];
         self.group(0, "TEXT");

@@ -16,7 +16,7 @@ pub struct FabricTest {
     pub material: Material,
     /// Share of a fold that stays, where the bending hysteresis is given.
     pub kept_fold: Option<f64>,
-    /// Cusick's drape coefficient [%], to compare a drape with.
+    /// Cusick's drape coefficient (%), to compare a drape with.
     pub drape_coefficient: Option<f64>,
 }
 

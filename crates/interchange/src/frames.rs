@@ -34,7 +34,7 @@ pub struct FrameSurface {
     pub vertices: usize,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
-    /// Positions of a surface at rest [m], which has no place in the records.
+    /// Positions of a surface at rest (m), which has no place in the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub still: Option<Vec<[f32; 3]>>,
     /// Rest shape of a cloth.
@@ -46,7 +46,7 @@ pub struct FrameSurface {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestShape {
-    /// Corners of each triangle in its material plane [m].
+    /// Corners of each triangle in its material plane (m).
     pub rest: Vec<[Vec2; 3]>,
     /// Index of the material of each triangle.
     pub material: Vec<u16>,
@@ -61,9 +61,9 @@ pub struct RestShape {
 pub struct Frame {
     /// Steps taken.
     pub step: u64,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time: f64,
-    /// Positions of all surfaces that move, one after the other [m].
+    /// Positions of all surfaces that move, one after the other (m).
     pub positions: Vec<[f32; 3]>,
 }
 

@@ -31,11 +31,11 @@ pub struct GlbMesh {
 pub struct GlbPrimitive {
     /// Name of the material, since glTF gives a primitive none.
     pub name: String,
-    /// Vertex positions \[m\].
+    /// Vertex positions (m).
     pub positions: Vec<Vec3>,
     /// A normal for each vertex, of any length; a zero one is written as +Y.
     pub normals: Vec<Vec3>,
-    /// Place of each vertex in the pattern plane \[m\], y up.
+    /// Place of each vertex in the pattern plane (m), y up.
     pub uvs: Option<Vec<[f64; 2]>>,
     /// Corners of each triangle, counter-clockwise seen from the right side.
     pub triangles: Vec<[u32; 3]>,
@@ -43,7 +43,7 @@ pub struct GlbPrimitive {
     pub colour: [f64; 3],
 }
 
-/// Places beyond this are moved before they become `f32` \[m\]. Below it a rounding is at most
+/// Places beyond this are moved before they become `f32` (m). Below it a rounding is at most
 /// 6e-8 m, so that a distance between two places is right to 1.7e-7 m.
 const CENTRED_WITHIN: f64 = 2.0;
 

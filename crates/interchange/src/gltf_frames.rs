@@ -14,7 +14,7 @@ pub struct MovingGlbMesh {
     pub name: String,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
-    /// Positions in each frame [m]; one list for a surface at rest.
+    /// Positions in each frame (m); one list for a surface at rest.
     pub frames: Vec<Vec<[f32; 3]>>,
     /// Base colour, linear 0..=1.
     pub colour: [f32; 3],
@@ -24,7 +24,7 @@ pub struct MovingGlbMesh {
 const INTEGER: u32 = 5125;
 const CORNERS: u32 = 34963;
 
-/// Writes surfaces that move together, at some times \[s\], as GLB. Metres, Y up; the animation starts at 0 and is
+/// Writes surfaces that move together, at some times (s), as GLB. Metres, Y up; the animation starts at 0 and is
 /// straight between frames, as the frames are. Some viewers show no more than 64 targets.
 ///
 /// # Errors

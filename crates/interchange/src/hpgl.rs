@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use toile_geometry::Vec2;
 use toile_lettering::{Line, width};
 
-/// User units in a metre \[1/m\].
+/// User units in a metre (1/m).
 const UNITS: f64 = 1e5;
-/// Plotter units in a metre \[1/m\].
+/// Plotter units in a metre (1/m).
 const PLOTTER: f64 = 4e4;
 /// Height of capitals over the size of letters.
 const CAPITALS: f64 = 0.72;
@@ -22,7 +22,7 @@ fn unit(metres: f64) -> i64 {
 }
 
 impl HpglWriter {
-    /// An empty plot of a size \[m\].
+    /// An empty plot of a size (m).
     pub fn new(size: Vec2) -> Self {
         let plotter = |metres: f64| (metres * PLOTTER).ceil() as i64;
         let mut text = String::from("IN;");
@@ -39,7 +39,7 @@ impl HpglWriter {
         }
     }
 
-    /// A line through points \[m\] with a pen, from 1.
+    /// A line through points (m) with a pen, from 1.
     pub fn polyline(&mut self, pen: u8, points: &[Vec2], closed: bool) {
         let [first, rest @ ..] = points else {
             return;
@@ -56,8 +56,8 @@ impl HpglWriter {
         let _ = writeln!(self.text, "{};PU;", all.join(","));
     }
 
-    /// Words with their baseline's middle at a point \[m\], letters of a size \[m\], turned by an
-    /// angle \[rad\]. Plotters know ASCII alone: words with other letters are drawn by their outlines.
+    /// Words with their baseline's middle at a point (m), letters of a size (m), turned by an
+    /// angle (rad). Plotters know ASCII alone: words with other letters are drawn by their outlines.
     pub fn text(&mut self, pen: u8, words: &str, (at, size, angle): (Vec2, f64, f64)) {
         let blank = |c: char| if c.is_control() { ' ' } else { c };
         let words: String = words.chars().map(blank).collect();

@@ -19,9 +19,9 @@ pub struct JaguaInstance {
     pub name: String,
     /// Lengths in memory over lengths in the file: a power of two, so that nothing is rounded.
     pub scale: f64,
-    /// Items, in the order of the file \[m\].
+    /// Items, in the order of the file (m).
     pub items: Vec<Item>,
-    /// The strip \[m\].
+    /// The strip (m).
     pub strip: Strip,
     /// Notes on assumptions.
     pub notes: Vec<String>,

@@ -12,7 +12,7 @@ use toile_measure::{Measurements, Origin, UnitKind, definition};
 const KIND: &str = "mannequin";
 const VERSION: u32 = 1;
 
-/// Centre, effective semi-axes [0.1 mm] and rotation vector [mrad] of a primitive, and its weight
+/// Centre, effective semi-axes (0.1 mm) and rotation vector (mrad) of a primitive, and its weight
 /// [0.001] where it is not one.
 type Row = Vec<i32>;
 
@@ -34,7 +34,7 @@ struct MannequinFile {
     arm: Vec<Row>,
     #[serde(default)]
     leg: Vec<Row>,
-    /// Levels and joints [m] of a body fitted to a mesh.
+    /// Levels and joints (m) of a body fitted to a mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     frame: Option<BodyFrame>,
     /// What is particular about single primitives.

@@ -15,7 +15,7 @@ pub struct MarkerDrawing {
     pub title: String,
     /// The fabric.
     pub strip: Strip,
-    /// Fabric used, end margins included \[m\].
+    /// Fabric used, end margins included (m).
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,
@@ -23,7 +23,7 @@ pub struct MarkerDrawing {
     pub pieces: Vec<MarkerPiece>,
     /// Names of the copies that found no place, and why.
     pub unplaced: Vec<[String; 2]>,
-    /// Regions where pieces overlap, in the plane of the fabric \[m\]; nothing on a sound marker.
+    /// Regions where pieces overlap, in the plane of the fabric (m); nothing on a sound marker.
     pub overlaps: Vec<Polygon>,
     /// Facts for the report.
     pub facts: MarkerFacts,
@@ -86,7 +86,7 @@ fn plural(count: usize) -> String {
 }
 
 impl MarkerDrawing {
-    /// Fabric needed, all plies together \[m\].
+    /// Fabric needed, all plies together (m).
     pub fn yardage(&self) -> f64 {
         self.length * f64::from(self.facts.plies)
     }

@@ -24,7 +24,7 @@ pub struct MarkerFile {
     pub name: String,
     /// The fabric.
     pub fabric: MarkerFabric,
-    /// Fabric used, end margins included \[m\].
+    /// Fabric used, end margins included (m).
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,
@@ -52,15 +52,15 @@ pub struct MarkerFabric {
     /// Its name in the pattern.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Full width \[m\].
+    /// Full width (m).
     pub width: f64,
-    /// Unusable edge at either side \[m\].
+    /// Unusable edge at either side (m).
     pub selvedge: f64,
-    /// Free fabric at either end \[m\].
+    /// Free fabric at either end (m).
     pub end_margin: f64,
-    /// Least distance between pieces \[m\].
+    /// Least distance between pieces (m).
     pub gap: f64,
-    /// Length at hand \[m\]; null means as long as it takes.
+    /// Length at hand (m); null means as long as it takes.
     pub max_length: Option<f64>,
     /// Whether the fabric has a nap, so that all pieces point one way.
     pub one_way: bool,
@@ -117,9 +117,9 @@ fn is_one(plies: &u32) -> bool {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerPrint {
-    /// Length of a repeat along the warp and across \[m\]; 0 where it does not repeat.
+    /// Length of a repeat along the warp and across (m); 0 where it does not repeat.
     pub repeat: [f64; 2],
-    /// A point where lines of the print cross \[m\].
+    /// A point where lines of the print cross (m).
     pub origin: [f64; 2],
 }
 
@@ -127,9 +127,9 @@ pub struct MarkerPrint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFlaw {
-    /// Its outline \[m\].
+    /// Its outline (m).
     pub outline: Vec<[f64; 2]>,
-    /// Distance pieces keep from it \[m\].
+    /// Distance pieces keep from it (m).
     pub clearance: f64,
 }
 
@@ -143,18 +143,18 @@ pub struct MarkerFilePiece {
     pub item: usize,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Direction of the warp in the piece as drawn, counter-clockwise from +x \[deg\].
+    /// Direction of the warp in the piece as drawn, counter-clockwise from +x (deg).
     pub grain: f64,
-    /// Angle from the warp to the piece's grain \[deg\].
+    /// Angle from the warp to the piece's grain (deg).
     pub turn: f64,
     /// Whether it lies face down: turned over across the grain before it is turned.
     pub face_down: bool,
-    /// Move after turning \[m\].
+    /// Move after turning (m).
     pub at: [f64; 2],
     /// Number of the garment it belongs to, from 0.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub garment: u32,
-    /// Free fabric it needs to any other piece \[m\].
+    /// Free fabric it needs to any other piece (m).
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub gap: f64,
     /// Whether it may hide flaws.
@@ -163,7 +163,7 @@ pub struct MarkerFilePiece {
     /// The point that must lie on the print.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on_print: Option<MarkerMatch>,
-    /// Cut outline as laid, to the nearest micrometre \[m\].
+    /// Cut outline as laid, to the nearest micrometre (m).
     pub outline: Vec<[f64; 2]>,
     /// Holes cut into it, likewise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -174,9 +174,9 @@ pub struct MarkerFilePiece {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerMatch {
-    /// In the piece as drawn \[m\].
+    /// In the piece as drawn (m).
     pub point: [f64; 2],
-    /// How far after the lines of the print, along the warp and across \[m\].
+    /// How far after the lines of the print, along the warp and across (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<[f64; 2]>,
     /// Number of the set whose members all lie alike, if it need not be on the lines.

@@ -56,9 +56,9 @@ pub fn write_marker_hpgl(drawing: &MarkerDrawing) -> Result<String, FormatError>
     Ok(hpgl.finish())
 }
 
-/// Height of the letters of a title, and how far it stands over the fabric \[m\].
+/// Height of the letters of a title, and how far it stands over the fabric (m).
 const TITLE: f64 = 0.02;
-/// White round the fabric \[m\].
+/// White round the fabric (m).
 const BORDER: f64 = 0.02;
 
 /// A marker on one PDF page at true size.
@@ -108,11 +108,11 @@ pub fn write_marker_pdf(drawing: &MarkerDrawing) -> Result<Vec<u8>, FormatError>
 
 /// How a marker is put on a page.
 pub(crate) struct PlotLook {
-    /// Where the fabric's lower corner lies \[m\].
+    /// Where the fabric's lower corner lies (m).
     pub origin: Vec2,
     /// Length on the page over length of fabric.
     pub scale: f64,
-    /// Width of a line to cut along \[m\]; others are half as wide.
+    /// Width of a line to cut along (m); others are half as wide.
     pub width: f64,
     /// Whether words are written.
     pub words: bool,

@@ -5,11 +5,11 @@ use crate::pdf::{Align, Ink, PdfPage, PdfSheets, PdfText, fitted, wrapped};
 use crate::{FormatError, MarkerDrawing, MarkerPiece, Shown};
 use toile_geometry::Vec2;
 
-/// A4, upright \[m\].
+/// A4, upright (m).
 const PAGE: [f64; 2] = [0.210, 0.297];
-/// White on every side \[m\].
+/// White on every side (m).
 const BORDER: f64 = 0.015;
-/// Size of the letters and distance of the lines \[m\].
+/// Size of the letters and distance of the lines (m).
 const LETTERS: f64 = 0.0035;
 const LINE: f64 = 0.0055;
 const BLACK: Ink = [0.07, 0.07, 0.07];
@@ -39,7 +39,7 @@ pub fn write_marker_report(title: &str, markers: &[MarkerDrawing]) -> Result<Vec
 struct Report {
     sheets: PdfSheets,
     page: PdfPage,
-    /// Baseline of the next line \[m\].
+    /// Baseline of the next line (m).
     at: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The lines and words of a plotted marker, on layers, in the fabric's own plane [m], x along the warp from
+//! The lines and words of a plotted marker, on layers, in the fabric's own plane (m), x along the warp from
 //! 0, y across from the lower side.
 
 use crate::{MarkerDrawing, MarkerPiece};

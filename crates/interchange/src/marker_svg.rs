@@ -13,16 +13,16 @@ use toile_cut::Words;
 use toile_geometry::Vec2;
 use toile_nesting::Fold;
 
-/// White round the fabric \[mm\].
+/// White round the fabric (mm).
 const BORDER: f64 = 20.0;
-/// Length that the heading and the bar of known length have at the least \[mm\].
+/// Length that the heading and the bar of known length have at the least (mm).
 const SHORTEST: f64 = 400.0;
-/// Sizes of the letters of the title and of the lines under it \[mm\].
+/// Sizes of the letters of the title and of the lines under it (mm).
 const TITLE: f64 = 22.0;
 const LETTERS: f64 = 14.0;
-/// Distance of the lines under the title \[mm\].
+/// Distance of the lines under the title (mm).
 const LINE: f64 = 18.0;
-/// From the last line of the heading to the fabric: the bar of known length lies there \[mm\].
+/// From the last line of the heading to the fabric: the bar of known length lies there (mm).
 const BELOW: f64 = 36.0;
 const BLACK: &str = "#222222";
 const RED: &str = "#b00020";
@@ -95,14 +95,14 @@ fn layer(text: &mut String, (id, label, style): (&str, &str, &str), inside: &str
 
 /// The text above the fabric.
 struct Heading {
-    /// Lines with the height of their letters \[mm\] and their colour.
+    /// Lines with the height of their letters (mm) and their colour.
     lines: Vec<(f64, &'static str, String)>,
-    /// From the fabric to the upper border \[mm\].
+    /// From the fabric to the upper border (mm).
     height: f64,
 }
 
 impl Heading {
-    /// A title and lines, none longer than a length \[mm\].
+    /// A title and lines, none longer than a length (mm).
     fn new(title: &str, summary: &[String], length: f64) -> Self {
         let title = lines_within(title, TITLE, length);
         let mut lines: Vec<_> = title.into_iter().map(|line| (TITLE, BLACK, line)).collect();
@@ -119,8 +119,8 @@ impl Heading {
         }
     }
 
-    /// The lines, and a bar of known length \[mm\] to check the scale of a print, which ends at
-    /// `right` \[mm\], with its words.
+    /// The lines, and a bar of known length (mm) to check the scale of a print, which ends at
+    /// `right` (mm), with its words.
     fn write(&self, text: &mut String, right: f64, (bar, words): (f64, &str)) {
         let mut inside = String::new();
         let mut y = -self.height + 14.0;
@@ -148,7 +148,7 @@ impl Heading {
     }
 }
 
-/// From one line of a heading to the next \[mm\].
+/// From one line of a heading to the next (mm).
 fn step(pair: &[(f64, &'static str, String)]) -> f64 {
     match pair {
         [(size, ..), _] if *size == TITLE => TITLE,
@@ -228,7 +228,7 @@ fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
     }
 }
 
-/// From the fabric, of a width \[m\], to the page \[mm\]: there y runs down.
+/// From the fabric, of a width (m), to the page (mm): there y runs down.
 struct Page(f64);
 
 impl Page {

@@ -7,20 +7,20 @@ use crate::xml::Xml;
 use roxmltree::Node;
 use toile_measure::{Measurements, SEAMLY, translated};
 
-/// From one size of these tables to the next, and from one height to the next [m]: the increments
+/// From one size of these tables to the next, and from one height to the next (m): the increments
 /// of a measurement are for so much.
 const SIZE_STEP: f64 = 0.02;
 const HEIGHT_STEP: f64 = 0.06;
-/// Sizes and heights that the programs offer of a table [m].
+/// Sizes and heights that the programs offer of a table (m).
 const SIZES: [f64; 2] = [0.22, 0.72];
 const HEIGHTS: [f64; 2] = [0.50, 2.00];
 
 /// The size taken of a table for several; what is not given is the table's base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SizeChoice {
-    /// Size: half the chest girth \[m\].
+    /// Size: half the chest girth (m).
     pub size: Option<f64>,
-    /// Height of the body \[m\].
+    /// Height of the body (m).
     pub height: Option<f64>,
 }
 
@@ -106,7 +106,7 @@ fn unit_of(xml: &Xml<'_>) -> Result<f64, FormatError> {
 
 /// The sizes that a table for several sizes declares.
 struct Sizes {
-    /// Base size and height \[m\]; nothing where the table has dimensions of another kind.
+    /// Base size and height (m); nothing where the table has dimensions of another kind.
     base: Option<[f64; 2]>,
     /// Whether the table is in inches, which no increments are for.
     inches: bool,

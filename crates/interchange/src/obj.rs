@@ -9,11 +9,11 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3};
 /// so that a welded garment keeps each panel's own place in its plane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjMesh {
-    /// Vertex positions \[m\].
+    /// Vertex positions (m).
     pub positions: Vec<Vec3>,
     /// Corners of each triangle, as indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
-    /// Places in the panel's plane \[m\], y up; may be empty.
+    /// Places in the panel's plane (m), y up; may be empty.
     pub texture: Vec<Vec2>,
     /// Corners as indices into `texture`: one entry a triangle, or none at all.
     pub texture_triangles: Vec<[u32; 3]>,

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use toile_geometry::{Bounds2, Vec2};
 use toile_lettering::{shortened, width};
 
-/// Points of a PDF in a metre \[1/m\].
+/// Points of a PDF in a metre (1/m).
 const POINTS: f64 = 72.0 / 0.0254;
 /// Longest side of a page in its own units (PDF 1.7, annex C); longer pages have a larger unit.
 const LONGEST: f64 = 14_400.0;
@@ -62,18 +62,18 @@ pub(crate) enum Align {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PdfText<'a> {
     pub text: &'a str,
-    /// On the baseline \[m\].
+    /// On the baseline (m).
     pub at: Vec2,
-    /// Size of the letters \[m\].
+    /// Size of the letters (m).
     pub size: f64,
-    /// Direction of the baseline \[rad\].
+    /// Direction of the baseline (rad).
     pub angle: f64,
     pub align: Align,
     pub ink: Ink,
 }
 
 impl PdfPage {
-    /// An empty page of a size \[m\].
+    /// An empty page of a size (m).
     pub fn new(size: Vec2) -> Self {
         let unit = (size.max() * POINTS / LONGEST).ceil().max(1.0);
         let mut content = Content::new();
@@ -111,7 +111,7 @@ impl PdfPage {
         self.content.end_marked_content();
     }
 
-    /// What follows is seen inside bounds \[m\] alone, until the end of the clip.
+    /// What follows is seen inside bounds (m) alone, until the end of the clip.
     pub fn clip(&mut self, bounds: &Bounds2) {
         let (low, size) = (bounds.min, bounds.size());
         let [x, y, width, height] = [low.x, low.y, size.x, size.y].map(|m| self.units(m));
@@ -153,7 +153,7 @@ impl PdfPage {
         self.content.fill_even_odd();
     }
 
-    /// Draws a line of a width \[m\], dashed by a length \[m\] if that is not 0.
+    /// Draws a line of a width (m), dashed by a length (m) if that is not 0.
     pub fn stroke(&mut self, points: &[Vec2], closed: bool, (width, dash, ink): (f64, f64, Ink)) {
         let (width, dash) = (self.units(width), self.units(dash));
         self.content.set_stroke_rgb(ink[0], ink[1], ink[2]);
@@ -307,7 +307,7 @@ impl PdfSheets {
     }
 }
 
-/// A text in lines of at most a width \[m\] at a size \[m\], broken between words; a longer word is
+/// A text in lines of at most a width (m) at a size (m), broken between words; a longer word is
 /// cut.
 pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let fits = |line: &str| toile_lettering::width(line) * size <= width;
@@ -324,7 +324,7 @@ pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-/// As many letters from the start of a text as fit a width \[m\] at a size \[m\].
+/// As many letters from the start of a text as fit a width (m) at a size (m).
 pub(crate) fn fitted(text: &str, size: f64, width: f64) -> String {
     shortened(text, width / size)
 }

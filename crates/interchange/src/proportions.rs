@@ -12,7 +12,7 @@ pub fn proportion_boxes() -> Vec<ProportionBox> {
 }
 
 /// Reads a table of proportion boxes: a JSON list of objects with a name and the stature in head
-/// lengths (crown to chin), and optionally sex, age [years], and height of the crotch, distance of
+/// lengths (crown to chin), and optionally sex, age (years), and height of the crotch, distance of
 /// the shoulders' ends and breadth of the hips in head lengths.
 ///
 /// # Errors

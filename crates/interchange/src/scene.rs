@@ -13,7 +13,7 @@ use toile_geometry::Vec3;
 /// A scene as written.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SceneFile {
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     #[serde(default = "earth")]
     pub gravity: [f64; 3],
     /// The air.
@@ -22,13 +22,13 @@ pub struct SceneFile {
     /// Damping of everything alike.
     #[serde(default)]
     pub damping: DampingFile,
-    /// Simulated time [s]; 1 s where it is left out, or until the figures of the scene have stood still for 1 s.
+    /// Simulated time (s); 1 s where it is left out, or until the figures of the scene have stood still for 1 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<f64>,
-    /// Step in time [s].
+    /// Step in time (s).
     #[serde(default = "usual_step")]
     pub step: f64,
-    /// Time between saved frames [s].
+    /// Time between saved frames (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_step: Option<f64>,
     /// How the motion is computed; by `xpbd` where a body moves, else by implicit Euler where it is left out.
@@ -92,10 +92,10 @@ fn read_word<T: std::str::FromStr<Err = String>>(
 /// The air of a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct AirFile {
-    /// Drag per mass [1/s].
+    /// Drag per mass (1/s).
     #[serde(default)]
     pub drag: f64,
-    /// Density [kg/m3]; that of sea level when a coefficient or the wind is given.
+    /// Density (kg/m3); that of sea level when a coefficient or the wind is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
     /// Drag coefficient across the cloth.
@@ -104,7 +104,7 @@ pub struct AirFile {
     /// Drag coefficient along the cloth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tangential: Option<f64>,
-    /// Velocity of the wind [m/s].
+    /// Velocity of the wind (m/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wind: Option<[f64; 3]>,
     #[serde(flatten)]
@@ -130,10 +130,10 @@ impl AirFile {
 /// Rayleigh damping of a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct DampingFile {
-    /// In proportion to mass [1/s].
+    /// In proportion to mass (1/s).
     #[serde(default)]
     pub mass: f64,
-    /// In proportion to stiffness [s].
+    /// In proportion to stiffness (s).
     #[serde(default)]
     pub stiffness: f64,
     #[serde(flatten)]
@@ -161,7 +161,7 @@ pub struct MethodFile {
     /// Iterations in a substep at the most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub iterations: Option<usize>,
-    /// Where iterations stop: a gradient [N] in time, net force over weight for rest.
+    /// Where iterations stop: a gradient (N) in time, net force over weight for rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     #[serde(flatten)]
@@ -183,16 +183,16 @@ impl Default for MethodFile {
 /// Contact in a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct CollisionFile {
-    /// Distance kept from surfaces [m].
+    /// Distance kept from surfaces (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
-    /// Pressure per depth [N/m3].
+    /// Pressure per depth (N/m3).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
     /// Whether friction acts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<bool>,
-    /// Distance kept between the middles of two cloths [m]; none or 0 lets cloth pass through cloth.
+    /// Distance kept between the middles of two cloths (m); none or 0 lets cloth pass through cloth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cloth_offset: Option<f64>,
     /// Pairs of names of objects that pass through each other; a cloth with itself passes through itself.
@@ -235,7 +235,7 @@ pub struct ObjectFile {
     /// The frame that a deformable object starts from, counted from 0; the last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// Frames a second of a point cache [1/s].
+    /// Frames a second of a point cache (1/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<f64>,
     /// Where it stands.
@@ -263,10 +263,10 @@ pub struct ObjectFile {
 /// Scaled, then turned, then moved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct TransformFile {
-    /// Translation [m].
+    /// Translation (m).
     #[serde(default)]
     pub translation: [f64; 3],
-    /// Rotation vector: axis times angle [rad].
+    /// Rotation vector: axis times angle (rad).
     #[serde(default)]
     pub rotation: [f64; 3],
     /// Uniform scale.
@@ -288,7 +288,7 @@ impl Default for TransformFile {
 }
 
 impl TransformFile {
-    /// The place a point of the object's own file takes in the scene [m].
+    /// The place a point of the object's own file takes in the scene (m).
     pub fn apply(&self, point: Vec3) -> Vec3 {
         nalgebra::Rotation3::from_scaled_axis(Vec3::from(self.rotation)) * (point * self.scale)
             + Vec3::from(self.translation)
@@ -302,9 +302,9 @@ pub struct ElasticFile {
     pub from: EndFile,
     /// Object and vertex, or a point.
     pub to: EndFile,
-    /// Stiffness [N/m].
+    /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Gap at which the ends become one vertex [m].
+    /// Gap at which the ends become one vertex (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub merge_within: Option<f64>,
     #[serde(flatten)]
@@ -317,7 +317,7 @@ pub struct ElasticFile {
 pub enum EndFile {
     /// A vertex of an object.
     Vertex(String, u32),
-    /// A place [m].
+    /// A place (m).
     Point([f64; 3]),
 }
 

@@ -12,13 +12,13 @@ pub struct MaterialFile {
     /// Name of a fabric of the library.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fabric: Option<String>,
-    /// Mass per area [kg/m2].
+    /// Mass per area (kg/m2).
     pub density: Option<f64>,
-    /// Thickness [m].
+    /// Thickness (m).
     pub thickness: Option<f64>,
-    /// Stretch stiffness along warp and weft [N/m].
+    /// Stretch stiffness along warp and weft (N/m).
     pub stretch: Option<[f64; 2]>,
-    /// Shear stiffness [N/m].
+    /// Shear stiffness (N/m).
     pub shear: Option<f64>,
     /// Poisson ratio.
     pub poisson: Option<f64>,
@@ -31,24 +31,24 @@ pub struct MaterialFile {
     /// `full` or `tension-field`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compression: Option<String>,
-    /// Bending stiffness along warp, weft and bias [N m].
+    /// Bending stiffness along warp, weft and bias (N m).
     pub bend: Option<[f64; 3]>,
     /// Poisson ratio in bending.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bend_poisson: Option<f64>,
-    /// Viscosity of stretch [N s/m].
+    /// Viscosity of stretch (N s/m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<f64>,
-    /// Viscosity of bending [N m s].
+    /// Viscosity of bending (N m s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bend_viscosity: Option<f64>,
-    /// Viscosity in proportion to stiffness [s].
+    /// Viscosity in proportion to stiffness (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness_damping: Option<f64>,
     /// Share of stretch and of folds that is kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept: Option<[f64; 2]>,
-    /// Time in which it settles [s].
+    /// Time in which it settles (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relaxation_time: Option<f64>,
     /// Friction coefficient.

@@ -13,7 +13,7 @@ pub(crate) type Unknown = BTreeMap<String, Value>;
 /// body by a clip, with keys that turn it about itself.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct MotionFile {
-    /// The place it turns about, in the scene [m].
+    /// The place it turns about, in the scene (m).
     #[serde(default)]
     pub pivot: [f64; 3],
     /// Where it is when.
@@ -41,12 +41,12 @@ pub struct MotionFile {
 /// One key of a motion.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct KeyFile {
-    /// The time [s].
+    /// The time (s).
     pub time: f64,
-    /// Translation from where it was loaded [m].
+    /// Translation from where it was loaded (m).
     #[serde(default)]
     pub translation: [f64; 3],
-    /// Rotation vector: axis times angle [rad].
+    /// Rotation vector: axis times angle (rad).
     #[serde(default)]
     pub rotation: [f64; 3],
     #[serde(flatten)]

@@ -15,7 +15,7 @@ impl Shown {
         self.0 == DisplayUnit::Inch
     }
 
-    /// A length \[m\] with its unit.
+    /// A length (m) with its unit.
     pub fn length(self, metres: f64) -> String {
         match self.is_inch() {
             true => format!("{:.1} in", inches(metres)),
@@ -23,7 +23,7 @@ impl Shown {
         }
     }
 
-    /// The width of a fabric \[m\] with its unit.
+    /// The width of a fabric (m) with its unit.
     pub fn width(self, metres: f64) -> String {
         match self.is_inch() {
             true => {
@@ -34,7 +34,7 @@ impl Shown {
         }
     }
 
-    /// A short length \[m\] with its unit: a margin, a gap.
+    /// A short length (m) with its unit: a margin, a gap.
     pub fn short(self, metres: f64) -> String {
         match self.is_inch() {
             true => format!("{:.2} in", inches(metres)),
@@ -42,7 +42,7 @@ impl Shown {
         }
     }
 
-    /// A length of cloth \[m\] as it is bought, in yards or metres first.
+    /// A length of cloth (m) as it is bought, in yards or metres first.
     pub fn cloth(self, metres: f64) -> [String; 2] {
         let [metric, yards] = [
             format!("{metres:.3} m"),
@@ -54,12 +54,12 @@ impl Shown {
         }
     }
 
-    /// An area \[m2\] with its unit.
+    /// An area (m2) with its unit.
     pub fn area(self, square_metres: f64) -> String {
         format!("{} {}", self.area_number(square_metres), self.area_unit())
     }
 
-    /// An area \[m2\] as a number in its unit.
+    /// An area (m2) as a number in its unit.
     pub(crate) fn area_number(self, square_metres: f64) -> String {
         let unit = match self.is_inch() {
             true => DisplayUnit::Inch,

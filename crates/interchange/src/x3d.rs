@@ -11,7 +11,7 @@ use toile_geometry::Vec3;
 
 /// Poses a second that a motion is taken at.
 const RATE: f64 = 30.0;
-/// Longest cycle taken [s]: beyond it a file is damaged.
+/// Longest cycle taken (s): beyond it a file is damaged.
 const LONGEST: f64 = 3600.0;
 
 /// Turns over the share of the cycle.
@@ -167,7 +167,7 @@ impl<'a> Animation<'a> {
         Ok(clip)
     }
 
-    /// Its length \[s\], and whether it is a loop.
+    /// Its length (s), and whether it is a loop.
     fn cycle(&self) -> Result<(f64, bool), FormatError> {
         let Some(clock) = self.clock else {
             return Ok((1.0, false));

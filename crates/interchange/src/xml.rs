@@ -13,7 +13,7 @@ const MOST_NESTED: usize = 256;
 /// A document and where its lines begin.
 pub(crate) struct Xml<'a> {
     document: Document<'a>,
-    /// Where each line after the first begins [bytes].
+    /// Where each line after the first begins (bytes).
     starts: Vec<usize>,
     /// Lines of white space before the document.
     skipped: usize,

@@ -43,7 +43,7 @@ const SAMPLES: [(&str, usize, f64); 2] = [
     ("hoody_mean_specification.json", 12, 5936.0),
 ];
 
-/// Area inside the outlines of all pieces [m2].
+/// Area inside the outlines of all pieces (m2).
 fn outline_area(draft: &Draft) -> f64 {
     draft
         .pieces

@@ -61,7 +61,7 @@ fn drawing() -> MarkerDrawing {
     }
 }
 
-/// The cut lines as laid [m].
+/// The cut lines as laid (m).
 fn cut_lines(drawing: &MarkerDrawing) -> Vec<Vec<Vec2>> {
     let laid = drawing
         .pieces
@@ -78,7 +78,7 @@ fn same(found: &[Vec2], wanted: &[Vec2], within: f64) -> bool {
             .all(|(a, b)| (a - b).amax() <= within)
 }
 
-/// The closed polylines and the texts of a DXF by layer [mm].
+/// The closed polylines and the texts of a DXF by layer (mm).
 #[allow(clippy::type_complexity)]
 fn read_dxf(text: &str) -> (BTreeMap<String, Vec<Vec<Vec2>>>, Vec<(String, String)>) {
     let lines: Vec<&str> = text.lines().collect();
@@ -150,7 +150,7 @@ fn the_title_of_a_dxf_is_no_longer_than_the_fabric() {
     }
 }
 
-/// The lines drawn with a pen [m].
+/// The lines drawn with a pen (m).
 fn read_hpgl(text: &str, pen: &str) -> Vec<Vec<Vec2>> {
     let (mut lines, mut now, mut unit) = (Vec::new(), "", 0.0);
     for command in text.split(';').map(str::trim).filter(|c| !c.is_empty()) {
@@ -198,7 +198,7 @@ fn a_plot_read_back_is_within_a_hundredth_of_a_millimetre() {
     assert!(text.trim_end().ends_with("SP0;"));
 }
 
-/// Closed paths of the page content [m], by the unit of the page.
+/// Closed paths of the page content (m), by the unit of the page.
 fn read_pdf(bytes: &[u8], unit: f64) -> Vec<Vec<Vec2>> {
     let text = String::from_utf8_lossy(bytes);
     let metres = |word: &str| word.parse::<f64>().unwrap() * unit * 0.0254 / 72.0;

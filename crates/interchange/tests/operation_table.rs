@@ -277,7 +277,7 @@ impl Made {
     }
 }
 
-/// Length of every named edge of a half [m].
+/// Length of every named edge of a half (m).
 fn lengths<'s>(stages: impl IntoIterator<Item = &'s Stage>, half: u8) -> BTreeMap<EdgeName, f64> {
     let mut found = BTreeMap::new();
     let lines = stages.into_iter().flat_map(|stage| &stage.lines);

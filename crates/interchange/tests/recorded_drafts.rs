@@ -8,7 +8,7 @@ use draft_table::draft_table;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Coordinates and lengths may differ by this [m].
+/// Coordinates and lengths may differ by this (m).
 const TOLERANCE: f64 = 1e-9;
 
 /// Whether a line says the same, numbers within the tolerance.

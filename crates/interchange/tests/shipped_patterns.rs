@@ -39,13 +39,13 @@ fn drafts(pattern: &Pattern) -> Vec<(String, Measurements, Draft)> {
         .collect()
 }
 
-/// Area of a piece, holes taken out [m2].
+/// Area of a piece, holes taken out (m2).
 fn area(piece: &Piece) -> f64 {
     let edges = piece.outline.iter().chain(piece.holes.iter().flatten());
     edges.map(|edge| edge.curve.swept_area()).sum::<f64>() * 0.5
 }
 
-/// Length of a side of a seam [m].
+/// Length of a side of a seam (m).
 fn walked(draft: &Draft, seam: &DraftSeam, side: usize) -> f64 {
     let length = |span: &toile_pattern::DraftSpan| {
         let piece = &draft.pieces[span.piece];
@@ -186,7 +186,7 @@ fn poncho_is_one_panel_with_a_hole_for_the_neck() {
 }
 
 /// The stretches of a side of a seam between the darts it crosses: of each its length and the
-/// distance of its ends [m].
+/// distance of its ends (m).
 fn stretches(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<[f64; 2]> {
     let piece = |span: &toile_pattern::DraftSpan| &draft.pieces[span.piece];
     let mut found: Vec<(f64, [Vec2; 2])> = Vec::new();

@@ -9,7 +9,7 @@ use toile_pattern::*;
 
 const SHIPPED: [&str; 5] = ["dress", "gathered-skirt", "poncho", "t-shirt", "trousers"];
 const EXACT: f64 = 1e-9;
-/// Kinks that are none [deg].
+/// Kinks that are none (deg).
 const NO_KINK: f64 = 0.01;
 
 fn shipped(name: &str) -> Pattern {
@@ -111,7 +111,7 @@ fn closing(stage: &Stage, dart: OperationId) -> (Vec2, f64) {
     (apex, angle(ends[1], ends[0]))
 }
 
-/// By how much the edge turns across the closed dart [deg].
+/// By how much the edge turns across the closed dart (deg).
 fn kink(stage: &Stage, dart: OperationId) -> f64 {
     let [before, _, _, after] = around(stage, dart);
     let closed = turned(after.curve.derivative(0.0), closing(stage, dart).1);

@@ -10,7 +10,7 @@ use toile_pattern::*;
 const SHIPPED: [&str; 4] = ["dress", "gathered-skirt", "t-shirt", "trousers"];
 const DEPTH: f64 = 0.012;
 const EXACT: f64 = 1e-9;
-/// Kinks that are none [deg].
+/// Kinks that are none (deg).
 const NO_KINK: f64 = 0.01;
 
 fn shipped(name: &str) -> Pattern {
@@ -46,7 +46,7 @@ fn angle(from: Vec2, to: Vec2) -> f64 {
     from.perp(&to).atan2(from.dot(&to)).to_degrees()
 }
 
-/// How far a place lies from an edge of a stage [m].
+/// How far a place lies from an edge of a stage (m).
 fn away(stage: &Stage, edge: EdgeId, place: Vec2) -> f64 {
     let own = stage.outline().iter();
     let own = own.filter(|known| known.name == Name::Drawn(edge));

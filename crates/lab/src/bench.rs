@@ -127,7 +127,7 @@ fn is_long(name: &str, work: Work) -> bool {
 /// Threads a benchmark is given in turn.
 const THREADS: [usize; 2] = [1, 2];
 
-/// Steps to rest at the most, and wall time after which it is given up [s].
+/// Steps to rest at the most, and wall time after which it is given up (s).
 const MOST_STEPS: usize = 2000;
 const BUDGET: f64 = 300.0;
 
@@ -216,7 +216,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
     Ok(result)
 }
 
-/// Distance that the square keeps from itself [m], and substeps of a frame.
+/// Distance that the square keeps from itself (m), and substeps of a frame.
 const TOUCHING_OFFSET: f64 = 2e-3;
 const TOUCHING_SUBSTEPS: u32 = 10;
 

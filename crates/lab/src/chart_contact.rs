@@ -28,13 +28,13 @@ pub struct Touched {
     pub vertices: usize,
     /// The method.
     pub method: &'static str,
-    /// Step [s].
+    /// Step (s).
     pub step: f64,
-    /// Distance that cloth keeps from cloth [m]; zero without contact.
+    /// Distance that cloth keeps from cloth (m); zero without contact.
     pub offset: f64,
-    /// Wall time [ms] a simulated second.
+    /// Wall time (ms) a simulated second.
     pub wall_ms: f64,
-    /// Processor time [ms] a simulated second.
+    /// Processor time (ms) a simulated second.
     pub cpu_ms: Option<f64>,
     /// Edges of cloth through faces of it at the end, exactly.
     pub crossings: Option<usize>,
@@ -56,10 +56,10 @@ impl Touched {
     }
 }
 
-/// Scenes by their names, and how long each goes on [s].
+/// Scenes by their names, and how long each goes on (s).
 const SCENES: [(&str, f64); 3] = [("sphere", 0.5), ("shirt", 0.1), ("fall", 0.4)];
 
-/// Distances that cloth keeps from cloth in the runs [m].
+/// Distances that cloth keeps from cloth in the runs (m).
 const OFFSETS: [f64; 3] = [0.0, 1e-3, 2e-3];
 
 /// A square sheet of so many metres and cells along a side that falls on its edge, and folds up over a

@@ -14,16 +14,16 @@ pub struct Point {
     pub vertices: usize,
     /// The method.
     pub method: &'static str,
-    /// Step [s] for methods in time; net force over weight asked for by methods of rest.
+    /// Step (s) for methods in time; net force over weight asked for by methods of rest.
     pub step: f64,
     /// Iterations it is given in a (sub)step at the most. None for explicit methods, which do not
     /// iterate, and for methods of rest, which go on until they are done.
     pub iterations: Option<usize>,
-    /// Wall time [ms]: a simulated second of motion, or the whole way to rest.
+    /// Wall time (ms): a simulated second of motion, or the whole way to rest.
     pub wall_ms: f64,
-    /// Processor time [ms], likewise.
+    /// Processor time (ms), likewise.
     pub cpu_ms: Option<f64>,
-    /// Root of the mean squared distance to the converged end [mm].
+    /// Root of the mean squared distance to the converged end (mm).
     pub error_mm: Option<f64>,
     /// Why there is no end, or why it is wrong.
     pub failure: Option<String>,
@@ -32,7 +32,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// What it costs [ms]: processor time where the system tells it, which a busy machine does
+    /// What it costs (ms): processor time where the system tells it, which a busy machine does
     /// not falsify, else wall time.
     pub fn cost(&self) -> f64 {
         self.cpu_ms.unwrap_or(self.wall_ms)
@@ -48,7 +48,7 @@ pub struct ChartData {
     pub rest: Vec<Point>,
     /// Contact of cloth with cloth.
     pub contact: Vec<Touched>,
-    /// For each mesh: how far two unlike methods end apart [mm], and what they were.
+    /// For each mesh: how far two unlike methods end apart (mm), and what they were.
     pub agreement: Vec<Agreement>,
 }
 
@@ -57,7 +57,7 @@ pub struct ChartData {
 pub struct Agreement {
     /// The mesh.
     pub mesh: String,
-    /// Distance of the ends of two unlike methods at fine steps [mm].
+    /// Distance of the ends of two unlike methods at fine steps (mm).
     pub apart_mm: Option<f64>,
     /// The methods and their steps.
     pub by: String,

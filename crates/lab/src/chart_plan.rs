@@ -3,15 +3,15 @@
 /// The runs of a chart: steps, methods and scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartPlan {
-    /// Steps [s] of methods in time.
+    /// Steps (s) of methods in time.
     pub steps: &'static [f64],
-    /// Steps [s] of the runs with contact of cloth with cloth.
+    /// Steps (s) of the runs with contact of cloth with cloth.
     pub contact_steps: &'static [f64],
     /// Net forces over weight asked of methods of rest.
     pub residuals: &'static [f64],
     /// Resolutions of each scene at the most.
     pub resolutions: usize,
-    /// Processor time after which a run is given up [s]; another program's load does not use it.
+    /// Processor time after which a run is given up (s); another program's load does not use it.
     pub budget: f64,
     /// Times each run is made; the fastest counts.
     pub repeats: usize,

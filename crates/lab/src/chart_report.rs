@@ -225,7 +225,7 @@ pub fn locking_files(found: &[Resolved]) -> Result<Vec<(String, String)>, LabErr
     ])
 }
 
-/// Errors a reader may ask for [mm].
+/// Errors a reader may ask for (mm).
 const ASKED: [f64; 3] = [10.0, 3.0, 1.0];
 
 /// Which method to use when: for each mesh the fastest run within an error, as Markdown.

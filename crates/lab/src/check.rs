@@ -28,7 +28,7 @@ pub struct Check {
     pub tolerance: f64,
     /// Why there is no number.
     pub failure: Option<String>,
-    /// Wall time of the case [s].
+    /// Wall time of the case (s).
     pub seconds: f64,
 }
 

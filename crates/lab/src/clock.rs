@@ -17,23 +17,23 @@ impl Clock {
         }
     }
 
-    /// Wall time so far [s].
+    /// Wall time so far (s).
     pub fn wall(&self) -> f64 {
         self.wall.elapsed().as_secs_f64()
     }
 
-    /// Processor time so far, or wall time where the system does not tell it [s].
+    /// Processor time so far, or wall time where the system does not tell it (s).
     pub fn spent(&self) -> f64 {
         self.cpu().unwrap_or_else(|| self.wall())
     }
 
-    /// Processor time of the whole process so far [s], where the system tells it.
+    /// Processor time of the whole process so far (s), where the system tells it.
     pub fn cpu(&self) -> Option<f64> {
         Some((processor_seconds()? - self.cpu?).max(0.0))
     }
 }
 
-/// Processor time of the threads of this process [s]: to the nanosecond where the system has such a
+/// Processor time of the threads of this process (s): to the nanosecond where the system has such a
 /// clock (POSIX `CLOCK_PROCESS_CPUTIME_ID`), else as it is told otherwise.
 fn processor_seconds() -> Option<f64> {
     #[cfg(unix)]

@@ -13,10 +13,10 @@ use toile_drape::collision::{
 use toile_drape::{Cloth, MethodKind, MethodSettings, State, System};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
-/// Contact offset [m], and the reach of queries for contacts [m].
+/// Contact offset (m), and the reach of queries for contacts (m).
 const OFFSET: f64 = 2e-3;
 const REACH: f64 = 2.0 * OFFSET;
-/// Reach of queries for impacts on trajectories [m].
+/// Reach of queries for impacts on trajectories (m).
 const IMPACT_REACH: f64 = 5e-4;
 /// Number of queries timed, and of frames of 1/60 s.
 const QUERIES: usize = 20;
@@ -78,13 +78,13 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
 }
 
 /// Frames that the shirt settles in before its mesh is divided, and after, until it hangs still; drag of the
-/// air then [1/s].
+/// air then (1/s).
 const SETTLED: [usize; 2] = [60, 180];
 const SETTLING_DRAG: f64 = 10.0;
-/// Turn of the worn shirt about the upright when it is set in motion [rad/s].
+/// Turn of the worn shirt about the upright when it is set in motion (rad/s).
 const TURN: f64 = 2.0;
 
-/// Takes some frames of XPBD; what one takes [s], the looks for contacts in it, and its processor time [s].
+/// Takes some frames of XPBD; what one takes (s), the looks for contacts in it, and its processor time (s).
 fn frames(system: &System, state: &mut State, count: usize) -> Result<[f64; 3], LabError> {
     let mut method = MethodSettings::from(MethodKind::Xpbd).build();
     let clock = Clock::start();
@@ -192,7 +192,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Finds contacts and crossings at the positions of a path. Returns means over its steps: time [s], number of regions
+/// Finds contacts and crossings at the positions of a path. Returns means over its steps: time (s), number of regions
 /// opened, and number of regions given the curvature test.
 fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
     let clearance = ContactDetector::clearance(OFFSET);

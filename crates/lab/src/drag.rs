@@ -24,10 +24,10 @@ const SEED: u64 = 4;
 const MOVES: usize = 5;
 /// Of the large pattern everything is evaluated after every tenth point, of a small one after each.
 const LARGE_STRIDE: usize = 10;
-/// How far the pointer is from where the point was, at the most [m].
+/// How far the pointer is from where the point was, at the most (m).
 const REACH: f64 = 0.004;
 
-/// Wall and processor time [s].
+/// Wall and processor time (s).
 #[derive(Clone, Copy, Debug, Default)]
 struct DragTimes {
     wall: f64,
@@ -133,7 +133,7 @@ impl Window {
         Ok(self.follow())
     }
 
-    /// A pointer move that brings a point to a place [m].
+    /// A pointer move that brings a point to a place (m).
     fn drag(&mut self, goal: (PointId, Vec2)) -> Result<Vec<usize>, LabError> {
         let moved = plan::move_points(&self.base, &[goal]).map_err(session_error)?;
         self.show(&moved.edits)
@@ -182,7 +182,7 @@ impl Whole {
         self.all.push(all);
     }
 
-    /// Processor time of what depends on a point [s]: its values as they were timed, its part of
+    /// Processor time of what depends on a point (s): its values as they were timed, its part of
     /// the draft by the number of pieces, and their cut lines.
     fn part(&self, dragged: &Dragged) -> f64 {
         let pieces = &dragged.pieces;
@@ -237,7 +237,7 @@ fn chosen(base: &Evaluation, most: usize) -> Vec<(PointId, Vec2)> {
     all.into_iter().filter(moves).take(most).collect()
 }
 
-/// The measurement of the base size from which most follows, its value [m], and the edits that make
+/// The measurement of the base size from which most follows, its value (m), and the edits that make
 /// it a centimetre more or less.
 fn measurement(base: &Evaluation) -> Option<(String, [Vec<toile_pattern::Edit>; 2])> {
     let pattern = base.pattern();

@@ -21,12 +21,12 @@ const BESIDE: usize = 10;
 pub(crate) const POINTS: usize = 2 * CORNERS + INSIDE + BESIDE;
 /// Every tenth point is measured in another panel, at the point half as far on.
 const MEASURED: usize = 10;
-/// Half the width and the height of a panel [m].
+/// Half the width and the height of a panel (m).
 const REACH: Vec2 = Vec2::new(0.25, 0.35);
-/// What the two darts take out of an edge [m].
+/// What the two darts take out of an edge (m).
 const INTAKE: f64 = 0.006;
 
-/// Where a point of the outline would lie without waves, by its share of the way round [m].
+/// Where a point of the outline would lie without waves, by its share of the way round (m).
 fn rim(share: f64) -> Vec2 {
     let (sin, cos) = (TAU * share).sin_cos();
     Vec2::new(REACH.x * cos, REACH.y * sin) * (1.0 + 0.08 * (3.0 * TAU * share).sin())
@@ -159,7 +159,7 @@ fn measure(pattern: &mut Pattern, names: &Names) -> Result<(), FormulaError> {
     Ok(())
 }
 
-/// A formula with a value added to it [m].
+/// A formula with a value added to it (m).
 fn plus(text: &str, value: &Number, names: &Names) -> Result<Number, FormulaError> {
     let formula = Formula::parse(text, names)?;
     let by = value.value().unwrap_or_default();

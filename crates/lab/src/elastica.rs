@@ -15,7 +15,7 @@ pub struct Elastica {
     pub drop: f64,
     /// Horizontal reach of the tip over the length of the strip, a share.
     pub reach: f64,
-    /// Angle of the tip below the horizontal [rad].
+    /// Angle of the tip below the horizontal (rad).
     pub tip: f64,
 }
 
@@ -25,7 +25,7 @@ impl Elastica {
         self.drop / self.reach
     }
 
-    /// Angle of the chord from clamp to tip below the horizontal [rad].
+    /// Angle of the chord from clamp to tip below the horizontal (rad).
     pub fn chord(&self) -> f64 {
         self.drop.atan2(self.reach)
     }
@@ -85,7 +85,7 @@ pub(crate) mod tests {
         found.map(|path| std::fs::read_to_string(path).unwrap())
     }
 
-    /// Gamma, h/w, h/L, w/L, tip angle [degree]: solved by collocation to 1e-9.
+    /// Gamma, h/w, h/L, w/L, tip angle (degree): solved by collocation to 1e-9.
     const TABLE: [[f64; 5]; 10] = [
         [0.1, 0.012500, 0.012498, 0.999911, 0.955],
         [1.0, 0.124562, 0.123471, 0.991246, 9.460],

@@ -104,7 +104,7 @@ fn error(graph: &Graph, b: &[Vec3], x: &[Vec3]) -> f64 {
     (missed.sum::<f64>() / scale).sqrt()
 }
 
-/// The least wall and processor time of so many repetitions [s].
+/// The least wall and processor time of so many repetitions (s).
 fn least(count: usize, mut repeat: impl FnMut()) -> [f64; 2] {
     let mut least = [f64::INFINITY; 2];
     for _ in 0..count {

@@ -28,10 +28,10 @@ impl MeshKind {
     pub const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 }
 
-/// A flat sheet: points in its plane [m], and triangles, all of one hand.
+/// A flat sheet: points in its plane (m), and triangles, all of one hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flat {
-    /// Points in the plane [m].
+    /// Points in the plane (m).
     pub points: Vec<Vec2>,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
@@ -39,7 +39,7 @@ pub struct Flat {
 
 impl Flat {
     /// The cloth of this sheet, its rest shape the sheet itself (warp along the first axis), each
-    /// point put where `place` says [m].
+    /// point put where `place` says (m).
     pub fn cloth(&self, material: Material, place: impl Fn(Vec2) -> Vec3) -> Cloth {
         let corner = |v: u32| self.points[v as usize];
         Cloth {
@@ -65,13 +65,13 @@ impl Flat {
 /// wide to keep what lies behind it from bending.
 pub(crate) const STRAIGHT: usize = 3;
 
-/// Whether a point is held where a strip of cells of a size is clamped at 0 [m]: up to half a cell
+/// Whether a point is held where a strip of cells of a size is clamped at 0 (m): up to half a cell
 /// behind it.
 pub(crate) fn clamped(x: f64, cell: f64) -> bool {
     x < 0.51 * cell
 }
 
-/// A rectangle from `from` to `to` [m] in `cells` squares (or triangles of that size). The first
+/// A rectangle from `from` to `to` (m) in `cells` squares (or triangles of that size). The first
 /// three columns of cells, where strips are clamped, end on straight rows of points.
 ///
 /// # Errors
@@ -118,7 +118,7 @@ fn grid(kind: MeshKind, from: Vec2, to: Vec2, [columns, rows]: [usize; 2]) -> Fl
     flat
 }
 
-/// Smallest angle asked of Delaunay meshes [degree].
+/// Smallest angle asked of Delaunay meshes (degree).
 const SMALLEST_ANGLE: f64 = 25.0;
 
 fn refined(points: Vec<Vec2>, edges: Vec<[usize; 2]>, cell: f64) -> Result<Flat, LabError> {
@@ -178,7 +178,7 @@ fn delaunay(from: Vec2, to: Vec2, [columns, rows]: [usize; 2]) -> Result<Flat, L
     refined(points, edges, size.x / columns as f64)
 }
 
-/// A disc of a radius [m] about the origin, in triangles of a size [m], with two rings of points
+/// A disc of a radius (m) about the origin, in triangles of a size (m), with two rings of points
 /// half a cell inside and outside an inner radius, where it is held.
 ///
 /// # Errors
@@ -200,7 +200,7 @@ pub fn disc(radius: f64, inner: f64, cell: f64) -> Result<Flat, LabError> {
 
 /// Plants a sliver into every seventh triangle: a point a fiftieth of the height from the middle of
 /// an edge. The edge is one between two triangles: on the border such a triangle stays a cap (the
-/// model can exchange no edge there) and holds the border to its chord. Columns before `clamp` [m]
+/// model can exchange no edge there) and holds the border to its chord. Columns before `clamp` (m)
 /// stay plain: a point between the two last held rows would be held to their chord.
 fn with_slivers(mut flat: Flat, clamp: f64) -> Flat {
     let key = |a: u32, b: u32| [a.min(b), a.max(b)];

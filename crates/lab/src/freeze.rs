@@ -346,7 +346,7 @@ pub fn freeze(folder: &Path) -> Result<Vec<PathBuf>, LabError> {
 /// second order.
 const METHODS: [MethodKind; 2] = [MethodKind::VelocityVerlet, MethodKind::Bdf2];
 
-/// Their steps [s]: the explicit one takes substeps within it by its own stability.
+/// Their steps (s): the explicit one takes substeps within it by its own stability.
 const STEPS: [f64; 2] = [1.0 / 7680.0, 1.0 / 3840.0];
 
 /// Runs the scenes named (or all) with two unlike methods at fine steps and writes where they end.

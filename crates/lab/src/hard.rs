@@ -49,7 +49,7 @@ struct Case {
     jump: Option<Collider>,
 }
 
-/// Steps of a case, and processor time it may take [s].
+/// Steps of a case, and processor time it may take (s).
 const STEPS: usize = 30;
 const BUDGET: f64 = 1.5;
 
@@ -221,10 +221,10 @@ fn force_field() -> Result<Case, LabError> {
 
 /// The energy that a cloth can have come by.
 struct Allowance {
-    /// Energy of motion, strain and contact [J]: that of the start, what the weight can have added
+    /// Energy of motion, strain and contact (J): that of the start, what the weight can have added
     /// since, and what a body that jumped put into the contact.
     energy: f64,
-    /// What the body that jumped put in [J].
+    /// What the body that jumped put in (J).
     jumped: f64,
     workspace: Workspace,
 }
@@ -244,7 +244,7 @@ impl Allowance {
         allowance
     }
 
-    /// Energy of motion, strain and contact [J], without that of the weight, which has no zero.
+    /// Energy of motion, strain and contact (J), without that of the weight, which has no zero.
     fn energy_of(&mut self, system: &System, state: &State) -> f64 {
         let places = state.positions.iter().zip(&system.rest.mass);
         let weight: f64 = places.map(|(x, m)| m * system.control.gravity.dot(x)).sum();
@@ -260,7 +260,7 @@ impl Allowance {
         self.jumped += more;
     }
 
-    /// Adds what the weight can give in a step [s]: the root of the energy grows by |g| sqrt(M/2) a
+    /// Adds what the weight can give in a step (s): the root of the energy grows by |g| sqrt(M/2) a
     /// second at most, as dE/dt = sum m g.v <= |g| sqrt(2 M E).
     fn fall(&mut self, system: &System, step: f64) {
         let push = system.control.gravity.norm() * (0.5 * free_mass(system)).sqrt();
@@ -279,7 +279,7 @@ impl Allowance {
     }
 }
 
-/// Mass of the vertices that are not pinned [kg].
+/// Mass of the vertices that are not pinned (kg).
 fn free_mass(system: &System) -> f64 {
     let free = system.rest.mass.iter().zip(&system.prescribed.pinned);
     free.filter(|&(_, &pinned)| !pinned).map(|(m, _)| m).sum()
@@ -327,7 +327,7 @@ fn run(mut case: Case, kind: MethodKind, budget: f64) -> (Outcome, String) {
 }
 
 /// A cloth that fell freely all the time, thrown by all the energy that a body that jumped put in,
-/// came no farther than this [m].
+/// came no farther than this (m).
 fn reach(case: &Case, jumped: f64) -> f64 {
     let time = STEPS as f64 * case.step;
     let fastest = case

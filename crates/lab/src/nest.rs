@@ -17,12 +17,12 @@ const EVALUATIONS: u64 = 20_000_000;
 const PAIRS: usize = 100_000;
 const PASSES: u32 = 50;
 const CHECKED: usize = 2_000;
-/// What rounding of the polygons may come to [m].
+/// What rounding of the polygons may come to (m).
 const ROUNDING: f64 = 1e-6;
 /// Points along a curve.
 const POINTS: u32 = 16;
 
-/// Front or back of a shirt, grain along its y, with a neck of a depth [m].
+/// Front or back of a shirt, grain along its y, with a neck of a depth (m).
 fn bodice(neck: f64, scale: f64) -> Polygon {
     let mut right = vec![(0.26, 0.0), (0.26, 0.44)];
     let angles = || (0..=POINTS).map(|k| FRAC_PI_2 * f64::from(k) / f64::from(POINTS));

@@ -7,7 +7,7 @@ use toile_realtime::{Character, Ellipsoids, Frame};
 /// Passes over the edges that correct their lengths in a frame.
 const PASSES: usize = 4;
 
-/// Springs: stiffness over mass [1/s2] and damping [1/s], as the other method's.
+/// Springs: stiffness over mass (1/s2) and damping (1/s), as the other method's.
 const STIFFNESS: f32 = 300.0;
 const DAMPING: f32 = 2.0;
 

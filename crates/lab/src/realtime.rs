@@ -11,7 +11,7 @@ use toile_realtime::{
 };
 use toile_session::woman_character;
 
-/// Time of a frame [s].
+/// Time of a frame (s).
 const FRAME: f32 = 1.0 / 60.0;
 
 /// Frames before the clock starts, frames timed, and runs in turn of which the least counts.
@@ -19,7 +19,7 @@ const WARM_UP: usize = 60;
 const FRAMES: usize = 240;
 const RUNS: usize = 5;
 
-/// Distance of the garments from the ellipsoids [m].
+/// Distance of the garments from the ellipsoids (m).
 const OFFSET: f32 = 0.006;
 
 type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
@@ -97,7 +97,7 @@ fn trousers(field: &Field, count: usize) -> Mesh {
 /// What a run of frames cost and came to.
 #[derive(Clone, Copy)]
 struct Outcome {
-    /// Processor time a frame [us].
+    /// Processor time a frame (us).
     cost: f64,
     /// Most vertices inside an ellipsoid of their own group and pinched between groups.
     inside: usize,
@@ -221,7 +221,7 @@ fn compared(
     Ok(outcomes)
 }
 
-/// Root mean square distance between the drapes of a standing figure after 2 s and after 30 s [m].
+/// Root mean square distance between the drapes of a standing figure after 2 s and after 30 s (m).
 fn to_converged(ellipsoids: &Ellipsoids, mesh: &Mesh) -> Result<f64, RealtimeError> {
     let mut standing = ellipsoids.clone();
     standing.start("stand", 0.5)?;
@@ -259,7 +259,7 @@ fn fitted(points: &[[f64; 2]]) -> [f64; 3] {
     [start, slope, off]
 }
 
-/// Time that a pose of a character takes, by a blending, in the middle of a fade [us].
+/// Time that a pose of a character takes, by a blending, in the middle of a fade (us).
 fn posed(ellipsoids: &Ellipsoids, blending: Blending) -> Result<f64, RealtimeError> {
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {

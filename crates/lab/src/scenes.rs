@@ -15,19 +15,19 @@ pub struct Card {
     pub name: String,
     /// What happens in it.
     pub title: String,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub duration: f64,
-    /// Drag of the air per mass [1/s].
+    /// Drag of the air per mass (1/s).
     pub air_drag: f64,
-    /// Mass per area [kg/m2].
+    /// Mass per area (kg/m2).
     pub density: f64,
-    /// Stretch stiffness along warp and weft [N/m].
+    /// Stretch stiffness along warp and weft (N/m).
     pub stretch: [f64; 2],
-    /// Shear stiffness [N/m].
+    /// Shear stiffness (N/m).
     pub shear: f64,
     /// Poisson ratio.
     pub poisson: f64,
-    /// Bending stiffness along warp, weft and bias [N m].
+    /// Bending stiffness along warp, weft and bias (N m).
     pub bend: [f64; 3],
     /// Friction coefficient.
     pub friction: f64,
@@ -40,7 +40,7 @@ pub struct Card {
 /// A cloth of a scene, as written.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ClothCard {
-    /// File of its mesh: positions at the start, texture coordinates the rest shape [m].
+    /// File of its mesh: positions at the start, texture coordinates the rest shape (m).
     pub mesh: String,
     /// Vertices that do not move.
     pub pins: Vec<u32>,
@@ -51,11 +51,11 @@ pub struct ClothCard {
 pub struct Reference {
     /// The two methods.
     pub methods: [String; 2],
-    /// Their steps [s].
+    /// Their steps (s).
     pub steps: [f64; 2],
-    /// Root of the mean squared distance between their ends [m].
+    /// Root of the mean squared distance between their ends (m).
     pub agreement: f64,
-    /// Positions at the end by the first [m].
+    /// Positions at the end by the first (m).
     pub positions: Vec<[f32; 3]>,
 }
 
@@ -248,7 +248,7 @@ pub fn subdivided(cloth: &Cloth) -> Cloth {
     fine
 }
 
-/// Root of the mean squared distance of two sets of places [m].
+/// Root of the mean squared distance of two sets of places (m).
 pub(crate) fn apart(a: &[Vec3], b: &[Vec3]) -> f64 {
     let sum: f64 = a.iter().zip(b).map(|(p, q)| (p - q).norm_squared()).sum();
     (sum / a.len().max(1) as f64).sqrt()

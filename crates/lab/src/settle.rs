@@ -52,7 +52,7 @@ pub(crate) fn methods_in_time() -> impl Iterator<Item = (&'static str, MethodKin
         .filter(|(_, kind)| !kind.is_equilibrium() && kind.stability_limit() != Some(0.0))
 }
 
-/// A method that goes on until its gradient is below `tolerance` [N] or it has iterated `most`
+/// A method that goes on until its gradient is below `tolerance` (N) or it has iterated `most`
 /// times. XPBD is left as
 /// it is used, one sweep a substep: it has no gradient to stop at.
 pub(crate) fn converged(kind: MethodKind, tolerance: f64, most: usize) -> MethodSettings {
@@ -92,7 +92,7 @@ pub fn in_time(
 /// Steps of a trial run: an unstable method multiplies a disturbance by far more in as many.
 const TRIAL: usize = 150;
 
-/// Speed of the disturbance [m/s]: far above what single precision makes of positions in a substep
+/// Speed of the disturbance (m/s): far above what single precision makes of positions in a substep
 /// (2^-24 of 0.1 m over 0.1 ms is 6e-5 m/s), and still 1 % of the speed of sound in soft cloth at
 /// the most.
 const DISTURBANCE: f64 = 1e-2;
@@ -148,7 +148,7 @@ pub(crate) fn sound_step(
     })
 }
 
-/// Mean place of some vertices [m].
+/// Mean place of some vertices (m).
 pub(crate) fn mean(positions: &[Vec3], chosen: &[u32]) -> Vec3 {
     let sum: Vec3 = chosen.iter().map(|&v| positions[v as usize]).sum();
     sum / chosen.len().max(1) as f64

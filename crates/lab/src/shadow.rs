@@ -3,7 +3,7 @@
 use toile_geometry::{Polygon, Vec2, Vec3, total_area, wound_region};
 
 /// The shadow of a surface on the ground, exact: the union of its triangles seen from above, in
-/// the plane of x and z [m].
+/// the plane of x and z (m).
 pub fn shadow(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Polygon> {
     let flat = |v: u32| Vec2::new(positions[v as usize].x, positions[v as usize].z);
     let loops: Vec<Vec<Vec2>> = triangles
@@ -20,7 +20,7 @@ pub fn shadow(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Polygon> {
     wound_region(&loops)
 }
 
-/// Area of the shadow [m2].
+/// Area of the shadow (m2).
 pub fn shadow_area(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     total_area(&shadow(positions, triangles))
 }
@@ -29,7 +29,7 @@ pub fn shadow_area(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
 const DIRECTIONS: usize = 720;
 
 /// Folds of a shadow about the origin: maxima of its radius by direction that rise above the
-/// minima beside them by at least `depth` [m].
+/// minima beside them by at least `depth` (m).
 pub fn fold_count(shadow: &[Polygon], depth: f64) -> usize {
     let radius: Vec<f64> = (0..DIRECTIONS)
         .map(|k| {
@@ -71,7 +71,7 @@ pub fn fold_count(shadow: &[Polygon], depth: f64) -> usize {
     folds
 }
 
-/// How far along a ray from the origin an edge is crossed [m].
+/// How far along a ray from the origin an edge is crossed (m).
 fn crossing(along: Vec2, a: Vec2, b: Vec2) -> Option<f64> {
     let (sa, sb) = (along.perp(&a), along.perp(&b));
     if (sa > 0.0) == (sb > 0.0) {

@@ -21,7 +21,7 @@ pub(crate) enum Square {
 /// Vertices along a side.
 pub(crate) const SIDES: [u32; 3] = [33, 65, 129];
 
-/// Radius of the ball [m], and how high above its middle the square starts [m].
+/// Radius of the ball (m), and how high above its middle the square starts (m).
 const BALL: f64 = 0.25;
 const START: f64 = 0.3;
 

@@ -28,9 +28,9 @@ pub enum Verdict {
 pub struct Cell {
     /// The method.
     pub method: &'static str,
-    /// Stretch stiffness of the cloth [N/m].
+    /// Stretch stiffness of the cloth (N/m).
     pub stiffness: f64,
-    /// The step, not cut into substeps [s].
+    /// The step, not cut into substeps (s).
     pub step: f64,
     /// How it did.
     pub verdict: Verdict,
@@ -43,11 +43,11 @@ pub struct Cell {
 pub struct Limit {
     /// The method.
     pub method: &'static str,
-    /// Stretch stiffness of the cloth [N/m].
+    /// Stretch stiffness of the cloth (N/m).
     pub stiffness: f64,
-    /// Its limit over the largest frequency of the cloth at rest [s].
+    /// Its limit over the largest frequency of the cloth at rest (s).
     pub theory: f64,
-    /// The step at which a disturbance begins to grow [s].
+    /// The step at which a disturbance begins to grow (s).
     pub measured: f64,
 }
 
@@ -62,14 +62,14 @@ impl Limit {
     }
 }
 
-/// Stiffnesses [N/m] and steps [s] of the map.
+/// Stiffnesses (N/m) and steps (s) of the map.
 const STIFFNESSES: [f64; 7] = [1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 const STEPS: [f64; 9] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
 /// Steps taken in each cell.
 const TRIAL: usize = 100;
 
-/// Size of the cloth [m].
+/// Size of the cloth (m).
 const SIZE: f64 = 0.1;
 
 /// A square of cloth hung by an edge, at rest.
@@ -103,7 +103,7 @@ pub(crate) fn hung(stiffness: f64, gravity: bool) -> Result<(System, State), Lab
     Ok((system, state))
 }
 
-/// Gives every free vertex a small velocity that looks random [m/s].
+/// Gives every free vertex a small velocity that looks random (m/s).
 pub(crate) fn shake(system: &System, state: &mut State, speed: f64) {
     for (v, velocity) in state.velocities.iter_mut().enumerate() {
         let k = v as f64;
@@ -116,7 +116,7 @@ pub(crate) fn shake(system: &System, state: &mut State, speed: f64) {
     }
 }
 
-/// Speed of the tip of the swinging cloth at the start [m/s].
+/// Speed of the tip of the swinging cloth at the start (m/s).
 const SWING: f64 = 1.0;
 
 /// Lets the cloth swing about its edge and looks at what energy allows: with the kinetic energy

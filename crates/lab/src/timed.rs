@@ -12,11 +12,11 @@ pub struct Timed {
     pub threads: usize,
     /// Vertices of the cloth.
     pub vertices: usize,
-    /// Wall time [s].
+    /// Wall time (s).
     pub wall_s: f64,
-    /// Processor time of the process [s].
+    /// Processor time of the process (s).
     pub cpu_s: Option<f64>,
-    /// Further numbers: steps, residual, times of stages [s].
+    /// Further numbers: steps, residual, times of stages (s).
     pub counted: BTreeMap<String, f64>,
     /// A table of its own.
     pub report: Option<String>,

@@ -174,7 +174,7 @@ impl Font {
 /// A glyph of a shaped text.
 pub(crate) struct ShapedGlyph {
     pub id: u16,
-    /// Where its letters begin in the text \[byte\].
+    /// Where its letters begin in the text (byte).
     pub letter: usize,
     /// To the origin of the next, over the size of the letters.
     pub advance: f64,

@@ -6,11 +6,11 @@ use toile_geometry::{Bounds2, Polygon, PreparedPolygon, Vec2, closest_on_segment
 use toile_nesting::Strip;
 use toile_pattern::OrderedPiece;
 
-/// How exactly gaps are kept [m].
+/// How exactly gaps are kept (m).
 const EXACT: f64 = 1e-10;
 /// Most steps out of what a piece lies over, and to two neighbours at once.
 const STEPS: usize = 200;
-/// How far in all a piece that is let go may come [reaches]: out of others, to an edge, along it, into a corner.
+/// How far in all a piece that is let go may come (reaches): out of others, to an edge, along it, into a corner.
 const MOVES: f64 = 5.0;
 /// Least sine of the angle between two directions in which a piece is stopped.
 const LEAST_SINE: f64 = 0.2;
@@ -18,7 +18,7 @@ const LEAST_SINE: f64 = 0.2;
 /// What becomes of pieces that are let go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LetGo {
-    /// Moved so far they lie apart from all others, and against what was near [m].
+    /// Moved so far they lie apart from all others, and against what was near (m).
     Apart(Vec2),
     /// They lie over that, deeper than they are moved by themselves.
     Over(Obstacle),
@@ -42,11 +42,11 @@ enum Neighbour {
         gap: f64,
         is: Obstacle,
     },
-    /// An edge of the usable fabric: the direction to it, and how far it is along that [m].
+    /// An edge of the usable fabric: the direction to it, and how far it is along that (m).
     Edge { own: usize, toward: Vec2, at: f64 },
 }
 
-/// How far something may still be moved toward a neighbour [m]; negative where it is too near.
+/// How far something may still be moved toward a neighbour (m); negative where it is too near.
 #[derive(Clone, Copy, Debug)]
 struct Clearance {
     length: f64,
@@ -61,7 +61,7 @@ struct Surroundings {
 }
 
 impl DocumentMarker {
-    /// Where pieces that are let go as they lie come to rest: moved at most so far [m] to be free, and as far
+    /// Where pieces that are let go as they lie come to rest: moved at most so far (m) to be free, and as far
     /// again to lie against a neighbour and into the corner between two.
     pub fn let_go(&self, pieces: &[OrderedPiece], reach: f64) -> LetGo {
         let strip = self.strip();
@@ -106,7 +106,7 @@ impl DocumentMarker {
     }
 }
 
-/// The edges of the usable fabric: the direction to each, and how far it is along that from the corner [m].
+/// The edges of the usable fabric: the direction to each, and how far it is along that from the corner (m).
 fn edges(strip: &Strip) -> impl Iterator<Item = (Vec2, f64)> {
     let end = strip.max_length.map(|length| length - strip.end_margin);
     let sides = [
@@ -129,7 +129,7 @@ impl Surroundings {
         });
     }
 
-    /// How far it may be moved toward a neighbour, once it is moved by a way [m].
+    /// How far it may be moved toward a neighbour, once it is moved by a way (m).
     fn clearance(&self, neighbour: &Neighbour, way: Vec2) -> Clearance {
         match neighbour {
             Neighbour::Edge { own, toward, at } => to_edge(&self.held[*own], (*toward, *at), way),
@@ -283,7 +283,7 @@ fn to_edge(held: &Polygon, (toward, at): (Vec2, f64), way: Vec2) -> Clearance {
     }
 }
 
-/// The shortest way from a polygon to another that it does not overlap [m].
+/// The shortest way from a polygon to another that it does not overlap (m).
 fn nearest_way(from: &Polygon, to: &Polygon) -> Vec2 {
     let box_of = |edge: [Vec2; 2]| (edge, Bounds2::of(edge));
     let others: Vec<_> = to.edges().map(box_of).collect();

@@ -54,7 +54,7 @@ pub struct WaitingPiece<'a> {
 pub struct PieceOverlap {
     /// The pieces.
     pub pieces: [OrderedPiece; 2],
-    /// Where they overlap, in the plane of the fabric [m].
+    /// Where they overlap, in the plane of the fabric (m).
     pub region: Vec<Polygon>,
 }
 
@@ -65,7 +65,7 @@ pub struct PieceOutside {
     pub piece: OrderedPiece,
     /// Where.
     pub side: Side,
-    /// By how much [m].
+    /// By how much (m).
     pub by: f64,
 }
 
@@ -80,7 +80,7 @@ pub struct MarkerState {
     pub laid: usize,
     /// Pieces that wait to be laid.
     pub waiting: usize,
-    /// Fabric used, end margins included [m].
+    /// Fabric used, end margins included (m).
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1; more where they
     /// overlap.
@@ -403,7 +403,7 @@ impl DocumentMarker {
         each.collect()
     }
 
-    /// The pieces that are laid, each as the search takes it and its outline on the fabric [m].
+    /// The pieces that are laid, each as the search takes it and its outline on the fabric (m).
     pub(crate) fn outlines(&self) -> impl Iterator<Item = (OrderedPiece, &Item, Polygon)> {
         let placed = self.laid.placements.iter().zip(&self.sources);
         placed.map(|(placement, &source)| {

@@ -9,10 +9,10 @@ use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece};
 use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Violation, judge};
 
 /// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap
-/// by so much [m].
+/// by so much (m).
 const ROUNDING: f64 = 3e-6;
 
-/// Most that a grain may lie off the warp on fabric with a nap [rad]: what lies farther off does
+/// Most that a grain may lie off the warp on fabric with a nap (rad): what lies farther off does
 /// not run along it.
 const MOST_TILT: f64 = FRAC_PI_4;
 

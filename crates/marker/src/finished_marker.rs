@@ -69,7 +69,7 @@ impl FinishedMarker {
             .collect()
     }
 
-    /// Area of the pieces that were laid, seam allowance included [m2].
+    /// Area of the pieces that were laid, seam allowance included (m2).
     pub fn cut_area(&self) -> f64 {
         let area = |p: &toile_nesting::Placement| self.items[p.item].outline.area().abs();
         self.marker.placements.iter().map(area).sum()

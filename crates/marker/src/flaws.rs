@@ -4,7 +4,7 @@ use crate::MarkerError;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_pattern::{Flaw, Spread};
 
-/// What a flaw may reach beyond the edge of the fabric and count as within [m].
+/// What a flaw may reach beyond the edge of the fabric and count as within (m).
 const ROUNDING: f64 = 1e-9;
 
 /// A flaw given on the command line.
@@ -12,12 +12,12 @@ const ROUNDING: f64 = 1e-9;
 pub struct GivenFlaw {
     /// The fabric it is on; not needed where there is one only.
     pub fabric: Option<String>,
-    /// On the fabric laid open: x along the warp and y across of its corner, length and width [m].
+    /// On the fabric laid open: x along the warp and y across of its corner, length and width (m).
     pub place: [f64; 4],
 }
 
 impl GivenFlaw {
-    /// A flaw of the only fabric, from x, y, length and width [m].
+    /// A flaw of the only fabric, from x, y, length and width (m).
     pub fn at(place: [f64; 4]) -> Self {
         Self {
             fabric: None,
@@ -65,7 +65,7 @@ pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), M
     Ok(())
 }
 
-/// The flaws of a fabric of a width laid open [m], in the plane of the fabric as it is spread. One
+/// The flaws of a fabric of a width laid open (m), in the plane of the fabric as it is spread. One
 /// across a fold lies on both sides of it.
 pub(crate) fn flaws_on(
     flaws: &[Flaw],
@@ -100,7 +100,7 @@ pub(crate) fn flaws_on(
     Ok(spread_flaws)
 }
 
-/// Where a span across the open fabric lies once that is spread [m]. Folded, the middle of the
+/// Where a span across the open fabric lies once that is spread (m). Folded, the middle of the
 /// fabric is the fold at 0 and the selvedges meet; a tube is measured round from its fold at 0.
 fn as_spread([low, high]: [f64; 2], width: f64, spread: Spread) -> Vec<[f64; 2]> {
     let middle = 0.5 * width;

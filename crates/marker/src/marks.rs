@@ -39,7 +39,7 @@ pub(crate) fn resolve_marks(
     marks
 }
 
-/// A vector turned by an angle [rad].
+/// A vector turned by an angle (rad).
 pub(crate) fn turned(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)

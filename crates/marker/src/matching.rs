@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use toile_geometry::Vec2;
 use toile_nesting::{Item, MatchPoint, Mirror, NestingError, Phase, Stripes};
 
-/// How far marks of one set may miss each other [m].
+/// How far marks of one set may miss each other (m).
 const MISS: f64 = 1e-6;
 
 /// Gives every item with marks its match point. `order` gives the piece to cut of each item.

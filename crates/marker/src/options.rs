@@ -276,7 +276,7 @@ fn strip(cloth: &LaidCloth, (name, added): (&str, &[Flaw])) -> Result<Strip, Mar
     })
 }
 
-/// Width of fabric as it lies, from its full width [m].
+/// Width of fabric as it lies, from its full width (m).
 fn folded(width: f64, spread: Spread) -> f64 {
     match spread {
         Spread::Open | Spread::FaceToFace => width,

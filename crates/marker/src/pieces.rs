@@ -34,7 +34,7 @@ pub(crate) struct PieceToCut {
     pub name: String,
     /// The garment of each copy.
     pub bundles: Vec<u32>,
-    /// Marks on the print: number of the set, and the point [m].
+    /// Marks on the print: number of the set, and the point (m).
     pub marks: Vec<(usize, Vec2)>,
     /// The unit of its pattern.
     pub unit: DisplayUnit,

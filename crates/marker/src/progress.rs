@@ -9,7 +9,7 @@ use toile_nesting::Marker;
 pub struct SearchProgress {
     /// Part of the work done, 0..=1.
     pub done: f64,
-    /// Length of the best marker so far [m]; nothing before the first.
+    /// Length of the best marker so far (m); nothing before the first.
     pub length: Option<f64>,
     /// Its efficiency if all pieces lie on it, 0..=1.
     pub efficiency: Option<f64>,

@@ -15,13 +15,13 @@ pub struct MarkerSummary {
     pub unplaced: usize,
     /// Their names, and why.
     pub missing: Vec<[String; 2]>,
-    /// Fabric used [m].
+    /// Fabric used (m).
     pub length: f64,
-    /// Width of the fabric [m].
+    /// Width of the fabric (m).
     pub width: f64,
     /// Layers cut at once; a fold does not count.
     pub plies: u32,
-    /// Fabric needed, all plies together [m].
+    /// Fabric needed, all plies together (m).
     pub yardage: f64,
     /// Its price, if a metre's is known.
     pub cost: Option<f64>,

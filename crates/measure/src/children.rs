@@ -2,10 +2,10 @@
 
 use crate::{Measurements, Origin};
 
-/// Ages there are figures for [years].
+/// Ages there are figures for (years).
 const AGES: [u8; 7] = [2, 4, 6, 8, 10, 12, 14];
 
-/// Round figures [mm] for boys and girls alike: statures and girths as is customary for the sizes
+/// Round figures (mm) for boys and girls alike: statures and girths as is customary for the sizes
 /// of European children's wear (92 to 164), heads after the counts of the US Navy's Draftsman
 /// manual (6.25 heads at 8 years, 7 at 12) and Loomis (5 at 3). No survey stands behind them.
 const ROWS: &[(&str, [u16; AGES.len()])] = &[
@@ -70,7 +70,7 @@ fn row(name: &str) -> Option<&'static [u16; AGES.len()]> {
     ROWS.iter().find(|row| row.0 == name).map(|row| &row.1)
 }
 
-/// A row at an age [m]: even between the ages known, held beyond them.
+/// A row at an age (m): even between the ages known, held beyond them.
 fn at_age(values: &[u16; AGES.len()], age: u8) -> f64 {
     let age = age.clamp(AGES[0], AGES[AGES.len() - 1]);
     let k = AGES.partition_point(|&known| known <= age) - 1;
@@ -83,7 +83,7 @@ fn at_age(values: &[u16; AGES.len()], age: u8) -> f64 {
     (low + (high - low) * share) * 1e-3
 }
 
-/// A row at a stature [m]: even between the ages, in proportion beyond them.
+/// A row at a stature (m): even between the ages, in proportion beyond them.
 fn at_stature(values: &[u16; AGES.len()], stature: f64) -> f64 {
     let heights = ROWS[0].1.map(|mm| f64::from(mm) * 1e-3);
     let values = values.map(|mm| f64::from(mm) * 1e-3);
@@ -100,7 +100,7 @@ fn at_stature(values: &[u16; AGES.len()], stature: f64) -> f64 {
 }
 
 impl Measurements {
-    /// The average child of an age [years]: even between the ages known, 2 to 14, and held
+    /// The average child of an age (years): even between the ages known, 2 to 14, and held
     /// beyond them. Angles and what no table of sizes lists are predicted.
     pub fn child(age: u8) -> Self {
         let age = age.clamp(AGES[0], AGES[AGES.len() - 1]);
@@ -111,7 +111,7 @@ impl Measurements {
         table.completed_child(age)
     }
 
-    /// This table with what is missing predicted and marked so, for a child of an age [years]
+    /// This table with what is missing predicted and marked so, for a child of an age (years)
     /// where no stature is given: lengths as of an average child of the stature, girths besides
     /// in proportion to the girths asked for.
     pub(crate) fn completed_child(&self, age: u8) -> Self {
@@ -160,7 +160,7 @@ impl Measurements {
         result
     }
 
-    /// The stature asked for, or the one that goes with the lengths asked for, or the age's [m].
+    /// The stature asked for, or the one that goes with the lengths asked for, or the age's (m).
     fn child_stature(&self, age: u8) -> f64 {
         if let Some(height) = self.get("height") {
             return height;

@@ -1,6 +1,6 @@
 //! Names of measurements in other programs.
 
-/// FreeSewing's names [mm], slopes in degrees, with the catalogue's.
+/// FreeSewing's names (mm), slopes in degrees, with the catalogue's.
 pub const FREESEWING: &[(&str, &str)] = &[
     ("ankle", "ankle"),
     ("biceps", "upper_arm"),

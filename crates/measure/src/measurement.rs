@@ -3,9 +3,9 @@
 /// The unit of a measurement's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UnitKind {
-    /// A length [m].
+    /// A length (m).
     Length,
-    /// An angle [rad].
+    /// An angle (rad).
     Angle,
 }
 

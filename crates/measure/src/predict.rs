@@ -12,7 +12,7 @@ pub enum Build {
     Man,
     /// The mean of both.
     Either,
-    /// A child of an age [years], where no stature is given.
+    /// A child of an age (years), where no stature is given.
     Child(u8),
 }
 
@@ -56,7 +56,7 @@ impl Statistics {
         result
     }
 
-    /// Mean of all given some of them, each with the deviation [m] of the error it was observed
+    /// Mean of all given some of them, each with the deviation (m) of the error it was observed
     /// with: `mu + C_ao (C_oo + N)^-1 (x_o - mu_o)`, the conditional mean of a normal
     /// distribution (Anderson 1958).
     fn given(&self, seen: &[(usize, f64, f64)]) -> [f64; COUNT] {
@@ -231,7 +231,7 @@ impl Measurements {
         }
     }
 
-    /// The known measurements of the survey: index, value and error [m], at adult size.
+    /// The known measurements of the survey: index, value and error (m), at adult size.
     fn observations(
         &self,
         statistics: &Statistics,

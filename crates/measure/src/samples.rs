@@ -7,7 +7,7 @@
 
 use crate::{Measurements, Origin, UnitKind, definition};
 
-/// Name, then woman, man and either: lengths [mm], angles [half degrees].
+/// Name, then woman, man and either: lengths (mm), angles (half degrees).
 const ROWS: &[(&str, [u32; 3])] = &[
     ("height", [1660, 1790, 1720]),
     ("head_l", [255, 275, 265]),

@@ -50,9 +50,9 @@ pub(crate) const NAMES: [&str; COUNT] = [
 
 /// Statistics of one sex.
 pub(crate) struct Survey {
-    /// Means [0.1 mm].
+    /// Means (0.1 mm).
     pub(crate) mean: [u16; COUNT],
-    /// Standard deviations [0.1 mm].
+    /// Standard deviations (0.1 mm).
     pub(crate) deviation: [u16; COUNT],
     /// Correlations below the diagonal, row by row [1e-4].
     pub(crate) correlation: [i16; COUNT * (COUNT - 1) / 2],

@@ -19,7 +19,7 @@ pub enum Origin {
 /// One value of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// The value [m] or [rad].
+    /// The value (m) or (rad).
     pub value: f64,
     /// Asked for or predicted.
     pub origin: Origin,
@@ -77,7 +77,7 @@ impl Measurements {
         Self::default()
     }
 
-    /// The value of a measurement [m] or [rad], by its own name or by an alias of the catalogue.
+    /// The value of a measurement (m) or (rad), by its own name or by an alias of the catalogue.
     pub fn get(&self, name: &str) -> Option<f64> {
         self.measured(name).map(|measured| measured.value)
     }
@@ -95,7 +95,7 @@ impl Measurements {
         self.measured(name).is_some()
     }
 
-    /// Puts a value [m] or [rad] into the table, in place of the one with the same name. An alias
+    /// Puts a value (m) or (rad) into the table, in place of the one with the same name. An alias
     /// of the catalogue is stored under the catalogue's name.
     pub fn set(&mut self, name: &str, value: f64, origin: Origin) -> Result<(), MeasureError> {
         if !is_name(name) {
@@ -125,7 +125,7 @@ impl Measurements {
             .map(|(name, &measured)| (name.as_str(), measured))
     }
 
-    /// The first entry that nobody measures: a length of zero or less [m].
+    /// The first entry that nobody measures: a length of zero or less (m).
     pub fn impossible(&self) -> Option<(&str, f64)> {
         let is_length = |name: &str| definition(name).is_none_or(|d| d.kind == UnitKind::Length);
         let mut all = self.iter();

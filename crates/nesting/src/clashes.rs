@@ -13,7 +13,7 @@ pub struct Clashes {
     pub overlaps: Vec<Overlap>,
     /// Pieces that reach beyond the usable fabric.
     pub outside: Vec<Outside>,
-    /// Fabric used, end margins included \[m\].
+    /// Fabric used, end margins included (m).
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1; more where they
     /// overlap.
@@ -27,7 +27,7 @@ pub struct Clashes {
 pub struct Overlap {
     /// The placements, the lower index first.
     pub pair: [usize; 2],
-    /// Where they overlap, in the plane of the fabric \[m\].
+    /// Where they overlap, in the plane of the fabric (m).
     pub region: Vec<Polygon>,
 }
 
@@ -38,7 +38,7 @@ pub struct Outside {
     pub placement: usize,
     /// The edge of the fabric that it crosses.
     pub side: Side,
-    /// By how much \[m\].
+    /// By how much (m).
     pub by: f64,
 }
 

@@ -152,11 +152,11 @@ pub enum ItemProblem {
         .needed * 1e3, .usable * 1e3, .fabric * 1e3
     )]
     TooWide {
-        /// Least extent across the fabric in any allowed orientation \[m\].
+        /// Least extent across the fabric in any allowed orientation (m).
         needed: f64,
-        /// Width between the selvedges \[m\].
+        /// Width between the selvedges (m).
         usable: f64,
-        /// Least full width of fabric that takes it, laid open \[m\].
+        /// Least full width of fabric that takes it, laid open (m).
         fabric: f64,
     },
     /// Too long for the fabric.
@@ -165,9 +165,9 @@ pub enum ItemProblem {
         .needed * 1e3, .usable * 1e3
     )]
     TooLong {
-        /// Least extent along the fabric in an orientation that fits its width \[m\].
+        /// Least extent along the fabric in an orientation that fits its width (m).
         needed: f64,
-        /// Length between the end margins \[m\].
+        /// Length between the end margins (m).
         usable: f64,
     },
 }

@@ -40,7 +40,7 @@ pub(crate) struct Island<'a> {
     step: f64,
     /// Failed layouts at the present length, least loss first.
     pool: Vec<(f64, Layout)>,
-    /// Length now tried \[m\]; 0 before the first.
+    /// Length now tried (m); 0 before the first.
     target: f64,
     /// Attempts that failed since the last that did not.
     failures: usize,
@@ -63,7 +63,7 @@ impl<'a> Island<'a> {
         self.separator.queries
     }
 
-    /// Area left over \[m2\], then length of the best layout \[m\]: less is better.
+    /// Area left over (m2), then length of the best layout (m): less is better.
     pub fn score(&self) -> (f64, f64) {
         let job = self.separator.job;
         let score = |b: &Layout| (b.missing_area(job), b.length);

@@ -38,19 +38,19 @@ pub(crate) struct Piece {
     pub bundle: Option<usize>,
     /// Number of its set of matched pieces.
     pub set: Option<usize>,
-    /// Area of the outline \[m2\].
+    /// Area of the outline (m2).
     pub area: f64,
 }
 
 impl Piece {
-    /// Whether some shape of it fits a strip of a length \[m\] by its box.
+    /// Whether some shape of it fits a strip of a length (m) by its box.
     pub fn fits(&self, job: &Job<'_>, length: f64) -> bool {
         let snug = length + SNUG;
         self.shapes.iter().any(|&s| job.shapes[s].size.x <= snug)
     }
 }
 
-/// Outlines, angle between them \[rad\], and whether one of them is turned over.
+/// Outlines, angle between them (rad), and whether one of them is turned over.
 pub(crate) type Key = (usize, usize, f64, bool);
 
 /// What a coordinate of a piece's place may be.
@@ -83,11 +83,11 @@ pub(crate) struct Job<'a> {
     pub strip: &'a Strip,
     pub shapes: Vec<Shape>,
     pub pieces: Vec<Piece>,
-    /// Usable width \[m\].
+    /// Usable width (m).
     pub height: f64,
-    /// Greatest gap \[m\].
+    /// Greatest gap (m).
     pub widest_gap: f64,
-    /// Spacing of the loss maps \[m\].
+    /// Spacing of the loss maps (m).
     pub spacing: f64,
     /// Numbers of garments and of matched sets.
     pub bundles: usize,
@@ -164,19 +164,19 @@ impl<'a> Job<'a> {
         self.pieces.iter().any(fixes)
     }
 
-    /// Lower left corner of the usable fabric \[m\].
+    /// Lower left corner of the usable fabric (m).
     pub fn corner(&self) -> Vec2 {
         Vec2::new(self.strip.end_margin, self.strip.lower())
     }
 
-    /// Greatest length between the end margins \[m\].
+    /// Greatest length between the end margins (m).
     pub fn longest(&self) -> f64 {
         self.strip
             .max_length
             .map_or(f64::INFINITY, |l| l - 2.0 * self.strip.end_margin)
     }
 
-    /// Least length on which all movable pieces could lie \[m\].
+    /// Least length on which all movable pieces could lie (m).
     pub fn shortest(&self) -> f64 {
         let least = |p: &Piece| {
             let lengths = p.shapes.iter().map(|&s| self.shapes[s].size.x);
@@ -187,7 +187,7 @@ impl<'a> Job<'a> {
         movable.map(least).fold(area / self.height, f64::max)
     }
 
-    /// A length on which the pieces could lie one behind the other \[m\].
+    /// A length on which the pieces could lie one behind the other (m).
     pub fn ample(&self) -> f64 {
         let longest = |p: &Piece| {
             let shapes = p.shapes.iter().chain(p.locked.as_ref().map(|l| &l.0));
@@ -217,17 +217,17 @@ impl<'a> Job<'a> {
         gap + self.safe()
     }
 
-    /// What touching pieces are kept apart \[m\].
+    /// What touching pieces are kept apart (m).
     pub fn safe(&self) -> f64 {
         SAFE * self.height
     }
 
-    /// How far from touching two shapes are still seen \[m\].
+    /// How far from touching two shapes are still seen (m).
     pub fn window(&self) -> f64 {
         WINDOW * self.height
     }
 
-    /// How much larger than its outline a shape may be taken \[m\].
+    /// How much larger than its outline a shape may be taken (m).
     pub fn growth(&self) -> f64 {
         2.0 * SIMPLIFY * self.height
     }
@@ -254,14 +254,14 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// How much nearer than allowed a moving shape lies to a fixed one \[m\], 0 or more.
+    /// How much nearer than allowed a moving shape lies to a fixed one (m), 0 or more.
     #[inline]
     pub fn loss(&self, fixed: usize, moving: usize, apart: Vec2) -> f64 {
         self.pair(fixed, moving)
             .map_or(0.0, |pair| pair.loss(apart))
     }
 
-    /// The outline of a shape as the search takes it, from the corner of its box \[m\].
+    /// The outline of a shape as the search takes it, from the corner of its box (m).
     pub fn taken(&self, shape: usize) -> Polygon {
         let shape = &self.shapes[shape];
         let ring = turned(&self.rings[shape.ring], shape.turn, shape.mirrored);

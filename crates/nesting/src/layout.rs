@@ -22,15 +22,15 @@ const PHASES: usize = 32;
 pub(crate) struct Layout {
     /// The shape of every piece.
     pub shape: Vec<usize>,
-    /// Where the corner of its box lies \[m\].
+    /// Where the corner of its box lies (m).
     pub at: Vec<Vec2>,
-    /// Extents of the boxes \[m\].
+    /// Extents of the boxes (m).
     pub size: Vec<Vec2>,
-    /// Length of the strip between the end margins \[m\].
+    /// Length of the strip between the end margins (m).
     pub length: f64,
     /// Which way each garment runs: whether along +x.
     pub forward: Vec<bool>,
-    /// Where in the repeat each matched set lies \[m\].
+    /// Where in the repeat each matched set lies (m).
     pub phases: Vec<Vec2>,
     /// Which pieces are laid; the others lie far outside.
     pub present: Vec<bool>,
@@ -135,7 +135,7 @@ impl Layout {
         self.at[piece] = off_strip(job, piece);
     }
 
-    /// Area of the pieces that are not laid \[m2\].
+    /// Area of the pieces that are not laid (m2).
     pub fn missing_area(&self, job: &Job<'_>) -> f64 {
         let missing = (0..self.at.len()).filter(|&k| !self.present[k]);
         missing.map(|k| job.pieces[k].area).sum()
@@ -149,7 +149,7 @@ impl Layout {
         self.at[piece] = at;
     }
 
-    /// Greatest moves of a shape on this strip \[m\]; nothing if it does not fit.
+    /// Greatest moves of a shape on this strip (m); nothing if it does not fit.
     pub fn room(&self, job: &Job<'_>, shape: usize) -> Option<Vec2> {
         let room = Vec2::new(self.length, job.height) - job.shapes[shape].size;
         let snug = -crate::shape::SNUG;
@@ -182,7 +182,7 @@ impl Layout {
         Some(Vec2::new(x, y))
     }
 
-    /// How far the pieces reach \[m\].
+    /// How far the pieces reach (m).
     pub fn reach(&self, job: &Job<'_>) -> f64 {
         let laid = |k: &usize| self.present[*k] && job.pieces[*k].item.is_some();
         let ends = (0..self.at.len()).filter(laid);
@@ -190,7 +190,7 @@ impl Layout {
             .fold(0.0, f64::max)
     }
 
-    /// Where the movable pieces must at least reach because of locked ones \[m\].
+    /// Where the movable pieces must at least reach because of locked ones (m).
     pub fn least_reach(&self, job: &Job<'_>) -> f64 {
         let locked = |k: &usize| job.pieces[*k].item.is_some() && job.pieces[*k].locked.is_some();
         let ends = (0..self.at.len()).filter(locked);
@@ -198,7 +198,7 @@ impl Layout {
             .fold(0.0, f64::max)
     }
 
-    /// Shortens or lengthens the strip: what lies beyond `cut` moves along \[m\]; what has no place
+    /// Shortens or lengthens the strip: what lies beyond `cut` moves along (m); what has no place
     /// on it as it lies is taken off.
     pub fn resize(&mut self, job: &Job<'_>, length: f64, cut: f64) {
         let by = length - self.length;

@@ -14,7 +14,7 @@ const REPAIR: Patience = Patience {
 };
 /// Factor by which the strip grows where the overlaps of a start layout cannot be removed.
 const LONGER: f64 = 1.02;
-/// Cost of a metre of distance from the start of the strip, for a missing piece \[m\].
+/// Cost of a metre of distance from the start of the strip, for a missing piece (m).
 const BIAS: f64 = 0.02;
 /// Tries before a first layout is made anew.
 const TRIES: usize = 20;
@@ -61,7 +61,7 @@ pub(crate) fn finish(job: &Job<'_>, layout: &Layout) -> Marker {
     marker
 }
 
-/// Angle between two directions \[rad\].
+/// Angle between two directions (rad).
 fn between(a: f64, b: f64) -> f64 {
     let apart = (a - b).rem_euclid(TAU);
     apart.min(TAU - apart)
@@ -133,7 +133,7 @@ impl Island<'_> {
         self.start(limit);
     }
 
-    /// Loads a layout moved onto a strip of a length \[m\], with the missing pieces laid where they overlap
+    /// Loads a layout moved onto a strip of a length (m), with the missing pieces laid where they overlap
     /// least.
     fn load_given(&mut self, given: &Layout, length: f64) {
         let job = self.separator.job;

@@ -20,11 +20,11 @@ pub enum Mirror {
 /// The orientations a piece may take on the fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allowed {
-    /// Angles between the piece's grain and the warp \[rad\], counter-clockwise.
+    /// Angles between the piece's grain and the warp (rad), counter-clockwise.
     pub turns: Vec<f64>,
     /// Whether it may be turned over.
     pub mirror: Mirror,
-    /// How far the grain may lie off each of the angles, to either side \[rad\].
+    /// How far the grain may lie off each of the angles, to either side (rad).
     pub tilt: f64,
 }
 
@@ -39,7 +39,7 @@ impl Allowed {
         Self::turned(vec![0.0, PI])
     }
 
-    /// A list of angles \[rad\], as drawn, without tilt.
+    /// A list of angles (rad), as drawn, without tilt.
     pub fn turned(turns: Vec<f64>) -> Self {
         Self {
             turns,
@@ -59,16 +59,16 @@ impl Allowed {
 pub struct Item {
     /// Name for messages.
     pub name: String,
-    /// Cut outline, curves flattened, with the holes cut into it \[m\]. A search lays no piece into
+    /// Cut outline, curves flattened, with the holes cut into it (m). A search lays no piece into
     /// the holes of another; one that lies there is sound.
     pub outline: Polygon,
-    /// Direction of the warp in the outline's plane \[rad\], counter-clockwise from +x.
+    /// Direction of the warp in the outline's plane (rad), counter-clockwise from +x.
     pub grain: f64,
     /// Number of copies.
     pub quantity: u32,
     /// Orientations it may take.
     pub allowed: Allowed,
-    /// Free fabric this piece needs to any other \[m\]; the strip's gap holds where it is larger.
+    /// Free fabric this piece needs to any other (m); the strip's gap holds where it is larger.
     pub gap: f64,
     /// The garment each copy belongs to, for a nap that runs one way in each garment; copies
     /// beyond the list belong to garment 0.
@@ -96,7 +96,7 @@ pub enum FoldEdge {
 /// A point of a piece that must lie where the print of the fabric wants it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchPoint {
-    /// In the plane of the outline \[m\].
+    /// In the plane of the outline (m).
     pub point: Vec2,
     /// Where in the repeat.
     pub phase: Phase,
@@ -105,7 +105,7 @@ pub struct MatchPoint {
 /// A place within the repeat of a print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// This far after the lines of the print, along the warp and across \[m\].
+    /// This far after the lines of the print, along the warp and across (m).
     At(Vec2),
     /// The same place for all pieces of this set, wherever that is: what is sewn together matches.
     Set(u32),
@@ -116,11 +116,11 @@ pub enum Phase {
 pub struct Locked {
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Angle from the warp to the piece's grain \[rad\].
+    /// Angle from the warp to the piece's grain (rad).
     pub turn: f64,
     /// Whether it lies face down.
     pub mirrored: bool,
-    /// Move after turning \[m\].
+    /// Move after turning (m).
     pub translation: Vec2,
 }
 
@@ -147,7 +147,7 @@ impl Item {
         self.bundles.get(copy as usize).copied().unwrap_or(0)
     }
 
-    /// The least turn of the piece's grain from one of its angles, counter-clockwise \[rad\].
+    /// The least turn of the piece's grain from one of its angles, counter-clockwise (rad).
     pub(crate) fn tilt_of(&self, turn: f64) -> f64 {
         let off = |allowed: &f64| {
             let apart = (turn - allowed).rem_euclid(TAU);
@@ -185,33 +185,33 @@ pub enum Fold {
 /// A print that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripes {
-    /// Length of a repeat along the warp and across \[m\]; 0 where it does not repeat.
+    /// Length of a repeat along the warp and across (m); 0 where it does not repeat.
     pub repeat: Vec2,
-    /// A point where lines of the print cross \[m\].
+    /// A point where lines of the print cross (m).
     pub origin: Vec2,
 }
 
 /// A flaw in the fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
-    /// What is flawed \[m\], in the plane of the strip.
+    /// What is flawed (m), in the plane of the strip.
     pub outline: Polygon,
-    /// Distance pieces keep from it \[m\].
+    /// Distance pieces keep from it (m).
     pub clearance: f64,
 }
 
 /// The fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strip {
-    /// Full width, selvedges included \[m\].
+    /// Full width, selvedges included (m).
     pub width: f64,
-    /// Unusable edge at either side \[m\].
+    /// Unusable edge at either side (m).
     pub selvedge: f64,
-    /// Fabric left free at either end \[m\].
+    /// Fabric left free at either end (m).
     pub end_margin: f64,
-    /// Least distance between two pieces \[m\].
+    /// Least distance between two pieces (m).
     pub gap: f64,
-    /// Length at hand, end margins included \[m\]; nothing means as long as it takes.
+    /// Length at hand, end margins included (m); nothing means as long as it takes.
     pub max_length: Option<f64>,
     /// Nap.
     pub nap: Nap,
@@ -225,7 +225,7 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// Fabric of a width \[m\] without margins, gap or nap.
+    /// Fabric of a width (m) without margins, gap or nap.
     pub fn of_width(width: f64) -> Self {
         Self {
             width,
@@ -240,7 +240,7 @@ impl Strip {
         }
     }
 
-    /// Least y a piece may reach \[m\].
+    /// Least y a piece may reach (m).
     pub fn lower(&self) -> f64 {
         match self.fold {
             Fold::Open => self.selvedge,
@@ -248,7 +248,7 @@ impl Strip {
         }
     }
 
-    /// Greatest y a piece may reach \[m\].
+    /// Greatest y a piece may reach (m).
     pub fn upper(&self) -> f64 {
         match self.fold {
             Fold::Open | Fold::Lower => self.width - self.selvedge,
@@ -264,12 +264,12 @@ impl Strip {
         }
     }
 
-    /// Width between the selvedges \[m\].
+    /// Width between the selvedges (m).
     pub fn usable_width(&self) -> f64 {
         self.upper() - self.lower()
     }
 
-    /// Least distance two items must keep \[m\].
+    /// Least distance two items must keep (m).
     pub fn gap_between(&self, a: &Item, b: &Item) -> f64 {
         self.gap.max(a.gap).max(b.gap)
     }
@@ -278,13 +278,13 @@ impl Strip {
 /// Marker from piece: grain to +x, then turned over (y changes sign), then turned, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Direction of the warp in the piece \[rad\].
+    /// Direction of the warp in the piece (rad).
     pub grain: f64,
-    /// Angle from the warp of the fabric to the piece's grain \[rad\].
+    /// Angle from the warp of the fabric to the piece's grain (rad).
     pub turn: f64,
     /// Whether the piece lies face down.
     pub mirrored: bool,
-    /// Move after turning \[m\].
+    /// Move after turning (m).
     pub translation: Vec2,
 }
 
@@ -313,7 +313,7 @@ impl Pose {
         [turned(cg, flip * sg), turned(-sg, flip * cg)]
     }
 
-    /// Where a point of the piece lies on the marker \[m\].
+    /// Where a point of the piece lies on the marker (m).
     pub fn apply(&self, point: Vec2) -> Vec2 {
         let [x, y] = self.axes();
         x * point.x + y * point.y + self.translation
@@ -326,7 +326,7 @@ impl Pose {
     }
 }
 
-/// A ring turned over across the x axis if `mirrored`, then turned \[rad\].
+/// A ring turned over across the x axis if `mirrored`, then turned (rad).
 pub(crate) fn turned(ring: &[Vec2], turn: f64, mirrored: bool) -> Vec<Vec2> {
     let pose = Pose {
         grain: 0.0,
@@ -344,11 +344,11 @@ pub struct Placement {
     pub item: usize,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Angle from the warp to the piece's grain \[rad\].
+    /// Angle from the warp to the piece's grain (rad).
     pub turn: f64,
     /// Whether it lies face down.
     pub mirrored: bool,
-    /// Move after turning \[m\].
+    /// Move after turning (m).
     pub translation: Vec2,
 }
 
@@ -380,7 +380,7 @@ pub struct Unplaced {
 pub struct Marker {
     /// What lies where, by item and copy.
     pub placements: Vec<Placement>,
-    /// Fabric used, end margins included \[m\].
+    /// Fabric used, end margins included (m).
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,

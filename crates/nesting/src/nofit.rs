@@ -35,7 +35,7 @@ struct Edge {
 /// Where a move lies with respect to a no-fit polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Probe {
-    /// Distance to the boundary, positive inside \[m\]: the shortest move that ends the overlap.
+    /// Distance to the boundary, positive inside (m): the shortest move that ends the overlap.
     pub depth: f64,
     /// Direction of that move.
     pub normal: Vec2,
@@ -56,7 +56,7 @@ pub(crate) struct NoFit {
 }
 
 impl NoFit {
-    /// Prepares the polygon for queries as far as `reach` \[m\] outside of it, with so many cells
+    /// Prepares the polygon for queries as far as `reach` (m) outside of it, with so many cells
     /// along the grid at most, 16 or more.
     pub fn new(regions: &[Polygon], reach: f64, most_cells: usize) -> Self {
         let mut edges = Vec::new();
@@ -222,7 +222,7 @@ fn cleaned(ring: &[Vec2], least: f64) -> Vec<Vec2> {
     points
 }
 
-/// Adds the edges of a ring whose points are right to about `least` \[m\].
+/// Adds the edges of a ring whose points are right to about `least` (m).
 fn push_ring(edges: &mut Vec<Edge>, ring: &[Vec2], least: f64) {
     let points = cleaned(ring, least);
     let n = points.len();

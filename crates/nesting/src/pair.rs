@@ -12,7 +12,7 @@ pub(crate) struct Pair {
     /// Columns of the map from the shared polygon's plane.
     pub axes: [Vec2; 2],
     pub shift: Vec2,
-    /// Distance the shapes keep \[m\]; minus infinity if they may overlap.
+    /// Distance the shapes keep (m); minus infinity if they may overlap.
     pub gap: f64,
 }
 
@@ -37,7 +37,7 @@ impl PairQuery<'_> {
         Some((probe, self.gap))
     }
 
-    /// How much nearer than allowed the moving shape lies to the fixed one \[m\], 0 or more.
+    /// How much nearer than allowed the moving shape lies to the fixed one (m), 0 or more.
     #[inline]
     pub fn loss(&self, apart: Vec2) -> f64 {
         let [x, y] = self.axes;

@@ -11,7 +11,7 @@ use toile_geometry::{PreparedPolygon, Vec2};
 /// Poses in which a pair is queried before the next pair.
 const POSES: usize = 16;
 
-/// Distance from a place at which it is tested whether a pair fits \[m\], and number of directions.
+/// Distance from a place at which it is tested whether a pair fits (m), and number of directions.
 const PINPOINT: f64 = 1e-7;
 const SIDES: usize = 128;
 
@@ -20,7 +20,7 @@ const SIDES: usize = 128;
 struct PosedPair<'a> {
     fixed: usize,
     moving: usize,
-    /// How far the moving shape lies from the fixed one \[m\].
+    /// How far the moving shape lies from the fixed one (m).
     apart: Vec2,
     pair: PairQuery<'a>,
 }
@@ -76,7 +76,7 @@ impl PairQueries<'_> {
         self.posed.len()
     }
 
-    /// Makes all queries, in order; the sum of the depths \[m\].
+    /// Makes all queries, in order; the sum of the depths (m).
     pub fn sum(&self) -> f64 {
         let depth = |ask: &PosedPair<'_>| {
             ask.pair
@@ -86,14 +86,14 @@ impl PairQueries<'_> {
         self.posed.iter().map(depth).sum()
     }
 
-    /// The depth of one of them \[m\]; nothing if the pair lies farther apart than the search
+    /// The depth of one of them (m); nothing if the pair lies farther apart than the search
     /// looks.
     pub fn depth(&self, number: usize) -> Option<f64> {
         let ask = self.posed.get(number)?;
         ask.pair.probe(ask.apart).map(|(probe, _)| probe.depth)
     }
 
-    /// The exact depth \[m\] of the outlines as the search takes them: with fewer points, larger
+    /// The exact depth (m) of the outlines as the search takes them: with fewer points, larger
     /// than the original ones by [`PairQueries::growth`] at the most.
     pub fn exact(&self, number: usize) -> Option<f64> {
         let [fixed, moving] = self.pair(number)?;
@@ -126,7 +126,7 @@ impl PairQueries<'_> {
         Some([fixed, PreparedPolygon::new(&moving)])
     }
 
-    /// How much the search takes outlines larger than they are, at most, for a pair \[m\].
+    /// How much the search takes outlines larger than they are, at most, for a pair (m).
     pub fn growth(&self) -> f64 {
         self.job.growth()
     }

@@ -29,7 +29,7 @@ pub(crate) struct Candidate {
     /// Loss there, about.
     pub score: f32,
     pub shape: usize,
-    /// Move there \[m\].
+    /// Move there (m).
     pub at: Vec2,
 }
 
@@ -45,7 +45,7 @@ impl LossMap {
         }
     }
 
-    /// No loss anywhere in a room of an extent \[cells\].
+    /// No loss anywhere in a room of an extent (cells).
     pub fn clear(&mut self, columns: usize, rows: usize) {
         (self.columns, self.rows) = (columns, rows);
         self.stride = padded(columns);

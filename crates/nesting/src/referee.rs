@@ -12,15 +12,15 @@ use toile_geometry::{Bounds2, Polygon, PreparedPolygon, intersection, total_area
 pub struct Verdict {
     /// Everything that is wrong; empty for a sound marker.
     pub violations: Vec<Violation>,
-    /// Deepest overlap, below the limit too \[m\].
+    /// Deepest overlap, below the limit too (m).
     pub deepest: f64,
-    /// Fabric used twice \[m2\].
+    /// Fabric used twice (m2).
     pub overlap_area: f64,
     /// What is used twice, by the pairs of placements that share it.
     pub overlaps: Vec<([usize; 2], Vec<Polygon>)>,
-    /// Least distance between two pieces \[m\]; infinite for one piece.
+    /// Least distance between two pieces (m); infinite for one piece.
     pub nearest: f64,
-    /// Fabric used, end margins included \[m\].
+    /// Fabric used, end margins included (m).
     pub length: f64,
 }
 
@@ -88,7 +88,7 @@ fn check_copies(items: &[Item], marker: &Marker, verdict: &mut Verdict) {
     }
 }
 
-/// How far bounds reach beyond each side of the usable fabric \[m\]; below 0 where they do not.
+/// How far bounds reach beyond each side of the usable fabric (m); below 0 where they do not.
 pub(crate) fn sides(strip: &Strip, bounds: Bounds2) -> [(Side, f64); 4] {
     let end = strip.max_length.unwrap_or(f64::INFINITY) - strip.end_margin;
     [

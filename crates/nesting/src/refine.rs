@@ -27,7 +27,7 @@ struct Line {
     weight: f64,
     /// Weighted loss; 0 for one that is only near.
     loss: f64,
-    /// How far the line is from the place \[m\].
+    /// How far the line is from the place (m).
     apart: f64,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct Mover<'a, 'j> {
 #[derive(Clone, Copy, Debug)]
 struct Neighbour<'a> {
     at: Vec2,
-    /// Extent \[m\].
+    /// Extent (m).
     size: Vec2,
     weight: f64,
     pair: PairQuery<'a>,
@@ -55,7 +55,7 @@ struct Neighbour<'a> {
 
 impl Neighbour<'_> {
     /// How far a place lies from this piece, where the box of a piece of `size` there comes nearer
-    /// than `more` to its box \[m\].
+    /// than `more` to its box (m).
     #[inline(always)]
     fn apart(&self, at: Vec2, size: Vec2, more: f64) -> Option<Vec2> {
         let apart = at - self.at;
@@ -76,7 +76,7 @@ pub(crate) struct Scratch<'a> {
 }
 
 impl Mover<'_, '_> {
-    /// Finds the pieces that a shape can meet no farther than `reach` from a place \[m\].
+    /// Finds the pieces that a shape can meet no farther than `reach` from a place (m).
     pub fn gather(&mut self, shape: usize, at: Vec2, reach: f64) {
         let size = self.job.shapes[shape].size;
         let neighbours = &mut self.scratch.neighbours;

@@ -6,7 +6,7 @@ use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, Placement, Strip};
 use std::collections::BTreeMap;
 use toile_geometry::{PreparedPolygon, Vec2, intersection, total_area};
 
-/// Angles that differ by less are the same \[rad\].
+/// Angles that differ by less are the same (rad).
 const SAME_ANGLE: f64 = 1e-9;
 
 /// Index of a placement, its item, and its outline on the strip.

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 pub enum Budget {
     /// After so many evaluations of a pair of pieces: the same job gives the same marker.
     Evaluations(u64),
-    /// After so many seconds \[s\]: for a person who waits.
+    /// After so many seconds (s): for a person who waits.
     Seconds(f64),
 }
 
@@ -74,7 +74,7 @@ pub struct Progress {
     pub done: f64,
     /// Pairs of pieces evaluated.
     pub evaluations: u64,
-    /// Length of the best so far, end margins included \[m\]; infinite before the first.
+    /// Length of the best so far, end margins included (m); infinite before the first.
     pub length: f64,
     /// The best so far; nothing before the first, and on rolls. It is the same where nothing is new.
     pub marker: Option<Arc<Marker>>,
@@ -103,7 +103,7 @@ const POLISHING: f64 = 1.1;
 const EXPLORING: f64 = 0.8;
 /// Evaluations of an island between two exchanges.
 const EPOCH: u64 = 3_000_000;
-/// Time between two exchanges where the clock decides \[s\].
+/// Time between two exchanges where the clock decides (s).
 const EPOCH_SECONDS: f64 = 0.25;
 
 /// Measures how much of the budget is used.

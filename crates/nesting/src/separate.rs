@@ -69,7 +69,7 @@ pub(crate) struct Separator<'a> {
     /// Queries made so far.
     pub queries: u64,
     pub sequence: SplitMix64,
-    /// Loss that counts as none \[m\].
+    /// Loss that counts as none (m).
     pub tolerance: f64,
     weights: Vec<f64>,
     least_weights: Vec<f64>,
@@ -141,13 +141,13 @@ impl<'a> Separator<'a> {
         row.iter().any(|&loss| loss > self.tolerance)
     }
 
-    /// Sum of all losses that count \[m\].
+    /// Sum of all losses that count (m).
     pub fn total(&self) -> f64 {
         let counts = self.losses.iter().filter(|&&loss| loss > self.tolerance);
         0.5 * counts.sum::<f64>()
     }
 
-    /// Sum of the losses of one piece that count \[m\].
+    /// Sum of the losses of one piece that count (m).
     pub fn loss_of(&self, piece: usize) -> f64 {
         let count = self.layout.at.len();
         let row = self.losses[piece * count..][..count].iter();

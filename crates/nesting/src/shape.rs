@@ -3,7 +3,7 @@
 use crate::{Fold, FoldEdge, Item, Pose, Strip};
 use toile_geometry::{Polygon, Vec2};
 
-/// Rounding allowed when a piece is exactly as wide as the fabric \[m\].
+/// Rounding allowed when a piece is exactly as wide as the fabric (m).
 pub(crate) const SNUG: f64 = 1e-9;
 
 /// A piece in one orientation.
@@ -15,18 +15,18 @@ pub(crate) struct Shape {
     pub ring: usize,
     /// The first shape with the same outline that lies alike.
     pub look: usize,
-    /// Angle from the warp to the grain \[rad\].
+    /// Angle from the warp to the grain (rad).
     pub turn: f64,
     pub mirrored: bool,
-    /// From the box's corner to the origin of the posed outline, negated \[m\].
+    /// From the box's corner to the origin of the posed outline, negated (m).
     pub offset: Vec2,
-    /// Extent \[m\].
+    /// Extent (m).
     pub size: Vec2,
     /// Whether the grain points along +x rather than -x.
     pub forward: bool,
-    /// The match point from the box's corner \[m\].
+    /// The match point from the box's corner (m).
     pub anchor: Option<Vec2>,
-    /// The only y it may have \[m\]: that of the fold.
+    /// The only y it may have (m): that of the fold.
     pub on_fold: Option<f64>,
 }
 
@@ -66,7 +66,7 @@ impl Shape {
         })
     }
 
-    /// The outline from the box's corner \[m\].
+    /// The outline from the box's corner (m).
     pub fn outline(&self, item: &Item) -> Polygon {
         let pose = Pose {
             grain: item.grain,
@@ -78,7 +78,7 @@ impl Shape {
     }
 }
 
-/// Extent of an item in an orientation \[m\].
+/// Extent of an item in an orientation (m).
 pub(crate) fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
     let pose = Pose {
         grain: item.grain,
@@ -106,7 +106,7 @@ pub(crate) fn folds_up(
     })
 }
 
-/// Whether two rings have the same corners, in whatever order, to a tolerance \[m\].
+/// Whether two rings have the same corners, in whatever order, to a tolerance (m).
 pub(crate) fn coincide(a: &[Vec2], b: &[Vec2], tolerance: f64) -> bool {
     let found = |p: &Vec2| b.iter().any(|q| (p - q).amax() <= tolerance);
     a.len() == b.len() && a.iter().all(found)

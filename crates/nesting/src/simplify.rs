@@ -3,7 +3,7 @@
 use toile_geometry::{Polygon, Vec2, orient2d, point_segment_distance};
 
 /// A ring with fewer points whose region holds the old one and grows by no more than about
-/// `tolerance` \[m\] (after de Berg, van Kreveld and Schirra 1998: only moves that add area).
+/// `tolerance` (m) (after de Berg, van Kreveld and Schirra 1998: only moves that add area).
 ///
 /// Two moves: a hollow corner is cut off by its chord; an edge between two bulging corners is
 /// replaced by the point where its neighbours meet. A vertex carries the distance moved so far.

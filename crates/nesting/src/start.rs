@@ -9,7 +9,7 @@ use crate::separate::{Limit, Outcome, Patience};
 const FIRST_DENSITY: f64 = 0.76;
 /// By how much the strip grows where that fails.
 const LONGER: f64 = 1.06;
-/// What a metre from the start of the strip costs while pieces are laid one by one \[m\].
+/// What a metre from the start of the strip costs while pieces are laid one by one (m).
 const BIAS: f64 = 0.02;
 /// Part of the fabric at hand that is filled at first where not all pieces can be laid.
 const FILLING: f64 = 0.9;

@@ -3,7 +3,7 @@
 use toile_geometry::Vec2;
 
 /// Deepest overlap of two pieces, nearest they may come below their gap, and furthest they may
-/// stick out, that still counts as sound \[m\].
+/// stick out, that still counts as sound (m).
 pub const PENETRATION_LIMIT: f64 = 1e-6;
 
 /// What is not a number counts as beyond.
@@ -31,20 +31,20 @@ pub enum Violation {
     Overlap {
         /// The placements.
         pair: [usize; 2],
-        /// Length of the shortest move that ends it \[m\].
+        /// Length of the shortest move that ends it (m).
         depth: f64,
-        /// Fabric used twice \[m2\].
+        /// Fabric used twice (m2).
         area: f64,
-        /// A point of the overlap \[m\].
+        /// A point of the overlap (m).
         at: Vec2,
     },
     /// Two pieces lie nearer than their gap.
     Gap {
         /// The placements.
         pair: [usize; 2],
-        /// Their distance \[m\].
+        /// Their distance (m).
         distance: f64,
-        /// The gap they need \[m\].
+        /// The gap they need (m).
         needed: f64,
     },
     /// A piece sticks out.
@@ -53,14 +53,14 @@ pub enum Violation {
         placement: usize,
         /// Where.
         side: Side,
-        /// By how much \[m\].
+        /// By how much (m).
         by: f64,
     },
     /// A piece lies in an orientation it may not take.
     Orientation {
         /// The placement.
         placement: usize,
-        /// Its turn \[rad\].
+        /// Its turn (rad).
         turn: f64,
         /// Whether it lies face down.
         mirrored: bool,
@@ -76,14 +76,14 @@ pub enum Violation {
     OffFold {
         /// The placement.
         placement: usize,
-        /// How far it is from the nearest fold \[m\]; infinite if there is none.
+        /// How far it is from the nearest fold (m); infinite if there is none.
         by: f64,
     },
     /// A match point lies beside the print.
     OffPrint {
         /// The placement.
         placement: usize,
-        /// How far along the warp and across \[m\].
+        /// How far along the warp and across (m).
         by: Vec2,
     },
     /// A piece lies on a flaw, or nearer to it than it may.
@@ -92,7 +92,7 @@ pub enum Violation {
         placement: usize,
         /// Number of the flaw.
         flaw: usize,
-        /// Flawed area in the piece \[m2\].
+        /// Flawed area in the piece (m2).
         area: f64,
     },
     /// A locked copy does not lie where it must.
@@ -116,9 +116,9 @@ pub enum Violation {
     },
     /// The stated length is not the length used.
     Length {
-        /// As stated \[m\].
+        /// As stated (m).
         stated: f64,
-        /// As found, end margins included \[m\].
+        /// As found, end margins included (m).
         found: f64,
     },
 }

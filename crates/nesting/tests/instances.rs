@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::{Allowed, Control, Item, Search, Strip, judge, make_marker};
 
-/// Width given to the strip of every instance [m]: they are in units of their own.
+/// Width given to the strip of every instance (m): they are in units of their own.
 const WIDTH: f64 = 1.5;
 
 fn folder() -> Option<PathBuf> {

@@ -8,15 +8,15 @@ use crate::{
 };
 use toile_geometry::{Rings, Vec2};
 
-/// Ends of neighbouring edges may be this far apart [m]: rounding, not a gap.
+/// Ends of neighbouring edges may be this far apart (m): rounding, not a gap.
 const GAP: f64 = 1e-6;
-/// An edge shorter than this has no length [m].
+/// An edge shorter than this has no length (m).
 const SHORTEST: f64 = 1e-6;
-/// How closely curves are followed [m].
+/// How closely curves are followed (m).
 const FLATNESS: f64 = 5e-5;
-/// Sides of a seam may differ by this without ease [m]: less than a stitch.
+/// Sides of a seam may differ by this without ease (m): less than a stitch.
 pub const SEAM_TOLERANCE: f64 = 5e-4;
-/// An internal line may leave its panel by this [m].
+/// An internal line may leave its panel by this (m).
 const LINE_TOLERANCE: f64 = 1e-5;
 /// Crossings of one piece that are reported.
 const CROSSINGS: usize = 5;
@@ -117,7 +117,7 @@ fn check_pieces(draft: &Draft, pattern: Option<&Pattern>, diagnostics: &mut Vec<
     }
 }
 
-/// Length of a span [m]; nothing if it is not there.
+/// Length of a span (m); nothing if it is not there.
 fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
     let piece = draft.pieces.get(span.piece)?;
     let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
@@ -125,7 +125,7 @@ fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
     Some(edge.curve.length() * (span.to - span.from).abs())
 }
 
-/// Length of both sides [m]; nothing if a span is not there.
+/// Length of both sides (m); nothing if a span is not there.
 fn side_lengths(draft: &Draft, seam: &DraftSeam) -> Option<[f64; 2]> {
     let length = |side: &[DraftSpan]| side.iter().map(|s| span_length(draft, s)).sum();
     let first: Option<f64> = length(&seam.sides[0]);
@@ -244,7 +244,7 @@ fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Twice the area a loop encloses [m2], positive counter-clockwise.
+/// Twice the area a loop encloses (m2), positive counter-clockwise.
 fn swept(edges: &[PieceEdge]) -> f64 {
     edges.iter().map(|edge| edge.curve.swept_area()).sum()
 }

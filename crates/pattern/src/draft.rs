@@ -50,9 +50,9 @@ pub struct Piece {
     pub darts: Vec<StageDart>,
     /// Which way its darts and pleats are pressed.
     pub pressed: Vec<PressArrow>,
-    /// Fold lines it was unfolded in: a point on each [m] and its direction.
+    /// Fold lines it was unfolded in: a point on each (m) and its direction.
     pub folds: Vec<[Vec2; 2]>,
-    /// Direction of the warp in the piece's plane [rad], from +x counter-clockwise.
+    /// Direction of the warp in the piece's plane (rad), from +x counter-clockwise.
     pub grain: f64,
     /// Index into [`Draft::fabrics`].
     pub fabric: usize,
@@ -100,9 +100,9 @@ impl EdgeOrigin {
 pub struct PieceEdge {
     /// Where it came from.
     pub origin: EdgeOrigin,
-    /// Its curve, in the direction of the outline [m].
+    /// Its curve, in the direction of the outline (m).
     pub curve: Curve,
-    /// Width of cloth left outside it for the seam [m].
+    /// Width of cloth left outside it for the seam (m).
     pub seam_allowance: f64,
     /// How the cut line turns the corner at its start.
     pub corner: EdgeCorner,
@@ -117,7 +117,7 @@ pub struct PieceLine {
     /// Which internal line of the panel it is, or what an operation made: where a pleat is folded
     /// and laid to.
     pub name: LineName,
-    /// Joined curves [m].
+    /// Joined curves (m).
     pub curves: Vec<Curve>,
 }
 
@@ -130,7 +130,7 @@ pub struct PieceNotch {
     pub edge: EdgeOrigin,
     /// How it is cut.
     pub kind: NotchKind,
-    /// Where on the outline [m].
+    /// Where on the outline (m).
     pub point: Vec2,
     /// Unit direction into the piece.
     pub inward: Vec2,
@@ -191,7 +191,7 @@ pub enum Worn {
         part: BodyPart,
         /// Which side of it.
         facing: Facing,
-        /// Height of the piece's reference point above the floor [m] (along the limb from its
+        /// Height of the piece's reference point above the floor (m) (along the limb from its
         /// root for arms: distance from the shoulder point); nothing lets the program choose.
         level: Option<f64>,
     },
@@ -256,11 +256,11 @@ pub struct PressArrow {
     pub by: OperationId,
     /// Which half of a folded panel it is on.
     pub half: u8,
-    /// Where its middle is [m].
+    /// Where its middle is (m).
     pub at: Vec2,
     /// Its direction, a unit.
     pub way: Vec2,
-    /// How wide what is folded under lies there [m].
+    /// How wide what is folded under lies there (m).
     pub width: f64,
 }
 

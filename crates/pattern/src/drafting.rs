@@ -20,7 +20,7 @@ const MOST_PIECES: usize = 2000;
 pub(crate) struct Drafting {
     pub draft: Draft,
     pub diagnostics: Vec<Diagnostic>,
-    /// How much longer one side of each draft seam may be [m].
+    /// How much longer one side of each draft seam may be (m).
     pub eases: Vec<f64>,
 }
 

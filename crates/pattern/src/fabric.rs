@@ -11,21 +11,21 @@ pub struct Fabric {
     pub id: FabricId,
     /// Name to show.
     pub name: String,
-    /// Mass per area [kg/m2].
+    /// Mass per area (kg/m2).
     pub density: f64,
-    /// Thickness [m].
+    /// Thickness (m).
     pub thickness: f64,
-    /// Stretch stiffness along warp and weft [N/m].
+    /// Stretch stiffness along warp and weft (N/m).
     pub stretch: [f64; 2],
-    /// Shear stiffness [N/m].
+    /// Shear stiffness (N/m).
     pub shear: f64,
     /// Poisson ratio of warp to weft.
     pub poisson: f64,
-    /// Bending stiffness along warp, weft and bias [N m].
+    /// Bending stiffness along warp, weft and bias (N m).
     pub bend: [f64; 3],
     /// Coulomb friction coefficient against skin.
     pub friction: f64,
-    /// Width of the roll [m].
+    /// Width of the roll (m).
     pub width: f64,
     /// Whether the cloth has a nap, so that all pieces must point one way.
     pub nap: bool,
@@ -102,15 +102,15 @@ fields!(Fabric, |self, v| {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rheology {
-    /// Hardening k of warp and weft: stress C (E + k E^3) in tension [1].
+    /// Hardening k of warp and weft: stress C (E + k E^3) in tension (1).
     pub hardening: [f64; 2],
-    /// Viscosity of stretch and shear (Kelvin-Voigt) [N s/m].
+    /// Viscosity of stretch and shear (Kelvin-Voigt) (N s/m).
     pub viscosity: f64,
-    /// Viscosity of bending (Kelvin-Voigt) [N m s].
+    /// Viscosity of bending (Kelvin-Voigt) (N m s).
     pub bend_viscosity: f64,
-    /// Share of a stretch and of a fold that is kept when held for long, 0 to 0.95 [1].
+    /// Share of a stretch and of a fold that is kept when held for long, 0 to 0.95 (1).
     pub kept: [f64; 2],
-    /// Time in which the kept share settles [s].
+    /// Time in which the kept share settles (s).
     pub relaxation_time: f64,
 }
 

@@ -9,7 +9,7 @@ use crate::{
 };
 use toile_geometry::{Curve, Vec2};
 
-/// Places nearer than this are one [m].
+/// Places nearer than this are one (m).
 const SAME: f64 = 1e-7;
 
 impl Evaluation {

@@ -9,11 +9,11 @@ use strum::EnumIter;
 pub enum Mark {
     /// Where a notch of the panel is.
     Notch(crate::NotchId),
-    /// At a distance from a corner along the line, against it if negative [m].
+    /// At a distance from a corner along the line, against it if negative (m).
     Along {
         /// The corner.
         from: CornerName,
-        /// How far [m].
+        /// How far (m).
         distance: Number,
     },
     /// A share of the way along the line from a corner to one that follows.

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 /// angles radians, shares plain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Number {
-    /// A value [m], [rad] or plain.
+    /// A value (m), (rad) or plain.
     Value(f64),
     /// A formula.
     Formula(Formula),
-    /// A formula with something added by hand [m], [rad] or plain.
+    /// A formula with something added by hand (m), (rad) or plain.
     Adjusted {
         /// The formula.
         formula: Formula,
@@ -23,7 +23,7 @@ pub enum Number {
     PerSize {
         /// The number in all other sizes.
         usual: Box<Number>,
-        /// Sizes and their values [m], [rad] or plain.
+        /// Sizes and their values (m), (rad) or plain.
         sizes: Vec<(SizeId, f64)>,
     },
 }
@@ -32,7 +32,7 @@ impl Number {
     /// Zero.
     pub const ZERO: Self = Self::Value(0.0);
 
-    /// The value, if it is the same whatever is measured [m], [rad] or plain.
+    /// The value, if it is the same whatever is measured (m), (rad) or plain.
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Value(value) => Some(*value),

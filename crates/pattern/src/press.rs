@@ -6,7 +6,7 @@ use crate::{
     StageLine,
 };
 
-/// How far along a dart or a pleat from the edge its arrow stands [share of it].
+/// How far along a dart or a pleat from the edge its arrow stands (share of it).
 const IN: f64 = 0.3;
 /// Lines that a fold and two of it make.
 const LINES: u16 = 5;

@@ -1,6 +1,6 @@
 //! The nearest known name to one that is not known.
 
-/// Longest name that is compared [characters].
+/// Longest name that is compared (characters).
 const COMPARED: usize = 40;
 
 /// The known name nearest to `name`, if it is near enough to be meant.

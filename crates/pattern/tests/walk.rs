@@ -42,7 +42,7 @@ fn put_notch(pattern: &mut Pattern, k: usize, (panel, edge): (&str, &str), share
     alter(pattern, k, |panel| panel.notches.push(notch));
 }
 
-/// Kinks at both ends [deg].
+/// Kinks at both ends (deg).
 fn kinks(joints: &[Option<Joint>; 2]) -> [f64; 2] {
     joints.map(|joint| joint.unwrap().kink.to_degrees())
 }

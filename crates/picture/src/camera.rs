@@ -16,7 +16,7 @@ pub enum View {
 }
 
 impl View {
-    /// Angle of the camera round the vertical from the front \[rad\].
+    /// Angle of the camera round the vertical from the front (rad).
     pub fn turn(self) -> f64 {
         use std::f64::consts::{FRAC_PI_2, PI};
         match self {
@@ -50,7 +50,7 @@ pub enum Projection {
 /// A camera: an orthonormal frame at a point, and the rectangle it sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands \[m\].
+    /// Where it stands (m).
     pub eye: Vec3,
     /// Unit vector to the right of the picture.
     pub right: Vec3,
@@ -65,15 +65,15 @@ pub struct Camera {
     pub window: [f64; 4],
 }
 
-/// Things nearer than this to a perspective camera are not drawn \[m\].
+/// Things nearer than this to a perspective camera are not drawn (m).
 pub(crate) const NEAREST: f64 = 0.01;
 
 /// A point as a camera sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Seen {
-    /// Column \[pixel\], to the right.
+    /// Column (pixel), to the right.
     pub x: f64,
-    /// Row \[pixel\], downwards.
+    /// Row (pixel), downwards.
     pub y: f64,
     /// Larger is nearer, and linear over the picture of a plane.
     pub near: f64,
@@ -81,7 +81,7 @@ pub(crate) struct Seen {
     pub weight: f64,
 }
 
-/// The corners of a box given by its smallest and largest coordinates \[m\].
+/// The corners of a box given by its smallest and largest coordinates (m).
 pub(crate) fn box_corners(bounds: [Vec3; 2]) -> [Vec3; 8] {
     std::array::from_fn(|corner| {
         Vec3::new(
@@ -136,7 +136,7 @@ impl Camera {
     }
 
     /// A camera on a circle round a point. `turn` is the angle round the vertical from +Z, `rise`
-    /// the angle above the horizon \[rad\]; the window is one unit each way.
+    /// the angle above the horizon (rad); the window is one unit each way.
     pub(crate) fn around(
         middle: Vec3,
         distance: f64,

@@ -76,7 +76,7 @@ pub struct Series {
     pub colour: Rgb,
     /// Shape of the marks.
     pub marker: Marker,
-    /// Size of the marks \[pixel\].
+    /// Size of the marks (pixel).
     pub size: f64,
     /// How points are joined.
     pub joined: Joined,
@@ -140,14 +140,14 @@ pub struct Chart {
     pub series: Vec<Series>,
     /// Lines of small words below.
     pub notes: Vec<String>,
-    /// Width and height \[pixel\].
+    /// Width and height (pixel).
     pub size: [f64; 2],
 }
 
 const INK: Rgb = [0.17, 0.17, 0.19];
 const SOFT: Rgb = [0.42, 0.41, 0.40];
 const GRID: Rgb = [0.90, 0.90, 0.89];
-/// Height of capitals of labels, and of small words \[pixel\].
+/// Height of capitals of labels, and of small words (pixel).
 const LETTERS: f64 = 9.0;
 const SMALL: f64 = 7.5;
 

@@ -15,7 +15,7 @@ pub enum ColourMap {
     Signed,
 }
 
-/// Lightness, chroma and hue \[degree\] in OKLab of the points a map runs through.
+/// Lightness, chroma and hue (degree) in OKLab of the points a map runs through.
 type Stops = &'static [[f64; 3]];
 
 const DEPTH: Stops = &[

@@ -6,12 +6,12 @@ use toile_geometry::Vec3;
 pub(crate) struct DepthMap {
     /// Unit vectors across the light and towards it.
     axes: [Vec3; 3],
-    /// Corner of the grid in the first two axes \[m\].
+    /// Corner of the grid in the first two axes (m).
     corner: [f64; 2],
     /// Cells a metre.
     pub cells_per_metre: f64,
     size: usize,
-    /// Largest height in each cell \[m\]; minus infinity where nothing is.
+    /// Largest height in each cell (m); minus infinity where nothing is.
     heights: Vec<f32>,
 }
 
@@ -91,7 +91,7 @@ impl DepthMap {
 
     /// Part of the light that reaches a point, 0..=1: a box of `2 * reach` cells a side of
     /// comparisons with fractional ends, so that it changes smoothly with the place (Reeves,
-    /// Salesin and Cook 1987). Blockers less than `bias` \[m\] above the point do not count.
+    /// Salesin and Cook 1987). Blockers less than `bias` (m) above the point do not count.
     pub(crate) fn light(&self, p: Vec3, bias: f64, reach: usize) -> f64 {
         let x = (p.dot(&self.axes[0]) - self.corner[0]) * self.cells_per_metre;
         let y = (p.dot(&self.axes[1]) - self.corner[1]) * self.cells_per_metre;

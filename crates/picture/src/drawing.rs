@@ -34,12 +34,12 @@ pub(crate) enum Mark {
 /// Marks on white paper.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
-    /// Width and height \[pixel\].
+    /// Width and height (pixel).
     pub size: [f64; 2],
     pub(crate) marks: Vec<Mark>,
 }
 
-/// Length of a dash and of the gap after it \[pixel\].
+/// Length of a dash and of the gap after it (pixel).
 const DASH: [f64; 2] = [6.0, 4.0];
 
 impl Drawing {

@@ -9,10 +9,10 @@ use toile_geometry::Vec3;
 
 /// The ground under a scene and how much sky it sees.
 pub(crate) struct Floor {
-    /// Its height \[m\].
+    /// Its height (m).
     pub height: f64,
     corner: [f64; 2],
-    /// Distance of grid points \[m\].
+    /// Distance of grid points (m).
     step: f64,
     /// Light of the sky on each grid point, 1 in the open.
     light: Vec<f64>,
@@ -21,7 +21,7 @@ pub(crate) struct Floor {
 /// Grid points a side.
 const GRID: usize = 200;
 
-/// Upper end of a layer of height and width of its blur \[m\] for a scene two metres across;
+/// Upper end of a layer of height and width of its blur (m) for a scene two metres across;
 /// both grow with the scene. The last number is the darkness of the layer's shadow.
 const LAYERS: [[f64; 3]; 4] = [
     [0.03, 0.012, 0.60],

@@ -10,7 +10,7 @@ pub(crate) struct Ink {
     rows: BTreeMap<i64, BTreeMap<i64, f64>>,
 }
 
-/// Strokes farther out than this are not drawn \[pixel\].
+/// Strokes farther out than this are not drawn (pixel).
 const FURTHEST: f64 = 1e5;
 
 impl Ink {

@@ -34,13 +34,13 @@ impl Legend {
         }
     }
 
-    /// Height of the drawn legend for a height of capital letters \[pixel\].
+    /// Height of the drawn legend for a height of capital letters (pixel).
     pub fn height(letters: f64) -> f64 {
         7.2 * letters
     }
 
     /// Draws the legend with its top left corner at a point; `letters` is the height of capital
-    /// letters \[pixel\]. Returns the corners of the colour bar \[pixel\].
+    /// letters (pixel). Returns the corners of the colour bar (pixel).
     pub fn draw(&self, image: &mut Image, at: [f64; 2], width: f64, letters: f64) -> [[f64; 2]; 2] {
         let style = TextStyle::plain(letters);
         let title = if self.unit.is_empty() {

@@ -11,9 +11,9 @@ use toile_geometry::Vec2;
 pub struct Outline {
     /// Written in its middle.
     pub name: String,
-    /// Closed rings \[m\], y up: the outline and its holes, without the first point repeated.
+    /// Closed rings (m), y up: the outline and its holes, without the first point repeated.
     pub rings: Vec<Vec<Vec2>>,
-    /// Open lines inside \[m\], such as a grainline or notches.
+    /// Open lines inside (m), such as a grainline or notches.
     pub lines: Vec<Vec<Vec2>>,
     /// Colour of the outline; the inside gets a light tint of it.
     pub colour: Rgb,
@@ -70,7 +70,7 @@ fn bounds(outline: &Outline) -> Result<[Vec2; 2], PictureError> {
     Ok(points().fold([first, first], |[low, high], p| [low.inf(p), high.sup(p)]))
 }
 
-/// Upper left corners of the boxes set in rows \[pixel\], and the height they take.
+/// Upper left corners of the boxes set in rows (pixel), and the height they take.
 fn rows(boxes: &[[Vec2; 2]], scale: f64, width: f64, gap: f64) -> (Vec<[f64; 2]>, f64) {
     let mut places: Vec<[f64; 2]> = Vec::new();
     let (mut x, mut y, mut row_height, mut row_start) = (0.0, 0.0, 0.0_f64, 0);
@@ -93,7 +93,7 @@ fn rows(boxes: &[[Vec2; 2]], scale: f64, width: f64, gap: f64) -> (Vec<[f64; 2]>
     (places, y + row_height)
 }
 
-/// The largest scale \[pixel/m\] at which all boxes fit, by bisection.
+/// The largest scale (pixel/m) at which all boxes fit, by bisection.
 fn largest_scale(boxes: &[[Vec2; 2]], [width, height]: [f64; 2], gap: f64) -> f64 {
     let widest = boxes
         .iter()

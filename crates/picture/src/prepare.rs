@@ -10,7 +10,7 @@ use toile_geometry::Vec3;
 /// A checked scene with everything that does not depend on the camera.
 pub(crate) struct Prepared<'a> {
     pub scene: &'a Scene,
-    /// Vertices of all surfaces \[m\].
+    /// Vertices of all surfaces (m).
     pub positions: Vec<Vec3>,
     /// Unit normals.
     pub normals: Vec<Vec3>,
@@ -33,7 +33,7 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Makes a scene ready; the ground lies under a box [m], else under the scene.
+    /// Makes a scene ready; the ground lies under a box (m), else under the scene.
     pub(crate) fn new(scene: &'a Scene, room: Option<[Vec3; 2]>) -> Result<Self, PictureError> {
         scene.check()?;
         let mut all = Self {

@@ -15,7 +15,7 @@ use crate::{PictureError, Rgb};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 
-/// Side of a tile \[pixel\].
+/// Side of a tile (pixel).
 const TILE: usize = 32;
 const SAMPLES: usize = 8;
 /// Places of the samples in a pixel, no two in one row or column of an 8 x 8 grid.
@@ -31,7 +31,7 @@ const OFFSETS: [[f64; 2]; SAMPLES] = [
 ];
 const NOTHING: u32 = u32::MAX;
 
-/// Places beyond this would lose exactness \[pixel\].
+/// Places beyond this would lose exactness (pixel).
 const FURTHEST: f64 = 16_384.0;
 
 /// A linear function over the picture: factor of x, factor of y, value at the origin.
@@ -49,7 +49,7 @@ struct Flat {
     /// Edge functions opposite corners 1 and 2, positive inside; with that of corner 0 they sum
     /// to `area`.
     edges: [Plane; 2],
-    /// Twice the area \[pixel2\].
+    /// Twice the area (pixel2).
     area: f64,
     /// Nearness to the eye.
     near: Plane,
@@ -60,7 +60,7 @@ struct Flat {
     right_side: bool,
     /// Interpolation weights of the corners.
     weights: [f64; 3],
-    /// Lengths of the edges opposite the corners \[pixel\].
+    /// Lengths of the edges opposite the corners (pixel).
     lengths: [f64; 3],
 }
 

@@ -15,7 +15,7 @@ pub struct Scene {
 /// One triangle mesh with its paint.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// Places \[m\] and triangles, counter-clockwise seen from the right side.
+    /// Places (m) and triangles, counter-clockwise seen from the right side.
     pub mesh: TriangleMesh,
     /// Unit normal of each vertex; empty to have them computed.
     pub normals: Vec<Vec3>,
@@ -42,7 +42,7 @@ impl Surface {
         }
     }
 
-    /// Places of all corners of triangles \[m\]: vertices without a triangle show nowhere.
+    /// Places of all corners of triangles (m): vertices without a triangle show nowhere.
     pub(crate) fn corners(&self) -> impl Iterator<Item = Vec3> {
         let positions = &self.mesh.positions;
         self.mesh
@@ -88,7 +88,7 @@ pub struct Lines {
     pub edges: Edges,
     /// Their colour.
     pub colour: Rgb,
-    /// Their width \[pixel\].
+    /// Their width (pixel).
     pub width: f64,
     /// How much of the paint they cover, 0..=1.
     pub opacity: f64,
@@ -107,7 +107,7 @@ pub enum Edges {
 }
 
 impl Scene {
-    /// Smallest and largest coordinates of the framed surfaces \[m\]; nothing when empty.
+    /// Smallest and largest coordinates of the framed surfaces (m); nothing when empty.
     pub fn framed_bounds(&self) -> Option<[Vec3; 2]> {
         let any = self.surfaces.iter().any(|s| s.framed);
         self.surfaces
@@ -117,7 +117,7 @@ impl Scene {
             .reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])])
     }
 
-    /// Smallest and largest coordinates of everything \[m\]; nothing when empty.
+    /// Smallest and largest coordinates of everything (m); nothing when empty.
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         self.surfaces
             .iter()

@@ -25,7 +25,7 @@ pub struct Sheet {
     pub warning: String,
     /// Views from left to right, all at one scale.
     pub views: Vec<View>,
-    /// A box \[m\] that the views show, whatever the scene fills of it, so that pictures of one motion have one camera.
+    /// A box (m) that the views show, whatever the scene fills of it, so that pictures of one motion have one camera.
     /// Without it they show what the scene holds.
     pub room: Option<[Vec3; 2]>,
     /// The background.
@@ -56,13 +56,13 @@ impl Sheet {
         }
     }
 
-    /// Height of captions \[pixel\].
+    /// Height of captions (pixel).
     fn letters(&self) -> f64 {
         (0.0135 * self.height as f64).max(7.0)
     }
 }
 
-/// Angle of the cameras above the horizon \[rad\].
+/// Angle of the cameras above the horizon (rad).
 const RISE: f64 = 0.05;
 /// Colour of captions.
 const SOFT: Rgb = [0.42, 0.41, 0.40];
@@ -142,7 +142,7 @@ fn write_title(image: &mut Image, sheet: &Sheet) {
     image.write([2.5 * letters, 5.4 * letters], &sheet.warning, &style);
 }
 
-/// All views and their captions; `margins` are kept free above and below \[pixel\].
+/// All views and their captions; `margins` are kept free above and below (pixel).
 fn views(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Image, PictureError> {
     let mut image = Image::new(sheet.width, sheet.height, sheet.backdrop.top)?;
     let prepared = Prepared::new(scene, sheet.room)?;
@@ -198,11 +198,11 @@ struct Pane {
 /// Cameras with what each of them must show, and the largest scale at which it all fits.
 struct Layout {
     cameras: Vec<(View, Camera)>,
-    /// Left, right, bottom and top of each view \[tangent\].
+    /// Left, right, bottom and top of each view (tangent).
     extents: Vec<[f64; 4]>,
-    /// Lowest and highest of all views \[tangent\].
+    /// Lowest and highest of all views (tangent).
     heights: [f64; 2],
-    /// Distance of the cameras \[m\].
+    /// Distance of the cameras (m).
     distance: f64,
     /// Pixels a unit of tangent.
     scale: f64,
@@ -210,11 +210,11 @@ struct Layout {
 
 /// What the views show.
 struct Subject {
-    /// Corners of triangles or of a box \[m\].
+    /// Corners of triangles or of a box (m).
     points: Vec<Vec3>,
-    /// Smallest and largest coordinates of the points \[m\].
+    /// Smallest and largest coordinates of the points (m).
     bounds: [Vec3; 2],
-    /// Lowest and highest place that must be seen \[m\].
+    /// Lowest and highest place that must be seen (m).
     heights: [f64; 2],
 }
 
@@ -250,7 +250,7 @@ fn room(sheet: &Sheet, margins: [f64; 2]) -> [f64; 2] {
 }
 
 impl Layout {
-    /// Shows what lies between two heights \[m\].
+    /// Shows what lies between two heights (m).
     fn new(
         subject: &Subject,
         sheet: &Sheet,
@@ -358,7 +358,7 @@ fn place_panes(layout: &Layout, sheet: &Sheet, margins: [f64; 2]) -> Vec<Pane> {
     panes
 }
 
-/// Lowest and highest place the picture must hold \[m\]: that of the framed surfaces, widened to
+/// Lowest and highest place the picture must hold (m): that of the framed surfaces, widened to
 /// all surfaces where little would be missing.
 fn framed_heights(scene: &Scene) -> Result<[f64; 2], PictureError> {
     let [low, high] = scene.framed_bounds().ok_or(PictureError::Empty)?;
@@ -377,7 +377,7 @@ fn framed_heights(scene: &Scene) -> Result<[f64; 2], PictureError> {
     Ok([bottom, top])
 }
 
-/// Left, right, bottom and top of what a camera sees between two heights \[tangent\].
+/// Left, right, bottom and top of what a camera sees between two heights (tangent).
 fn extent(points: &[Vec3], camera: &Camera, [low, high]: [f64; 2]) -> [f64; 4] {
     let mut extent = [
         f64::INFINITY,

@@ -20,7 +20,7 @@ pub enum Align {
 /// How words look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextStyle {
-    /// Height of a capital letter \[pixel\].
+    /// Height of a capital letter (pixel).
     pub height: f64,
     /// Width of the strokes as part of the height; 0.1 is plain, 0.15 bold.
     pub weight: f64,
@@ -61,7 +61,7 @@ impl Letters {
         }
     }
 
-    /// Width \[pixel\], capitals being so high.
+    /// Width (pixel), capitals being so high.
     fn width(&self, height: f64) -> f64 {
         match self {
             Self::Strokes(glyphs) => {
@@ -73,7 +73,7 @@ impl Letters {
     }
 }
 
-/// Width of a line of text \[pixel\].
+/// Width of a line of text (pixel).
 pub fn text_width(text: &str, height: f64) -> f64 {
     Letters::of(text).width(height)
 }

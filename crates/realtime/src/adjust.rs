@@ -5,13 +5,13 @@ use crate::garment::{Ball, Garment};
 use crate::lanes::LANES;
 use crate::turn::{Frame, difference, dot, moved};
 
-/// Earth's mean acceleration [m/s2].
+/// Earth's mean acceleration (m/s2).
 const GRAVITY: f32 = 9.81;
 
-/// Fastest motion against the parent ellipsoid [m/s]: a second of free fall is not waited for.
+/// Fastest motion against the parent ellipsoid (m/s): a second of free fall is not waited for.
 const FASTEST: f32 = 4.0;
 
-/// Longest step of the explicit scheme [s]: a longer frame is taken as this.
+/// Longest step of the explicit scheme (s): a longer frame is taken as this.
 const LONGEST_STEP: f32 = 1.0 / 20.0;
 
 /// Largest stiffness over mass times the square of the step: with some six springs at a vertex,
@@ -22,7 +22,7 @@ const STABLE: f32 = 0.2;
 /// and ellipsoids cannot hold together.
 const STALLED: usize = 8;
 
-/// Distance from its target, beyond its slack, from which a vertex has gone astray [m].
+/// Distance from its target, beyond its slack, from which a vertex has gone astray (m).
 const STRAY: f32 = 0.03;
 
 /// In each frame one block of so many finds its parents anew: cloth slides over an ellipsoid in
@@ -33,7 +33,7 @@ impl Garment {
     /// Lets the garment hang: vertices go with their parents, gravity and springs move them by one
     /// explicit step of Euler's, edges are brought within their bounds, vertices out of the
     /// ellipsoids, and parents are found anew. The ellipsoids are those it was made on, `dt` is the
-    /// time since the last frame [s]; others change nothing.
+    /// time since the last frame (s); others change nothing.
     pub fn adjust_by_gravity(&mut self, ellipsoids: &Ellipsoids, dt: f32) {
         if !self.begin(ellipsoids) {
             return;
@@ -62,7 +62,7 @@ impl Garment {
     /// Fits the garment closely: vertices go with the joints of their rest shape and are drawn to
     /// it, edges are brought within their bounds, vertices out of the ellipsoids. There are no
     /// forces and no velocities. The ellipsoids are those it was made on, `dt` is the time since
-    /// the last frame [s]; others change nothing.
+    /// the last frame (s); others change nothing.
     pub fn adjust_by_shape(&mut self, ellipsoids: &Ellipsoids, dt: f32) {
         if !self.begin(ellipsoids) {
             return;
@@ -262,7 +262,7 @@ impl Garment {
     }
 }
 
-/// A step that the scheme bears [s].
+/// A step that the scheme bears (s).
 fn held(dt: f32) -> f32 {
     match dt > 0.0 {
         true => dt.min(LONGEST_STEP),

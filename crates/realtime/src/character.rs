@@ -76,7 +76,7 @@ pub struct CharacterJoint {
     /// The joint it hangs on; none for one that moves freely.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parent: Option<String>,
-    /// Its place at rest [m].
+    /// Its place at rest (m).
     pub at: [f32; 3],
 }
 
@@ -99,11 +99,11 @@ pub struct CharacterEllipsoid {
     pub joint: String,
     /// Its group.
     pub group: String,
-    /// Centre at rest [m].
+    /// Centre at rest (m).
     pub at: [f32; 3],
-    /// Semi-axes [m].
+    /// Semi-axes (m).
     pub semi_axes: [f32; 3],
-    /// Rotation vector from its axes to the character's: axis times angle [rad].
+    /// Rotation vector from its axes to the character's: axis times angle (rad).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub turn: [f32; 3],
 }
@@ -125,13 +125,13 @@ pub struct KeyedClip {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KeyPose {
-    /// When [s].
+    /// When (s).
     pub time: f32,
-    /// How far joints without parent are moved from rest [m].
+    /// How far joints without parent are moved from rest (m).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: [f32; 3],
     /// Rotation vector of each joint that is turned, about its place, in the frame of the joint it
-    /// hangs on [rad].
+    /// hangs on (rad).
     #[serde(default)]
     pub turns: BTreeMap<String, [f32; 3]>,
 }
@@ -146,7 +146,7 @@ pub const MOST_GROUPS: usize = 64;
 /// Ellipsoids at the most: more are no coarse figure, and a slip of the pen in a file by hand.
 const MOST_ELLIPSOIDS: usize = 4096;
 
-/// Largest coordinate of a place, and longest clip [m, s]: beyond them `f32` tells millimetres and
+/// Largest coordinate of a place, and longest clip (m, s): beyond them `f32` tells millimetres and
 /// milliseconds no longer apart.
 const LARGEST: f32 = 1e4;
 

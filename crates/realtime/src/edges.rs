@@ -12,7 +12,7 @@ use crate::lanes::Columns;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Edges {
     ends: Vec<[u32; 2]>,
-    /// Length at rest, squared, and 1 over that [m2, 1/m2].
+    /// Length at rest, squared, and 1 over that (m2, 1/m2).
     rest: Vec<f32>,
     inverse: Vec<f32>,
     /// Share of a correction that the higher end takes.
@@ -115,7 +115,7 @@ impl Edges {
     }
 
     /// Adds to velocities what springs give in a step: `push` is stiffness over mass times the
-    /// step [1/s]. The force is that of the energy of squared lengths, so it needs no root.
+    /// step (1/s). The force is that of the energy of squared lengths, so it needs no root.
     pub fn pull(&self, places: &Columns, push: f32, velocities: &mut Columns) {
         let [x, y, z] = &places.0;
         let [vx, vy, vz] = &mut velocities.0;

@@ -9,7 +9,7 @@ use crate::{Character, RealtimeError};
 #[derive(Clone, Debug)]
 pub struct Ellipsoids {
     parents: Vec<Option<usize>>,
-    /// From the joint above to each joint, at rest [m].
+    /// From the joint above to each joint, at rest (m).
     offsets: Vec<Vector>,
     rest: Vec<Vector>,
     player: Player,
@@ -113,7 +113,7 @@ impl Ellipsoids {
         self.player.playing()
     }
 
-    /// Starts a clip, faded into within some time [s] from what is shown. A loop after a loop
+    /// Starts a clip, faded into within some time (s) from what is shown. A loop after a loop
     /// goes on at the same share of its round.
     ///
     /// # Errors
@@ -141,7 +141,7 @@ impl Ellipsoids {
         self.player.blending = blending;
     }
 
-    /// Puts the character somewhere, turned about the vertical from its rest [m, rad]. A place
+    /// Puts the character somewhere, turned about the vertical from its rest (m, rad). A place
     /// that is not finite changes nothing.
     pub fn set_place(&mut self, at: [f32; 3], heading: f32) {
         if at.iter().all(|x| x.is_finite()) && heading.is_finite() {
@@ -152,7 +152,7 @@ impl Ellipsoids {
         }
     }
 
-    /// Goes on by some time [s] and poses the ellipsoids. Returns how many matrices were made anew.
+    /// Goes on by some time (s) and poses the ellipsoids. Returns how many matrices were made anew.
     pub fn advance(&mut self, dt: f32) -> usize {
         self.player.advance(dt);
         self.pose_joints(false)
@@ -191,13 +191,13 @@ impl Ellipsoids {
         count
     }
 
-    /// From an ellipsoid's axes to the world, by its number in the character [m]; none beyond the
+    /// From an ellipsoid's axes to the world, by its number in the character (m); none beyond the
     /// last. A host hangs the character's visible parts on it.
     pub fn transform(&self, ellipsoid: usize) -> Option<Frame> {
         self.row_of.get(ellipsoid).map(|&row| self.posed[row])
     }
 
-    /// Semi-axes of an ellipsoid [m].
+    /// Semi-axes of an ellipsoid (m).
     pub fn semi_axes(&self, ellipsoid: usize) -> Option<[f32; 3]> {
         self.row_of.get(ellipsoid).map(|&row| self.semi_axes[row])
     }

@@ -14,9 +14,9 @@ pub struct Nearest {
     /// Which ellipsoid of the character.
     pub ellipsoid: usize,
     /// From the surface along the ray from the centre, negative inside: no less than the distance,
-    /// the more over it the longer the ellipsoid [m].
+    /// the more over it the longer the ellipsoid (m).
     pub distance: f32,
-    /// Where that ray meets the surface [m].
+    /// Where that ray meets the surface (m).
     pub point: [f32; 3],
 }
 
@@ -24,11 +24,11 @@ pub struct Nearest {
 /// one layer of clothes. A place p is inside exactly when `|q| < 1`, `q = S^-1 R^T (p - c)`.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// `S^-1 R^T` by its nine entries [1/m], and `S^-1 R^T c` [1].
+    /// `S^-1 R^T` by its nine entries (1/m), and `S^-1 R^T c` (1).
     unit: [Vec<f32>; 9],
     shift: [Vec<f32>; 3],
     centre: [Vec<f32>; 3],
-    /// 1 over the semi-axes, and over the least of them [1/m].
+    /// 1 over the semi-axes, and over the least of them (1/m).
     inverse: Vec<Vector>,
     steepest: Vec<f32>,
     pub(crate) groups: Vec<usize>,

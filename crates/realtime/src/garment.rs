@@ -10,7 +10,7 @@ use crate::{Ellipsoids, RealtimeError};
 /// How a garment behaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GarmentSettings {
-    /// By how much the ellipsoids are enlarged under it: the layer it lies in [m].
+    /// By how much the ellipsoids are enlarged under it: the layer it lies in (m).
     pub offset: f32,
     /// Largest stretch and largest shortening of an edge, as shares of its length at rest.
     pub stretch: f32,
@@ -19,15 +19,15 @@ pub struct GarmentSettings {
     /// Friction on the ellipsoids: ratio of the largest tangential shift to the depth by which a
     /// vertex is put out.
     pub friction: f32,
-    /// Share of the velocity lost in a second, as a rate [1/s].
+    /// Share of the velocity lost in a second, as a rate (1/s).
     pub damping: f32,
-    /// Stiffness of the springs on edges over the mass of a vertex [1/s2].
+    /// Stiffness of the springs on edges over the mass of a vertex (1/s2).
     pub stiffness: f32,
     /// Time in which the shape adjustment brings a vertex to a third of its distance from the
-    /// rest shape [s].
+    /// rest shape (s).
     pub draw: f32,
     /// How far cloth that lies on the ellipsoids at rest may hang away from where its shape is
-    /// carried [m]; cloth that stands off from them may as much farther as it stands off.
+    /// carried (m); cloth that stands off from them may as much farther as it stands off.
     pub slack: f32,
     /// Rounds of edge bounds and pushing out in a frame, at the most.
     pub rounds: usize,
@@ -84,7 +84,7 @@ pub struct Garment {
     /// Unit vectors out of the ellipsoids at rest.
     pub(crate) outward: Columns,
     pub(crate) follows_targets: bool,
-    /// How far each vertex may be from its target [m].
+    /// How far each vertex may be from its target (m).
     pub(crate) slack: Vec<f32>,
     pub(crate) homes: Homes,
     /// Row of the parent ellipsoid.
@@ -206,7 +206,7 @@ impl Garment {
         self.order.is_empty()
     }
 
-    /// Where the vertices are, in the mesh's order [m]. Nothing is computed: show it as often as
+    /// Where the vertices are, in the mesh's order (m). Nothing is computed: show it as often as
     /// needed, to one eye or two.
     pub fn positions(&self) -> impl ExactSizeIterator<Item = [f32; 3]> {
         self.rank.iter().map(|&k| self.places.at(k as usize))

@@ -217,7 +217,7 @@ impl Player {
         self.fade = None;
     }
 
-    /// Goes on by some time [s] and makes the pose.
+    /// Goes on by some time (s) and makes the pose.
     pub fn advance(&mut self, dt: f32) {
         let Some(mut playing) = self.playing else {
             return;

@@ -4,7 +4,7 @@ use crate::garment::{Ball, Garment};
 use crate::lanes::{LANES, Lanes, each};
 use crate::turn::{difference, dot};
 
-/// Room left round a block when the ellipsoids within its reach are found [m]: it may move so far
+/// Room left round a block when the ellipsoids within its reach are found (m): it may move so far
 /// within a frame before they are found again.
 const SLACK: f32 = 0.01;
 

@@ -1,6 +1,6 @@
 //! Rotations and rigid frames in `f32`.
 
-/// A vector or a place [m].
+/// A vector or a place (m).
 pub(crate) type Vector = [f32; 3];
 
 pub(crate) fn dot(a: Vector, b: Vector) -> f32 {
@@ -27,7 +27,7 @@ pub(crate) struct Turn(pub [f32; 4]);
 impl Turn {
     pub const NONE: Self = Self([0.0, 0.0, 0.0, 1.0]);
 
-    /// By a rotation vector: axis times angle [rad].
+    /// By a rotation vector: axis times angle (rad).
     pub fn new(vector: Vector) -> Self {
         let angle = dot(vector, vector).sqrt();
         // sin(a/2) / a tends to a half.
@@ -103,7 +103,7 @@ impl Turn {
 pub struct Frame {
     /// The rotation's matrix, by rows.
     pub rows: [[f32; 3]; 3],
-    /// The shift [m].
+    /// The shift (m).
     pub at: [f32; 3],
 }
 
@@ -119,7 +119,7 @@ impl Frame {
         self.rows.map(|row| dot(row, v))
     }
 
-    /// A place, turned and shifted [m].
+    /// A place, turned and shifted (m).
     pub fn applied(&self, p: [f32; 3]) -> [f32; 3] {
         moved(self.turned(p), 1.0, self.at)
     }

@@ -21,7 +21,7 @@ pub enum BodyChoice {
         figure: Figure,
         /// The file they come from; none where they were typed.
         path: Option<PathBuf>,
-        /// The measurements [m], [rad].
+        /// The measurements (m), (rad).
         measurements: Arc<Measurements>,
     },
     /// A body of its own primitives: a mannequin file's, or one that was edited.
@@ -30,7 +30,7 @@ pub enum BodyChoice {
         description: Arc<Description>,
         /// The file it comes from; none once it was edited.
         path: Option<PathBuf>,
-        /// What a tape finds on it [m], [rad].
+        /// What a tape finds on it (m), (rad).
         measurements: Arc<Measurements>,
     },
     /// A mannequin file that could not be read when the pattern that names it was opened: as the
@@ -115,7 +115,7 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// Mean edge length of the mesh [m].
+    /// Mean edge length of the mesh (m).
     pub fn edge_length(self) -> f64 {
         match self {
             Self::Preview => 0.025,
@@ -124,7 +124,7 @@ impl Quality {
         }
     }
 
-    /// Mean edge length of the mesh that is sewn and swings first [m]; none where that of
+    /// Mean edge length of the mesh that is sewn and swings first (m); none where that of
     /// [`Self::edge_length`] is coarse enough. A garment with a gathered seam goes without it.
     pub fn first_edge_length(self) -> Option<f64> {
         match self {

@@ -73,7 +73,7 @@ pub enum Command {
         /// The figure it is grown from; nothing means that of the present body.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         figure: Option<Figure>,
-        /// The measurements [m], [rad]; what they leave out is predicted from them.
+        /// The measurements (m), (rad); what they leave out is predicted from them.
         measurements: Measurements,
     },
     /// Edits the primitives of the body, which from then on stands by itself. All edits are made
@@ -101,7 +101,7 @@ pub enum Command {
     },
     /// Chooses the width of the fabric, or the fabric's own.
     SetWidth {
-        /// Width of the roll [m].
+        /// Width of the roll (m).
         width: Option<f64>,
     },
     /// Chooses how finely to mesh and how near to rest to drape.

@@ -9,39 +9,39 @@ use toile_geometry::{Vec2, Vec3};
 pub(crate) struct ShortSeam {
     /// Its name.
     pub name: String,
-    /// Length of its cloth [m].
+    /// Length of its cloth (m).
     pub cloth: f64,
-    /// Length that it hangs at [m].
+    /// Length that it hangs at (m).
     pub hangs: f64,
 }
 
 /// Share of its cloth by which a seam must be shorter to be found.
 const SHORTER: f64 = 0.05;
-/// Cloth from one point of a seam to the next between which its length is measured [m]: long enough that folds
+/// Cloth from one point of a seam to the next between which its length is measured (m): long enough that folds
 /// between count, short enough that the curves of a body do not.
 const SPACING: f64 = 0.06;
-/// Shortest seam that is looked at [m].
+/// Shortest seam that is looked at (m).
 const LEAST: f64 = 0.2;
 /// Share of the distance between the ends of a hanging seam that is height.
 const STEEP: f64 = 0.9;
 /// Share by which the two sides of a seam that is not eased may differ.
 const EASED: f64 = 0.03;
-/// Distance from gathers within which a seam is not looked at [m].
+/// Distance from gathers within which a seam is not looked at (m).
 const NEAR_GATHERS: f64 = 0.05;
 
 /// A point of a seam.
 #[derive(Clone, Copy)]
 struct Point {
-    /// Where it lies [m].
+    /// Where it lies (m).
     place: Vec3,
-    /// Where it lies in the pieces of both sides [m].
+    /// Where it lies in the pieces of both sides (m).
     flat: [Vec2; 2],
-    /// Cloth along the shorter side from the start of the seam [m].
+    /// Cloth along the shorter side from the start of the seam (m).
     cloth: f64,
 }
 
 /// The seams that hang in a heap. `target` has the merged vertex of each of the garment's, `places` where those lie
-/// [m]; `taut` are merged vertices where the cloth is stretched: it grows narrower across, so that a seam there is
+/// (m); `taut` are merged vertices where the cloth is stretched: it grows narrower across, so that a seam there is
 /// shorter without a fold.
 pub(crate) fn short_seams(
     job: &GarmentJob,

@@ -410,7 +410,7 @@ fn has_same_panels(a: &Pattern, b: &Pattern) -> bool {
         && pairs.all(|(a, b)| Arc::ptr_eq(a, b) || same(a, b))
 }
 
-/// The parts meshed with edges of a length [m] and placed round a mannequin, and what is worth
+/// The parts meshed with edges of a length (m) and placed round a mannequin, and what is worth
 /// telling.
 fn assembled(
     put_on: &PutOn,

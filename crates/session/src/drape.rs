@@ -26,7 +26,7 @@ pub(crate) struct Drape {
     pub measures: Measures,
     /// Steps of sewing and of settling.
     pub steps: [usize; 2],
-    /// Largest seam gap in the step before merging [m].
+    /// Largest seam gap in the step before merging (m).
     pub seam_gap: f64,
     /// What contact of cloth with cloth found and did while it swung.
     pub tally: Tally,
@@ -128,7 +128,7 @@ impl Drape {
 #[derive(Clone)]
 pub struct DrapeResult {
     pub(crate) drape: Arc<Drape>,
-    /// Wall time of its steps, without pauses [s].
+    /// Wall time of its steps, without pauses (s).
     pub(crate) seconds: f64,
 }
 

@@ -64,7 +64,7 @@ pub enum SessionError {
     Measurement {
         /// Its name.
         name: String,
-        /// The value given [m].
+        /// The value given (m).
         value: f64,
     },
     /// No mannequin can be made.

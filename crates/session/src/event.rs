@@ -68,7 +68,7 @@ pub struct Draped {
     pub steps: [usize; 2],
     /// Net force over weight.
     pub residual: f64,
-    /// Largest seam gap in the step before merging [m].
+    /// Largest seam gap in the step before merging (m).
     pub seam_gap: f64,
     /// Pieces that hang together after sewing.
     pub components: usize,

@@ -257,7 +257,7 @@ impl Session {
         Ok(())
     }
 
-    /// Writes the garment as it was last draped, on its body, as a PNG of a size [pixels].
+    /// Writes the garment as it was last draped, on its body, as a PNG of a size (pixels).
     ///
     /// # Errors
     /// It was not draped since it was changed, or the file cannot be written.

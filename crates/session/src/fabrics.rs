@@ -9,7 +9,7 @@ use toile_drape::{Compression, LIBRARY, LibraryFabric, Material};
 use toile_interchange::{ExpectedKind, FabricFile, FormatError, read_fabric};
 use toile_pattern::{Draft, Fabric, FabricId, Pattern, Rheology};
 
-/// Width of a roll of a fabric that comes without one [m].
+/// Width of a roll of a fabric that comes without one (m).
 const WIDTH: f64 = 1.5;
 
 /// A fabric that takes the place of every panel's.

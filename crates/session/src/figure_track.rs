@@ -7,9 +7,9 @@ use toile_geometry::Vec3;
 
 /// Poses a second of a figure's course: between two of them joints turn evenly.
 const RATE: f64 = 240.0;
-/// How long a figure stands before its clip begins [s].
+/// How long a figure stands before its clip begins (s).
 const STANDS: f64 = 0.3;
-/// Gap that limbs keep [m]: twice the distance that cloth keeps from the skin, and cloth of 2 mm on both.
+/// Gap that limbs keep (m): twice the distance that cloth keeps from the skin, and cloth of 2 mm on both.
 const LIMB_GAP: f64 = 0.012;
 
 /// How a figure is to go through its clip.
@@ -30,7 +30,7 @@ pub(crate) struct FigureTrack {
     body: Arc<Mannequin>,
     /// The poses, each root in metres from where it stood.
     course: Clip,
-    /// The time of the first pose [s], at most 0.
+    /// The time of the first pose (s), at most 0.
     start: f64,
     digest: u64,
 }
@@ -38,15 +38,15 @@ pub(crate) struct FigureTrack {
 /// A figure's course, and what is worth telling of it.
 pub(crate) struct Course {
     pub track: FigureTrack,
-    /// How long the way into the clip is, before time 0 [s].
+    /// How long the way into the clip is, before time 0 (s).
     pub lead_in: f64,
-    /// When the figure has come to rest again [s]; none where it goes on.
+    /// When the figure has come to rest again (s); none where it goes on.
     pub ends: Option<f64>,
     pub notes: Vec<String>,
 }
 
 impl FigureTrack {
-    /// The course of a body through a clip for a time [s] from its sewing pose, in whole steps of the scene [s] before time 0.
+    /// The course of a body through a clip for a time (s) from its sewing pose, in whole steps of the scene (s) before time 0.
     ///
     /// # Errors
     /// A rate that is out of range.
@@ -100,7 +100,7 @@ impl FigureTrack {
         })
     }
 
-    /// The pose at a time [s], its root in metres.
+    /// The pose at a time (s), its root in metres.
     fn pose(&self, time: f64) -> Pose {
         self.course.at(time - self.start)
     }
@@ -156,7 +156,7 @@ fn played(clip: Clip, asked: &FigureMotion, duration: f64) -> Result<Played, Pla
     Ok(Played { poses, ends })
 }
 
-/// The largest turn of a joint from one pose to another [rad].
+/// The largest turn of a joint from one pose to another (rad).
 fn turn_between(a: &Pose, b: &Pose) -> f64 {
     let turns = Joint::ALL.map(|joint| a.rotation(joint).angle_to(&b.rotation(joint)));
     turns.into_iter().fold(0.0, f64::max)

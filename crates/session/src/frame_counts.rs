@@ -9,7 +9,7 @@ use toile_drape::{Measures, SceneRun, Workspace, measure};
 pub(crate) struct FrameCounts {
     /// Frames looked at.
     frames: usize,
-    /// Those in which a triangle of cloth crosses one of a solid, and the most pairs in one of them and its time [s]. Where
+    /// Those in which a triangle of cloth crosses one of a solid, and the most pairs in one of them and its time (s). Where
     /// the solid goes through itself a pair counts apart.
     crossing_solids: usize,
     most_solid_pairs: usize,

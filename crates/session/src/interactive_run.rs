@@ -16,7 +16,7 @@ fn garment() -> ObjectId {
     SceneObject::id(0)
 }
 
-/// A hand that draws a vertex of a garment, numbered before its seams are merged, to a place [m] with the usual force.
+/// A hand that draws a vertex of a garment, numbered before its seams are merged, to a place (m) with the usual force.
 pub fn pull_vertex(vertex: u32, to: [f64; 3]) -> Action {
     Action::Pull {
         spot: vertex_spot(vertex),
@@ -152,7 +152,7 @@ pub(crate) struct InteractiveRun {
     run: GarmentRun,
     /// From the mesh of a level to the garment's.
     carry: Option<(usize, Carry)>,
-    /// Where each held vertex is drawn to [m], and with which force [N].
+    /// Where each held vertex is drawn to (m), and with which force (N).
     held: BTreeMap<u32, (Vec3, f64)>,
     /// Inputs to come, by step; those of one step in the order given.
     waiting: BTreeMap<u64, Vec<Action>>,
@@ -323,7 +323,7 @@ impl InteractiveRun {
         near.map(|corner| corner.0).ok_or_else(unknown)
     }
 
-    /// The garment as it lies: positions [m] and, for every vertex of the job's garment, its
+    /// The garment as it lies: positions (m) and, for every vertex of the job's garment, its
     /// index among them. While a coarser mesh is in hand, its shape carried to the garment's.
     pub fn shape(&mut self) -> Result<(Vec<Vec3>, Vec<u32>), DrapeError> {
         let levels = &self.job.setup.levels;
@@ -348,7 +348,7 @@ impl InteractiveRun {
     }
 }
 
-/// Every corner of every triangle of a cloth: its vertex, panel and place at rest [m].
+/// Every corner of every triangle of a cloth: its vertex, panel and place at rest (m).
 fn corners(cloth: &Cloth) -> impl Iterator<Item = (u32, u32, Vec2)> + '_ {
     let triangles = cloth.triangles.iter().zip(&cloth.panel).zip(&cloth.rest);
     triangles.flat_map(|((vertices, &panel), rest)| {

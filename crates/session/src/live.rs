@@ -19,7 +19,7 @@ use toile_geometry::Vec3;
 pub struct LiveFrame {
     /// The garment it shows, of the newest edit that was taken.
     pub job: Arc<GarmentJob>,
-    /// Positions of the vertices [m]; fewer after merging.
+    /// Positions of the vertices (m); fewer after merging.
     pub positions: Vec<Vec3>,
     /// Vertex of this frame for every vertex of the job's garment.
     pub target: Vec<u32>,
@@ -29,7 +29,7 @@ pub struct LiveFrame {
     pub takes_edits: bool,
     /// Net force over weight; infinite while sewing.
     pub residual: f64,
-    /// Largest seam gap [m].
+    /// Largest seam gap (m).
     pub gap: f64,
     /// Steps taken in all.
     pub step: usize,

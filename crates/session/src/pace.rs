@@ -8,27 +8,27 @@ use toile_drape::{Aspect, Finding, SceneRun};
 
 /// Follows a run.
 pub(crate) struct Pace {
-    /// Most processor time that a simulated second may take [s].
+    /// Most processor time that a simulated second may take (s).
     give_up: Option<f64>,
     start: Instant,
     /// Moments of the last simulated second, the oldest first.
     past: VecDeque<Moment>,
-    /// Least wall time that a simulated second has taken so far [s].
+    /// Least wall time that a simulated second has taken so far (s).
     fastest: f64,
 }
 
 /// Where a run stands.
 #[derive(Clone, Copy)]
 struct Moment {
-    /// Simulated time [s].
+    /// Simulated time (s).
     time: f64,
-    /// Wall time [s].
+    /// Wall time (s).
     wall: f64,
-    /// Processor time [s], where the system tells it.
+    /// Processor time (s), where the system tells it.
     processor: Option<f64>,
 }
 
-/// Simulated time over which the processor time of a second is measured [s].
+/// Simulated time over which the processor time of a second is measured (s).
 const SPAN: f64 = 1.0;
 /// Share of the duration over which the present speed is measured.
 const RECENT: f64 = 0.1;
@@ -140,7 +140,7 @@ impl Pace {
     }
 }
 
-/// A time [s] in the units that a person would use.
+/// A time (s) in the units that a person would use.
 fn spelt(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {

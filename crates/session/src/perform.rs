@@ -21,7 +21,7 @@ use toile_interchange::{FABRIC_WIDTHS, Fitting, write_atomically, write_mannequi
 use toile_measure::Measurements;
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
-/// Farthest from the floor that the origin of panels may lie [m].
+/// Farthest from the floor that the origin of panels may lie (m).
 const HIGHEST_ORIGIN: f64 = 10.0;
 
 type Outcome = Result<Vec<Event>, SessionError>;

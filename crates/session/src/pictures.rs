@@ -8,7 +8,7 @@ use toile_picture::{
     Scene, Sheet, Surface, View, drape_picture, fit_picture, render,
 };
 
-/// Stretch at the end of the colours [%].
+/// Stretch at the end of the colours (%).
 const MOST_STRETCH: f64 = 10.0;
 /// Colour of a mannequin.
 pub(crate) const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
@@ -64,7 +64,7 @@ fn worn(drape: &Drape, skin: &TriangleMesh) -> Scene {
     }
 }
 
-/// The garment on the mannequin from half-way, as a PNG of a size [pixels].
+/// The garment on the mannequin from half-way, as a PNG of a size (pixels).
 pub(crate) fn drape_view_png(
     drape: &Drape,
     skin: &TriangleMesh,
@@ -120,7 +120,7 @@ pub(crate) fn fit_png(
     Ok(fit_picture(&scene, &legend, &Sheet::chart(title))?.to_png()?)
 }
 
-/// Stretch at each merged vertex [%]: the mean of the triangles there by their area; what is
+/// Stretch at each merged vertex (%): the mean of the triangles there by their area; what is
 /// squeezed counts as relaxed.
 fn vertex_stretch(drape: &Drape) -> Vec<f64> {
     let mut sums = vec![[0.0; 2]; drape.mesh.positions.len()];

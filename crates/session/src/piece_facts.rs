@@ -23,7 +23,7 @@ pub struct PieceFacts {
     pub size: Option<String>,
     /// The fabric.
     pub fabric: String,
-    /// Direction of the warp, counter-clockwise from +x \[deg\].
+    /// Direction of the warp, counter-clockwise from +x (deg).
     pub grain_deg: f64,
     /// Whether it was unfolded.
     pub folded: bool,
@@ -42,11 +42,11 @@ pub struct PieceFacts {
 /// A region of cloth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RegionFacts {
-    /// Holes taken out \[cm2\].
+    /// Holes taken out (cm2).
     pub area_cm2: f64,
-    /// Least and greatest x and y \[mm\].
+    /// Least and greatest x and y (mm).
     pub bounds_mm: [[f64; 2]; 2],
-    /// Length of the outline, holes left out \[mm\].
+    /// Length of the outline, holes left out (mm).
     pub outline_mm: f64,
 }
 
@@ -57,9 +57,9 @@ pub struct EdgeFacts {
     pub name: String,
     /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
     pub half: u8,
-    /// Length along the seam line \[mm\].
+    /// Length along the seam line (mm).
     pub length_mm: f64,
-    /// Width of the seam allowance \[mm\].
+    /// Width of the seam allowance (mm).
     pub allowance_mm: f64,
     /// How the cut line turns at its start: mitre, bevel, square, extended or mirrored.
     pub corner: &'static str,
@@ -76,11 +76,11 @@ pub struct NotchFacts {
     pub half: u8,
     /// slit, v, castle, t or check.
     pub kind: &'static str,
-    /// On the seam line \[mm\].
+    /// On the seam line (mm).
     pub seam_mm: [f64; 2],
-    /// On the cut line \[mm\].
+    /// On the cut line (mm).
     pub cut_mm: [f64; 2],
-    /// How deep it is cut \[mm\]; 0 where it is drawn on the seam line.
+    /// How deep it is cut (mm); 0 where it is drawn on the seam line.
     pub depth_mm: f64,
 }
 
@@ -91,9 +91,9 @@ pub struct DartFacts {
     pub name: String,
     /// Which half of a folded panel.
     pub half: u8,
-    /// Straight across the mouth; of a diamond across its widest place \[mm\].
+    /// Straight across the mouth; of a diamond across its widest place (mm).
     pub width_mm: f64,
-    /// Its legs in the order of the outline; of a diamond all four \[mm\].
+    /// Its legs in the order of the outline; of a diamond all four (mm).
     pub legs_mm: Vec<f64>,
     /// The leg it is pressed towards: before or after the apex as drawn.
     pub pressed: &'static str,
@@ -104,7 +104,7 @@ pub struct DartFacts {
 pub struct SeamFacts {
     /// Name of the seam.
     pub name: String,
-    /// Lengths of its sides \[mm\].
+    /// Lengths of its sides (mm).
     pub lengths_mm: [f64; 2],
     /// Whether the longer side is gathered or eased on purpose.
     pub gathered: bool,
@@ -121,9 +121,9 @@ pub struct JointFacts {
     pub edges: [String; 2],
     /// Names of their pieces.
     pub pieces: [String; 2],
-    /// By how much the line turns across the seam: above 0 a peak, below 0 a dip \[deg\].
+    /// By how much the line turns across the seam: above 0 a peak, below 0 a dip (deg).
     pub kink_deg: f64,
-    /// How far the first piece reaches beyond the second at the end \[mm\].
+    /// How far the first piece reaches beyond the second at the end (mm).
     pub step_mm: f64,
 }
 

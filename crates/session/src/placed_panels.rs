@@ -20,17 +20,17 @@ pub enum PanelOrigin {
     Waist,
     /// The pelvis of the body model SMPL, as its authors' garments are placed.
     Pelvis,
-    /// A point so high above the floor [m].
+    /// A point so high above the floor (m).
     Height(f64),
 }
 
-/// Height of the waist of an adult of average stature above the floor [m].
+/// Height of the waist of an adult of average stature above the floor (m).
 const WAIST: f64 = 1.05;
-/// Height of the origin of SMPL's average body, which its authors call the pelvis, above the floor [m].
+/// Height of the origin of SMPL's average body, which its authors call the pelvis, above the floor (m).
 const PELVIS: f64 = 1.12;
-/// Panels this far below the floor [m] are no hem that touches it.
+/// Panels this far below the floor (m) are no hem that touches it.
 const BELOW_FLOOR: f64 = -0.05;
-/// No panel of a head, an arm or a trunk has its middle lower than this above the floor [m]: a child of one year is
+/// No panel of a head, an arm or a trunk has its middle lower than this above the floor (m): a child of one year is
 /// 75 cm tall.
 const LOWEST: [(BodyPart, f64); 4] = [
     (BodyPart::Head, 0.55),
@@ -38,12 +38,12 @@ const LOWEST: [(BodyPart, f64); 4] = [
     (BodyPart::RightArm, 0.35),
     (BodyPart::Trunk, 0.2),
 ];
-/// Nor is the upper edge of a garment higher than this [m].
+/// Nor is the upper edge of a garment higher than this (m).
 const HIGHEST: f64 = 2.2;
-/// Angles below the horizontal that arms can be held at [rad].
+/// Angles below the horizontal that arms can be held at (rad).
 const ARM_ANGLES: [f64; 2] = [0.0, 1.4];
 
-/// By how much panels are raised to stand on the floor [m], and a line that says so.
+/// By how much panels are raised to stand on the floor (m), and a line that says so.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Raise {
     height: f64,
@@ -51,7 +51,7 @@ struct Raise {
 }
 
 impl PanelOrigin {
-    /// Its height above the floor [m]; none where it is to be found.
+    /// Its height above the floor (m); none where it is to be found.
     fn height(self) -> Option<f64> {
         match self {
             Self::Automatic => None,
@@ -97,7 +97,7 @@ fn draft_of(pattern: &Pattern) -> Draft {
         .0
 }
 
-/// The pieces of a draft that are placed in space, with corners and middles of their edges there [m].
+/// The pieces of a draft that are placed in space, with corners and middles of their edges there (m).
 fn placed_pieces(draft: &Draft) -> impl Iterator<Item = (usize, &Piece, Vec<Vec3>)> {
     draft.pieces.iter().enumerate().filter_map(|(k, piece)| {
         let curves = piece.outline.iter().map(|edge| &edge.curve);
@@ -108,7 +108,7 @@ fn placed_pieces(draft: &Draft) -> impl Iterator<Item = (usize, &Piece, Vec<Vec3
     })
 }
 
-/// Points of a curve of a piece that is placed in space [m]; none of another piece.
+/// Points of a curve of a piece that is placed in space (m); none of another piece.
 fn points_in_space(piece: &Piece, curve: &Curve) -> Vec<Vec3> {
     let Worn::Placed(place) = piece.worn else {
         return Vec::new();
@@ -117,7 +117,7 @@ fn points_in_space(piece: &Piece, curve: &Curve) -> Vec<Vec3> {
     [0.0, 0.5].map(|t| at(curve.point(t))).to_vec()
 }
 
-/// Lowest and highest of some points [m].
+/// Lowest and highest of some points (m).
 fn span(points: &[Vec3]) -> [f64; 2] {
     let empty = [f64::INFINITY, f64::NEG_INFINITY];
     let heights = points.iter().map(|p| p.y);
@@ -178,7 +178,7 @@ fn partners(draft: &Draft, [piece, edge]: [usize; 2]) -> Vec<usize> {
     found
 }
 
-/// The angle below the horizontal at which the sleeves of a pattern hold the arms [rad], where its file places them
+/// The angle below the horizontal at which the sleeves of a pattern hold the arms (rad), where its file places them
 /// in space: from the seams that set them in to their free edges.
 pub(crate) fn sleeve_angle(pattern: &Pattern) -> Option<f64> {
     if !has_placed_panels(pattern) {

@@ -18,7 +18,7 @@ use toile_nesting::{
 };
 use toile_pattern::{DisplayUnit, Draft, Pattern, SizeSelection};
 
-/// White between pieces on paper, and to the edge of the drawing \[m\].
+/// White between pieces on paper, and to the edge of the drawing (m).
 const GAP: f64 = 0.004;
 const EDGE: f64 = 0.003;
 /// Share of a print that is done when its pieces are arranged.

@@ -25,7 +25,7 @@ fn panel_triangles(drape: &Drape) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// One mesh for each garment worn, with a primitive for each panel. UVs are the piece's plane [m].
+/// One mesh for each garment worn, with a primitive for each panel. UVs are the piece's plane (m).
 pub(crate) fn garment_glb(drape: &Drape) -> GlbScene {
     let runs = panel_triangles(drape);
     let normals = drape.normals();
@@ -72,7 +72,7 @@ fn primitive(drape: &Drape, panel: usize, run: Range<usize>, normals: &[Vec3]) -
 }
 
 /// The garment as one welded mesh with a group for each panel; texture coordinates are the
-/// pieces' planes [m].
+/// pieces' planes (m).
 pub(crate) fn garment_obj(drape: &Drape) -> ObjMesh {
     let garment = &drape.job.garment;
     let apart: Vec<[u32; 3]> = drape

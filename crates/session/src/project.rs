@@ -21,7 +21,7 @@ pub struct Project {
     pub size: Option<String>,
     /// A fabric that takes the place of every panel's.
     pub fabric: Option<FabricChoice>,
-    /// Width of the fabric [m]; nothing means the fabric's own.
+    /// Width of the fabric (m); nothing means the fabric's own.
     pub width: Option<f64>,
     /// How finely it is meshed and draped.
     pub quality: Quality,
@@ -283,7 +283,7 @@ impl Project {
         self.pattern.size(self.size.as_deref()?)
     }
 
-    /// The measurements that the mannequin was given [m], [rad]: those of the file or the typed ones;
+    /// The measurements that the mannequin was given (m), (rad): those of the file or the typed ones;
     /// else those of the named size, or of the pattern's base size where no body was chosen.
     fn given_measurements(&self) -> Option<&Measurements> {
         match &self.body {
@@ -297,7 +297,7 @@ impl Project {
         }
     }
 
-    /// What was asked of the mannequin [m], [rad]; all others of its measurements follow from it.
+    /// What was asked of the mannequin (m), (rad); all others of its measurements follow from it.
     pub fn asked_measurements(&self) -> Measurements {
         let mut asked = Measurements::new();
         let given = self.given_measurements().into_iter();
@@ -310,7 +310,7 @@ impl Project {
         asked
     }
 
-    /// The measurements of the mannequin [m], [rad]: those that it was given, else the figure's
+    /// The measurements of the mannequin (m), (rad): those that it was given, else the figure's
     /// averages. What they leave out is predicted from them.
     pub fn body_measurements(&self) -> Measurements {
         let figure = self.figure();

@@ -55,7 +55,7 @@ impl RealtimeKey {
 pub struct RealtimeSurface {
     /// Its name.
     pub name: String,
-    /// Where its vertices are [m].
+    /// Where its vertices are (m).
     pub positions: Vec<[f32; 3]>,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
@@ -82,11 +82,11 @@ pub struct RealtimeRun {
     adjustment: Adjustment,
 }
 
-/// Fade from one clip to the next [s]: about a step.
+/// Fade from one clip to the next (s): about a step.
 const FADE: f32 = 0.4;
 
 /// Distance of the innermost garment from the ellipsoids, and of each garment from the one below
-/// it [m]: most of the skin lies within the ellipsoids, and not all.
+/// it (m): most of the skin lies within the ellipsoids, and not all.
 const FIRST_OFFSET: f32 = 0.006;
 const NEXT_OFFSET: f32 = 0.008;
 
@@ -261,7 +261,7 @@ impl RealtimeRun {
         self.ellipsoids.start(clip, FADE).map_err(cannot)
     }
 
-    /// Computes one frame, `dt` after the last [s]: ellipsoids, then every garment. What is seen
+    /// Computes one frame, `dt` after the last (s): ellipsoids, then every garment. What is seen
     /// stays as it was until [`RealtimeRun::show`].
     pub fn frame(&mut self, dt: f32) {
         self.ellipsoids.advance(dt);
@@ -294,7 +294,7 @@ impl RealtimeRun {
     }
 
     /// Presses keys, each followed by so many frames of a sixtieth of a second, and paints what is
-    /// seen after each, side by side, each of a size [pixels], as PNG.
+    /// seen after each, side by side, each of a size (pixels), as PNG.
     ///
     /// # Errors
     /// No keys, or more pictures than fit into one.

@@ -22,7 +22,7 @@ pub(crate) struct RecordedSurface {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Places {
-    /// At rest [m].
+    /// At rest (m).
     Still(Vec<[f32; 3]>),
     /// Numbers of its vertices in a record.
     Moving(Vec<u32>),
@@ -121,7 +121,7 @@ impl RecordedSurface {
         matches!(self.places, Places::Still(_))
     }
 
-    /// Its positions in a frame of its section [m].
+    /// Its positions in a frame of its section (m).
     pub fn positions(&self, frame: &Frame) -> Vec<[f32; 3]> {
         match &self.places {
             Places::Still(places) => places.clone(),

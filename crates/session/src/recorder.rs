@@ -129,7 +129,7 @@ impl Recorder {
     }
 }
 
-/// The surfaces of a state, and the positions of those that move, one after the other [m].
+/// The surfaces of a state, and the positions of those that move, one after the other (m).
 fn surfaces(
     run: &SceneRun,
     groups: &[(Vec<ObjectId>, String)],

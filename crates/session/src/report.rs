@@ -298,7 +298,7 @@ impl Report {
     }
 }
 
-/// Area of a piece, holes taken out [m2]. Exact for lines, arcs and Bezier curves.
+/// Area of a piece, holes taken out (m2). Exact for lines, arcs and Bezier curves.
 pub(crate) fn piece_area(piece: &toile_pattern::Piece) -> f64 {
     let ring = |edges: &[toile_pattern::PieceEdge]| -> f64 {
         0.5 * edges
@@ -310,7 +310,7 @@ pub(crate) fn piece_area(piece: &toile_pattern::Piece) -> f64 {
     ring(&piece.outline).abs() - holes.sum::<f64>()
 }
 
-/// Length of a span [m].
+/// Length of a span (m).
 pub(crate) fn span_length(draft: &Draft, span: &DraftSpan) -> f64 {
     let Some(piece) = draft.pieces.get(span.piece) else {
         return 0.0;

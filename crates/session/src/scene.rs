@@ -182,7 +182,7 @@ impl Begun {
 
 /// A checkpoint that is written only if the run is given up.
 struct Kept {
-    /// Simulated time [s].
+    /// Simulated time (s).
     time: f64,
     saved: SavedRun,
 }

@@ -39,9 +39,9 @@ pub(crate) struct Builder<'a> {
     pub(crate) garments: BTreeMap<usize, HungGarment>,
     /// Whether the strain of each triangle of all cloths counts, as it does away from gathers.
     pub counted: Vec<bool>,
-    /// The longest way of a figure into its clip, before time 0 [s].
+    /// The longest way of a figure into its clip, before time 0 (s).
     pub(crate) lead_in: f64,
-    /// When the last figure has come to rest [s].
+    /// When the last figure has come to rest (s).
     pub(crate) ends: Option<f64>,
 }
 

@@ -13,13 +13,13 @@ use toile_interchange::{
 /// How a scene is run beside what its file says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunOptions {
-    /// Simulated time between two checkpoints [s]; none saves none.
+    /// Simulated time between two checkpoints (s); none saves none.
     pub checkpoint_step: Option<f64>,
     /// Goes on from the checkpoint in the folder of the results.
     pub resume: bool,
     /// Goes on from this frame, counted from 0: from the checkpoint beside the frames that is before it.
     pub restart: Option<usize>,
-    /// Processor time of a simulated second beyond which the run is ended with a checkpoint [s]; none never ends it.
+    /// Processor time of a simulated second beyond which the run is ended with a checkpoint (s); none never ends it.
     pub give_up: Option<f64>,
     /// The pictures painted.
     pub pictures: PictureOptions,
@@ -156,7 +156,7 @@ pub(crate) struct CheckpointTimes {
 }
 
 impl CheckpointTimes {
-    /// Checkpoints at a step [s] of simulated time, counted from where the run stands.
+    /// Checkpoints at a step (s) of simulated time, counted from where the run stands.
     ///
     /// # Errors
     /// A step that is no time; a method of which no checkpoint can be taken.

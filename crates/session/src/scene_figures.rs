@@ -11,12 +11,12 @@ use toile_body::{Clip, Mannequin, PlayError};
 use toile_drape::{Air, ContactSettings, MethodKind, MethodSettings, ObjectKind, SharedTrack};
 use toile_interchange::{FormatError, MotionFile, ObjectFile};
 
-/// How long figures stand still at the end of a scene that says no duration [s].
+/// How long figures stand still at the end of a scene that says no duration (s).
 const STANDS_STILL: f64 = 1.0;
-/// Longest substep of `xpbd` by default where garments are worn [s]. One twice as long lengthens a waistband of poplin by a
+/// Longest substep of `xpbd` by default where garments are worn (s). One twice as long lengthens a waistband of poplin by a
 /// quarter, so that a skirt slides off; one half as long changes a stretch of 12 % by 2 points.
 const LONGEST_SUBSTEP: f64 = 1.0 / 2400.0;
-/// Longest course of a figure that is posed before its scene begins [s].
+/// Longest course of a figure that is posed before its scene begins (s).
 const LONGEST_COURSE: f64 = 600.0;
 /// Rounds of a loop at the most: more are surely a mistake.
 const MOST_STRIDES: f64 = 1000.0;
@@ -120,7 +120,7 @@ impl Builder<'_> {
         self.file.objects.iter().any(|object| object.on.is_some())
     }
 
-    /// The simulated time from 0 on [s].
+    /// The simulated time from 0 on (s).
     pub(crate) fn duration(&self) -> f64 {
         let usual = self.ends.map_or(1.0, |ends| ends + STANDS_STILL);
         self.file.duration.unwrap_or(usual)

@@ -14,11 +14,11 @@ use toile_interchange::{FormatError, Frames, ObjectFile, read_pc2};
 pub(crate) enum Recorded {
     /// A cloth, where it starts.
     Cloth(Cloth),
-    /// The surface of a solid at the first frame [m] with its course.
+    /// The surface of a solid at the first frame (m) with its course.
     Moving(TriangleMesh, RecordedCourse),
 }
 
-/// Times [s] with the positions of all vertices [m].
+/// Times (s) with the positions of all vertices (m).
 #[derive(Default)]
 pub(crate) struct RecordedCourse(Vec<(f64, Vec<Vec3>)>);
 
@@ -150,7 +150,7 @@ fn named(
     }
 }
 
-/// A mesh that moves by a point cache (PC2) of its vertices, whose samples follow at a rate [1/s] from time 0; `place`
+/// A mesh that moves by a point cache (PC2) of its vertices, whose samples follow at a rate (1/s) from time 0; `place`
 /// turns a point as the mesh was turned.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ pub enum PictureTime {
     First,
     /// After the last.
     Last,
-    /// After the first step that reaches a simulated time [s].
+    /// After the first step that reaches a simulated time (s).
     At(f64),
 }
 
@@ -60,7 +60,7 @@ pub struct PictureOptions {
 struct Shown {
     /// Name of the picture's file.
     file: String,
-    /// Simulated time [s].
+    /// Simulated time (s).
     time: f64,
     surfaces: Vec<ShownSurface>,
 }

@@ -14,7 +14,7 @@ use toile_drape::{
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_pattern::{BodyPart, Draft, PieceId};
 
-/// Acceleration of gravity [m/s2].
+/// Acceleration of gravity (m/s2).
 pub(crate) const GRAVITY: f64 = 9.81;
 
 /// A garment ready to be sewn and draped, with the map from the result back to panels.
@@ -131,7 +131,7 @@ pub(crate) fn job(
     }
 }
 
-/// Distance kept between cloth and cloth, in one layer and between two [m]: half of the distance kept from the
+/// Distance kept between cloth and cloth, in one layer and between two (m): half of the distance kept from the
 /// body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside it.
 pub(crate) const CLOTH_OFFSET: f64 = 2e-3;
 
@@ -187,7 +187,7 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
     }
 }
 
-/// Triangles where strain counts: those with every corner at least `reach` [m] from the vertices
+/// Triangles where strain counts: those with every corner at least `reach` (m) from the vertices
 /// of gathered seams, measured in the piece.
 fn counted(draft: &Draft, garment: &Garment, reach: f64) -> Vec<bool> {
     let mut counted = vec![true; garment.triangles.len()];

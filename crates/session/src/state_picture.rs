@@ -24,9 +24,9 @@ pub(crate) struct ShownSurface {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Visited {
-    /// Smallest and largest coordinates [m].
+    /// Smallest and largest coordinates (m).
     bounds: [Vec3; 2],
-    /// Largest size along each axis at one time [m].
+    /// Largest size along each axis at one time (m).
     size: Vec3,
 }
 
@@ -131,7 +131,7 @@ impl RunCamera {
         Ok(drape_picture(&scene(surfaces), &sheet)?.to_png()?)
     }
 
-    /// The box that a picture shows [m]: all that moves with the solids at rest beside it, or the surface followed.
+    /// The box that a picture shows (m): all that moves with the solids at rest beside it, or the surface followed.
     fn room(&self, surfaces: &[ShownSurface]) -> Option<[Vec3; 2]> {
         if let Some(name) = &self.followed {
             let surface = surfaces.iter().find(|surface| surface.name == *name)?;

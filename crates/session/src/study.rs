@@ -17,7 +17,7 @@ use toile_pattern::{LayingRule, Pattern, Print, Roll};
 pub struct RuleCost {
     /// The rule, in words.
     pub rule: String,
-    /// Fabric a set of garments needs, on average over the seeds [m].
+    /// Fabric a set of garments needs, on average over the seeds (m).
     pub fabric: f64,
     /// Area of the garments' pieces without any rule over that of the fabric laid open, 0..=1; not
     /// a number where pieces found no place.
@@ -33,7 +33,7 @@ pub struct RuleCost {
 /// A rule: its words, and what it changes.
 type Rule = (String, Box<dyn Fn(&mut NestOptions)>);
 
-/// Length of the repeat of stripes and checks [m].
+/// Length of the repeat of stripes and checks (m).
 const REPEAT: f64 = 0.05;
 
 fn rule(words: &str, change: impl Fn(&mut NestOptions) + 'static) -> Rule {
@@ -265,13 +265,13 @@ fn under_the_rules_of(own: &FinishedMarker, other: &FinishedMarker) -> Option<Ma
 /// What markers came to.
 #[derive(Clone, Debug, Default)]
 struct Found {
-    /// Length for one set of garments [m].
+    /// Length for one set of garments (m).
     fabric: f64,
-    /// Area of the pieces [m2].
+    /// Area of the pieces (m2).
     area: f64,
-    /// Fabric it lies on, laid open [m2].
+    /// Fabric it lies on, laid open (m2).
     fabric_area: f64,
-    /// Length of the longest marker of each fabric, and its width laid open [m].
+    /// Length of the longest marker of each fabric, and its width laid open (m).
     fabrics: BTreeMap<String, [f64; 2]>,
     /// Most pieces of one seed that found no place.
     unplaced: usize,

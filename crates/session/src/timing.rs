@@ -8,7 +8,7 @@ use std::time::Instant;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timing {
     stages: BTreeMap<String, f64>,
-    /// Processor time when the pattern was opened [s].
+    /// Processor time when the pattern was opened (s).
     cpu_start: Option<f64>,
     wall: f64,
 }
@@ -34,7 +34,7 @@ impl Timing {
         self.add_seconds(stage, start.elapsed().as_secs_f64());
     }
 
-    /// Adds a time [s] to a stage.
+    /// Adds a time (s) to a stage.
     pub fn add_seconds(&mut self, stage: &str, seconds: f64) {
         *self.stages.entry(stage.to_owned()).or_default() += seconds;
         self.wall += seconds;
@@ -54,7 +54,7 @@ impl Timing {
     }
 }
 
-/// Processor time of this process so far [s], where the system tells it (Linux: fields 14 and 15 of
+/// Processor time of this process so far (s), where the system tells it (Linux: fields 14 and 15 of
 /// `/proc/self/stat`, in hundredths of a second).
 pub fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;

@@ -120,7 +120,7 @@ pub fn convert(
 }
 
 /// The triangulated panels of a pattern in a row, as OBJ with a group a panel; texture coordinates
-/// are the panels' own planes [m]. Returns the quality of the triangles, and what
+/// are the panels' own planes (m). Returns the quality of the triangles, and what
 /// was left out or is missing.
 ///
 /// # Errors
@@ -131,7 +131,7 @@ pub fn mesh_panels(
     edge_length: f64,
     to: &Path,
 ) -> Result<(MeshQuality, Vec<String>), SessionError> {
-    /// Room between panels [m].
+    /// Room between panels (m).
     const ROOM: f64 = 0.05;
     check_ending(to, &[".obj"], "panels are written as NAME.obj")?;
     let (project, notes) = project_of(pattern, size)?;
@@ -179,14 +179,14 @@ pub struct BodyReport {
     pub proportions: ProportionBox,
 }
 
-/// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time [s].
+/// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time (s).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Which motion.
     pub motion: String,
     /// A second gait mixed in at equal phase, and its share, 0 to 1.
     pub blend: Option<(String, f64)>,
-    /// When [s].
+    /// When (s).
     pub time: f64,
 }
 
@@ -226,7 +226,7 @@ impl Moment {
 /// What was measured on somebody's mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshMeasured {
-    /// The measurements [m].
+    /// The measurements (m).
     pub measurements: Measurements,
     /// Where they were taken.
     pub landmarks: ScanLandmarks,
@@ -319,7 +319,7 @@ pub fn fit_mesh(person: &PersonFile, figure: Figure) -> Result<(Fit, Vec<String>
 pub struct BodyStretch {
     /// Proportions to bring the body to first, at the stature it has.
     pub proportions: Option<ProportionBox>,
-    /// Stature to bring the body to [m].
+    /// Stature to bring the body to (m).
     pub stature: Option<f64>,
     /// The ratios; the global one counts besides the stature.
     pub ratios: Scaling,

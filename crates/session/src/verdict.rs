@@ -13,14 +13,14 @@ use toile_geometry::Vec3;
 
 /// Stretch beyond which a garment is called too tight: a knit gives as much at ease.
 const TIGHT: f64 = 0.15;
-/// Depth in the body to which cloth that is too tight may be pressed [m].
+/// Depth in the body to which cloth that is too tight may be pressed (m).
 const PRESSED: f64 = 0.03;
 /// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth presses
-/// [m].
+/// (m).
 const THROUGH: f64 = 0.01;
 /// Stretch beyond which the cloth of a scene is pulled as none bears: woven cloth tears long before.
 const OVERSTRETCHED: f64 = 1.0;
-/// Depth below the floor up to which a hem only touches it [m].
+/// Depth below the floor up to which a hem only touches it (m).
 const ON_FLOOR: f64 = 0.02;
 /// Distance from the body within which cloth touches it, in contact offsets.
 const TOUCH: f64 = 1.5;
@@ -271,7 +271,7 @@ fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Cloth inside a solid otherwise than pressed in: deeper than a limit [m], or from one side to the other.
+/// Cloth inside a solid otherwise than pressed in: deeper than a limit (m), or from one side to the other.
 fn through_solid(
     solid: &str,
     (measures, deepest): (&Measures, f64),
@@ -294,7 +294,7 @@ fn through_solid(
     })
 }
 
-/// How deep in the body the cloth of a garment may lie and be pressed there alone [m].
+/// How deep in the body the cloth of a garment may lie and be pressed there alone (m).
 fn deepest_in_body(measures: &Measures) -> f64 {
     let is_tight = measures.strain_max.iter().any(|&strain| strain > TIGHT);
     if is_tight { PRESSED } else { THROUGH }
@@ -421,7 +421,7 @@ fn elastic_name(run: &SceneRun, index: usize) -> String {
 mod tests {
     use super::*;
 
-    /// Cloth in a body: depth [m], edges from one side to the other, stretch.
+    /// Cloth in a body: depth (m), edges from one side to the other, stretch.
     fn in_body(depth: f64, through: usize, strain: f64) -> Measures {
         Measures {
             penetration_max: depth,

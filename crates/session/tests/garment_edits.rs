@@ -29,7 +29,7 @@ fn edit(session: &mut Session, edits: Vec<Edit>) {
     session.execute(command, &mut Silent).unwrap();
 }
 
-/// Moves a point of the front's sheet by a way [m].
+/// Moves a point of the front's sheet by a way (m).
 fn move_point(session: &mut Session, name: &str, way: Vec2) {
     let evaluation = session.evaluation();
     let pattern = evaluation.pattern();
@@ -99,19 +99,19 @@ fn rests(live: &LiveRun) {
     panic!("it does not rest");
 }
 
-/// How far the vertices of two garments with the same triangles are from each other [m].
+/// How far the vertices of two garments with the same triangles are from each other (m).
 fn distance(a: &LiveFrame, b: &LiveFrame) -> f64 {
     distances(a, b).into_iter().fold(0.0, f64::max)
 }
 
-/// The same of each vertex [m].
+/// The same of each vertex (m).
 fn distances(a: &LiveFrame, b: &LiveFrame) -> Vec<f64> {
     assert_eq!(a.target, b.target);
     let pairs = a.positions.iter().zip(&b.positions);
     pairs.map(|(a, b)| (a - b).norm()).collect()
 }
 
-/// From the lowest place of the front to the highest [m].
+/// From the lowest place of the front to the highest (m).
 fn height_of_front(frame: &LiveFrame) -> f64 {
     let vertices = frame.job.garment.panels[0].vertices.clone();
     let place = |v: usize| frame.positions[frame.target[v] as usize];
@@ -120,13 +120,13 @@ fn height_of_front(frame: &LiveFrame) -> f64 {
     high.y - low.y
 }
 
-/// Mean height of a garment's vertices, as meshed [m].
+/// Mean height of a garment's vertices, as meshed (m).
 fn height(frame: &LiveFrame) -> f64 {
     let places = frame.target.iter().map(|&v| frame.positions[v as usize].y);
     places.sum::<f64>() / frame.target.len() as f64
 }
 
-/// Lowest and highest place [m].
+/// Lowest and highest place (m).
 fn bounds(positions: &[Vec3]) -> [Vec3; 2] {
     let first = [positions[0]; 2];
     let fold = |[low, high]: [Vec3; 2], p: &Vec3| [low.inf(p), high.sup(p)];
@@ -145,7 +145,7 @@ fn a_garment_at_rest_goes_on_to_an_edit_and_back_by_undo() {
     }
 }
 
-/// On a woman of a waist girth [m].
+/// On a woman of a waist girth (m).
 fn goes_on_and_back(waist: f64) {
     let folder = tempfile::tempdir().unwrap();
     let mut session = prepared(folder.path());

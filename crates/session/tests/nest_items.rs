@@ -15,7 +15,7 @@ fn patterns() -> Vec<PathBuf> {
     paths.filter(|path| path.is_file()).collect()
 }
 
-/// How far any point of a ring lies from another ring [m].
+/// How far any point of a ring lies from another ring (m).
 fn off(points: &[Vec2], border: &[Vec2]) -> f64 {
     let tree = EdgeTree::of(&Polygon::new(border.to_vec()));
     let each = points.iter();

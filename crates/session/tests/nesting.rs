@@ -57,7 +57,7 @@ fn refused(name: &str, options: &NestOptions) -> String {
     }
 }
 
-/// Least and greatest y of a piece's outline [m].
+/// Least and greatest y of a piece's outline (m).
 fn sides(file: &MarkerFile, name: &str) -> [f64; 2] {
     let piece = file.pieces.iter().find(|p| p.name == name).unwrap();
     let y = || piece.outline.iter().map(|p| p[1]);
@@ -191,7 +191,7 @@ fn rolls_are_filled_in_turn_and_what_fits_none_is_named() {
     assert!(words.contains("roll 2: it is"), "{words}");
 }
 
-/// Places of a path [mm].
+/// Places of a path (mm).
 fn places(path: &str) -> Vec<[f64; 2]> {
     let corners = path.split(['M', 'L', 'Z']).filter(|c| !c.is_empty());
     let place = |corner: &str| {
@@ -201,7 +201,7 @@ fn places(path: &str) -> Vec<[f64; 2]> {
     corners.filter_map(place).collect()
 }
 
-/// Where the first notch of every piece lies on the seam line, along the fabric [mm], from the
+/// Where the first notch of every piece lies on the seam line, along the fabric (mm), from the
 /// drawing: at a corner of the seam line, 10 mm within the slit that is cut for it.
 fn first_notches(svg: &str) -> Vec<(String, f64)> {
     let after = |text: &str, mark: &str| {

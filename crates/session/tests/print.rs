@@ -18,7 +18,7 @@ const SAIL: &str = include_str!("support/sail.toile.json");
 
 /// 0.01 mm.
 const FINE: f64 = 1e-5;
-/// Widths of the lines of a print [m].
+/// Widths of the lines of a print (m).
 const CUT: f64 = 0.0005;
 const SEW: f64 = 0.0002;
 const JOIN: f64 = 0.000_15;

@@ -71,7 +71,7 @@ fn edit_until_killed(folder: &Path) {
     }
 }
 
-/// Edits that were noted: number and time [ms].
+/// Edits that were noted: number and time (ms).
 fn noted(folder: &Path) -> Vec<(u32, u64)> {
     let text = fs::read_to_string(folder.join("notes")).unwrap_or_default();
     let lines = text.lines().filter_map(|line| {

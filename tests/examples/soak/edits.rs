@@ -6,7 +6,7 @@ use toile_tests::random::Random;
 
 /// Drapes from starts micrometres apart that each end is held to.
 const FRESH: u64 = 8;
-/// By how much their range is widened on both sides [m].
+/// By how much their range is widened on both sides (m).
 const WIDENED: f64 = 1e-3;
 
 /// Edits of a millimetre and of five, as many as asked of each, on the T-shirt; `--plain` leaves the drapes from

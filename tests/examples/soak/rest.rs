@@ -8,7 +8,7 @@ use toile_geometry::Vec3;
 use toile_session::{Command, Figure, OtherGarment, Quality, figure_named};
 use toile_tests::root;
 
-/// How far a placed vertex is moved along each axis at the most [m].
+/// How far a placed vertex is moved along each axis at the most (m).
 const MOVED: f64 = 1e-5;
 
 /// Where the residual stands in a line.

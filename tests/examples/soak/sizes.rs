@@ -10,7 +10,7 @@ use toile_measure::{Measurements, Origin};
 use toile_session::{Command, Figure, Quality, figure_named};
 use toile_tests::{files_below, root};
 
-/// A wearer: name, figure, and what is asked of the body [cm]; the rest is predicted.
+/// A wearer: name, figure, and what is asked of the body (cm); the rest is predicted.
 type Wearer = (&'static str, &'static str, [f64; 4]);
 
 /// Height, bust, waist and hips.

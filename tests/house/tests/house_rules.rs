@@ -325,8 +325,43 @@ fn nothing_is_left_undone_in_the_code() {
     }
 }
 
+/// Whether a comment gives a unit in parentheses, as in (m), (N s/m) or (1).
+fn has_unit(doc: &str) -> bool {
+    const UNITS: [&str; 22] = [
+        "m",
+        "mm",
+        "cm",
+        "rad",
+        "deg",
+        "degrees",
+        "s",
+        "ms",
+        "N",
+        "J",
+        "W",
+        "kg",
+        "mg",
+        "gf",
+        "1",
+        "%",
+        "pixels",
+        "pixel",
+        "bytes",
+        "characters",
+        "cells",
+        "stature",
+    ];
+    doc.split('(').skip(1).any(|inside| {
+        let first = inside
+            .split([')', ' ', '/', ','])
+            .next()
+            .unwrap_or_default();
+        UNITS.contains(&first.trim_end_matches(|c: char| ('2'..='4').contains(&c)))
+    })
+}
+
 /// Public floating-point fields of the crates that carry physical quantities must say their unit
-/// in brackets, or that they are a ratio, share, weight, count or the like.
+/// in parentheses, or that they are a ratio, share, weight, count or the like.
 #[test]
 fn public_numbers_say_their_unit() {
     let unitless = [
@@ -373,7 +408,7 @@ fn public_numbers_say_their_unit() {
                 } else {
                     if line.contains("struct ") {
                         public = line.starts_with("pub struct ");
-                        said_above = doc.contains('[');
+                        said_above = has_unit(&doc);
                     }
                     let field = line.strip_prefix("pub ").and_then(|l| l.strip_suffix(','));
                     let is_number = field.is_some_and(|f| {
@@ -390,7 +425,7 @@ fn public_numbers_say_their_unit() {
                         .any(|end| f.ends_with(end))
                     });
                     let lower = doc.to_lowercase();
-                    let said = doc.contains('[')
+                    let said = has_unit(&doc)
                         || unitless.iter().any(|w| lower.contains(&w.to_lowercase()))
                         || lower.contains("unit ")
                         || lower.contains("normal")

@@ -13,13 +13,13 @@ use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
 use toile_pattern::{Edit, EditError, Entity, Evaluation, PartId, Pattern, PointId};
 use toile_session::Project;
 
-/// How far points and curves that are pasted lie beside where they were copied [m].
+/// How far points and curves that are pasted lie beside where they were copied (m).
 const ASIDE: f64 = 0.02;
 
-/// Room between a new sheet's origin and what is there [m]: a piece may be drawn to the left of it.
+/// Room between a new sheet's origin and what is there (m): a piece may be drawn to the left of it.
 const SHEETS_APART: f64 = 0.4;
 
-/// Room between panels and their duplicate [m].
+/// Room between panels and their duplicate (m).
 const BESIDE: f64 = 0.05;
 
 impl ToileApp {
@@ -237,7 +237,7 @@ impl ToileApp {
         self.take_pasted(pasted, "Duplicate");
     }
 
-    /// How far to the right of its place something of these bounds lies on nothing else [m].
+    /// How far to the right of its place something of these bounds lies on nothing else (m).
     fn free_aside(&self, scene: &Scene, bounds: &Bounds2) -> f64 {
         let mut panels = on_table((scene, &self.view.table_layout), |_| true);
         panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
@@ -358,7 +358,7 @@ impl ToileApp {
     }
 }
 
-/// Least rectangles on the table [m] round panels of which they or their sheets are asked for, and
+/// Least rectangles on the table (m) round panels of which they or their sheets are asked for, and
 /// round sheets with no panels.
 fn on_table(
     (scene, table_layout): (&Scene, &TableLayout),

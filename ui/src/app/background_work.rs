@@ -82,7 +82,7 @@ pub struct Moment {
     pub stage: Stage,
     /// Steps taken.
     pub step: usize,
-    /// Largest seam gap [m].
+    /// Largest seam gap (m).
     pub gap: f64,
     /// Net force over weight.
     pub residual: f64,

@@ -12,7 +12,7 @@ use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Ui};
 use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
-/// Room that a message leaves for the hint beside it [pixels].
+/// Room that a message leaves for the hint beside it (pixels).
 const HINT_WIDTH: f32 = 160.0;
 
 impl ToileApp {

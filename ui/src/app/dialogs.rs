@@ -13,9 +13,9 @@ use egui::{Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
 use std::path::PathBuf;
 use toile_session::Command;
 
-/// Width of a dialog [pixels].
+/// Width of a dialog (pixels).
 const WIDTH: f32 = 420.0;
-/// Height of a list in a dialog [pixels].
+/// Height of a list in a dialog (pixels).
 const LIST: f32 = 240.0;
 
 /// A dialog that is open.

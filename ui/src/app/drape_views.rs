@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Folder they are kept in.
 const FOLDER: &str = "drapes";
-/// Width and height of a picture [pixels].
+/// Width and height of a picture (pixels).
 const SIZE: [usize; 2] = [240, 360];
 
 /// Where the picture of a pattern's file is kept: by a digest of its path (FNV-1a; Fowler, Noll, Vo 1991).

@@ -8,7 +8,7 @@ use egui::{
 };
 use toile_session::{Command, Quality, Stage, Verdict};
 
-/// Height of the strip over the view [pixels].
+/// Height of the strip over the view (pixels).
 const STRIP: f32 = 38.0;
 
 impl ToileApp {

@@ -6,15 +6,15 @@ use egui::{Panel, Ui};
 
 /// Shares of the window's width that the 3D view begins with: alone, and with the tables under it.
 const GARMENT_SHARES: [f32; 2] = [0.245, 0.33];
-/// Height that the marker has at least, and that is left to the pattern over it where there is room [pixels].
+/// Height that the marker has at least, and that is left to the pattern over it where there is room (pixels).
 const LEAST_MARKER: f32 = 140.0;
 const LEAST_PATTERN: f32 = 170.0;
-/// Width of a window from which on the tables stand beside the pattern, unless they were dragged [pixels].
+/// Width of a window from which on the tables stand beside the pattern, unless they were dragged (pixels).
 const WIDE: f32 = 1600.0;
-/// Height the tables begin with below the pattern [pixels], and under the garment [share of it].
+/// Height the tables begin with below the pattern (pixels), and under the garment (share of it).
 const TABLES: f32 = 210.0;
 const TABLES_SHARE: f32 = 0.45;
-/// Width that its row of buttons takes [pixels]: it begins no narrower in a window that has room for it.
+/// Width that its row of buttons takes (pixels): it begins no narrower in a window that has room for it.
 const GARMENT_ROW: f32 = 320.0;
 /// Most of the window's width that the 3D view may take.
 const GARMENT_MOST: f32 = 0.6;

@@ -6,9 +6,9 @@ use toile_pattern::plan;
 use toile_pattern::{ClothSettings, FabricId, Marker, MarkerId, MarkerKeeps, OrderedSize};
 use toile_session::{Shown, kept_words, other_sizes_words};
 
-/// Widths that differ by less are the same [m].
+/// Widths that differ by less are the same (m).
 const SAME_WIDTH: f64 = 1e-9;
-/// Room for a field beside its label [pixels].
+/// Room for a field beside its label (pixels).
 const FIELD_ROOM: f32 = 84.0;
 
 impl ToileApp {

@@ -9,7 +9,7 @@ use toile_pattern::{Edit, EditError, MarkerId, OrderedPiece, PiecePlacement};
 use toile_session::{LetGo, Obstacle};
 
 impl ToileApp {
-    /// Ends a drag of pieces that were moved by a way [m]: one step of the history, or none.
+    /// Ends a drag of pieces that were moved by a way (m): one step of the history, or none.
     pub(super) fn drop_pieces(
         &mut self,
         (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -21,7 +21,7 @@ impl ToileApp {
         self.let_go((id, pieces), ("Move pieces", how), moved);
     }
 
-    /// Lays a piece that waited at a place [m].
+    /// Lays a piece that waited at a place (m).
     pub(super) fn lay_piece(
         &mut self,
         (id, piece): (MarkerId, OrderedPiece),

@@ -18,7 +18,7 @@ use toile_session::{
     DocumentMarker, FoundMarker, Search, SearchWatcher, SessionError, Start, Watcher,
 };
 
-/// Width of the field of its name [pixels].
+/// Width of the field of its name (pixels).
 const NAME_WIDTH: f32 = 110.0;
 /// Seconds a search may take.
 const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];

@@ -64,7 +64,7 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// The least height that a table is of use in [pixels].
+    /// The least height that a table is of use in (pixels).
     pub fn least_height(&self) -> f32 {
         match self.tab {
             Tab::Fabric | Tab::Wearer => 290.0,

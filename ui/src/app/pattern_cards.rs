@@ -19,15 +19,15 @@ use std::time::Duration;
 use toile_geometry::{Bounds2, Vec2};
 use toile_session::{Command, Session, SessionError, Silent};
 
-/// Size of a card, its name included [pixels].
+/// Size of a card, its name included (pixels).
 pub const CARD: egui::Vec2 = vec2(148.0, 150.0);
-/// Height of its name [pixels].
+/// Height of its name (pixels).
 const NAME: f32 = 26.0;
-/// Room round the pieces [pixels].
+/// Room round the pieces (pixels).
 const MARGIN: f32 = 10.0;
 /// When a picture that is being drawn is looked for again.
 const SOON: Duration = Duration::from_millis(50);
-/// Enlargement that lines are drawn for: two to this power [pixels per metre].
+/// Enlargement that lines are drawn for: two to this power (pixels per metre).
 const OCTAVE: i32 = 8;
 
 /// The pictures of patterns that were asked for, by their files.
@@ -44,7 +44,7 @@ enum Picture {
     Missing,
 }
 
-/// The pieces of a pattern where they lie on the table [m].
+/// The pieces of a pattern where they lie on the table (m).
 struct Pieces {
     /// Fills, where they lie, and whether they are mirrored halves.
     fills: Vec<(Fill, Vec2, bool)>,

@@ -11,9 +11,9 @@ use toile_geometry::Vec2;
 use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, SheetId, plan};
 use toile_session::{Command, Project};
 
-/// Largest distance of the outlines of other sizes from the true ones [m].
+/// Largest distance of the outlines of other sizes from the true ones (m).
 const GRADING_TOLERANCE: f64 = 1e-4;
-/// How far an arrow key moves points, alone and with Shift [m].
+/// How far an arrow key moves points, alone and with Shift (m).
 const NUDGES: [f64; 2] = [0.001, 0.01];
 
 impl ToileApp {

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_session::Paper;
 
-/// Two clicks no farther apart are one double click [s]: as long as desktops allow, so that slow frames do not
+/// Two clicks no farther apart are one double click (s): as long as desktops allow, so that slow frames do not
 /// part them.
 const DOUBLE_CLICK: f64 = 0.5;
 
-/// Size of a window that was never opened before, and the least one has [logical pixels].
+/// Size of a window that was never opened before, and the least one has (logical pixels).
 const WINDOW: [f32; 2] = [1400.0, 860.0];
 const LEAST_WINDOW: [f32; 2] = [760.0, 480.0];
 /// Least and largest enlargement of text, signs and buttons.
@@ -31,7 +31,7 @@ pub struct Preferences {
     pub panes: Panes,
     /// Name of the paper that was printed on last.
     pub paper: Option<String>,
-    /// Width and height of the window while it was last not as large as the screen [logical pixels].
+    /// Width and height of the window while it was last not as large as the screen (logical pixels).
     pub window: Option<[f32; 2]>,
     /// Whether it was as large as the screen.
     pub fills_screen: bool,
@@ -155,7 +155,7 @@ impl Preferences {
         self.write();
     }
 
-    /// How large the window opens [logical pixels].
+    /// How large the window opens (logical pixels).
     fn window(&self) -> [f32; 2] {
         let [width, height] = self.window.unwrap_or(WINDOW);
         [width.max(LEAST_WINDOW[0]), height.max(LEAST_WINDOW[1])]

@@ -8,15 +8,15 @@ use crate::theme::{self, Palette};
 use crate::tools::Tool;
 use egui::{Button, RichText, Ui, pos2, vec2};
 
-/// Widths of the tool bar: signs alone, and with names and keys [pixels].
+/// Widths of the tool bar: signs alone, and with names and keys (pixels).
 const WIDTHS: [f32; 2] = [44.0, 186.0];
-/// Heights of its buttons, where there is little room and where there is enough [pixels].
+/// Heights of its buttons, where there is little room and where there is enough (pixels).
 const HEIGHTS: [f32; 2] = [16.0, 28.0];
-/// Height of the name of a group [pixels].
+/// Height of the name of a group (pixels).
 const GROUP: f32 = 15.0;
-/// Side of a sign at the most [pixels].
+/// Side of a sign at the most (pixels).
 const SIGN: f32 = 20.0;
-/// Size of the name of a group [pixels].
+/// Size of the name of a group (pixels).
 const GROUP_TEXT: f32 = 10.5;
 
 /// Its groups: the name of each, none for the first, and the commands that take its tools in hand.
@@ -65,7 +65,7 @@ pub(super) fn tools() -> impl Iterator<Item = &'static str> {
 }
 
 impl ToileApp {
-    /// Width of the tool bar without the margin round it [pixels].
+    /// Width of the tool bar without the margin round it (pixels).
     pub(crate) fn tool_bar_width(&self) -> f32 {
         WIDTHS[usize::from(self.panes.tool_names)]
     }

@@ -5,9 +5,9 @@ use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 
 /// Side of the square that signs are drawn on.
 const SIDE: f32 = 20.0;
-/// Width of strokes [units].
+/// Width of strokes (units).
 const WIDTH: f32 = 1.4;
-/// Dashes and the gaps between them [units].
+/// Dashes and the gaps between them (units).
 const DASH: [f32; 2] = [2.2, 1.6];
 
 /// A place on the square.

@@ -8,9 +8,9 @@ use egui::{RichText, Ui, vec2};
 use std::path::{Path, PathBuf};
 use toile_session::{Command, SAMPLES};
 
-/// Width of the page [pixels].
+/// Width of the page (pixels).
 const WIDTH: f32 = 780.0;
-/// Width of its two buttons beside each other [pixels].
+/// Width of its two buttons beside each other (pixels).
 const BUTTONS: f32 = 204.0;
 
 impl ToileApp {

@@ -7,7 +7,7 @@ use crate::glossary::found;
 use crate::theme::{Palette, title};
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
-/// Height of the list [pixels].
+/// Height of the list (pixels).
 const LIST: f32 = 380.0;
 
 impl ToileApp {

@@ -15,7 +15,7 @@ pub struct CutLines {
 #[derive(Clone, Debug)]
 struct CutLine {
     piece: Piece,
-    /// Closed lines in the panel's plane [m].
+    /// Closed lines in the panel's plane (m).
     rings: Arc<[Vec<Vec2>]>,
 }
 
@@ -47,7 +47,7 @@ impl CutLines {
         made
     }
 
-    /// The lines to cut a panel along, closed [m].
+    /// The lines to cut a panel along, closed (m).
     pub fn of(&self, panel: PanelId) -> &[Vec<Vec2>] {
         let found = self.known.iter().find(|line| line.piece.id.panel == panel);
         found.map_or(&[], |line| &line.rings)

@@ -3,28 +3,28 @@
 use egui::{Pos2, Rect, Vec2 as ScreenVector};
 use toile_geometry::{Bounds2, Vec2};
 
-/// A point of the table [m], Y up.
+/// A point of the table (m), Y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TablePoint(pub Vec2);
 
-/// A point of the screen [logical pixels], Y down.
+/// A point of the screen (logical pixels), Y down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenPoint(pub Pos2);
 
-/// Smallest and largest enlargement [logical pixels per metre]: from a whole marker on the screen
+/// Smallest and largest enlargement (logical pixels per metre): from a whole marker on the screen
 /// to a millimetre as wide as a finger.
 const SCALES: [f64; 2] = [20.0, 40_000.0];
-/// What is smaller is not enlarged to fill the view [m].
+/// What is smaller is not enlarged to fill the view (m).
 const LEAST_FITTED: f64 = 0.1;
-/// Empty border when everything is shown [share of the view].
+/// Empty border when everything is shown (share of the view).
 const BORDER: f64 = 0.06;
 
 /// How the table is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableCamera {
-    /// Table point in the middle of the view [m].
+    /// Table point in the middle of the view (m).
     pub centre: Vec2,
-    /// Enlargement [logical pixels per metre].
+    /// Enlargement (logical pixels per metre).
     pub scale: f64,
 }
 
@@ -49,7 +49,7 @@ impl TableCamera {
         TablePoint(self.centre + self.table_vector(point.0 - middle(view)))
     }
 
-    /// A vector on the screen as a vector on the table [m].
+    /// A vector on the screen as a vector on the table (m).
     pub fn table_vector(&self, on_screen: ScreenVector) -> Vec2 {
         Vec2::new(f64::from(on_screen.x), -f64::from(on_screen.y)) / self.scale
     }
@@ -67,7 +67,7 @@ impl TableCamera {
         self.centre += before.0 - after.0;
     }
 
-    /// How finely curves are drawn at this enlargement: a power of two [pixels per metre] that the
+    /// How finely curves are drawn at this enlargement: a power of two (pixels per metre) that the
     /// enlargement does not reach.
     pub fn octave(&self) -> i32 {
         self.scale.log2().floor() as i32 + 1

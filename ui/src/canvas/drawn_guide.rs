@@ -10,7 +10,7 @@ pub struct DrawnGuide {
     pub id: Option<GuideId>,
     /// Which way it runs.
     pub runs: GuideRun,
-    /// Where it lies on the table [m].
+    /// Where it lies on the table (m).
     pub at: f64,
 }
 

@@ -8,7 +8,7 @@ use toile_geometry::Vec2;
 /// Triangles of a filled region, in a panel's plane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fill {
-    /// Corners [m].
+    /// Corners (m).
     pub points: Vec<[f32; 2]>,
     /// Three indices a triangle.
     pub indices: Vec<u32>,

@@ -18,9 +18,9 @@ pub struct FindingMark {
     pub words: String,
 }
 
-/// From the part to its sign [pixels].
+/// From the part to its sign (pixels).
 const AWAY: Vec2 = vec2(13.0, -15.0);
-/// Half the side of a sign [pixels].
+/// Half the side of a sign (pixels).
 const REACH: f32 = 8.0;
 
 impl FindingMark {

@@ -19,13 +19,13 @@ pub struct GradedSize {
     pub id: SizeId,
     /// Its name.
     pub name: String,
-    /// Closed outlines and holes of each panel, in its plane [m].
+    /// Closed outlines and holes of each panel, in its plane (m).
     pub panels: Vec<(PanelId, Vec<Vec<Vec2>>)>,
 }
 
 impl Grading {
     /// The outlines of a pattern in each of its sizes, from its evaluation in one of them; curves
-    /// to within a tolerance [m].
+    /// to within a tolerance (m).
     pub fn new(
         evaluation: &Evaluation,
         tolerance: f64,

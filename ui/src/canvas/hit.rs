@@ -8,9 +8,9 @@ use super::table_layout::TableLayout;
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::{PanelId, PointId, SheetId};
 
-/// How near the pointer must be to a point to take hold of it [pixels].
+/// How near the pointer must be to a point to take hold of it (pixels).
 const POINT_REACH: f64 = 9.0;
-/// How near it must be to a line [pixels].
+/// How near it must be to a line (pixels).
 const LINE_REACH: f64 = 7.0;
 
 /// A part at a place.
@@ -20,11 +20,11 @@ pub struct Hit {
     pub item: Item,
     /// The sheet it is on.
     pub sheet: SheetId,
-    /// The nearest place of it, on its sheet [m].
+    /// The nearest place of it, on its sheet (m).
     pub at: Vec2,
-    /// Table place of the origin of the sheet or panel it is seen on [m].
+    /// Table place of the origin of the sheet or panel it is seen on (m).
     pub origin: Vec2,
-    /// How far it is [m].
+    /// How far it is (m).
     pub away: f64,
 }
 
@@ -35,7 +35,7 @@ pub struct ShownPoint<'s> {
     pub point: &'s super::scene::PointScene,
     /// Its sheet.
     pub sheet: SheetId,
-    /// Table place of the origin it is seen from [m].
+    /// Table place of the origin it is seen from (m).
     pub origin: Vec2,
 }
 
@@ -101,7 +101,7 @@ pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
     }
 }
 
-/// What is at a place of the table [m], seen with so many pixels a metre; the most wanted first.
+/// What is at a place of the table (m), seen with so many pixels a metre; the most wanted first.
 pub fn hits(
     (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],
@@ -234,7 +234,7 @@ fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &m
     }
 }
 
-/// The place of a polyline nearest to another, and how far it is [m].
+/// The place of a polyline nearest to another, and how far it is (m).
 fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
     line.windows(2)
         .map(|side| {
@@ -244,7 +244,7 @@ fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Everything of a panel or sheet that lies inside a rectangle of the table [m].
+/// Everything of a panel or sheet that lies inside a rectangle of the table (m).
 pub fn inside_box(
     (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],

@@ -18,9 +18,9 @@ const SIDES: [Vec2; 8] = [
     vec2(0.0, -1.0),
     vec2(0.0, 1.0),
 ];
-/// Room between a point and its name [pixels].
+/// Room between a point and its name (pixels).
 const GAP: f32 = 8.0;
-/// Half the room that the mark of a point takes [pixels].
+/// Half the room that the mark of a point takes (pixels).
 const MARK: f32 = 5.0;
 
 /// Where a name of a size stands beside a point.

@@ -17,24 +17,24 @@ use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stro
 use toile_geometry::Vec2;
 use toile_pattern::{DisplayUnit, SeamId, SheetId};
 
-/// Steps of the lines of the table [m]: the finest that are far enough apart are drawn.
+/// Steps of the lines of the table (m): the finest that are far enough apart are drawn.
 const GRID: [f64; 4] = [0.01, 0.05, 0.1, 0.5];
-/// Fine lines nearer than this are left out [pixels].
+/// Fine lines nearer than this are left out (pixels).
 const GRID_LEAST: f64 = 14.0;
-/// How far inside the outline a seam's number stands [pixels].
+/// How far inside the outline a seam's number stands (pixels).
 pub(super) const NUMBER_INSET: f64 = 16.0;
-/// Length of a notch [pixels].
+/// Length of a notch (pixels).
 const NOTCH: f32 = 9.0;
 
 /// How much is seen of what steps of a panel led away from.
 const FAINT: f32 = 0.55;
 
-/// Sizes of the letters of a panel's name: the usual, and where that has no room [pixels].
+/// Sizes of the letters of a panel's name: the usual, and where that has no room (pixels).
 const CAPTION_SIZES: [f32; 2] = [15.0, 12.0];
 /// How many places are tried for the name of a panel, half its height apart.
 const CAPTION_STEPS: usize = 12;
 
-/// Room beside the longest line of a label [pixels].
+/// Room beside the longest line of a label (pixels).
 const LABEL_MARGIN: f32 = 24.0;
 
 /// Everything that is painted in one frame.
@@ -55,7 +55,7 @@ pub struct Picture<'a> {
     pub hover: Option<Item>,
     /// All sizes over each other, if they are drawn.
     pub grading: Option<&'a Grading>,
-    /// Place that rulers count from [m], and their unit.
+    /// Place that rulers count from (m), and their unit.
     pub rulers: Option<(Vec2, DisplayUnit)>,
     /// Guides.
     pub guides: &'a [DrawnGuide],

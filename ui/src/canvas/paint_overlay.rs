@@ -7,11 +7,11 @@ use toile_geometry::Vec2;
 
 /// How dense the cloth of a ghost is, as a factor of its colour.
 const GHOST: f32 = 0.55;
-/// Where words begin beside their place [pixels]: far enough to leave the lines there free.
+/// Where words begin beside their place (pixels): far enough to leave the lines there free.
 const ABOVE: egui::Vec2 = vec2(30.0, -36.0);
 /// The same of words that are neither good nor bad.
 const BELOW: egui::Vec2 = vec2(30.0, 36.0);
-/// Room between words, and between them and the rim of the view [pixels].
+/// Room between words, and between them and the rim of the view (pixels).
 const ROOM: f32 = 3.0;
 
 impl Picture<'_> {

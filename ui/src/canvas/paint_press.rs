@@ -5,7 +5,7 @@ use super::scene::PanelScene;
 use super::selection::Item;
 use egui::{Shape, Stroke, vec2};
 
-/// Half the length of an arrow, and the length and half the width of its head [pixels].
+/// Half the length of an arrow, and the length and half the width of its head (pixels).
 const HALF: f32 = 14.0;
 const HEAD: [f32; 2] = [8.0, 4.0];
 

@@ -10,15 +10,15 @@ use crate::theme;
 use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
-/// How far inside the outline a seam's line runs [pixels].
+/// How far inside the outline a seam's line runs (pixels).
 const SEAM_INSET: f64 = 5.0;
-/// Stretches shorter than this carry no number [pixels].
+/// Stretches shorter than this carry no number (pixels).
 const NUMBER_LEAST: f64 = 34.0;
-/// Places along a stretch that are tried for its number, the most usual first [share of its length].
+/// Places along a stretch that are tried for its number, the most usual first (share of its length).
 const NUMBER_PLACES: [f64; 7] = [0.5, 0.4, 0.6, 0.28, 0.72, 0.15, 0.85];
-/// Radius of the ground of a number [pixels].
+/// Radius of the ground of a number (pixels).
 const NUMBER_RADIUS: f32 = 8.5;
-/// Sides of a seam that differ by more are shown as a warning [m].
+/// Sides of a seam that differ by more are shown as a warning (m).
 const UNEVEN: f64 = 0.001;
 
 impl Picture<'_> {

@@ -13,9 +13,9 @@ const GRAINLINE_SHARE: f64 = 0.62;
 pub struct PanelShape {
     /// Side of its outline, seen along it, on which the cloth lies: 1 left, -1 right.
     pub cloth_side: f64,
-    /// Least rectangle round the panel, its mirrored half included [m].
+    /// Least rectangle round the panel, its mirrored half included (m).
     pub bounds: Bounds2,
-    /// Least rectangle round the half that is drawn [m].
+    /// Least rectangle round the half that is drawn (m).
     pub drawn_bounds: Bounds2,
     /// The half that is drawn, its outline and holes.
     pub rings: Vec<Vec<Vec2>>,
@@ -50,14 +50,14 @@ pub struct PanelShape {
 pub struct EdgeShape {
     /// Which edge.
     pub id: EdgeId,
-    /// Length without dart mouths [m].
+    /// Length without dart mouths (m).
     pub length: f64,
     /// Polylines in its direction: one, or more where darts interrupt it.
     pub lines: Vec<Vec<Vec2>>,
 }
 
 impl PanelShape {
-    /// Draws a stage, curves to within a tolerance [m].
+    /// Draws a stage, curves to within a tolerance (m).
     pub fn new(stage: &Stage, tolerance: f64) -> Self {
         let polyline = |curve: &Curve| curve.flatten(tolerance);
         let rings = || std::iter::once(stage.outline()).chain(stage.holes());
@@ -151,7 +151,7 @@ impl PanelShape {
         }
     }
 
-    /// Whether a place [m] lies on the half that is drawn.
+    /// Whether a place (m) lies on the half that is drawn.
     pub fn contains(&self, at: Vec2) -> bool {
         super::inside::contains(&self.rings, at)
     }
@@ -173,7 +173,7 @@ impl EdgeShape {
     }
 }
 
-/// Length of a polyline [m].
+/// Length of a polyline (m).
 fn polyline_length(line: &[Vec2]) -> f64 {
     line.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
 }

@@ -5,10 +5,10 @@ use toile_geometry::Vec2;
 use toile_pattern::plan::EdgePart;
 use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 
-/// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
+/// Steps of the grid (m), and the least enlargement each is used at (pixels per metre).
 const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
 
-/// The most that a drag is rounded to [m].
+/// The most that a drag is rounded to (m).
 const MOST_ROUNDED: f64 = 0.001;
 
 /// The construction of a point at a place.
@@ -18,18 +18,18 @@ pub enum Spec {
     Point(PointId),
     /// A new point by a rule.
     New(PointRule),
-    /// At a distance [m] and angle [rad] from the place given before.
+    /// At a distance (m) and angle (rad) from the place given before.
     FromLast {
-        /// The distance [m].
+        /// The distance (m).
         distance: Number,
-        /// The angle [rad], from +x counter-clockwise.
+        /// The angle (rad), from +x counter-clockwise.
         angle: Number,
     },
-    /// Beside the place given before [m].
+    /// Beside the place given before (m).
     BesideLast {
-        /// To the right [m].
+        /// To the right (m).
         x: Number,
-        /// Upward [m].
+        /// Upward (m).
         y: Number,
     },
 }
@@ -39,7 +39,7 @@ pub enum Spec {
 pub struct Placed {
     /// The sheet.
     pub sheet: SheetId,
-    /// Where on it [m].
+    /// Where on it (m).
     pub at: Vec2,
     /// How a point there comes about.
     pub spec: Spec,
@@ -67,14 +67,14 @@ impl Placed {
     }
 }
 
-/// The step of the grid at an enlargement [m].
+/// The step of the grid at an enlargement (m).
 pub fn grid_step(scale: f64) -> f64 {
     let step = GRID.iter().find(|(_, least)| scale >= *least);
     step.map_or(0.05, |(step, _)| *step)
 }
 
-/// What a drag rounds lengths to where a pixel is so wide [m]: the least 1, 2 or 5 times a power of ten of a
-/// unit [m] that is no finer, and no more than a millimetre.
+/// What a drag rounds lengths to where a pixel is so wide (m): the least 1, 2 or 5 times a power of ten of a
+/// unit (m) that is no finer, and no more than a millimetre.
 pub fn drag_step(pixel: f64, unit: f64) -> f64 {
     let wanted = pixel.clamp(1e-9, MOST_ROUNDED);
     let power = 10.0_f64.powf((wanted / unit).log10().floor());
@@ -113,7 +113,7 @@ pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene
         .collect()
 }
 
-/// A point on a curve, at a share of its length, which lies there [m].
+/// A point on a curve, at a share of its length, which lies there (m).
 pub fn on_curve(
     sheet: SheetId,
     curve: &CurveScene,
@@ -131,7 +131,7 @@ pub fn on_curve(
     }
 }
 
-/// A point on an edge of the panel that a sheet lies on, at a share of it, which lies there [m].
+/// A point on an edge of the panel that a sheet lies on, at a share of it, which lies there (m).
 pub fn on_edge(sheet: SheetId, part: &EdgePart, (share, at): (f64, Vec2), words: &str) -> Placed {
     let mark = Mark::Between {
         ends: part.ends,

@@ -6,9 +6,9 @@ use egui::{Align2, Painter, Rect, Stroke, pos2, vec2};
 use toile_geometry::Vec2;
 use toile_pattern::DisplayUnit;
 
-/// Width of a ruler [pixels].
+/// Width of a ruler (pixels).
 pub const RULER: f32 = 18.0;
-/// Least distance of numbers [pixels].
+/// Least distance of numbers (pixels).
 const NUMBERS: f64 = 56.0;
 
 /// Steps of numbers in a unit: the smallest that is wide enough is taken; each with the number of
@@ -47,7 +47,7 @@ fn steps(unit: DisplayUnit) -> &'static [(f64, u32)] {
     }
 }
 
-/// The step of the numbers and the parts it is divided into, at an enlargement [pixels per metre].
+/// The step of the numbers and the parts it is divided into, at an enlargement (pixels per metre).
 pub fn step(unit: DisplayUnit, scale: f64) -> (f64, u32) {
     let all = steps(unit);
     let pixels = scale * unit.metres();
@@ -55,7 +55,7 @@ pub fn step(unit: DisplayUnit, scale: f64) -> (f64, u32) {
     wide.or(all.last()).copied().unwrap_or((1.0, 1))
 }
 
-/// Paints both rulers. Numbers count from a place of the table [m].
+/// Paints both rulers. Numbers count from a place of the table (m).
 pub fn paint(
     painter: &Painter,
     (view, camera): (Rect, &TableCamera),

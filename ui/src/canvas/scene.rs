@@ -15,10 +15,10 @@ use toile_pattern::{
     PanelId, PointId, PressArrow, SeamId, Sheet, SheetId, Stage, press_arrows,
 };
 
-/// Largest distance of a drawn curve from the true one [pixels].
+/// Largest distance of a drawn curve from the true one (pixels).
 const CURVE_TOLERANCE: f64 = 0.15;
 
-/// How near the end of a line lies to the corner that it is [m].
+/// How near the end of a line lies to the corner that it is (m).
 const AT_CORNER: f64 = 1e-6;
 
 /// Everything the canvas draws of a pattern.
@@ -37,7 +37,7 @@ pub struct Scene {
     pub guides: Vec<Arc<Guide>>,
     /// The pieces and seams it was made from.
     pub draft: Arc<Draft>,
-    /// The finest enlargement it is drawn for: a power of two [pixels per metre].
+    /// The finest enlargement it is drawn for: a power of two (pixels per metre).
     octave: i32,
     lines: HashMap<*const Path, KeptLine>,
     shapes: HashMap<*const Stage, KeptShape>,
@@ -97,7 +97,7 @@ pub struct PointScene {
     pub id: PointId,
     /// Its name.
     pub name: String,
-    /// Where it is on its sheet [m].
+    /// Where it is on its sheet (m).
     pub at: Vec2,
     /// What it is for.
     pub role: PointRole,
@@ -112,7 +112,7 @@ pub struct CurveScene {
     pub id: CurveId,
     /// Its name.
     pub name: String,
-    /// Its course on its sheet [m].
+    /// Its course on its sheet (m).
     pub line: Arc<[Vec2]>,
     /// Its exact course.
     pub path: Arc<Path>,
@@ -151,7 +151,7 @@ pub struct PanelScene {
 
 impl Scene {
     /// Follows an evaluated pattern and its draft; curves are fine enough for an enlargement of
-    /// two to the power of `octave` [pixels per metre].
+    /// two to the power of `octave` (pixels per metre).
     pub fn update(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, octave: i32) {
         if octave != self.octave {
             self.octave = octave;
@@ -393,7 +393,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// Least rectangle round a panel and the lines it is cut along [m].
+    /// Least rectangle round a panel and the lines it is cut along (m).
     pub fn room_of(&self, panel: &PanelScene) -> Bounds2 {
         let rings = self.cut_lines.of(panel.id).iter();
         let cut = rings.flatten().copied();
@@ -402,14 +402,14 @@ impl Scene {
 }
 
 impl PanelScene {
-    /// Least rectangle round it on its sheet [m].
+    /// Least rectangle round it on its sheet (m).
     pub fn bounds(&self) -> &Bounds2 {
         &self.shape.bounds
     }
 }
 
 impl SheetScene {
-    /// Least rectangle round what is on it [m]; nothing if nothing is.
+    /// Least rectangle round what is on it (m); nothing if nothing is.
     pub fn bounds(&self) -> Option<Bounds2> {
         let points = self.points.iter().map(|point| point.at);
         let lines = self.curves.iter().flat_map(|curve| curve.line.iter());

@@ -12,7 +12,7 @@ pub struct SeamDrawing {
     pub name: String,
     /// Number that both sides carry.
     pub number: usize,
-    /// Length of each side [m].
+    /// Length of each side (m).
     pub lengths: [f64; 2],
     /// Where each side starts and ends, on its panel as drawn; nothing on another copy.
     pub ends: [Option<[SeamEnd; 2]>; 2],
@@ -33,10 +33,10 @@ pub struct SeamStretch {
     pub line: Vec<Vec2>,
 }
 
-/// An end of a side: the panel, and the place in its plane [m].
+/// An end of a side: the panel, and the place in its plane (m).
 pub type SeamEnd = (PanelId, Vec2);
 
-/// The seams of a draft, curves to within a tolerance [m].
+/// The seams of a draft, curves to within a tolerance (m).
 pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
     let mut seams: Vec<SeamDrawing> = Vec::new();
     for seam in &draft.seams {
@@ -90,7 +90,7 @@ pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
 }
 
 impl SeamDrawing {
-    /// How much longer the first side is [m].
+    /// How much longer the first side is (m).
     pub fn difference(&self) -> f64 {
         self.lengths[0] - self.lengths[1]
     }

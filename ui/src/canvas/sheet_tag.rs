@@ -6,14 +6,14 @@ use egui::{Pos2, Rect, pos2, vec2};
 use toile_geometry::Vec2;
 use toile_pattern::SheetId;
 
-/// Room between a sheet's origin and its name [pixels].
+/// Room between a sheet's origin and its name (pixels).
 const GAP: f32 = 7.0;
-/// Height of the name's ground [pixels].
+/// Height of the name's ground (pixels).
 const HEIGHT: f32 = 18.0;
 /// Width of a letter of the name's ground: the ground can be clicked on where no text is laid out
-/// [pixels].
+/// (pixels).
 const LETTER: f32 = 6.8;
-/// Half the length of the lines of the cross [pixels].
+/// Half the length of the lines of the cross (pixels).
 pub(super) const CROSS: f32 = 8.0;
 
 /// The sheets whose tags are shown: of several free sheets those that nothing is traced from, and
@@ -34,7 +34,7 @@ pub(super) fn ground(sheet: &SheetScene) -> Rect {
     Rect::from_min_size(pos2(GAP, -GAP - HEIGHT), size)
 }
 
-/// How far a place of the table is from the tag of a sheet whose origin is there [m]; nothing where
+/// How far a place of the table is from the tag of a sheet whose origin is there (m); nothing where
 /// it is not on it. The table is seen with so many pixels a metre.
 pub fn distance(sheet: &SheetScene, origin: Vec2, at: Vec2, scale: f64) -> Option<f64> {
     let way = (at - origin) * scale;

@@ -6,11 +6,11 @@ use super::scene::{CurveScene, PointRole, Scene, SheetScene};
 use toile_geometry::Vec2;
 use toile_pattern::{Guide, Number, PointId, PointRule, SheetId};
 
-/// How near the pointer must be to a place to be drawn to it [pixels].
+/// How near the pointer must be to a place to be drawn to it (pixels).
 const REACH: f64 = 9.0;
-/// How near it must be to the level of a point [pixels].
+/// How near it must be to the level of a point (pixels).
 const LEVEL_REACH: f64 = 5.0;
-/// Places near one of a sheet [m], the best first; the last is anywhere. Guides lie where the sheet
+/// Places near one of a sheet (m), the best first; the last is anywhere. Guides lie where the sheet
 /// has them.
 pub fn snaps(
     (scene, own_guides): (&Scene, &[Guide]),

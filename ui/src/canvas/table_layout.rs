@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{PanelId, Pattern, SheetId};
 
-/// Room between sheets [m]: enough for seam numbers and names beside narrow panels.
+/// Room between sheets (m): enough for seam numbers and names beside narrow panels.
 const GAP: f64 = 0.06;
-/// Room left between pieces that were pushed apart [m].
+/// Room left between pieces that were pushed apart (m).
 const PUSHED: f64 = 0.03;
-/// Half the width of what is shown of an empty sheet [m].
+/// Half the width of what is shown of an empty sheet (m).
 const ROOM: f64 = 0.3;
 /// Width of the whole over its height that rows are broken for: about that of the view.
 const ASPECT: f64 = 1.15;
@@ -19,14 +19,14 @@ const ASPECT: f64 = 1.15;
 #[derive(Clone, Debug, Default)]
 pub struct TableLayout {
     /// Sheets that were moved so that none covers another: the place the document gave, and the shift
-    /// from there [m]. It stays while a pattern is edited, so that nothing jumps, until the document
+    /// from there (m). It stays while a pattern is edited, so that nothing jumps, until the document
     /// gives another place.
     shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
     /// Where the document had the sheets when it was opened; one it has elsewhere was placed by hand.
     opened: BTreeMap<SheetId, [f64; 2]>,
     /// Sheets whose pieces lay upon each other then: they are meant to.
     together: Vec<[SheetId; 2]>,
-    /// How far sheets are pushed so that what became larger covers none of them [m].
+    /// How far sheets are pushed so that what became larger covers none of them (m).
     pushed: BTreeMap<SheetId, Vec2>,
     sheets: BTreeMap<SheetId, Vec2>,
     panels: BTreeMap<PanelId, Vec2>,
@@ -111,7 +111,7 @@ impl TableLayout {
         }
     }
 
-    /// The rooms that the pieces of sheets take on the table, cut lines too [m].
+    /// The rooms that the pieces of sheets take on the table, cut lines too (m).
     fn rooms(&self, pattern: &Pattern, scene: &Scene) -> Vec<(SheetId, Bounds2)> {
         let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let rooms = free.filter_map(|sheet| {
@@ -150,12 +150,12 @@ impl TableLayout {
         }
     }
 
-    /// The table place of a sheet's origin [m].
+    /// The table place of a sheet's origin (m).
     pub fn sheet(&self, id: SheetId) -> Vec2 {
         self.sheets.get(&id).copied().unwrap_or_default()
     }
 
-    /// Sheets that are laid elsewhere than where the document has them, with the places [m] they are laid at,
+    /// Sheets that are laid elsewhere than where the document has them, with the places (m) they are laid at,
     /// pushes apart from what grew not counted. As soon as the document says where one of several sheets lies it
     /// has to say it of all.
     pub fn laid_apart(&self, pattern: &Pattern) -> Vec<(SheetId, [f64; 2])> {
@@ -166,7 +166,7 @@ impl TableLayout {
         apart.map(|(sheet, place)| (sheet.id, place)).collect()
     }
 
-    /// The table place of a panel's origin [m].
+    /// The table place of a panel's origin (m).
     pub fn panel(&self, id: PanelId) -> Vec2 {
         self.panels.get(&id).copied().unwrap_or_default()
     }
@@ -176,7 +176,7 @@ impl TableLayout {
         self.panel(panel.id) != self.sheet(panel.sheet)
     }
 
-    /// Least rectangle round everything on the table [m].
+    /// Least rectangle round everything on the table (m).
     pub fn bounds(&self, scene: &Scene) -> Option<Bounds2> {
         let sheets = scene
             .sheets
@@ -203,7 +203,7 @@ fn moved(bounds: &Bounds2, by: Vec2) -> Bounds2 {
     }
 }
 
-/// How far a room has to go to the right or downward, the shorter way, to lie clear of one that stays [m];
+/// How far a room has to go to the right or downward, the shorter way, to lie clear of one that stays (m);
 /// nothing where it does.
 fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
     let common = stays.max.inf(&goes.max) - stays.min.sup(&goes.min);
@@ -218,7 +218,7 @@ fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
     })
 }
 
-/// Least rectangle round a sheet and its panels [m].
+/// Least rectangle round a sheet and its panels (m).
 fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
     let panels = scene.panels.iter().filter(|panel| panel.sheet == sheet.id);
     let drawn = panels
@@ -261,7 +261,7 @@ fn best_width(sizes: &[Vec2]) -> f64 {
         .unwrap_or(widest)
 }
 
-/// How small the whole is seen in a view of the wanted aspect [m].
+/// How small the whole is seen in a view of the wanted aspect (m).
 fn misfit(sizes: &[Vec2], width: f64) -> f64 {
     let (mut x, mut row, mut used, mut height) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
     for size in sizes {

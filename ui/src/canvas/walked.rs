@@ -9,7 +9,7 @@ use toile_geometry::{Curve, Vec2};
 use toile_pattern::walk::{Walk, WalkSides, WalkedNotch};
 use toile_pattern::{Draft, DraftSeam, Piece, SeamId, SeamOrigin};
 
-/// Curves are drawn this near to their course [m].
+/// Curves are drawn this near to their course (m).
 const FLATNESS: f64 = 1e-4;
 
 /// The geometry of a seam that is walked.
@@ -21,13 +21,13 @@ pub struct WalkedSeam {
     at: usize,
     /// Its pieces, by their index in the draft.
     pub pieces: BTreeMap<usize, WalkedPiece>,
-    /// The stretches of each side: index of the piece, and the line in its plane [m].
+    /// The stretches of each side: index of the piece, and the line in its plane (m).
     pub lines: [Vec<(usize, Vec<Vec2>)>; 2],
     /// Its notches.
     pub notches: Vec<WalkedNotch>,
 }
 
-/// A piece that is laid along a seam, in its own plane [m].
+/// A piece that is laid along a seam, in its own plane (m).
 #[derive(Debug)]
 pub struct WalkedPiece {
     /// Its outline and its holes.

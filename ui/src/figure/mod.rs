@@ -33,7 +33,7 @@ pub struct FigureWindow {
     floor: CornerBuffer,
     lines: CornerBuffer,
     last: Option<Instant>,
-    /// Mean time that clothes take in a frame [s].
+    /// Mean time that clothes take in a frame (s).
     spent: f64,
     refusal: Option<String>,
 }

@@ -2,27 +2,27 @@
 
 use toile_geometry::Vec3;
 
-/// Angle of view, top to bottom [rad].
+/// Angle of view, top to bottom (rad).
 const FIELD: f64 = 0.5;
-/// Nearest and farthest surface seen [m].
+/// Nearest and farthest surface seen (m).
 const DEPTHS: [f64; 2] = [0.05, 30.0];
-/// Least and greatest distance of the eye [m].
+/// Least and greatest distance of the eye (m).
 const DISTANCES: [f64; 2] = [0.3, 12.0];
-/// Steepest look down or up [rad]: short of straight, where up would have no direction.
+/// Steepest look down or up (rad): short of straight, where up would have no direction.
 const STEEPEST: f64 = 1.5;
-/// Turn per logical pixel of a drag [rad].
+/// Turn per logical pixel of a drag (rad).
 const TURN: f64 = 0.008;
 
 /// Where the eye is: view state, not in the document.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// What it looks at [m].
+    /// What it looks at (m).
     pub target: Vec3,
-    /// Direction of the eye from the target, from +z toward +x [rad].
+    /// Direction of the eye from the target, from +z toward +x (rad).
     pub yaw: f64,
-    /// Height of the eye over the target's level [rad].
+    /// Height of the eye over the target's level (rad).
     pub pitch: f64,
-    /// Distance of the eye [m].
+    /// Distance of the eye (m).
     pub distance: f64,
 }
 
@@ -38,7 +38,7 @@ impl Default for Orbit {
 }
 
 impl Orbit {
-    /// Where the eye is [m].
+    /// Where the eye is (m).
     pub fn eye(&self) -> Vec3 {
         self.target + self.backward() * self.distance
     }
@@ -55,13 +55,13 @@ impl Orbit {
         [right, self.backward().cross(&right)]
     }
 
-    /// Goes round, by a drag [logical pixels].
+    /// Goes round, by a drag (logical pixels).
     pub fn turn(&mut self, drag: egui::Vec2) {
         self.yaw -= f64::from(drag.x) * TURN;
         self.pitch = (self.pitch + f64::from(drag.y) * TURN).clamp(-STEEPEST, STEEPEST);
     }
 
-    /// Moves along the screen, by a drag in a view of that height [logical pixels].
+    /// Moves along the screen, by a drag in a view of that height (logical pixels).
     pub fn pan(&mut self, drag: egui::Vec2, height: f32) {
         let scale = 2.0 * self.distance * (FIELD / 2.0).tan() / f64::from(height.max(1.0));
         let [right, up] = self.axes();
@@ -73,7 +73,7 @@ impl Orbit {
         self.distance = (self.distance / factor).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
-    /// Looks at all of a box [m] from the present direction, in a view of that width over height.
+    /// Looks at all of a box (m) from the present direction, in a view of that width over height.
     pub fn fit(&mut self, bounds: [Vec3; 2], aspect: f64) {
         self.target = (bounds[0] + bounds[1]) * 0.5;
         let size = bounds[1] - bounds[0];

@@ -111,7 +111,7 @@ impl StageRenderer {
     }
 
     /// Draws triangles and lines before a ground of a colour, as seen by the eye, and returns the
-    /// image, of that size [pixels].
+    /// image, of that size (pixels).
     pub fn draw(
         &mut self,
         orbit: &Orbit,

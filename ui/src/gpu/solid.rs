@@ -6,11 +6,11 @@ use std::sync::Arc;
 use toile_geometry::{Vec3, triangle_area};
 use toile_session::{Garment, GarmentJob, LiveFrame, RealtimeSurface, Stage};
 
-/// One corner as the graphics card takes it: position [m], normal, colour (linear, 0..=1), and
+/// One corner as the graphics card takes it: position (m), normal, colour (linear, 0..=1), and
 /// how it is lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Position [m].
+    /// Position (m).
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
@@ -60,7 +60,7 @@ fn linear(srgb: f64) -> f32 {
 
 /// Colour of the mannequin: unbleached linen, sRGB.
 const LINEN: [f64; 3] = [0.80, 0.765, 0.715];
-/// Radius of the floor [m].
+/// Radius of the floor (m).
 const FLOOR: f64 = 0.75;
 /// Neighbouring panels of one cloth differ by this much lightness, so that seams are seen.
 const PANEL_SHADES: [f64; 3] = [1.0, 0.93, 1.05];

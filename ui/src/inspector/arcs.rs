@@ -92,9 +92,9 @@ impl ToileApp {
 /// An arc between two points.
 struct Arc<'e> {
     evaluation: &'e Evaluation,
-    /// The distance of its ends as a formula writes it, and [m].
+    /// The distance of its ends as a formula writes it, and (m).
     chord: (String, f64),
-    /// The angle it sweeps [rad].
+    /// The angle it sweeps (rad).
     swept: f64,
 }
 

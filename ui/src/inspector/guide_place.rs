@@ -8,7 +8,7 @@ use egui::{Id, Ui};
 use toile_geometry::Vec2;
 use toile_pattern::{GuideId, GuideRun, Number, Want, plan};
 
-/// Places of guides are shown to a nanometre: what is finer comes of adding numbers up [m].
+/// Places of guides are shown to a nanometre: what is finer comes of adding numbers up (m).
 const SHOWN: f64 = 1e9;
 
 impl ToileApp {
@@ -74,7 +74,7 @@ impl ToileApp {
         }
     }
 
-    /// Moves the guide that alone is selected by a way of the arrow keys [m].
+    /// Moves the guide that alone is selected by a way of the arrow keys (m).
     pub(crate) fn nudge_guide(&mut self, id: GuideId, way: Vec2) {
         let Some(guide) = self.base.pattern().guide(id) else {
             return;

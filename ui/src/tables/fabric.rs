@@ -17,22 +17,22 @@ use toile_session::{
     Command, FabricChoice, LIBRARY, LibraryFabric, library_fabric, with_hardening,
 };
 
-/// Width of the list, of a field, and the least of what is said of a figure [pixels].
+/// Width of the list, of a field, and the least of what is said of a figure (pixels).
 const LIST: f32 = 190.0;
 const FIELD: f32 = 84.0;
 const SOURCE: f32 = 150.0;
-/// Height of a line, and between two of them [pixels].
+/// Height of a line, and between two of them (pixels).
 const LINE: f32 = 22.0;
 const LINE_GAP: f32 = 3.0;
-/// Width of the part for the marker [pixels].
+/// Width of the part for the marker (pixels).
 const MARKER_PART: f32 = 300.0;
 /// Most figures in a column.
 const ROWS: usize = 6;
-/// Height of the list of what a garment can be cut from [pixels].
+/// Height of the list of what a garment can be cut from (pixels).
 const CHOICES: f32 = 480.0;
-/// Side of a swatch [pixels].
+/// Side of a swatch (pixels).
 const SWATCH: f32 = 12.0;
-/// Widths of the roll that can be chosen [m].
+/// Widths of the roll that can be chosen (m).
 const WIDTHS: [f64; 2] = [0.05, 20.0];
 
 /// Which fabric the table shows.

@@ -12,13 +12,13 @@ use toile_measure::{CATALOGUE, FURTHER, Measurements, Origin, UnitKind, definiti
 use toile_pattern::{DisplayUnit, Number, Want, plan};
 use toile_session::{BodyChoice, Command, Figure};
 
-/// Width of the choice of a wearer [pixels].
+/// Width of the choice of a wearer (pixels).
 const CHOICE: f32 = 420.0;
-/// Least width of the measurements beside it [pixels].
+/// Least width of the measurements beside it (pixels).
 const MEASUREMENTS: f32 = 400.0;
 /// The measurement that stays when another one is typed.
 const HEIGHT: &str = "height";
-/// Width of a measurement's value [pixels].
+/// Width of a measurement's value (pixels).
 const VALUE: f32 = 96.0;
 
 /// What of the wearer is kept from frame to frame.
@@ -26,7 +26,7 @@ const VALUE: f32 = 96.0;
 pub struct WearerTable {
     /// What is searched for.
     search: String,
-    /// Every figure with its height and its bust or chest girth [m].
+    /// Every figure with its height and its bust or chest girth (m).
     figures: Vec<(Figure, [f64; 2])>,
     known: Option<Known>,
     /// The wearer of measurements or of a file that was chosen last: to be chosen again after another.
@@ -42,7 +42,7 @@ struct Known {
     all: Measurements,
     /// Those that were asked for.
     asked: Measurements,
-    /// The average height of the figure [m].
+    /// The average height of the figure (m).
     figure_height: Option<f64>,
 }
 

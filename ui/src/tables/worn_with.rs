@@ -7,7 +7,7 @@ use egui::{Button, Color32, Grid, Id, RichText, Role, ScrollArea, Ui, WidgetInfo
 use std::path::Path;
 use toile_session::{Command, OtherGarment};
 
-/// Width of the number of a layer [pixels].
+/// Width of the number of a layer (pixels).
 const NUMBER: f32 = 60.0;
 /// Most layers, counted from 0.
 const MOST: u16 = 999;

@@ -10,7 +10,7 @@ use toile_pattern::{
 };
 
 /// The mark at a distance along an edge of a panel as it is finished, from its corner nearer to a place
-/// of the sheet [m]; and where that is [m].
+/// of the sheet (m); and where that is (m).
 ///
 /// # Errors
 /// The edge is not there or cannot be drawn; it is shorter than that.
@@ -38,7 +38,7 @@ pub(super) fn mark_along(
     Ok((mark, edge.place(along).unwrap_or(near)))
 }
 
-/// How far from the first corner of an edge what is put near a place lies [m]: in the middle if that is
+/// How far from the first corner of an edge what is put near a place lies (m): in the middle if that is
 /// near, else on a whole millimetre from the nearer corner.
 pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     let (along, length) = (edge.nearest(near), edge.length);
@@ -52,7 +52,7 @@ pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     }
 }
 
-/// How far from the nearer end of an edge what is put near a place lies [m], and where that is [m].
+/// How far from the nearer end of an edge what is put near a place lies (m), and where that is (m).
 pub(super) fn told(
     reading: &Reading<'_>,
     (panel, edge, near): (PanelId, EdgeId, Vec2),
@@ -62,7 +62,7 @@ pub(super) fn told(
     Some((along.min(edge.length - along), edge.place(along)?))
 }
 
-/// What lies no farther from the middle of an edge is in the middle [m].
+/// What lies no farther from the middle of an edge is in the middle (m).
 fn middle(edge: &FinishedEdge) -> f64 {
     0.004_f64.min(0.1 * edge.length)
 }

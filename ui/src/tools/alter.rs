@@ -14,7 +14,7 @@ use toile_pattern::{
     PleatKind, Side, Want,
 };
 
-/// How far the points of both darts are set back where a share of a dart is moved [m]: about as far
+/// How far the points of both darts are set back where a share of a dart is moved (m): about as far
 /// as a dart ends before the bust point.
 const SET_BACK: f64 = 0.02;
 

@@ -116,7 +116,7 @@ fn listed(
     }
 }
 
-/// The edge under the pointer, and the place of it there [m].
+/// The edge under the pointer, and the place of it there (m).
 fn edge_here(
     sews: bool,
     state: &SlotState,
@@ -132,7 +132,7 @@ fn edge_here(
     found.ok_or_else(|| no_edge(sews, pointer, reading).into())
 }
 
-/// The curve under the pointer, or that of the edge there, with its sheet and the place on it [m].
+/// The curve under the pointer, or that of the edge there, with its sheet and the place on it (m).
 fn curve_here(
     state: &SlotState,
     reading: &Reading<'_>,

@@ -165,7 +165,7 @@ pub(super) fn about(
     planning.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
 }
 
-/// How far round a centre the pointer is from where an arc starts, in whole degrees [rad].
+/// How far round a centre the pointer is from where an arc starts, in whole degrees (rad).
 fn round(answers: &[Answer], pointer: &Pointer) -> f64 {
     let given = places(answers);
     let [centre, start, ..] = given[..] else {

@@ -4,7 +4,7 @@ use super::number;
 use toile_pattern::plan;
 use toile_pattern::{Evaluation, OperationId, OperationKind, PanelId, Want};
 
-/// Lengths that differ by less are told as one [m].
+/// Lengths that differ by less are told as one (m).
 const SAME: f64 = 5e-5;
 
 /// How long the edge of a dart is once its darts are closed, and what truing made of it.

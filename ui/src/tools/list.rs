@@ -11,7 +11,7 @@ const GOES_ON: [char; 5] = ['+', '-', '*', '/', '^'];
 pub(super) enum Listed {
     /// One plain number.
     One(Number),
-    /// Lengths [m].
+    /// Lengths (m).
     Lengths(Vec<Number>),
 }
 

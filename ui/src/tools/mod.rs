@@ -46,17 +46,17 @@ use toile_pattern::{EdgeId, Edit, Evaluation, PanelId, SheetId};
 /// Where the pointer is and what is there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pointer {
-    /// Its place on the table [m].
+    /// Its place on the table (m).
     pub table: Vec2,
     /// The sheet that is drawn on there.
     pub sheet: SheetId,
-    /// Its place on that sheet [m].
+    /// Its place on that sheet (m).
     pub at: Vec2,
     /// Parts there, the likeliest first.
     pub hits: Vec<Hit>,
     /// Places a point could have there, the best first; never empty.
     pub snaps: Vec<Placed>,
-    /// Width of a pixel [m].
+    /// Width of a pixel (m).
     pub pixel: f64,
     /// Keys that are held.
     pub modifiers: ToolModifiers,
@@ -142,7 +142,7 @@ pub struct Reading<'a> {
     pub selection: &'a Selection,
     /// The sheet that is drawn on where the pointer does not say which.
     pub sheet: Option<SheetId>,
-    /// What lies inside a rectangle of the table [m].
+    /// What lies inside a rectangle of the table (m).
     pub inside: &'a dyn Fn([Vec2; 2]) -> Vec<Item>,
 }
 
@@ -161,7 +161,7 @@ pub enum Overlay {
     Fault(SheetId, Vec2, String),
     /// A rectangle of the table.
     Box([Vec2; 2]),
-    /// A piece that is laid on the table while a tool is in hand: its rings [m], and what they enclose.
+    /// A piece that is laid on the table while a tool is in hand: its rings (m), and what they enclose.
     Ghost(Vec<Vec<Vec2>>, Fill),
     /// A line on the table.
     Stroke(Vec<Vec2>, Tone),

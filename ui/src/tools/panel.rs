@@ -140,7 +140,7 @@ pub static FISHEYE: SlotTool = SlotTool {
     },
 };
 
-/// How far the pointer is from the mouth of a dart [m].
+/// How far the pointer is from the mouth of a dart (m).
 fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
     let mouth = answers.iter().find_map(|answer| match answer {
         Answer::OnLine(_, _, at, _) => Some(*at),

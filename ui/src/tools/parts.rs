@@ -148,7 +148,7 @@ pub static MEASURE: SlotTool = SlotTool {
     },
 };
 
-/// Direction from the place that was given to the pointer, in whole degrees [rad].
+/// Direction from the place that was given to the pointer, in whole degrees (rad).
 fn direction(answers: &[Answer], pointer: &Pointer) -> f64 {
     let about = places(answers).first().map_or_else(Vec2::zeros, |p| p.at);
     let way = pointer.at - about;

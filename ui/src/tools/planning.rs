@@ -181,7 +181,7 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     found
 }
 
-/// The panel that a place [m] of a sheet lies on: the one the sheet lies on, else one traced from it.
+/// The panel that a place (m) of a sheet lies on: the one the sheet lies on, else one traced from it.
 ///
 /// # Errors
 /// No panel lies there.

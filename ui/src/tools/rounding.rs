@@ -6,7 +6,7 @@ use crate::tools::{Pointer, Reading};
 use toile_geometry::Vec2;
 use toile_pattern::{Evaluation, Number, PointId, PointRule, Want};
 
-/// The place nearest to one that a point is dragged to [m] at which its numbers are round; that place where
+/// The place nearest to one that a point is dragged to (m) at which its numbers are round; that place where
 /// rounding is held off, or where the point is not placed by numbers of its sheet.
 pub(super) fn rounded_place(
     point: PointId,
@@ -84,8 +84,8 @@ fn kept(number: &Number, evaluation: &Evaluation) -> f64 {
     value.unwrap_or(0.0)
 }
 
-/// What an angle is rounded to so far from its centre that a place moves no more than by a step [m]; a degree
-/// at most [rad].
+/// What an angle is rounded to so far from its centre that a place moves no more than by a step (m); a degree
+/// at most (rad).
 fn angle_step(step: f64, far: f64) -> f64 {
     let degrees = (step / far).to_degrees().min(1.0);
     // The steps of lengths, a degree for a millimetre.

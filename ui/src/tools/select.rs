@@ -13,7 +13,7 @@ use toile_pattern::{Edit, EditError, Entity, Evaluation, Panel, PanelId, PointId
 
 /// Sine of the angle up to which two handles lie on one line.
 const SMOOTH: f64 = 1e-3;
-/// How far a point may be from where it was moved to when another is moved after it [m].
+/// How far a point may be from where it was moved to when another is moved after it (m).
 const IN_PLACE: f64 = 1e-9;
 
 /// What is going on.
@@ -24,7 +24,7 @@ pub enum SelectState {
     Idle,
     /// Something is dragged, and what becomes of the formulas that place it.
     Dragging(Dragged, FormulaChange),
-    /// A box is drawn from a place of the table to another [m].
+    /// A box is drawn from a place of the table to another (m).
     Boxing([Vec2; 2], bool),
 }
 
@@ -299,7 +299,7 @@ fn moved_by(
     Ok(planning.edits())
 }
 
-/// The edits that move sheets by a way [m] on the table; the others stay where they are seen.
+/// The edits that move sheets by a way (m) on the table; the others stay where they are seen.
 ///
 /// # Errors
 /// A sheet is not there, or lies on a panel.
@@ -316,7 +316,7 @@ pub fn move_sheets(
     plan::move_sheets(evaluation, &places)
 }
 
-/// The handle opposite to one that is moved to a place [m], where both lie on one line through their
+/// The handle opposite to one that is moved to a place (m), where both lie on one line through their
 /// point: it turns along, so that the curve stays smooth there, and keeps its length. With its place.
 fn turned_along(handle: PointId, to: Vec2, reading: &Reading<'_>) -> Option<(PointId, Vec2)> {
     let (sheet, _) = reading.scene.point(handle)?;

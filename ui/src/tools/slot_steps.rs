@@ -9,7 +9,7 @@ use super::typing::{Typable, is_named};
 use super::{Event, Outcome, PreviewChange, Reading};
 use crate::canvas::placed::Placed;
 
-/// How near the first of several places a click closes them [pixels].
+/// How near the first of several places a click closes them (pixels).
 const CLOSES: f64 = 9.0;
 
 pub(super) fn step(

@@ -68,9 +68,9 @@ pub enum SlotKind {
         label: &'static str,
         /// What it measures.
         want: Want,
-        /// What it is as long as nothing is typed, if the pointer does not say [m], [rad].
+        /// What it is as long as nothing is typed, if the pointer does not say (m), (rad).
         usual: f64,
-        /// What the pointer says, from what was given before [m], [rad].
+        /// What the pointer says, from what was given before (m), (rad).
         live: Option<fn(&[Answer], &Pointer) -> f64>,
     },
 }
@@ -101,23 +101,23 @@ pub enum Answer {
     Named(Placed, Option<String>),
     /// Places, whether the last joins the first, and the name if one was typed.
     Places(Vec<Placed>, bool, Option<String>),
-    /// A place of a panel's line, on its sheet [m]; and the mark there if a distance was typed.
+    /// A place of a panel's line, on its sheet (m); and the mark there if a distance was typed.
     OnLine(PanelId, Item, Vec2, Option<Mark>),
-    /// An edge, and the place it was taken at [m].
+    /// An edge, and the place it was taken at (m).
     Edge(PanelId, EdgeId, Vec2),
     /// Edges one after another.
     Chain(Vec<ChainEdge>),
     /// A kept step of a panel.
     Operation(PanelId, OperationId),
-    /// A curve, and the place it was taken at [m].
+    /// A curve, and the place it was taken at (m).
     Curve(SheetId, CurveId, Vec2),
     /// The point at an end of a curve; and which end: 0 the start, 1 the end.
     End(Placed, CurveId, usize),
     /// A panel.
     Panel(PanelId),
-    /// Several lengths [m].
+    /// Several lengths (m).
     Numbers(Vec<Number>),
-    /// A place inside something of a sheet [m], and the name if one was typed.
+    /// A place inside something of a sheet (m), and the name if one was typed.
     Inside(SheetId, Vec2, Option<String>),
     /// A number.
     Number(Number),
@@ -235,7 +235,7 @@ impl SlotState {
         &self.answers
     }
 
-    /// The place given last [m].
+    /// The place given last (m).
     pub(super) fn last_place(&self) -> Option<&Placed> {
         let given = self.answers.iter().rev().find_map(|answer| match answer {
             Answer::Place(placed) | Answer::End(placed, ..) => Some(placed),

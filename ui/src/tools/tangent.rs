@@ -12,7 +12,7 @@ use toile_pattern::{
     plan,
 };
 
-/// The curve an edge of a panel follows, with its sheet and the place on it [m].
+/// The curve an edge of a panel follows, with its sheet and the place on it (m).
 pub(super) fn curve_of(
     reading: &Reading<'_>,
     (panel, edge, at): (PanelId, EdgeId, Vec2),
@@ -23,7 +23,7 @@ pub(super) fn curve_of(
     Some((sheet.id, curve, at))
 }
 
-/// The end of a curve that is nearer to a place [m].
+/// The end of a curve that is nearer to a place (m).
 ///
 /// # Errors
 /// The curve cannot be drawn.
@@ -48,7 +48,7 @@ pub(super) fn end_near(
     Ok(Answer::End(placed, curve, end))
 }
 
-/// The direction in which a curve leads on beyond one of its ends [rad].
+/// The direction in which a curve leads on beyond one of its ends (rad).
 ///
 /// # Errors
 /// The curve is not there or has no direction.

@@ -5,9 +5,9 @@ use crate::canvas::placed::{Placed, Spec, rounded};
 use toile_geometry::Vec2;
 use toile_pattern::{Number, Want};
 
-/// Steps of an angle while Shift is held [degrees].
+/// Steps of an angle while Shift is held (degrees).
 const TURN: f64 = 15.0;
-/// How far the pointer lies beyond a place to mean its other side [pixels].
+/// How far the pointer lies beyond a place to mean its other side (pixels).
 const BEYOND: f64 = 12.0;
 
 /// The place at the pointer's distance from the last, in a direction of whole steps.
@@ -32,8 +32,8 @@ pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     }
 }
 
-/// A typed width or height toward the side the pointer lies on, that far from the last place [m], with the
-/// size of a pixel there [m]. One that is typed with its sign stays.
+/// A typed width or height toward the side the pointer lies on, that far from the last place (m), with the
+/// size of a pixel there (m). One that is typed with its sign stays.
 pub(super) fn to_side(
     number: Number,
     way: f64,

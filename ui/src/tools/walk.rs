@@ -16,21 +16,21 @@ use toile_pattern::{
     SeamId, Want,
 };
 
-/// How far an arrow key goes [m].
+/// How far an arrow key goes (m).
 const STEP: f64 = 0.01;
-/// How near the pointer must come to the seam line to lead the walk [pixels].
+/// How near the pointer must come to the seam line to lead the walk (pixels).
 const REACH: f64 = 60.0;
-/// Length of the lines that show how edges go on across the seam [m].
+/// Length of the lines that show how edges go on across the seam (m).
 const LEAVING: f64 = 0.03;
-/// Length of a notch [m].
+/// Length of a notch (m).
 const NOTCH: f64 = 0.006;
-/// The contact is at an end of the seam from here on [m].
+/// The contact is at an end of the seam from here on (m).
 const AT_END: f64 = 1e-3;
 
 /// How far the walk has come.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WalkState {
-    /// Arc length of the first side where the pieces touch [m].
+    /// Arc length of the first side where the pieces touch (m).
     along: f64,
     fixed: FixedSide,
     typed: String,
@@ -51,7 +51,7 @@ struct Seen<'r> {
     walk: Walk<'r>,
     /// What is drawn of it.
     kept: Arc<WalkedSeam>,
-    /// How much longer one side may be [m].
+    /// How much longer one side may be (m).
     ease: f64,
     reading: &'r Reading<'r>,
 }
@@ -106,7 +106,7 @@ impl<'r> Seen<'r> {
         Some([base, base.after(&contact.laid)])
     }
 
-    /// The arc length of the first side that a pointer leads to, and how far it is from there [m].
+    /// The arc length of the first side that a pointer leads to, and how far it is from there (m).
     fn led(&self, at: &Pointer, fixed: FixedSide) -> Option<(f64, f64)> {
         let side = fixed.sides()[0];
         let mut best: Option<(f64, f64)> = None;
@@ -131,7 +131,7 @@ impl<'r> Seen<'r> {
 }
 
 /// The least rectangle of the table round the piece that stays and the other where it lies at both
-/// ends of the selected seam [m].
+/// ends of the selected seam (m).
 pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     let seen = Seen::new(reading)?;
     let sides = state.fixed.sides();
@@ -248,7 +248,7 @@ fn seams_at(pointer: &Pointer, reading: &Reading<'_>) -> Vec<SeamId> {
     edges.collect()
 }
 
-/// The seam that joins an edge at a place of its panel [m].
+/// The seam that joins an edge at a place of its panel (m).
 fn seam_of((panel, edge): (PanelId, EdgeId), at: Vec2, reading: &Reading<'_>) -> Option<SeamId> {
     let seams = reading.scene.seams.iter();
     let stretches = seams.flat_map(|seam| seam.stretches.iter().map(move |own| (seam.id, own)));

@@ -128,12 +128,12 @@ impl GarmentView {
         self.frame.as_ref().map(|frame| &frame.job)
     }
 
-    /// The least and the largest coordinates of the mannequin that is seen [m].
+    /// The least and the largest coordinates of the mannequin that is seen (m).
     pub fn seen_body(&self) -> Option<[Vec3; 2]> {
         self.body_bounds.filter(|_| !self.hides_body)
     }
 
-    /// Looks from a side, level: 0 in front, positive toward the wearer's left [rad].
+    /// Looks from a side, level: 0 in front, positive toward the wearer's left (rad).
     pub fn look_from(&mut self, yaw: f64) {
         self.orbit.yaw = yaw;
         self.orbit.pitch = 0.05;

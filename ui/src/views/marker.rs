@@ -12,12 +12,12 @@ use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{MarkerId, OrderedPiece};
 use toile_session::{DocumentMarker, MarkerState, Pose};
 
-/// Room between pieces that wait beside the fabric [m].
+/// Room between pieces that wait beside the fabric (m).
 const GAP: f64 = 0.03;
-/// How near to another a piece is let go to come to lie against it [pixels], and the least and most of it [m].
+/// How near to another a piece is let go to come to lie against it (pixels), and the least and most of it (m).
 const REACH: f64 = 10.0;
 const REACHES: [f64; 2] = [0.003, 0.02];
-/// Quarter of a turn [rad].
+/// Quarter of a turn (rad).
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
 /// What becomes of pieces that are let go.
@@ -25,24 +25,24 @@ const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 pub enum LetGoAs {
     /// They lie where they are.
     Left,
-    /// They come to lie against what is nearer than that [m], and go back from where they lie over another.
+    /// They come to lie against what is nearer than that (m), and go back from where they lie over another.
     Butted(f64),
 }
 
 /// Something that is done to a marker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkerAction {
-    /// Pieces are dragged: how far from where they were [m].
+    /// Pieces are dragged: how far from where they were (m).
     Drag(Vec<OrderedPiece>, Vec2),
-    /// The drag is over: how far the pieces were moved [m], and whether they lie as they are let go.
+    /// The drag is over: how far the pieces were moved (m), and whether they lie as they are let go.
     Drop(Vec<OrderedPiece>, Vec2, LetGoAs),
     /// The drag is left.
     Leave,
-    /// A piece that waits is laid at a place [m].
+    /// A piece that waits is laid at a place (m).
     Lay(OrderedPiece, Vec2, LetGoAs),
-    /// The selected pieces are turned together about a place by an angle [m, rad].
+    /// The selected pieces are turned together about a place by an angle (m, rad).
     Turn(Vec2, f64),
-    /// They are turned over about a line along the warp [m].
+    /// They are turned over about a line along the warp (m).
     Flip(f64),
     /// They are locked, or unlocked.
     Lock,
@@ -126,7 +126,7 @@ impl MarkerView {
         &self.names
     }
 
-    /// The fabric as it lies [m].
+    /// The fabric as it lies (m).
     pub fn cloth(&self) -> Bounds2 {
         self.cloth
     }
@@ -273,7 +273,7 @@ impl MarkerView {
         }
     }
 
-    /// The topmost piece at a place [m].
+    /// The topmost piece at a place (m).
     fn at(&self, place: Vec2) -> Option<&PieceScene> {
         self.pieces.iter().rev().find(|scene| {
             let polygon = scene.drawing.fill.as_ref();
@@ -373,7 +373,7 @@ impl MarkerView {
         }
     }
 
-    /// The middle of what is selected [m].
+    /// The middle of what is selected (m).
     fn middle(&self) -> Option<Vec2> {
         let selected = self
             .pieces

@@ -9,18 +9,18 @@ use egui::{Painter, Pos2, Rect, Stroke, Ui, Vec2 as Way, vec2};
 use toile_cut::Words;
 use toile_geometry::Vec2;
 
-/// Smaller letters are not read [pixels].
+/// Smaller letters are not read (pixels).
 const LEAST_LETTERS: f32 = 7.0;
-/// Sizes of the letters that stand in for them, the first that the piece has room for [pixels].
+/// Sizes of the letters that stand in for them, the first that the piece has room for (pixels).
 const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
-/// Pieces smaller than that have no name [pixels].
+/// Pieces smaller than that have no name (pixels).
 const LEAST_PIECE: f64 = 12.0;
 /// Most names that are led outside.
 const MOST_LED: usize = 100;
-/// How far outside they stand [pixels], and in how many directions a place is looked for.
+/// How far outside they stand (pixels), and in how many directions a place is looked for.
 const DISTANCES: [f32; 6] = [10.0, 20.0, 34.0, 50.0, 70.0, 95.0];
 const DIRECTIONS: usize = 16;
-/// White round a name that is led outside [pixels].
+/// White round a name that is led outside (pixels).
 const MARGIN: f32 = 2.0;
 
 impl MarkerView {

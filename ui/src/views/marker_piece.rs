@@ -16,7 +16,7 @@ pub struct PieceName {
     pub rect: Rect,
     /// The place in the piece that it is led to, if it stands outside.
     pub led_to: Option<Pos2>,
-    /// Height of its letters [pixels].
+    /// Height of its letters (pixels).
     pub letters: f32,
 }
 
@@ -61,13 +61,13 @@ impl PieceScene {
         }
     }
 
-    /// Least rectangle round it on the marker [m].
+    /// Least rectangle round it on the marker (m).
     pub fn bounds(&self) -> Option<Bounds2> {
         let polygon = self.drawing.fill.as_ref()?;
         Some(polygon.bounds())
     }
 
-    /// Where its name stands [m].
+    /// Where its name stands (m).
     pub fn middle(&self) -> Vec2 {
         let words = self.drawing.words.first().map(|words| words.at);
         let bounds = self.bounds().map(|bounds| bounds.centre());

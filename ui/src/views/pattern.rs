@@ -29,9 +29,9 @@ pub const ZOOM_STEP: f64 = 1.25;
 /// Parts up to this many are named for assistive technology; of more only those of the sheets that
 /// something selected is on.
 const MOST_NAMED: usize = 600;
-/// Width that the inspector takes over the table [pixels].
+/// Width that the inspector takes over the table (pixels).
 pub const INSPECTOR_ROOM: f32 = 300.0;
-/// Half the width of the named node of a part [pixels].
+/// Half the width of the named node of a part (pixels).
 const NAMED_REACH: f32 = 5.0;
 
 /// The pattern view and its state.
@@ -79,7 +79,7 @@ pub struct PatternView {
     pub tool: Tool,
     /// How far it has come.
     pub state: State,
-    /// Where the pointer is: the sheet that is drawn on there, and the place on it [m].
+    /// Where the pointer is: the sheet that is drawn on there, and the place on it (m).
     pub pointer: Option<(SheetId, Vec2)>,
     /// The sheet that is drawn on.
     pub sheet: Option<SheetId>,
@@ -286,7 +286,7 @@ impl PatternView {
         self.tool.overlay(&self.state, &self.reading(evaluation))
     }
 
-    /// Least rectangle round everything that is shown, the other sizes too [m].
+    /// Least rectangle round everything that is shown, the other sizes too (m).
     fn bounds(&self) -> Option<Bounds2> {
         let drawn = self.table_layout.bounds(&self.scene);
         let sizes = self.grading.iter().flat_map(|grading| &grading.sizes);
@@ -380,7 +380,7 @@ impl PatternView {
         self.pointer(self.camera.table(view, ScreenPoint(at)).0, modifiers)
     }
 
-    /// What a pointer at a place of the table [m] finds there.
+    /// What a pointer at a place of the table (m) finds there.
     pub fn pointer(&self, table: Vec2, modifiers: ToolModifiers) -> Pointer {
         let open = self.open();
         let mut found = hits(
@@ -461,7 +461,7 @@ impl PatternView {
         self.labels = picture.paint(&overlay);
     }
 
-    /// The table place of the origin of the sheet that is drawn on [m].
+    /// The table place of the origin of the sheet that is drawn on (m).
     pub fn sheet_origin(&self) -> Vec2 {
         self.sheet
             .map_or_else(Vec2::zeros, |sheet| self.table_layout.sheet(sheet))
@@ -478,7 +478,7 @@ impl PatternView {
         self.camera.screen(view, table).0
     }
 
-    /// Points, edges, notches, darts, curves and panels that are shown, and where on the table [m].
+    /// Points, edges, notches, darts, curves and panels that are shown, and where on the table (m).
     /// A point that is seen twice is there twice.
     pub fn parts(&self) -> Vec<(SheetId, Item, Vec2)> {
         let open = self.open();

@@ -58,7 +58,7 @@ impl Drafter {
         Self::of_size(vec2(1400.0, 900.0), beginning, None)
     }
 
-    /// A window of a size [logical pixels], drawn by a renderer if there is one.
+    /// A window of a size (logical pixels), drawn by a renderer if there is one.
     pub fn of_size(
         size: egui::Vec2,
         beginning: Beginning,
@@ -101,7 +101,7 @@ impl Drafter {
         evaluation.last_stage(&pattern.panels[0]).unwrap().clone()
     }
 
-    /// Length of a drawn edge of the first panel as it is after all its operations [m].
+    /// Length of a drawn edge of the first panel as it is after all its operations (m).
     pub fn finished_length(&self, name: &str) -> f64 {
         let pattern = self.pattern();
         let edge = pattern.panels[0].edges().find(|edge| edge.name == name);

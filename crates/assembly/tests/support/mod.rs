@@ -10,7 +10,7 @@ use toile_pattern::{
     PieceEdge, PieceId, SeamId, SeamOrigin, Worn,
 };
 
-/// Edges along corners [m], closed.
+/// Edges along corners (m), closed.
 pub fn polygon(corners: &[[f64; 2]]) -> Vec<PieceEdge> {
     let curves: Vec<Curve> = (0..corners.len())
         .map(|k| Curve::Line {

@@ -48,12 +48,12 @@ pub struct Person {
     /// Row in the table.
     pub row: usize,
     pub figure: Figure,
-    /// What was measured, by the survey's names [m].
+    /// What was measured, by the survey's names (m).
     pub values: BTreeMap<String, f64>,
 }
 
 impl Person {
-    /// A measurement by the survey's name [m].
+    /// A measurement by the survey's name (m).
     pub fn get(&self, name: &str) -> f64 {
         self.values.get(name).copied().unwrap_or(f64::NAN)
     }
@@ -84,7 +84,7 @@ impl Person {
 }
 
 /// Root mean square of a linear regression on the asked values, fitted on people with an odd row
-/// and held against those of a figure with an even one, and of the bodies against the same [m].
+/// and held against those of a figure with an even one, and of the bodies against the same (m).
 pub fn held_out(
     everyone: &[Person],
     (people, bodies): (&[&Person], &[[f64; HELD_OUT.len()]]),

@@ -3,7 +3,7 @@
 use super::{toile, words};
 use std::collections::BTreeMap;
 
-/// A column of the table a command prints, by the name in the first [cm].
+/// A column of the table a command prints, by the name in the first (cm).
 fn column(text: &str, which: usize) -> BTreeMap<String, f64> {
     text.lines()
         .filter_map(|line| {

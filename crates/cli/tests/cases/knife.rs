@@ -22,7 +22,7 @@ fn room(name: &str) -> String {
     folder.to_string_lossy().into_owned()
 }
 
-/// The polylines of a layer of a DXF \[mm\].
+/// The polylines of a layer of a DXF (mm).
 fn layer(dxf: &str, name: &str) -> Vec<Vec<[f64; 2]>> {
     let lines: Vec<&str> = dxf.lines().map(str::trim).collect();
     let mut found: Vec<Vec<[f64; 2]>> = Vec::new();

@@ -176,7 +176,7 @@ fn middle_words(svg: &str) -> Vec<SvgWords> {
     tags.filter_map(read).collect()
 }
 
-/// Boxes of the lines of a class: left, right, top, bottom [mm].
+/// Boxes of the lines of a class: left, right, top, bottom (mm).
 fn boxes(svg: &str, class: &str) -> Vec<[f64; 4]> {
     let class = format!("class=\"{class}\"");
     let lines = svg.lines().filter(|line| line.contains(&class));

@@ -24,7 +24,7 @@ fn person(to: &Path, change: impl Fn([f64; 3]) -> [f64; 3]) {
     std::fs::write(to, own.lines().map(line).collect::<String>()).unwrap();
 }
 
-/// The measurements of a mesh [m] and what was said of it.
+/// The measurements of a mesh (m) and what was said of it.
 fn measured(folder: &Path, more: &[&str]) -> (Vec<(String, f64)>, Vec<String>) {
     let arguments = ["body", "--mesh", "p.obj", "--out", "t.json", "--json"];
     let output = toile(folder, &[&arguments, more].concat());
@@ -152,7 +152,7 @@ fn a_scene_whose_person_lies_is_set_upright_as_a_whole() {
     }
 }
 
-/// The area of a mesh in an OBJ file of triangles [m2].
+/// The area of a mesh in an OBJ file of triangles (m2).
 fn area(path: &Path) -> f64 {
     let text = std::fs::read_to_string(path).unwrap();
     let numbers = |line: &str| -> Vec<f64> {

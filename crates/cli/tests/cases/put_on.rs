@@ -11,7 +11,7 @@ fn run(name: &str, arguments: &[&str]) -> (String, Option<i32>) {
     (said, output.status.code())
 }
 
-/// Heights of the panels of a written pattern [m].
+/// Heights of the panels of a written pattern (m).
 fn heights(path: &Path) -> Vec<f64> {
     let text = std::fs::read_to_string(path).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();

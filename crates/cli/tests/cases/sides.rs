@@ -24,7 +24,7 @@ fn of_sides(report: &Value, severity: &str) -> Vec<String> {
         .collect()
 }
 
-/// A garment's height at the vertices that two of its parts share [m], and the length of the line
+/// A garment's height at the vertices that two of its parts share (m), and the length of the line
 /// through them.
 fn shared_line(obj: &str, parts: [&str; 2]) -> [f64; 2] {
     let mut points: Vec<[f64; 3]> = Vec::new();

@@ -251,7 +251,7 @@ fn a_run_that_is_given_up_leaves_its_files_and_goes_on_from_them() {
     assert!(words(&refused.stderr).contains("give a time above zero"));
 }
 
-/// A tube of a girth and a length [cm] round a part of the body, of two pieces, as a pattern.
+/// A tube of a girth and a length (cm) round a part of the body, of two pieces, as a pattern.
 fn tube(folder: &Path, part: &str, [girth, length]: [f64; 2]) {
     let width = 0.5 * girth;
     let sheet = |first: u32| {

@@ -5,7 +5,7 @@ use super::common::{toile, words};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Heights of the vertices of a mesh that a scene in a folder ends with [m].
+/// Heights of the vertices of a mesh that a scene in a folder ends with (m).
 fn heights(folder: &Path, scene: &str, mesh: &str) -> Vec<f64> {
     let out = tempfile::tempdir().unwrap();
     let to = out.path().to_str().unwrap();
@@ -25,7 +25,7 @@ fn pinched_cloth_does_not_creep_out() {
     assert!(mean > 0.398, "{mean}");
 }
 
-/// Heights of the upper border of the strip of the pinch at the end of its scene as changed by `change` [m].
+/// Heights of the upper border of the strip of the pinch at the end of its scene as changed by `change` (m).
 fn border(change: impl Fn(&mut Value)) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let from = case("friction-creeps-xpbd");

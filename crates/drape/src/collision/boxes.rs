@@ -7,9 +7,9 @@ use toile_geometry::Vec3;
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Least coordinates [m].
+    /// Least coordinates (m).
     pub low: [f64; 3],
-    /// Largest coordinates [m].
+    /// Largest coordinates (m).
     pub high: [f64; 3],
 }
 
@@ -20,7 +20,7 @@ impl Bounds {
         high: [f64::NEG_INFINITY; 3],
     };
 
-    /// Bounds of some points, enlarged by `margin` [m].
+    /// Bounds of some points, enlarged by `margin` (m).
     pub fn of(points: &[Vec3], margin: f64) -> Self {
         let mut bounds = Self::EMPTY;
         for p in points {
@@ -59,7 +59,7 @@ impl Bounds {
         bounds
     }
 
-    /// Half the diagonal [m].
+    /// Half the diagonal (m).
     pub fn radius(&self) -> f64 {
         let side = |k: usize| self.high[k] - self.low[k];
         0.5 * (side(0) * side(0) + side(1) * side(1) + side(2) * side(2)).sqrt()
@@ -71,7 +71,7 @@ impl Bounds {
         (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
 
-    /// Distance of two boxes [m].
+    /// Distance of two boxes (m).
     pub fn distance(&self, other: &Self) -> f64 {
         let squared_gap = |k: usize| {
             let gap = (self.low[k] - other.high[k]).max(other.low[k] - self.high[k]);
@@ -181,7 +181,7 @@ pub struct BoxTree {
 const TASKS: usize = 96;
 
 impl BoxTree {
-    /// Builds the tree over items with these centres [m], halved along the longest axis of each node. Items of one
+    /// Builds the tree over items with these centres (m), halved along the longest axis of each node. Items of one
     /// connected component stay together, whatever lies between them: items are sorted by component first. Boxes are
     /// empty until the tree is fitted.
     pub fn new(centres: &[Vec3], components: &[u32]) -> Self {
@@ -294,7 +294,7 @@ impl BoxTree {
         }
     }
 
-    /// Distance of the boxes of a region's two nodes [m]; none where it has one node.
+    /// Distance of the boxes of a region's two nodes (m); none where it has one node.
     pub fn distance(&self, region: &Region) -> Option<f64> {
         match *region {
             Region::Own(_) => None,

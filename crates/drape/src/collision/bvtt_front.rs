@@ -36,7 +36,7 @@ pub struct BvttFront {
     queries: usize,
     /// Clearance of the last query; none where the next one must rebuild the front.
     clearance: Option<Clearance>,
-    /// Positions at the start and end of the last query's trajectories [m].
+    /// Positions at the start and end of the last query's trajectories (m).
     from: Vec<Vec3>,
     to: Vec<Vec3>,
     /// Distance of the last query without motion, which was one for contacts.
@@ -45,9 +45,9 @@ pub struct BvttFront {
     last_moves: Option<Arc<Moves>>,
     /// Indices of the entries with a list.
     listed: Vec<u32>,
-    /// Pairs of leaves without a list, and the distance at which their features must be found [m].
+    /// Pairs of leaves without a list, and the distance at which their features must be found (m).
     open: Vec<([u32; 2], f64)>,
-    /// Shortest edge at a vertex, averaged over the vertices of each leaf [m].
+    /// Shortest edge at a vertex, averaged over the vertices of each leaf (m).
     shortest_edges: Option<Arc<[f64]>>,
 }
 
@@ -63,7 +63,7 @@ impl BvttFront {
         listed.map(|&k| self.entries[k as usize].hits())
     }
 
-    /// Pairs of leaves without a list, and the distance at which their features must be found [m].
+    /// Pairs of leaves without a list, and the distance at which their features must be found (m).
     pub fn open(&self) -> &[([u32; 2], f64)] {
         &self.open
     }
@@ -157,7 +157,7 @@ impl BvttFront {
     }
 
     /// Searches the regions of expired entries, and adds an entry for each region where the search ends. The tree
-    /// must be fitted at the start `x` of the trajectories [m]. Returns the number of regions opened, and of regions
+    /// must be fitted at the start `x` of the trajectories (m). Returns the number of regions opened, and of regions
     /// given the curvature test.
     pub fn search(
         &mut self,
@@ -255,7 +255,7 @@ fn leaves_of(cloth: &SurfaceView, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<
     leaves.filter(|&leaf| is_in_pair[leaf as usize]).collect()
 }
 
-/// Shortest edge at a vertex, averaged over the vertices of each leaf [m].
+/// Shortest edge at a vertex, averaged over the vertices of each leaf (m).
 fn shortest_edges(cloth: &SurfaceView) -> Arc<[f64]> {
     let of_leaf = |leaf: usize| {
         let vertices = cloth.leaf(leaf);

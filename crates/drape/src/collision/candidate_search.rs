@@ -38,7 +38,7 @@ impl<'a> From<&'a [[u32; 2]]> for Near<'a> {
 const PAIRS_PER_TASK: usize = 32;
 
 impl ClothSurface {
-    /// Pairs of leaves whose boxes come within `reach` [m] of each other on the trajectories, and each leaf with
+    /// Pairs of leaves whose boxes come within `reach` (m) of each other on the trajectories, and each leaf with
     /// itself. Boxes are conservative: no pair is missed.
     pub fn near_leaves(&mut self, trajectories: LinearTrajectories, reach: f64) -> Vec<[u32; 2]> {
         self.refit(trajectories, reach);
@@ -114,7 +114,7 @@ impl ClothSurface {
         self.front.forget();
     }
 
-    /// Fits the boxes of the tree to the trajectories, enlarged by half of `reach` [m].
+    /// Fits the boxes of the tree to the trajectories, enlarged by half of `reach` (m).
     fn refit(&mut self, trajectories: LinearTrajectories, reach: f64) {
         let corners = Corners {
             edges: &self.edges,
@@ -187,7 +187,7 @@ impl ClothSurface {
     }
 
     /// Collects what `read_hits` makes of candidates: of listed hits, and of hits that `test_leaves` finds in a
-    /// pair of leaves with boxes enlarged by its second argument [m]. Candidates come within `reach` [m], or within
+    /// pair of leaves with boxes enlarged by its second argument (m). Candidates come within `reach` (m), or within
     /// the distance that the front notes for a pair of leaves without a list.
     fn collected<T: Clone + Send + Sync>(
         &self,

@@ -9,7 +9,7 @@ use pulp::Simd;
 /// epsilon, positions contribute 1.8, their differences at most 3 and the sums at most 6; the bound is twice that.
 pub(super) const ROUNDING: f32 = 24.0 * f32::EPSILON;
 
-/// Smallest divisor [m2, m4]: with it quotients of zero-length or parallel edges are finite.
+/// Smallest divisor (m2, m4): with it quotients of zero-length or parallel edges are finite.
 const MIN_DIVISOR: f32 = 1e-30;
 
 /// The quotient a / b, clamped to 0..=1.
@@ -80,7 +80,7 @@ fn shorter<S: Simd>(a: Triple<F32s<S>>, b: Triple<F32s<S>>) -> Triple<F32s<S>> {
 /// whether the edges certainly pass by each other, which they do where the lines through them are nearest beyond the
 /// end of an edge. Let d be the error of a vector, l its length: a product of four vectors has the error 4 d l^3, the
 /// difference of two products 8 d l^3, and the difference of two of these 16 d l^3. `farthest` is the largest
-/// coordinate [m], from which d follows.
+/// coordinate (m), from which d follows.
 #[inline(always)]
 pub fn edge_to_edge<S: Simd>(
     &[a, b, c, d]: &[Triple<F32s<S>>; 4],

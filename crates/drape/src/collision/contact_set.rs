@@ -21,7 +21,7 @@ pub struct ContactSet {
     pub crossings: usize,
     /// Number of vertices of outer layers on the wrong side of inner ones.
     pub violations: usize,
-    /// Distance within which the next detection searches for vertices on the wrong side of a layer [m]; none without
+    /// Distance within which the next detection searches for vertices on the wrong side of a layer (m); none without
     /// a detection.
     pub layer_reach: Option<f64>,
     /// Counts over all detections so far.

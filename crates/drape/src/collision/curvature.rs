@@ -14,10 +14,10 @@ use toile_geometry::Vec3;
 /// What regions that are left out of a search must guarantee.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// Least distance of two features without a common vertex [m]. At vertices with short edges it is limited to
+    /// Least distance of two features without a common vertex (m). At vertices with short edges it is limited to
     /// the contact offset that there is room for.
     pub offset: f64,
-    /// Drift [m], which is deviation from a common rigid motion summed over queries, within which the guarantee
+    /// Drift (m), which is deviation from a common rigid motion summed over queries, within which the guarantee
     /// holds; beyond, a region is tested again. Regions that deviate more in a single query are tested for twice or
     /// four times this drift.
     pub max_drift: f64,
@@ -27,12 +27,12 @@ pub struct Clearance {
 pub const LEVELS: usize = 3;
 
 impl Clearance {
-    /// Drift within which a test at this level holds [m].
+    /// Drift within which a test at this level holds (m).
     pub fn max_drift_at(&self, level: usize) -> f64 {
         self.max_drift * f64::from(1u32 << level)
     }
 
-    /// Lowest level whose test holds for this deviation [m] from the common rigid motion; none where it is larger
+    /// Lowest level whose test holds for this deviation (m) from the common rigid motion; none where it is larger
     /// than that of all levels.
     pub fn level(&self, deviation: f64) -> Option<usize> {
         (0..LEVELS).find(|&level| deviation <= self.max_drift_at(level))
@@ -52,7 +52,7 @@ pub const MIN_LEAVES: u32 = 4;
 /// Bound of the error of a cosine in single precision.
 const COSINE_ERROR: f64 = 1e-6;
 
-/// Bound of the error of a distance [m].
+/// Bound of the error of a distance (m).
 const DISTANCE_ERROR: f64 = 1e-9;
 
 /// Half-edge of a triangle: twice the index of the edge, plus one where the triangle runs along it from the larger
@@ -71,7 +71,7 @@ pub struct Curvature {
     /// For every level, bits of the directions that all triangles of a node face.
     facing: [Vec<u64>; LEVELS],
     clearance: Option<Clearance>,
-    /// Distance to be guaranteed at each vertex [m].
+    /// Distance to be guaranteed at each vertex (m).
     offsets: Vec<f64>,
 }
 
@@ -159,7 +159,7 @@ impl Curvature {
         }
     }
 
-    /// Sets the clearance of the tests that follow, whose offset is limited at each vertex to `max_offsets` [m].
+    /// Sets the clearance of the tests that follow, whose offset is limited at each vertex to `max_offsets` (m).
     pub fn set_clearance(&mut self, max_offsets: impl Iterator<Item = f64>, clearance: Clearance) {
         if self.clearance == Some(clearance) {
             return;
@@ -170,7 +170,7 @@ impl Curvature {
         self.clearance = Some(clearance);
     }
 
-    /// Computes the directions that the nodes of some regions, and all nodes below them, face at positions `x` [m],
+    /// Computes the directions that the nodes of some regions, and all nodes below them, face at positions `x` (m),
     /// at the level of each region and all lower levels.
     pub fn find_facing(
         &mut self,
@@ -296,7 +296,7 @@ struct CommonDirections<'a> {
     irregular: &'a [bool],
     offsets: &'a [f64],
     directions: &'a [[f32; DIRECTIONS]; 3],
-    /// Drift of the vertices [m].
+    /// Drift of the vertices (m).
     drift: f64,
 }
 
@@ -323,7 +323,7 @@ impl NullaryFnOnce for CommonDirections<'_> {
     }
 }
 
-/// Bits of the directions that a triangle faces, now and after any drift of its corners up to `drift` [m].
+/// Bits of the directions that a triangle faces, now and after any drift of its corners up to `drift` (m).
 ///
 /// Its plane turns by at most sin(turn) = 2 drift / h, with h the smallest height: every direction in the plane
 /// runs along a chord at least as long as h.
@@ -365,9 +365,9 @@ fn facing_directions(
 
 /// Contour of a region, projected along a direction.
 struct ProjectedContour {
-    /// Projected positions of its vertices [m].
+    /// Projected positions of its vertices (m).
     points: Vec<[f64; 2]>,
-    /// Distance to be guaranteed at each vertex [m].
+    /// Distance to be guaranteed at each vertex (m).
     offsets: Vec<f64>,
     /// Directed edges, the region on their left.
     edges: Vec<[u32; 2]>,
@@ -434,8 +434,8 @@ impl ProjectedContour {
             .all(|round| (0..round.len()).all(|k| round[k].2 != round[(k + 1) % round.len()].2))
     }
 
-    /// Whether, within a drift of the vertices [m], no vertex comes nearer than its offset to an edge that does not
-    /// end at it, and no two edges cross. `max_offset` is the largest offset of a vertex [m]. Pairs of edges are
+    /// Whether, within a drift of the vertices (m), no vertex comes nearer than its offset to an edge that does not
+    /// end at it, and no two edges cross. `max_offset` is the largest offset of a vertex (m). Pairs of edges are
     /// found by sweeping along the longer axis.
     fn is_clear(&self, max_offset: f64, drift: f64) -> bool {
         let margin = max_offset + 2.0 * drift + DISTANCE_ERROR;
@@ -464,7 +464,7 @@ impl ProjectedContour {
         true
     }
 
-    /// Extent along an axis [m].
+    /// Extent along an axis (m).
     fn extent(&self, axis: usize) -> f64 {
         let along = || self.points.iter().map(|point| point[axis]);
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
@@ -505,7 +505,7 @@ fn line_separates(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
     (side(c) > 0.0) != (side(d) > 0.0)
 }
 
-/// Squared distance of a point from a segment [m2].
+/// Squared distance of a point from a segment (m2).
 fn squared_distance(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let to = [p[0] - a[0], p[1] - a[1]];

@@ -32,7 +32,7 @@ pub struct ContactDetector {
     surface: ClothSurface,
     /// Model that the surface was made for.
     made_for: Option<Model>,
-    /// Positions at the start of the present step in time [m]: contacts without memory are anchored there.
+    /// Positions at the start of the present step in time (m): contacts without memory are anchored there.
     pub(crate) step_start: Option<Vec<Vec3>>,
 }
 
@@ -42,12 +42,12 @@ const REACH_IN_OFFSETS: f64 = 2.0;
 /// Depth at which the hard term of a contact sets in, as a share of the offset.
 const HARD_FROM: f64 = 0.75;
 
-/// Drift of a region's vertices from their common rigid motion after which it is given the curvature test again [m]. A
+/// Drift of a region's vertices from their common rigid motion after which it is given the curvature test again (m). A
 /// smaller one has regions tested more often; with a larger one fewer regions pass.
 const MAX_DRIFT: f64 = 1e-3;
 
 impl ContactDetector {
-    /// Clearance of regions that a search leaves out, for cloth with this contact offset [m].
+    /// Clearance of regions that a search leaves out, for cloth with this contact offset (m).
     pub fn clearance(offset: f64) -> Clearance {
         Clearance {
             offset,

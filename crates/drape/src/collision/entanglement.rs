@@ -9,10 +9,10 @@ use crate::PairPolicies;
 use std::cmp::Ordering;
 use toile_geometry::Vec3;
 
-/// Largest distance searched for vertices on the wrong side of a layer [m]: the ease of a wide garment.
+/// Largest distance searched for vertices on the wrong side of a layer (m): the ease of a wide garment.
 const MAX_REACH: f64 = 0.15;
 
-/// Distance added to the deepest violation for the search of the next detection [m].
+/// Distance added to the deepest violation for the search of the next detection (m).
 const REACH_SLACK: f64 = 0.02;
 
 /// Edges and faces that cross, and vertices on the wrong side of a layer, without pairs of objects that ignore each
@@ -25,7 +25,7 @@ pub(super) struct Entanglement {
     pub of_layers: Vec<[u32; 2]>,
     /// Vertices on the wrong side of a layer.
     pub violations: Vec<LayerViolation>,
-    /// Distance within which the next detection searches for vertices on the wrong side of a layer [m]. Zero once no
+    /// Distance within which the next detection searches for vertices on the wrong side of a layer (m). Zero once no
     /// layers cross and no vertex is on a wrong side: sides change only through a crossing.
     pub layer_reach: f64,
 }
@@ -59,7 +59,7 @@ impl Entanglement {
         found
     }
 
-    /// Finds the vertices on the wrong side of a layer within `reach` [m], unless there can be none.
+    /// Finds the vertices on the wrong side of a layer within `reach` (m), unless there can be none.
     fn find_violations(&mut self, within: impl Fn(f64) -> Vec<LayerViolation>, reach: f64) {
         let crossed = !self.of_layers.is_empty();
         if reach == 0.0 && !crossed {

@@ -8,7 +8,7 @@ use super::nearness::Nearness;
 use toile_geometry::Vec3;
 
 /// Where friction holds two features that pressed in the last step: the vector between them when they
-/// stuck [m], and the normal force then [N]. None where they did not press.
+/// stuck (m), and the normal force then (N). None where they did not press.
 pub(super) fn anchor(memory: &ClothMemory, near: &Nearness, x: &[Vec3]) -> Option<(Vec3, f64)> {
     let at = memory
         .friction

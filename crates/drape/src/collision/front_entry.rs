@@ -8,7 +8,7 @@ use super::neighbour_lists::NeighbourList;
 /// Why the search of the tree went no deeper into a region.
 #[derive(Clone, Debug)]
 pub enum Verdict {
-    /// The boxes of the region's two nodes were this far apart [m].
+    /// The boxes of the region's two nodes were this far apart (m).
     Separated(f64),
     /// The region passed the curvature test at this level: it cannot touch itself.
     Clear(usize),
@@ -27,14 +27,14 @@ pub struct FrontEntry {
     /// The verdict.
     pub verdict: Verdict,
     /// Drift: deviation of the region's vertices from their common rigid motion, summed over all motions since the
-    /// verdict [m].
+    /// verdict (m).
     pub drift: f64,
-    /// Deviation on the trajectories of the last query, which is not in the drift yet [m].
+    /// Deviation on the trajectories of the last query, which is not in the drift yet (m).
     pub query_deviation: f64,
 }
 
 impl FrontEntry {
-    /// A new entry of a region with this deviation on the trajectories of the query [m].
+    /// A new entry of a region with this deviation on the trajectories of the query (m).
     pub fn new(region: Region, verdict: Verdict, query_deviation: f64) -> Self {
         Self {
             region,

@@ -15,15 +15,15 @@ use toile_geometry::Vec3;
 /// A list is made long enough to hold for this many queries at the present deviation per query.
 const QUERIES_PER_LIST: f64 = 8.0;
 
-/// Least and largest slack of a list [m]: the length by which its distance exceeds that of the query.
+/// Least and largest slack of a list (m): the length by which its distance exceeds that of the query.
 const SLACK: [f64; 2] = [1e-3, 2e-3];
 
-/// Leaves whose deviation per query is at most `CALM[0]` [m] get a list; an open entry is searched again, and may get
+/// Leaves whose deviation per query is at most `CALM[0]` (m) get a list; an open entry is searched again, and may get
 /// one, once it is at most `CALM[1]`. The difference keeps entries from changing at every query.
 const CALM: [f64; 2] = [2.5e-4, 1e-4];
 
 /// Largest distance of a list, as a share of the shortest edge there. A longer one would list most pairs of its leaves,
-/// and testing their boxes is as fast. At deviations per query of at most `AT_REST` [m] a list may be as long as
+/// and testing their boxes is as fast. At deviations per query of at most `AT_REST` (m) a list may be as long as
 /// `DENSE_AT_REST` allows, since it then holds for many queries.
 const DENSE: f64 = 0.5;
 const DENSE_AT_REST: f64 = 2.0;
@@ -33,13 +33,13 @@ const AT_REST: f64 = 2e-5;
 /// speed up.
 const SPEED_MARGIN: f64 = 2.0;
 
-/// Positions that differ by no more than this [m] are the same but for rounding.
+/// Positions that differ by no more than this (m) are the same but for rounding.
 pub const SAME: f64 = 1e-12;
 
 /// Distance at which features must be found: the same everywhere, or shorter in regions whose velocities differ little.
 #[derive(Clone, Debug, Default)]
 pub struct QueryDistance {
-    /// Largest distance [m].
+    /// Largest distance (m).
     max: f64,
     prediction: Option<Arc<Prediction>>,
 }
@@ -47,13 +47,13 @@ pub struct QueryDistance {
 /// Motion expected until the next query, as in [`super::Ahead`].
 #[derive(Debug)]
 struct Prediction {
-    /// Bounds of the velocities below every node [m/s].
+    /// Bounds of the velocities below every node (m/s).
     velocities: Moves,
-    /// Contact offset [m].
+    /// Contact offset (m).
     offset: f64,
-    /// Shortest path expected of a feature [m].
+    /// Shortest path expected of a feature (m).
     min_path: f64,
-    /// Time until the next query [s].
+    /// Time until the next query (s).
     time: f64,
 }
 
@@ -79,7 +79,7 @@ impl QueryDistance {
         }
     }
 
-    /// Upper bound of [`Reach::of`] over the pairs of features of a region [m], were all velocities `factor` times as
+    /// Upper bound of [`Reach::of`] over the pairs of features of a region (m), were all velocities `factor` times as
     /// large.
     pub fn of(&self, region: &Region, factor: f64) -> f64 {
         let Some(prediction) = &self.prediction else {
@@ -119,12 +119,12 @@ pub struct FrontQuery {
     pub moves: Option<Arc<Moves>>,
     /// The latest displacements known, as an estimate of later ones.
     pub last_moves: Option<Arc<Moves>>,
-    /// Shortest edge at a vertex, averaged over the vertices of each leaf [m].
+    /// Shortest edge at a vertex, averaged over the vertices of each leaf (m).
     pub shortest_edges: Arc<[f64]>,
 }
 
 impl FrontQuery {
-    /// Deviation of a region's vertices from their common rigid motion on the trajectories [m].
+    /// Deviation of a region's vertices from their common rigid motion on the trajectories (m).
     pub fn deviation(&self, region: &Region) -> f64 {
         (self.moves.as_ref()).map_or(0.0, |moves| moves.deviation(region))
     }
@@ -173,7 +173,7 @@ impl FrontQuery {
         self.deviation_per_query(region) <= CALM[0] && !self.is_dense(region)
     }
 
-    /// Deviation of a region in this query or, where nothing moves, in the last motion known [m].
+    /// Deviation of a region in this query or, where nothing moves, in the last motion known (m).
     fn deviation_per_query(&self, region: &Region) -> f64 {
         match (&self.moves, &self.last_moves) {
             (Some(moves), _) | (None, Some(moves)) => moves.deviation(region),
@@ -181,7 +181,7 @@ impl FrontQuery {
         }
     }
 
-    /// Distances within which a list of a region must be complete [m]: for pairs of a vertex and a face or of two
+    /// Distances within which a list of a region must be complete (m): for pairs of a vertex and a face or of two
     /// edges, and for an edge and a face that may cross.
     pub fn list_distances(&self, region: &Region) -> [f64; 2] {
         let deviation = self.deviation(region);

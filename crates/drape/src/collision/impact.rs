@@ -20,7 +20,7 @@ const MAX_ITERATIONS: usize = 256;
 /// twenty roundings.
 const ROUNDING: f64 = 20.0 * f64::EPSILON / 2.0;
 
-/// First time in 0..=1 at which a vertex (the first of the four) comes within `gap` [m] of a face (the other three);
+/// First time in 0..=1 at which a vertex (the first of the four) comes within `gap` (m) of a face (the other three);
 /// none where it certainly does not. The time is never late, and early only by rounding.
 pub fn vertex_face_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Option<f64> {
     advance(

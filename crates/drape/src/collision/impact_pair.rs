@@ -5,24 +5,24 @@ use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::nearness::{Nearness, is_far};
 use toile_geometry::Vec3;
 
-/// Two features keep this share of their distance in one motion, up to `MAX_GAP` [m].
+/// Two features keep this share of their distance in one motion, up to `MAX_GAP` (m).
 const GAP_PER_DISTANCE: f64 = 0.2;
 const MAX_GAP: f64 = 5e-4;
 
-/// Distance [m] up to which features keep `SMALL_GAP_PER_DISTANCE` of it. With the share above, features pressed
+/// Distance (m) up to which features keep `SMALL_GAP_PER_DISTANCE` of it. With the share above, features pressed
 /// together for long would come nearer than rounding can tell, and pass.
 const SMALL_DISTANCE: f64 = 1e-4;
 const SMALL_GAP_PER_DISTANCE: f64 = 0.9;
 
-/// Distance [m] up to which features keep `TINY_GAP_PER_DISTANCE` of it. Features come so near only in more than two
+/// Distance (m) up to which features keep `TINY_GAP_PER_DISTANCE` of it. Features come so near only in more than two
 /// hundred motions under pressure; with this share cloth pressed for a minute does not touch.
 const TINY_DISTANCE: f64 = 1e-7;
 const TINY_GAP_PER_DISTANCE: f64 = 0.999;
 
-/// Features nearer than this touch already [m]: recovery leads them apart, not impulses or truncation.
+/// Features nearer than this touch already (m): recovery leads them apart, not impulses or truncation.
 const TOUCHING: f64 = 1e-12;
 
-/// Distance within which the trajectories of two features must come for an impact [m]: the largest gap of any pair.
+/// Distance within which the trajectories of two features must come for an impact (m): the largest gap of any pair.
 pub const IMPACT_REACH: f64 = MAX_GAP;
 
 /// Two features that may collide, and the gap that they must keep.
@@ -30,13 +30,13 @@ pub const IMPACT_REACH: f64 = MAX_GAP;
 pub struct ImpactPair {
     /// The features.
     pub pair: FeaturePair,
-    /// Distance that they must keep [m].
+    /// Distance that they must keep (m).
     pub gap: f64,
 }
 
 impl ImpactPair {
     /// The pair, unless its features are so far apart at positions `x` that they keep their gap even when they approach
-    /// each other by `approach` [m], or touch already.
+    /// each other by `approach` (m), or touch already.
     pub fn new(pair: FeaturePair, x: &[Vec3], approach: f64) -> Option<Self> {
         let reach = (approach / (1.0 - GAP_PER_DISTANCE))
             .min(MAX_GAP + approach)
@@ -58,7 +58,7 @@ impl ImpactPair {
         })
     }
 
-    /// Time in 0..=1 at which the features come to their gap on the moves from `x` [m]; none where they keep it.
+    /// Time in 0..=1 at which the features come to their gap on the moves from `x` (m); none where they keep it.
     pub fn time(&self, x: &[Vec3], moves: &[Vec3]) -> Option<f64> {
         let vertices = self.pair.vertices().map(|v| v as usize);
         let start = vertices.map(|v| x[v]);

@@ -116,12 +116,12 @@ fn truncate_relative_moves(
     shortened
 }
 
-/// Positions at the ends of some moves [m].
+/// Positions at the ends of some moves (m).
 fn ends(x: &[Vec3], moves: &[Vec3]) -> Vec<Vec3> {
     x.iter().zip(moves).map(|(x, d)| x + d).collect()
 }
 
-/// Pairs that collide in a motion to `target` [m], sorted, with the times of impact in 0..=1. Where vertices are marked
+/// Pairs that collide in a motion to `target` (m), sorted, with the times of impact in 0..=1. Where vertices are marked
 /// as `changed`, only pairs with one of them.
 fn find_impacts(
     surface: &ClothSurface,

@@ -60,13 +60,13 @@ pub(super) struct CrossingGeometry {
     pub edge: [u32; 2],
     /// Corners of the face.
     pub face: [u32; 3],
-    /// Positions of the corners [m].
+    /// Positions of the corners (m).
     corners: [Vec3; 3],
     /// Unit normal of the face.
     pub normal: Vec3,
     /// Parameter of the intersection point on the edge, 0 at its first end.
     parameter: f64,
-    /// The intersection point [m].
+    /// The intersection point (m).
     pub point: Vec3,
 }
 
@@ -104,7 +104,7 @@ impl CrossingGeometry {
     }
 }
 
-/// Normal of a triangle, twice as long as its area [m2].
+/// Normal of a triangle, twice as long as its area (m2).
 pub(super) fn area_vector([a, b, c]: [Vec3; 3]) -> Vec3 {
     (b - a).cross(&(c - a))
 }

@@ -22,7 +22,7 @@ pub struct LayerViolation {
     pub weights: [f64; 3],
     /// Unit direction from the vertex to the closest point: outwards.
     pub direction: Vec3,
-    /// Distance from the vertex to the closest point [m].
+    /// Distance from the vertex to the closest point (m).
     pub depth: f64,
 }
 
@@ -35,7 +35,7 @@ pub fn layers_of(surface: &ClothSurface) -> Vec<u16> {
     layers
 }
 
-/// Every vertex of an outer layer that lies on the inside of an inner one within `reach` [m] of it, in order of inner
+/// Every vertex of an outer layer that lies on the inside of an inner one within `reach` (m) of it, in order of inner
 /// layers and vertices. A vertex whose closest point is on the border of a cloth is on neither side of it. Objects
 /// that ignore each other have no order.
 pub fn layer_violations(
@@ -115,7 +115,7 @@ fn is_outside(surface: &ClothSurface, inner: u16, v: usize) -> bool {
     layer > inner && layer != BETWEEN_LAYERS
 }
 
-/// Outer vertices on the inside of some faces within `reach` [m] of them, in order.
+/// Outer vertices on the inside of some faces within `reach` (m) of them, in order.
 fn vertices_inside(
     surface: &ClothSurface,
     faces: Vec<[u32; 3]>,
@@ -208,7 +208,7 @@ mod tests {
     use super::*;
     use crate::BETWEEN_OBJECTS;
 
-    /// Two squares of two triangles, the second `height` [m] above the first; normals point up.
+    /// Two squares of two triangles, the second `height` (m) above the first; normals point up.
     fn squares(height: f64) -> (ClothSurface, Vec<Vec3>) {
         let mut mesh = TriangleMesh::default();
         for (k, y) in [0.0, height].into_iter().enumerate() {

@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 // The features of a leaf, up to three edges a triangle, are bits of a mask.
 const _: () = assert!(3 * MAX_LEAF_ITEMS <= u64::BITS as usize);
 
-/// An axis-aligned box [m].
+/// An axis-aligned box (m).
 #[derive(Clone, Copy, Debug)]
 struct Aabb {
     low: [f32; 3],
@@ -31,7 +31,7 @@ const EMPTY: Aabb = Aabb {
 const PADDING: [f32; LANES] = [f32::NAN; LANES];
 
 impl Aabb {
-    /// Bounds of a segment, enlarged by `margin` [m] and rounded outwards to `f32`.
+    /// Bounds of a segment, enlarged by `margin` (m) and rounded outwards to `f32`.
     fn swept(from: Vec3, to: Vec3, margin: f64) -> Self {
         let end = |k: usize| [from[k].min(to[k]) - margin, from[k].max(to[k]) + margin];
         Self {
@@ -91,7 +91,7 @@ impl Block {
         }
     }
 
-    /// Bits of the boxes that overlap another one, shrunk by `shrink` [m] on all sides.
+    /// Bits of the boxes that overlap another one, shrunk by `shrink` (m) on all sides.
     #[inline(always)]
     fn overlapping(&self, other: &Aabb, shrink: f32) -> u32 {
         let mut bits = 0u32;
@@ -234,9 +234,9 @@ pub struct LeafAabbs {
     leaf_boxes: Vec<Aabb>,
     /// Box of the trajectory of every vertex.
     swept: Vec<Aabb>,
-    /// Length by which one box is shrunk to undo the margins of both in a test for crossings [m].
+    /// Length by which one box is shrunk to undo the margins of both in a test for crossings (m).
     margins: f32,
-    /// Bound of the rounding error of a coordinate in single precision [m].
+    /// Bound of the rounding error of a coordinate in single precision (m).
     rounding: f64,
 }
 
@@ -252,7 +252,7 @@ pub struct Corners<'a> {
 /// Bound of the error of a coordinate after a few sums in single precision, as a share of the largest coordinate.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
-/// Origin for coordinates in single precision: the first vertex whose coordinates are finite [m].
+/// Origin for coordinates in single precision: the first vertex whose coordinates are finite (m).
 pub(super) fn origin(x: &[Vec3]) -> Vec3 {
     let is_finite = |p: &&Vec3| p.iter().all(|c| c.is_finite());
     x.iter().find(is_finite).copied().unwrap_or_default()
@@ -264,7 +264,7 @@ struct LeafTest<'a> {
     leaves: &'a LeafAabbs,
     kinds: &'a [KindPair],
     pair: [u32; 2],
-    /// Length by which one of two boxes is shrunk, negative to enlarge it [m].
+    /// Length by which one of two boxes is shrunk, negative to enlarge it (m).
     shrink: f32,
     hits: &'a mut Hits,
 }
@@ -359,7 +359,7 @@ impl LeafAabbs {
         }
     }
 
-    /// Fits all boxes to the trajectories of the vertices, enlarged by `margin` [m].
+    /// Fits all boxes to the trajectories of the vertices, enlarged by `margin` (m).
     pub fn fit(&mut self, trajectories: &LinearTrajectories, corners: Corners, margin: f64) {
         let origin = origin(trajectories.from);
         let both = trajectories
@@ -432,7 +432,7 @@ impl LeafAabbs {
         aabbs.fold(EMPTY, |joined, aabb| joined.join(&aabb))
     }
 
-    /// Box of a leaf, relative to an origin that is the same for all leaves [m].
+    /// Box of a leaf, relative to an origin that is the same for all leaves (m).
     pub fn bounds(&self, leaf: usize) -> Bounds {
         let Aabb { low, high } = self.leaf_boxes[leaf];
         Bounds {
@@ -442,7 +442,7 @@ impl LeafAabbs {
     }
 
     /// Adds to `hits` the pairs of a vertex and a face and of two edges whose boxes come within a distance of each
-    /// other [m]. The features are those of two leaves, or of one leaf given twice.
+    /// other (m). The features are those of two leaves, or of one leaf given twice.
     pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
         self.test(arch, &NEAR, (pair, self.enlarged(distance)), hits);
     }
@@ -468,7 +468,7 @@ impl LeafAabbs {
         });
     }
 
-    /// Negative shrinking that enlarges one box by a distance [m], rounded outwards.
+    /// Negative shrinking that enlarges one box by a distance (m), rounded outwards.
     fn enlarged(&self, distance: f64) -> f32 {
         -((distance + self.rounding) as f32).next_up()
     }

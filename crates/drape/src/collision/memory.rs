@@ -10,9 +10,9 @@ use toile_geometry::Vec3;
 pub struct ContactFrictionState {
     /// The features.
     pub pair: FeaturePair,
-    /// Tangential displacement of the first feature relative to the second since they stuck [m].
+    /// Tangential displacement of the first feature relative to the second since they stuck (m).
     pub slip: Vec3,
-    /// Normal force in the last step [N].
+    /// Normal force in the last step (N).
     pub force: f64,
 }
 
@@ -20,11 +20,11 @@ pub struct ContactFrictionState {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClothMemory {
-    /// Positions of the vertices at the end of that step [m].
+    /// Positions of the vertices at the end of that step (m).
     pub positions: Vec<Vec3>,
     /// Friction of the contacts that pressed, in order of their features.
     pub friction: Vec<ContactFrictionState>,
-    /// Distance within which the next detection searches for vertices on the wrong side of a layer [m]. Zero once no
+    /// Distance within which the next detection searches for vertices on the wrong side of a layer (m). Zero once no
     /// layers cross and no vertex is on a wrong side: sides change only through a crossing. None before the first
     /// detection.
     pub layer_reach: Option<f64>,

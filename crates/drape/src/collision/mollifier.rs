@@ -71,7 +71,7 @@ mod tests {
         mesh
     }
 
-    /// Largest jump of the forces between steps of 0.2 um over a motion, and the largest force [N].
+    /// Largest jump of the forces between steps of 0.2 um over a motion, and the largest force (N).
     fn jump(place: impl Fn(f64) -> TriangleMesh) -> [f64; 2] {
         let cloth = Cloth::from_mesh("ridges", &place(0.0), Material::default()).unwrap();
         let mut builder = SystemBuilder::new("ridges", &cloth).unwrap();
@@ -113,7 +113,7 @@ mod tests {
         }
     }
 
-    /// The push between two edges of 30 mm that cross 0.1 mm apart, so far from an end of each [m].
+    /// The push between two edges of 30 mm that cross 0.1 mm apart, so far from an end of each (m).
     fn push(from_end: f64) -> f64 {
         let mesh = TriangleMesh {
             positions: vec![

@@ -1,7 +1,7 @@
 //! Deviation of the vertices of a region from their common rigid motion.
 //!
 //! The common motion is the linear map x -> x + t + w x (x - c) of a shift t and a turn w, fitted to the
-//! displacements in the mean of squares. All singular values of 1 + [w] are 1 or more, on any share of the motion
+//! displacements in the mean of squares. All singular values of `1 + [w]` are 1 or more, on any share of the motion
 //! too: the map brings no two points nearer. It has an inverse, so nothing crosses by it. Two vertices that deviate
 //! from it by at most r therefore come nearer to each other by at most 2 r.
 
@@ -10,9 +10,9 @@ use super::surface_view::SurfaceView;
 use super::trajectories::LinearTrajectories;
 use toile_geometry::Vec3;
 
-/// A region whose displacements deviate from a common shift by no more than this [m] is used with that deviation,
+/// A region whose displacements deviate from a common shift by no more than this (m) is used with that deviation,
 /// without a turn. Where the displacements of all the cloth together deviate from one shift by no more than
-/// `NEGLIGIBLE_IN_ALL` [m], no turns are fitted at all.
+/// `NEGLIGIBLE_IN_ALL` (m), no turns are fitted at all.
 const NEGLIGIBLE: f64 = 3e-4;
 const NEGLIGIBLE_IN_ALL: f64 = 2e-3;
 
@@ -23,7 +23,7 @@ const COLLINEAR: f64 = 1e-9;
 /// Displacements of the vertices below every node of the tree, as bounds and as a common rigid motion.
 #[derive(Debug)]
 pub struct Moves {
-    /// Bounds of the displacements below each node [m].
+    /// Bounds of the displacements below each node (m).
     bounds: Vec<Bounds>,
     /// Common motion of each node; empty where only shifts are taken out.
     common: Vec<CommonMotion>,
@@ -33,13 +33,13 @@ pub struct Moves {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     count: f64,
-    /// Sum of the positions x [m].
+    /// Sum of the positions x (m).
     positions: Vec3,
-    /// Sum of the displacements d [m].
+    /// Sum of the displacements d (m).
     displacements: Vec3,
-    /// Sums of the squares x^2, y^2, z^2 and of the products yz, zx, xy of the positions [m2].
+    /// Sums of the squares x^2, y^2, z^2 and of the products yz, zx, xy of the positions (m2).
     squares: [Vec3; 2],
-    /// Sum of the cross products x x d [m2].
+    /// Sum of the cross products x x d (m2).
     moments: Vec3,
 }
 
@@ -106,7 +106,7 @@ struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// Displacement of a point [m].
+    /// Displacement of a point (m).
     fn at(&self, x: Vec3) -> Vec3 {
         self.shift + self.turn.cross(&(x - self.centre))
     }
@@ -117,14 +117,14 @@ impl RigidMotion {
 struct CommonMotion {
     sums: Sums,
     motion: RigidMotion,
-    /// Largest distance of a vertex from the centre of the motion [m].
+    /// Largest distance of a vertex from the centre of the motion (m).
     radius: f64,
-    /// Largest deviation of a displacement from the motion [m].
+    /// Largest deviation of a displacement from the motion (m).
     deviation: f64,
 }
 
 impl CommonMotion {
-    /// Upper bound of the deviation from another motion [m]. Two motions differ at a point by their difference at
+    /// Upper bound of the deviation from another motion (m). Two motions differ at a point by their difference at
     /// the centre and the difference of their turns times the distance from it.
     fn deviation_from(&self, motion: &RigidMotion) -> f64 {
         let centre = self.motion.centre;
@@ -212,7 +212,7 @@ impl Moves {
         self
     }
 
-    /// Largest deviation of the vertices of a region from a common rigid motion [m]; infinite where a displacement
+    /// Largest deviation of the vertices of a region from a common rigid motion (m); infinite where a displacement
     /// is not finite.
     pub fn deviation(&self, region: &Region) -> f64 {
         let bounds = |index: u32| &self.bounds[index as usize];

@@ -12,7 +12,7 @@ pub struct Nearness {
     pub weights: [f64; 4],
     /// Unit vector from the second feature to the first.
     pub normal: Vec3,
-    /// Distance [m].
+    /// Distance (m).
     pub distance: f64,
     /// Whether the features belong to triangles that share a vertex and are not folded against each other by more
     /// than a right angle.
@@ -20,7 +20,7 @@ pub struct Nearness {
 }
 
 /// Barycentric weights of the closest points of two features, negative for the second feature; `p` are the positions
-/// of the four vertices [m].
+/// of the four vertices (m).
 pub fn closest(pair: FeaturePair, p: &[Vec3; 4]) -> [f64; 4] {
     match pair {
         FeaturePair::VertexFace(_) => {
@@ -34,18 +34,18 @@ pub fn closest(pair: FeaturePair, p: &[Vec3; 4]) -> [f64; 4] {
     }
 }
 
-/// Distance below which the unit vector between the features is not defined [m]: it would be rounding.
+/// Distance below which the unit vector between the features is not defined (m): it would be rounding.
 const TOUCHING: f64 = 1e-12;
 
 impl Nearness {
-    /// Displacement of the first feature relative to the second at the closest points, between two positions [m].
+    /// Displacement of the first feature relative to the second at the closest points, between two positions (m).
     pub fn slid(&self, from: &[Vec3], to: &[Vec3]) -> Vec3 {
         let four = self.pair.vertices().into_iter().zip(self.weights);
         four.map(|(v, w)| (to[v as usize] - from[v as usize]) * w)
             .sum()
     }
 
-    /// The closest points of two features at positions `x`; none where they are farther apart than `reach` [m] or
+    /// The closest points of two features at positions `x`; none where they are farther apart than `reach` (m) or
     /// touch, or where the closest point of an edge is one of its ends: vertex-face pairs cover those.
     pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {
         let p = pair.vertices().map(|v| x[v as usize]);
@@ -55,7 +55,7 @@ impl Nearness {
         }
     }
 
-    /// [`Self::measure`] for a pair that fails `passes_by`, at the positions `p` of its vertices [m].
+    /// [`Self::measure`] for a pair that fails `passes_by`, at the positions `p` of its vertices (m).
     pub fn measured(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> Option<Self> {
         if is_far(pair, p, reach) {
             return None;
@@ -77,7 +77,7 @@ impl Nearness {
         })
     }
 
-    /// Distance of two features at positions `x` [m].
+    /// Distance of two features at positions `x` (m).
     pub fn distance(pair: FeaturePair, x: &[Vec3]) -> f64 {
         let p = pair.vertices().map(|v| x[v as usize]);
         match pair {
@@ -101,7 +101,7 @@ pub const PARALLEL: f64 = 1e-8;
 /// of the distance of the vertices it is computed from.
 const ROUNDING: f64 = 1e-10;
 
-/// Whether two features are certainly farther apart than `reach` [m]: their axis-aligned boxes are, or the plane of
+/// Whether two features are certainly farther apart than `reach` (m): their axis-aligned boxes are, or the plane of
 /// the face is from the vertex, or the lines of the two edges are from each other. False proves nothing.
 #[inline(always)]
 pub fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {

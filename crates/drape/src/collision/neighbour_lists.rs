@@ -7,22 +7,22 @@ use super::nearness::{Nearness, PARALLEL, is_far};
 use super::surface_view::SurfaceView;
 use toile_geometry::Vec3;
 
-/// Bound of the rounding error in the distance of two boxes or two features [m].
+/// Bound of the rounding error in the distance of two boxes or two features (m).
 pub const ROUNDING: f64 = 1e-9;
 
 /// Pairs of features of two leaves, or of one leaf, that were near each other when the list was made.
 #[derive(Clone, Debug)]
 pub struct NeighbourList {
-    /// Pairs of a vertex and a face, and of two edges, that are not listed were farther apart than this [m].
+    /// Pairs of a vertex and a face, and of two edges, that are not listed were farther apart than this (m).
     pub gap: f64,
-    /// An edge and a face that are not listed did not cross when both were moved by less than half of this [m].
+    /// An edge and a face that are not listed did not cross when both were moved by less than half of this (m).
     pub crossing_gap: f64,
     /// Listed pairs; none where the list is empty.
     pub hits: Option<Box<Hits>>,
 }
 
 impl NeighbourList {
-    /// Lists those of some pairs that are no farther apart than `near` [m] at positions `x`, or `crossing` [m] for
+    /// Lists those of some pairs that are no farther apart than `near` (m) at positions `x`, or `crossing` (m) for
     /// an edge and a face.
     pub fn of(cloth: &SurfaceView, x: &[Vec3], hits: &Hits, [near, crossing]: [f64; 2]) -> Self {
         let is_near = |pair: Option<FeaturePair>| pair.is_some_and(|pair| within(pair, x, near));
@@ -43,7 +43,7 @@ impl NeighbourList {
     }
 }
 
-/// Whether two features are no farther apart than `reach` [m]; also true where their distance is NaN.
+/// Whether two features are no farther apart than `reach` (m); also true where their distance is NaN.
 fn within(pair: FeaturePair, x: &[Vec3], reach: f64) -> bool {
     if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach) {
         return false;
@@ -52,7 +52,7 @@ fn within(pair: FeaturePair, x: &[Vec3], reach: f64) -> bool {
     distance <= reach || distance.is_nan()
 }
 
-/// Whether an edge may come within `reach` [m] of crossing a face: its ends are not both farther than that from the
+/// Whether an edge may come within `reach` (m) of crossing a face: its ends are not both farther than that from the
 /// plane of the face on one side. A nearly degenerate face has no plane, and any edge may cross it.
 fn edge_within(cloth: &SurfaceView, x: &[Vec3], [e, t]: [u32; 2], reach: f64) -> bool {
     let at = |v: u32| x[v as usize];

@@ -6,7 +6,7 @@ use toile_geometry::Vec3;
 /// Reach of a query: the same everywhere, or shorter where velocities are small.
 #[derive(Clone, Copy, Debug)]
 pub struct Reach<'a> {
-    /// Largest reach of any pair [m].
+    /// Largest reach of any pair (m).
     pub max: f64,
     /// Motion expected until the next query; none where every pair has the largest reach.
     pub ahead: Option<Ahead<'a>>,
@@ -15,20 +15,20 @@ pub struct Reach<'a> {
 /// Motion expected until the next query.
 #[derive(Clone, Copy, Debug)]
 pub struct Ahead<'a> {
-    /// Present velocities of the vertices [m/s].
+    /// Present velocities of the vertices (m/s).
     pub velocities: &'a [Vec3],
     /// Vertices whose motion is prescribed: their present velocity says nothing about it.
     pub pinned: &'a [bool],
-    /// Contact offset of the cloth [m].
+    /// Contact offset of the cloth (m).
     pub offset: f64,
-    /// Time that features are expected to move for at twice their present speed [s].
+    /// Time that features are expected to move for at twice their present speed (s).
     pub time: f64,
-    /// Shortest path expected of a feature, even if it is at rest [m]: forces may accelerate it.
+    /// Shortest path expected of a feature, even if it is at rest (m): forces may accelerate it.
     pub min_path: f64,
 }
 
 impl Reach<'_> {
-    /// The same reach for all pairs [m].
+    /// The same reach for all pairs (m).
     pub fn uniform(reach: f64) -> Self {
         Self {
             max: reach,
@@ -36,7 +36,7 @@ impl Reach<'_> {
         }
     }
 
-    /// Reach of two features [m]: the contact offset and twice the path of the fastest of their vertices, relative
+    /// Reach of two features (m): the contact offset and twice the path of the fastest of their vertices, relative
     /// to the mean velocity of the four and at twice that speed. It is the largest reach where a vertex is
     /// prescribed.
     pub fn of(&self, pair: FeaturePair) -> f64 {

@@ -151,8 +151,8 @@ impl Puller<'_> {
         self.pull((vertices, weights), violation.direction, depth, area)
     }
 
-    /// A contact of depth `depth` [m] that pulls the first feature along the unit `direction` and the second against
-    /// it, with the stiffness of a contact of a quarter of `area` [m2]; none where all four vertices are pinned.
+    /// A contact of depth `depth` (m) that pulls the first feature along the unit `direction` and the second against
+    /// it, with the stiffness of a contact of a quarter of `area` (m2); none where all four vertices are pinned.
     fn pull(
         &self,
         (vertices, weights): ([u32; 4], [f64; 4]),

@@ -96,7 +96,7 @@ impl Regions {
         self.search(cloth, (trajectories.from, &root), clearance, &rule)
     }
 
-    /// Searches some regions at positions `x` [m], without regions that `rule` prunes. There are two passes: the
+    /// Searches some regions at positions `x` (m), without regions that `rule` prunes. There are two passes: the
     /// first collects the topmost regions to be tested, so that the directions that they face are computed for all
     /// of them at once; the second tests them and, where a region fails, its children.
     pub fn search<R: PruningRule>(

@@ -32,24 +32,24 @@ enum PairKind<'a> {
 /// The filter: positions of the vertices in single precision, relative to a vertex of the cloth.
 #[derive(Clone, Debug)]
 pub struct SeparationFilter {
-    /// Positions at the start of the trajectories [m].
+    /// Positions at the start of the trajectories (m).
     from: Vec<Point>,
-    /// Positions at the end [m]; none where nothing moves.
+    /// Positions at the end (m); none where nothing moves.
     to: Option<Vec<Point>>,
-    /// Pairs that come within this distance remain [m]. Candidates may have a reach of their own instead.
+    /// Pairs that come within this distance remain (m). Candidates may have a reach of their own instead.
     reach: f64,
-    /// Largest coordinate [m], from which the rounding follows.
+    /// Largest coordinate (m), from which the rounding follows.
     farthest: f32,
 }
 
 impl SeparationFilter {
-    /// Filter that keeps features within `reach` [m] of each other at positions `x`. It also discards edges that
+    /// Filter that keeps features within `reach` (m) of each other at positions `x`. It also discards edges that
     /// pass by each other, where the lines through them are nearest beyond the end of one.
     pub fn still(x: &[Vec3], reach: f64) -> Self {
         Self::new(x, None, reach)
     }
 
-    /// Filter that keeps features that come within `reach` [m] of each other on trajectories on which all vertices
+    /// Filter that keeps features that come within `reach` (m) of each other on trajectories on which all vertices
     /// move in step.
     pub fn together(from: &[Vec3], to: &[Vec3], reach: f64) -> Self {
         Self::new(from, Some(to), reach)
@@ -75,13 +75,13 @@ impl SeparationFilter {
         }
     }
 
-    /// Pairs that come within this distance remain [m].
+    /// Pairs that come within this distance remain (m).
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
     /// Sets in `remaining` the bits of the pairs that are not separated, sixteen bits each. `reach` is that of each
-    /// pair [m].
+    /// pair (m).
     fn filter(&self, kind: PairKind, hits: &[[u32; 2]], reach: &[f32], remaining: &mut Vec<u16>) {
         Arch::new().dispatch(FilterRun {
             filter: self,
@@ -98,7 +98,7 @@ impl SeparationFilter {
 pub struct Candidates {
     /// The pairs.
     pub hits: Hits,
-    /// Reach of every pair of a vertex and a face, and of every pair of two edges [m].
+    /// Reach of every pair of a vertex and a face, and of every pair of two edges (m).
     reach: [Vec<f32>; 2],
     /// Bits of the pairs that the filter does not separate.
     remaining: Vec<u16>,
@@ -111,7 +111,7 @@ impl Candidates {
         self.reach.iter_mut().for_each(Vec::clear);
     }
 
-    /// Sets the reach of the pairs that were added since the last call [m].
+    /// Sets the reach of the pairs that were added since the last call (m).
     pub fn set_reach(&mut self, reach: f64) {
         let reach = (reach as f32).next_up();
         let hits = [&self.hits.vertex_face, &self.hits.edge_edge];
@@ -242,7 +242,7 @@ fn positions<S: Simd>(
 }
 
 impl SeparationFilter {
-    /// 1 for a vertex and a face that are separated by more than `distance` [m], else 0.
+    /// 1 for a vertex and a face that are separated by more than `distance` (m), else 0.
     #[inline(always)]
     fn separated_vertex_faces<S: Simd>(
         &self,
@@ -262,7 +262,7 @@ impl SeparationFilter {
         separated.flags()
     }
 
-    /// 1 for two edges that are separated by more than `distance` [m] or, where nothing moves, pass by each other;
+    /// 1 for two edges that are separated by more than `distance` (m) or, where nothing moves, pass by each other;
     /// else 0.
     #[inline(always)]
     fn separated_edges<S: Simd>(

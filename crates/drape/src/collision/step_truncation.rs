@@ -36,7 +36,7 @@ pub fn truncate_moves(
     truncate_pairs(surface, &near, exemptions, x, moves)
 }
 
-/// Largest of some lengths [m]; infinite where one is NaN.
+/// Largest of some lengths (m); infinite where one is NaN.
 fn longest(lengths: impl Iterator<Item = f64>) -> f64 {
     lengths.fold(0.0, |longest, length| {
         if length.is_nan() {

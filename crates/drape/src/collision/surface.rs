@@ -20,9 +20,9 @@ pub struct ClothSurface {
     pub edges: Vec<[u32; 2]>,
     /// Triangles on each edge; more than two only where plies share a seam.
     pub edge_triangles: Vec<Vec<u32>>,
-    /// Length of the shortest edge at each vertex when the model was built [m].
+    /// Length of the shortest edge at each vertex when the model was built (m).
     pub shortest_edge: Vec<f64>,
-    /// Area of cloth at each vertex [m2].
+    /// Area of cloth at each vertex (m2).
     pub area: Vec<f64>,
     /// Friction coefficient at each vertex.
     pub friction: Vec<f64>,
@@ -117,7 +117,7 @@ impl ClothSurface {
         surface
     }
 
-    /// Builds the tree over triangles with these centres [m], and everything that hangs on its leaves and nodes.
+    /// Builds the tree over triangles with these centres (m), and everything that hangs on its leaves and nodes.
     fn build_tree(&mut self, centres: &[Vec3]) {
         let edges = self.edges.iter().copied();
         let (component_of, _) = merge_map(self.shortest_edge.len(), edges);
@@ -144,12 +144,12 @@ impl ClothSurface {
         self.regions = Regions::new(&self.view(), &self.edge_triangles);
     }
 
-    /// Largest contact offset at a vertex [m]. A larger one would make contacts of neighbours in a flat mesh.
+    /// Largest contact offset at a vertex (m). A larger one would make contacts of neighbours in a flat mesh.
     pub fn max_offset(&self, v: u32) -> f64 {
         OFFSET_PER_EDGE * self.shortest_edge[v as usize]
     }
 
-    /// Contact offset of two features [m]: the `nominal` one, limited by a share of the shortest edge at their
+    /// Contact offset of two features (m): the `nominal` one, limited by a share of the shortest edge at their
     /// vertices. The share is smaller for `neighbours`, whose triangles share a vertex and face the same side.
     pub fn contact_offset(&self, pair: FeaturePair, neighbours: bool, nominal: f64) -> f64 {
         let share = if neighbours {

@@ -19,7 +19,7 @@ pub struct SurfaceView<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Ends of the edges.
     pub edges: &'a [[u32; 2]],
-    /// Length of the shortest edge at each vertex [m].
+    /// Length of the shortest edge at each vertex (m).
     pub shortest_edge: &'a [f64],
 }
 

@@ -5,9 +5,9 @@ use toile_geometry::Vec3;
 /// Straight trajectories of all vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearTrajectories<'a> {
-    /// Positions at the start [m].
+    /// Positions at the start (m).
     pub from: &'a [Vec3],
-    /// Positions at the end [m].
+    /// Positions at the end (m).
     pub to: &'a [Vec3],
     /// Whether all vertices move in step, each at `from + t (to - from)` at time t. Else each may stop anywhere on
     /// its segment.
@@ -33,7 +33,7 @@ impl<'a> LinearTrajectories<'a> {
         }
     }
 
-    /// Vertices at rest at positions `x` [m].
+    /// Vertices at rest at positions `x` (m).
     pub fn still(x: &'a [Vec3]) -> Self {
         Self::together(x, x)
     }

@@ -6,7 +6,7 @@
 //! ```text
 //! d' = P / M + w x r,   J w = L
 //! ```
-//! Both momenta are conserved exactly. At time t this is the linear map 1 + t [w], whose determinant is
+//! Both momenta are conserved exactly. At time t this is the linear map `1 + t [w]`, whose determinant is
 //! 1 + t^2 |w|^2 and whose least singular value is 1. So no two points of a zone come nearer to each other and
 //! nothing in it collides. It grows by at most |w|^2 / 2, to second order in a small angle.
 
@@ -14,7 +14,7 @@ use super::motions::Motions;
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
-/// Largest rotation of a zone in one motion [rad]. A zone that would rotate farther would grow too much; it is left
+/// Largest rotation of a zone in one motion (rad). A zone that would rotate farther would grow too much; it is left
 /// to the truncation of moves.
 const MAX_ROTATION: f64 = 0.1;
 
@@ -60,7 +60,7 @@ impl ImpactZones {
     }
 
     /// Joins the vertices of a collision, and the zones that they are in, into one zone. `inverse_mass` is the inverse
-    /// mass of each vertex [1/kg]. Vertices of infinite mass join no zone: all zones at them would become one.
+    /// mass of each vertex (1/kg). Vertices of infinite mass join no zone: all zones at them would become one.
     pub fn join(&mut self, vertices: [u32; 4], inverse_mass: &[f64]) {
         let mut first = None;
         for v in vertices {
@@ -116,13 +116,13 @@ impl ImpactZones {
 struct ImpactZone<'a> {
     vertices: &'a [u32],
     x: &'a [Vec3],
-    /// Inverse masses of all vertices [1/kg].
+    /// Inverse masses of all vertices (1/kg).
     inverse_mass: &'a [f64],
-    /// Mass of the zone [kg].
+    /// Mass of the zone (kg).
     mass: f64,
-    /// Centre of mass [m].
+    /// Centre of mass (m).
     centre: Vec3,
-    /// Pseudo-inverse of the inertia about the centre [1/(kg m2)].
+    /// Pseudo-inverse of the inertia about the centre (1/(kg m2)).
     inverse_inertia: Matrix3<f64>,
 }
 

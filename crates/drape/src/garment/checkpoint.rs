@@ -22,7 +22,7 @@ pub struct Checkpoint {
     stage: StageState,
     state: State,
     control: Control,
-    /// Positions of the vertices when the structure was compiled [m]: they decide the elimination orders.
+    /// Positions of the vertices when the structure was compiled (m): they decide the elimination orders.
     layout: Vec<Vec3>,
     /// Rest shapes after an edit; none without one.
     edited: Option<EditedShapes>,
@@ -31,7 +31,7 @@ pub struct Checkpoint {
     #[serde(with = "crate::exact")]
     gap_before_merging: f64,
     share: f64,
-    /// By how much the body is thinner than it is [m].
+    /// By how much the body is thinner than it is (m).
     #[serde(default)]
     recess: f64,
     findings: Vec<Finding>,
@@ -43,11 +43,11 @@ pub struct Checkpoint {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EditedShapes {
-    /// Rest shapes that the structure was compiled for [m].
+    /// Rest shapes that the structure was compiled for (m).
     made_for: Vec<[Vec2; 3]>,
     /// Whether the rest shapes changed after that.
     is_reshaped: bool,
-    /// Present rest shapes [m].
+    /// Present rest shapes (m).
     rest: Vec<[Vec2; 3]>,
     /// Triangles whose strain counts.
     counted: Vec<bool>,

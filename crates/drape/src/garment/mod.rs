@@ -32,7 +32,7 @@ pub struct Progress {
     pub stage: Stage,
     /// Steps taken in it.
     pub step: usize,
-    /// Largest seam gap [m].
+    /// Largest seam gap (m).
     pub gap: f64,
     /// Net force over weight.
     pub residual: f64,
@@ -53,7 +53,7 @@ pub struct GarmentRun {
     made_for: Option<Vec<[Vec2; 3]>>,
     gap_before_merging: f64,
     share: f64,
-    /// By how much the body is thinner than it is [m], while a tight garment is put on.
+    /// By how much the body is thinner than it is (m), while a tight garment is put on.
     recess: f64,
     findings: Vec<Finding>,
     /// Steps of sewing and of settling in finished stages.
@@ -218,7 +218,7 @@ impl GarmentRun {
         }
     }
 
-    /// Largest seam gap in the step before merging [m].
+    /// Largest seam gap in the step before merging (m).
     pub fn gap_before_merging(&self) -> f64 {
         self.gap_before_merging
     }

@@ -31,7 +31,7 @@ pub struct GarmentSetup {
     pub colliders: Vec<Arc<SurfaceTree>>,
     /// Contact settings.
     pub contact: ContactSettings,
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     pub gravity: Vec3,
     /// Sewing settings.
     pub sew: SewSettings,
@@ -84,7 +84,7 @@ impl GarmentSetup {
         Ok(self)
     }
 
-    /// The environment of sewing round solids thinner by `recess` [m]: no gravity, no friction. Layers pass through each other; the contact offset from
+    /// The environment of sewing round solids thinner by `recess` (m): no gravity, no friction. Layers pass through each other; the contact offset from
     /// solids grows with the layer, so that most of each comes to lie in order.
     pub(super) fn sewing_environment(&self, recess: f64) -> Environment {
         Environment {
@@ -99,7 +99,7 @@ impl GarmentSetup {
         }
     }
 
-    /// The environment of the merged garment round solids thinner by `recess` [m]: gravity and friction.
+    /// The environment of the merged garment round solids thinner by `recess` (m): gravity and friction.
     pub(super) fn worn_environment(&self, recess: f64) -> Environment {
         Environment {
             gravity: self.gravity,
@@ -111,7 +111,7 @@ impl GarmentSetup {
         }
     }
 
-    /// The world of sewing: the solids, thinner by `recess` [m], and the panels of a level with open seams.
+    /// The world of sewing: the solids, thinner by `recess` (m), and the panels of a level with open seams.
     pub(super) fn world(&self, level: usize, recess: f64) -> GarmentWorld {
         let mut world = World::new("garment", self.sewing_environment(recess));
         let mut solids = Solids::new();

@@ -15,10 +15,10 @@ const SUNK: f64 = 0.01;
 const RECESS: f64 = 0.012;
 /// Steps in which it grows back.
 const GROWTH_STEPS: f64 = 20.0;
-/// A step of these [s], and the drag while it grows [1/s]: the cloth follows the body and does not swing.
+/// A step of these (s), and the drag while it grows (1/s): the cloth follows the body and does not swing.
 const STEP: f64 = 1.0 / 60.0;
 const DRAG: f64 = 20.0;
-/// Speed limit of the cloth meanwhile [m/s].
+/// Speed limit of the cloth meanwhile (m/s).
 const SPEED_LIMIT: f64 = 1.2;
 
 impl GarmentRun {
@@ -37,7 +37,7 @@ impl GarmentRun {
         inside.count() as f64 > SUNK * state.positions.len() as f64
     }
 
-    /// How much thinner the body of a tight garment is made [m].
+    /// How much thinner the body of a tight garment is made (m).
     fn largest_recess(&self) -> f64 {
         let solids = self.setup.colliders.iter();
         let heights = solids.filter_map(|solid| solid.mesh().bounds());
@@ -137,7 +137,7 @@ mod tests {
         Arc::new(SurfaceTree::new(mesh))
     }
 
-    /// Two sheets of a width [m], before and behind the post, sewn at both sides to a tube.
+    /// Two sheets of a width (m), before and behind the post, sewn at both sides to a tube.
     fn tube(width: f64) -> GarmentSetup {
         let (columns, rows) = (12u32, 10u32);
         let mut mesh = TriangleMesh::default();

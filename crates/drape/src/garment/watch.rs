@@ -81,7 +81,7 @@ impl GarmentRun {
         }
     }
 
-    /// The net force on each merged vertex [N] of a garment that was given up because it stayed far from rest; none of
+    /// The net force on each merged vertex (N) of a garment that was given up because it stayed far from rest; none of
     /// another.
     pub fn forces_of_stuck(&mut self) -> Option<Vec<f64>> {
         if !self.is_stuck() {
@@ -102,7 +102,7 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold(none, |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// Parts of a cloth that hang together with their highest points, now and as placed [m].
+/// Parts of a cloth that hang together with their highest points, now and as placed (m).
 struct Parts {
     parent: Vec<usize>,
     highest: Vec<[f64; 2]>,

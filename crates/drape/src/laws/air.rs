@@ -13,15 +13,15 @@ use toile_geometry::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Air {
-    /// Drag per mass [1/s]: a free velocity decays as exp(-drag t). A crude model, but cheap.
+    /// Drag per mass (1/s): a free velocity decays as exp(-drag t). A crude model, but cheap.
     pub drag: f64,
-    /// Density [kg/m3]; 0 for none, 1.2 at sea level.
+    /// Density (kg/m3); 0 for none, 1.2 at sea level.
     pub density: f64,
     /// Drag coefficient across the cloth: 1.2 for a square plate, 2 for a long one.
     pub normal: f64,
     /// Drag coefficient along the cloth, both sides together: 0.01 to 0.05.
     pub tangential: f64,
-    /// Velocity of the wind [m/s].
+    /// Velocity of the wind (m/s).
     pub wind: Vec3,
 }
 
@@ -39,7 +39,7 @@ impl Default for Air {
 }
 
 impl Air {
-    /// Density at sea level and 20 degrees [kg/m3] (ISO 2533).
+    /// Density at sea level and 20 degrees (kg/m3) (ISO 2533).
     pub const SEA_LEVEL: f64 = 1.204;
 
     /// Whether it exerts a force on triangles.
@@ -47,12 +47,12 @@ impl Air {
         self.density > 0.0 && (self.normal > 0.0 || self.tangential > 0.0)
     }
 
-    /// Largest acceleration of resting cloth of `mass` per area [kg/m2] by the wind [m/s2].
+    /// Largest acceleration of resting cloth of `mass` per area (kg/m2) by the wind (m/s2).
     pub fn largest_acceleration(&self, mass: f64) -> f64 {
         0.5 * self.density * (self.normal + self.tangential) * self.wind.norm_squared() / mass
     }
 
-    /// The drag law of a triangle: area [m2], unit normal.
+    /// The drag law of a triangle: area (m2), unit normal.
     pub fn on(&self, area: f64, normal: Vec3) -> AirPull {
         let half = 0.5 * self.density * area;
         AirPull {
@@ -68,9 +68,9 @@ impl Air {
 pub struct AirPull {
     /// Unit normal.
     pub normal: Vec3,
-    /// rho A C_n / 2 [kg/m].
+    /// rho A C_n / 2 (kg/m).
     pub across: f64,
-    /// rho A C_t / 2 [kg/m].
+    /// rho A C_t / 2 (kg/m).
     pub along: f64,
 }
 
@@ -82,19 +82,19 @@ impl AirPull {
         (across, along, along.norm())
     }
 
-    /// Potential of the force at a velocity relative to the air [m/s]: a third of the dissipated power [W].
+    /// Potential of the force at a velocity relative to the air (m/s): a third of the dissipated power (W).
     pub fn potential(&self, w: Vec3) -> f64 {
         let (across, _, along) = self.split(w);
         (self.across * across.abs().powi(3) + self.along * along.powi(3)) / 3.0
     }
 
-    /// Gradient of the potential with respect to the velocity: minus the force on the triangle [N].
+    /// Gradient of the potential with respect to the velocity: minus the force on the triangle (N).
     pub fn gradient(&self, w: Vec3) -> Vec3 {
         let (across, along, speed) = self.split(w);
         self.normal * (self.across * across.abs() * across) + along * (self.along * speed)
     }
 
-    /// Hessian of the potential with respect to the velocity, positive semidefinite [N s/m].
+    /// Hessian of the potential with respect to the velocity, positive semidefinite (N s/m).
     pub fn hessian(&self, w: Vec3) -> Matrix3<f64> {
         let (across, along, speed) = self.split(w);
         let nn = self.normal * self.normal.transpose();

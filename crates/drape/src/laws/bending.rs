@@ -23,17 +23,17 @@ use rayon::prelude::*;
 pub struct BendingStencil {
     /// The vertices.
     pub vertices: Vec<u32>,
-    /// Weights of each vertex in x_uu, x_uv, x_vv [1/m2].
+    /// Weights of each vertex in x_uu, x_uv, x_vv (1/m2).
     pub weights: Vec<[f64; 3]>,
     /// For each free edge the curvature (uu, uv, vv) per unit change of the gradient across it.
     pub free: Vec<[f64; 3]>,
 }
 
-/// Bending stiffness as a matrix over (kappa_uu, kappa_uv, kappa_vv) [N m]: the energy per area is
+/// Bending stiffness as a matrix over (kappa_uu, kappa_uv, kappa_vv) (N m): the energy per area is
 /// half the quadratic form, 1/2 (D_warp uu^2 + D_weft vv^2 + 2 D_nu uu vv + 2 D_twist uv^2).
 pub type BendingMatrix = Matrix3<f64>;
 
-/// The stiffness matrix of D_warp, D_weft, the coupling D_nu and D_twist [N m].
+/// The stiffness matrix of D_warp, D_weft, the coupling D_nu and D_twist (N m).
 pub fn bending_matrix([warp, weft, coupling, twist]: [f64; 4]) -> BendingMatrix {
     Matrix3::new(
         warp,
@@ -67,7 +67,7 @@ impl BendingStencil {
 impl BendingStencil {
     /// The stencil in the principal directions of its stiffness, so that the energy per area
     /// is 1/2 sum_k D_k |kappa_k|^2: weights of each vertex in the three kappa_k, and the D_k, zero or
-    /// above [N m].
+    /// above (N m).
     pub fn principal(&self, d: BendingMatrix) -> (Vec<[f64; 3]>, [f64; 3]) {
         let eigen = self.stiffness(d).symmetric_eigen();
         let rotation = eigen.eigenvectors.transpose();

@@ -8,13 +8,13 @@ use toile_geometry::Vec3;
 /// section 5.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
-    /// Normal stiffness [N/m].
+    /// Normal stiffness (N/m).
     pub normal: f64,
-    /// Tangential stiffness while sticking [N/m].
+    /// Tangential stiffness while sticking (N/m).
     pub tangential: f64,
     /// Friction coefficient.
     pub friction: f64,
-    /// Depth beyond which the normal stiffness is [`HARDER`] times larger [m]; infinite for solids.
+    /// Depth beyond which the normal stiffness is [`HARDER`] times larger (m); infinite for solids.
     pub hard_from: f64,
 }
 
@@ -29,21 +29,21 @@ pub const HARDER: f64 = 100.0;
 /// A point near a surface, with a second-order model of the surface at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPlane {
-    /// The point [m].
+    /// The point (m).
     pub point: Vec3,
-    /// Depth of the point below the offset surface, negative above it [m].
+    /// Depth of the point below the offset surface, negative above it (m).
     pub depth: f64,
-    /// Gradient of the smooth distance at the point \[1\], of length 1 except near the medial axis.
+    /// Gradient of the smooth distance at the point (1), of length 1 except near the medial axis.
     pub gradient: Vec3,
-    /// Outward unit normal, the direction of the gradient \[1\].
+    /// Outward unit normal, the direction of the gradient (1).
     pub normal: Vec3,
-    /// Negative part of the Hessian of the distance, with positive sign: concave curvature of the surface [1/m].
+    /// Negative part of the Hessian of the distance, with positive sign: concave curvature of the surface (1/m).
     pub hollow: Matrix3<f64>,
-    /// Positive part of the Hessian of the distance: convex curvature of the surface [1/m].
+    /// Positive part of the Hessian of the distance: convex curvature of the surface (1/m).
     pub bulge: Matrix3<f64>,
-    /// Friction anchor: the position at which the point stuck [m].
+    /// Friction anchor: the position at which the point stuck (m).
     pub anchor: Vec3,
-    /// Lagged normal force, which limits friction [N].
+    /// Lagged normal force, which limits friction (N).
     pub lagged_normal_force: f64,
     /// Whether the Hessian treats a point at the limit of friction as sticking, because the step moves it back into the
     /// cone.
@@ -53,7 +53,7 @@ pub struct ContactPlane {
 }
 
 impl ContactPlane {
-    /// Depth of a point below the offset surface, to first order [m].
+    /// Depth of a point below the offset surface, to first order (m).
     pub fn depth_of(&self, point: Vec3) -> f64 {
         self.depth - self.gradient.dot(&(point - self.point))
     }
@@ -63,19 +63,19 @@ impl ContactPlane {
 /// contact and friction together excite a flutter of cloth at rest.
 pub const RESTITUTION_DAMPING: f64 = 0.2;
 
-/// Largest speed [m/s] at which a solid ejects buried cloth: the energy of its depth was not stored by motion and would
+/// Largest speed (m/s) at which a solid ejects buried cloth: the energy of its depth was not stored by motion and would
 /// throw it.
 const EJECTION_SPEED: f64 = 1.0;
 
-/// Largest normal force [N] on buried cloth of a mass [kg] with a speed `leaving` [m/s], in a substep [s].
+/// Largest normal force (N) on buried cloth of a mass (kg) with a speed `leaving` (m/s), in a substep (s).
 #[inline(always)]
 pub fn gentle_push(mass: f64, leaving: f64, substep: f64) -> f64 {
     (mass / substep * (EJECTION_SPEED - leaving)).max(0.0)
 }
 
-/// Normal force [N] of stiffness and damping together: max(0, k d - c v), with k d the
-/// `elastic` part [N], v the `leaving` speed along the normal [m/s] and c = 2 zeta sqrt(k m) for
-/// the `mass` [kg] on the spring `normal` [N/m]. It is never attractive (Wriggers 2006, section 5.1).
+/// Normal force (N) of stiffness and damping together: max(0, k d - c v), with k d the
+/// `elastic` part (N), v the `leaving` speed along the normal (m/s) and c = 2 zeta sqrt(k m) for
+/// the `mass` (kg) on the spring `normal` (N/m). It is never attractive (Wriggers 2006, section 5.1).
 #[inline(always)]
 pub fn damped_push(elastic: f64, normal: f64, mass: f64, leaving: f64) -> f64 {
     (elastic - 2.0 * RESTITUTION_DAMPING * (normal * mass).sqrt() * leaving).max(0.0)
@@ -86,7 +86,7 @@ pub fn damped_push(elastic: f64, normal: f64, mass: f64, leaving: f64) -> f64 {
 const AT_LIMIT: f64 = 0.99;
 
 impl ContactLaw {
-    /// Energy [J], force \[N\] and stiffness [N/m] of the normal spring at a depth [m].
+    /// Energy (J), force (N) and stiffness (N/m) of the normal spring at a depth (m).
     pub fn normal_spring(&self, depth: f64) -> [f64; 3] {
         let normal = self.normal;
         let (soft, hard) = (depth.max(0.0), (depth - self.hard_from).max(0.0));
@@ -98,7 +98,7 @@ impl ContactLaw {
         ]
     }
 
-    /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
+    /// Energy (J), gradient (N) and a positive semidefinite Hessian (N/m) at a point.
     ///
     /// Normal part: k d^2 / 2 for depth d > 0, and [`HARDER`] k (d - h)^2 / 2 more beyond the hard depth h. Its Hessian
     /// has k g g' and, where the surface is concave, the change of the normal along the surface: without it Newton's
@@ -150,14 +150,14 @@ impl ContactLaw {
     }
 
     /// The Hessian of [`Self::evaluate`] minus the exact one, from the convex curvature of the surface, which
-    /// destabilises sliding [N/m].
+    /// destabilises sliding (N/m).
     pub fn missing_curvature(&self, plane: &ContactPlane, point: Vec3) -> Matrix3<f64> {
         let [_, force, _] = self.normal_spring(plane.depth_of(point));
         plane.bulge * force
     }
 
     /// Energy that a `step` of a point at the limit of friction back into the cone adds to the quadratic model of
-    /// [`Self::evaluate`] [J].
+    /// [`Self::evaluate`] (J).
     pub fn unforeseen_return(&self, plane: &ContactPlane, point: Vec3, step: Vec3) -> f64 {
         let limit = self.friction * plane.lagged_normal_force;
         let n = plane.normal;
@@ -176,7 +176,7 @@ impl ContactLaw {
         self.tangential * spring * (back - 0.5 * spring).max(0.0)
     }
 
-    /// Contact energy of a point above a surface after a `step` into it [J].
+    /// Contact energy of a point above a surface after a `step` into it (J).
     pub fn unforeseen_landing(&self, plane: &ContactPlane, point: Vec3, step: Vec3) -> f64 {
         if plane.depth_of(point) > 0.0 || plane.landing {
             return 0.0;
@@ -186,13 +186,13 @@ impl ContactLaw {
     }
 
     /// Force on a landing point above the surface with which the Newton step ends at the surface: that of the normal
-    /// spring extended to negative depths \[N\]. None for other points.
+    /// spring extended to negative depths (N). None for other points.
     pub fn pull_down(&self, plane: &ContactPlane, point: Vec3) -> Option<Vec3> {
         let depth = plane.depth_of(point);
         (plane.landing && depth < 0.0).then(|| plane.gradient * (self.normal * depth))
     }
 
-    /// The energy of [`Self::evaluate`] [J].
+    /// The energy of [`Self::evaluate`] (J).
     pub fn energy(&self, plane: &ContactPlane, point: Vec3) -> f64 {
         let n = plane.normal;
         let [mut energy, ..] = self.normal_spring(plane.depth_of(point));
@@ -209,13 +209,13 @@ impl ContactLaw {
         energy
     }
 
-    /// Normal force at a point [N].
+    /// Normal force at a point (N).
     pub fn normal_force(&self, plane: &ContactPlane, point: Vec3) -> f64 {
         let [_, force, _] = self.normal_spring(plane.depth_of(point));
         force * plane.gradient.norm()
     }
 
-    /// The anchor after a step [m]: unchanged inside the friction cone of `normal_force`, else moved to the boundary of
+    /// The anchor after a step (m): unchanged inside the friction cone of `normal_force`, else moved to the boundary of
     /// the cone (return mapping).
     pub fn slide(&self, plane: &ContactPlane, point: Vec3, normal_force: f64) -> Vec3 {
         let n = plane.normal;

@@ -8,15 +8,15 @@ use toile_geometry::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticLaw {
-    /// Stiffness at small gaps [N/m].
+    /// Stiffness at small gaps (N/m).
     pub stiffness: f64,
-    /// Largest force [N]; infinite for a plain spring.
+    /// Largest force (N); infinite for a plain spring.
     #[serde(with = "crate::exact")]
     pub largest_force: f64,
 }
 
 impl ElasticLaw {
-    /// Energy [J] at a gap vector [m]: k g^2 / 2 within F/k, then F g - F^2 / (2 k)
+    /// Energy (J) at a gap vector (m): k g^2 / 2 within F/k, then F g - F^2 / (2 k)
     /// (the Huber function, convex).
     pub fn energy(&self, gap: Vec3) -> f64 {
         let length = gap.norm();
@@ -28,7 +28,7 @@ impl ElasticLaw {
         }
     }
 
-    /// Secant stiffness [N/m]: the force is this times the gap. Used as an isotropic Hessian it
+    /// Secant stiffness (N/m): the force is this times the gap. Used as an isotropic Hessian it
     /// majorises the true one, so a Newton step never overshoots.
     pub fn secant(&self, gap: Vec3) -> f64 {
         let length = gap.norm();

@@ -13,33 +13,33 @@ use toile_geometry::Vec3;
 /// The fold terms of one triangle during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldTerm {
-    /// Moment q of the internal curvature [N m2].
+    /// Moment q of the internal curvature (N m2).
     pub internal_moment: Vector3<f64>,
-    /// s_0 [1/m].
+    /// s_0 (1/m).
     pub start: Vector3<f64>,
-    /// V [N m3].
+    /// V (N m3).
     pub viscous: Matrix3<f64>,
 }
 
-/// Twice the area times the unit normal of a triangle [m2].
+/// Twice the area times the unit normal of a triangle (m2).
 pub fn area_normal(x: [Vec3; 3]) -> Vec3 {
     (x[1] - x[0]).cross(&(x[2] - x[0]))
 }
 
-/// Curvatures along the unit normal `n` [1/m]; `curvature` are x_uu, x_uv, x_vv.
+/// Curvatures along the unit normal `n` (1/m); `curvature` are x_uu, x_uv, x_vv.
 pub fn along_normal(n: Vec3, curvature: [Vec3; 3]) -> Vector3<f64> {
     Vector3::from(curvature.map(|k| n.dot(&k)))
 }
 
 impl FoldTerm {
-    /// Energy [J] at curvatures along the normal.
+    /// Energy (J) at curvatures along the normal.
     pub fn energy(&self, s: Vector3<f64>) -> f64 {
         let change = s - self.start;
         -self.internal_moment.dot(&s) + 0.5 * change.dot(&(self.viscous * change))
     }
 
-    /// Gradient of the energy with respect to the three curvature vectors [N m2], and to the corners through the normal
-    /// [N]. None for a triangle without area, which has no normal.
+    /// Gradient of the energy with respect to the three curvature vectors (N m2), and to the corners through the normal
+    /// (N). None for a triangle without area, which has no normal.
     pub fn gradient(&self, x: [Vec3; 3], curvature: [Vec3; 3]) -> Option<([Vec3; 3], [Vec3; 3])> {
         let normal = area_normal(x);
         let size = normal.norm();

@@ -13,11 +13,11 @@ use toile_geometry::{Vec2, Vec3};
 /// A triangle at rest: the weights of its corners in the tangents, and its area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneElement {
-    /// Weights a_i of the corners in f_u [1/m].
+    /// Weights a_i of the corners in f_u (1/m).
     pub warp: [f64; 3],
-    /// Weights b_i of the corners in f_v [1/m].
+    /// Weights b_i of the corners in f_v (1/m).
     pub weft: [f64; 3],
-    /// Area at rest [m2].
+    /// Area at rest (m2).
     pub area: f64,
 }
 
@@ -66,12 +66,12 @@ pub struct Strain {
     pub warp: f64,
     /// Relative change of length along the weft: |f_v| - 1.
     pub weft: f64,
-    /// Shear angle [rad].
+    /// Shear angle (rad).
     pub shear: f64,
 }
 
 impl MembraneElement {
-    /// The element with these corners in the material plane, warp along the first axis [m]; none for a triangle without
+    /// The element with these corners in the material plane, warp along the first axis (m); none for a triangle without
     /// area.
     pub fn new(rest: [Vec2; 3]) -> Option<Self> {
         let (d1, d2) = (rest[1] - rest[0], rest[2] - rest[0]);
@@ -90,7 +90,7 @@ impl MembraneElement {
         })
     }
 
-    /// Corners in the material plane, the first at the origin [m]: those of [`Self::new`] up to translation.
+    /// Corners in the material plane, the first at the origin (m): those of [`Self::new`] up to translation.
     pub fn rest(&self) -> [Vec2; 3] {
         // The gradients of the weights of corners 1 and 2 are dual to the edges from corner 0.
         let determinant = self.warp[1] * self.weft[2] - self.warp[2] * self.weft[1];
@@ -108,12 +108,12 @@ impl MembraneElement {
         ]
     }
 
-    /// Energy [J].
+    /// Energy (J).
     pub fn energy(&self, law: &impl StrainLaw, x: [Vec3; 3]) -> f64 {
         self.area * law.stress(green_strain(self.tangents(x))).1
     }
 
-    /// Energy [J] and its gradient with respect to the corners [N].
+    /// Energy (J) and its gradient with respect to the corners (N).
     pub fn gradient(&self, law: &impl StrainLaw, x: [Vec3; 3]) -> (f64, [Vec3; 3]) {
         let [fu, fv] = self.tangents(x);
         let ([s_uu, s_vv, s_uv], density) = law.stress(green_strain([fu, fv]));
@@ -123,7 +123,7 @@ impl MembraneElement {
         (self.area * density, gradient)
     }
 
-    /// Gradient with respect to one corner [N] and the positive semidefinite diagonal block of the Hessian [N/m]: one
+    /// Gradient with respect to one corner (N) and the positive semidefinite diagonal block of the Hessian (N/m): one
     /// corner of [`Self::gradient`] and [`Self::hessian`].
     pub fn corner(&self, law: &impl StrainLaw, x: [Vec3; 3], i: usize) -> (Vec3, Matrix3<f64>) {
         let [fu, fv] = self.tangents(x);
@@ -144,7 +144,7 @@ impl MembraneElement {
         ((by_u * a + by_v * b) * self.area, hessian * self.area)
     }
 
-    /// The Hessian: blocks of the corner pairs 00, 01, 02, 11, 12, 22 [N/m].
+    /// The Hessian: blocks of the corner pairs 00, 01, 02, 11, 12, 22 (N/m).
     ///
     /// The material part is positive semidefinite. The geometric part is the 2x2 stress times the identity; its
     /// negative (compressive) principal stresses are multiplied by `curvature`: with 0 the matrix is exact in tension

@@ -8,7 +8,7 @@ use toile_geometry::{Topology, Vec2};
 pub struct RestSheet<'a> {
     /// Corners of the triangles.
     pub triangles: &'a [[u32; 3]],
-    /// Position of each corner in the material plane [m].
+    /// Position of each corner in the material plane (m).
     pub rest: &'a [[Vec2; 3]],
     /// Edges of the triangles.
     pub topology: &'a Topology,
@@ -27,7 +27,7 @@ pub(super) struct Across {
     /// The triangle it points out of.
     pub first: u32,
     pub vertices: Vec<u32>,
-    /// [1/m]
+    /// (1/m)
     pub weights: Vec<f64>,
     /// Rings of neighbours in the estimate.
     pub rings: u8,
@@ -212,7 +212,7 @@ pub(super) fn outward(corners: [Vec2; 3], k: usize) -> Vec2 {
     }
 }
 
-/// Gradients of the linear functions that are one at one corner and zero at the others [1/m].
+/// Gradients of the linear functions that are one at one corner and zero at the others (1/m).
 pub(super) fn hat_gradients(corners: [Vec2; 3]) -> [Vec2; 3] {
     let twice = (corners[1] - corners[0]).perp(&(corners[2] - corners[0]));
     [0, 1, 2].map(|k| {

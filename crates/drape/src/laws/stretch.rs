@@ -42,18 +42,18 @@ pub enum Compression {
 /// Stress and energy as functions of Green strain (E_uu, E_vv, gamma). Implemented by [`MembraneLaw`] and by its
 /// form over a step; materials hold a [`MembraneLaw`], so another law is a part of it.
 pub trait StrainLaw {
-    /// Stress S_uu, S_vv, S_uv [N/m] and energy per area [J/m2].
+    /// Stress S_uu, S_vv, S_uv (N/m) and energy per area (J/m2).
     fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64);
 
     /// Derivative of the stress with respect to the strain, a symmetric positive semidefinite matrix given as
-    /// uu-uu, vv-vv, uu-vv, gamma-gamma, uu-gamma, vv-gamma [N/m].
+    /// uu-uu, vv-vv, uu-vv, gamma-gamma, uu-gamma, vv-gamma (N/m).
     fn slope(&self, strain: [f64; 3]) -> [f64; 6];
 }
 
 /// The law of a membrane in stretch and shear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneLaw {
-    /// C11, C22, C12 and the shear stiffness G [N/m].
+    /// C11, C22, C12 and the shear stiffness G (N/m).
     pub stiffness: [f64; 4],
     /// The number k along warp and weft: S = C (E + k E^3) in tension; 0 is a linear law.
     pub hardening: [f64; 2],
@@ -64,7 +64,7 @@ pub struct MembraneLaw {
 }
 
 impl MembraneLaw {
-    /// A linear law; `stiffness` is C11, C22, C12, G [N/m].
+    /// A linear law; `stiffness` is C11, C22, C12, G (N/m).
     pub fn linear(stiffness: [f64; 4]) -> Self {
         Self {
             stiffness,
@@ -85,7 +85,7 @@ impl MembraneLaw {
         hardening == [0.0; 2] && limit == [f64::INFINITY; 2] && compression == Compression::Full
     }
 
-    /// Contribution of hardening and limit along one direction: stress [N/m], energy [J/m2] and stiffness [N/m].
+    /// Contribution of hardening and limit along one direction: stress (N/m), energy (J/m2) and stiffness (N/m).
     fn beyond_line(&self, direction: usize, strain: f64) -> (f64, f64, f64) {
         let c = self.stiffness[direction];
         let e = strain.max(0.0);
@@ -169,11 +169,11 @@ enum Field {
 
 /// A wrinkled state: one tension along a direction t.
 struct Wrinkle {
-    /// T [N/m].
+    /// T (N/m).
     tension: f64,
     /// t t as (uu, vv, uv).
     along: [f64; 3],
-    /// Compliance q = t t : C^-1 : t t [m/N].
+    /// Compliance q = t t : C^-1 : t t (m/N).
     compliance: f64,
     /// dT/dtheta m + T dm/dtheta, and minus the second derivative of the energy by theta.
     turn: ([f64; 3], f64),
@@ -193,7 +193,7 @@ static DOUBLED: LazyLock<[(f64, f64); DIRECTIONS]> =
 /// Most Newton and bisection steps of the refinement: 60 halvings reach rounding.
 const REFINEMENTS: usize = 60;
 
-/// Step of the refinement below which it ends [rad]: rounding is a few times smaller.
+/// Step of the refinement below which it ends (rad): rounding is a few times smaller.
 const CLOSE: f64 = 1e-15;
 
 impl Field {

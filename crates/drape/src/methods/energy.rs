@@ -2,7 +2,7 @@
 
 use crate::{Inertia, State, System, Workspace};
 
-/// Largest physically possible speed of a vertex [m/s]: the speed of sound in the stiffest fibres (aramid, drawn
+/// Largest physically possible speed of a vertex (m/s): the speed of sound in the stiffest fibres (aramid, drawn
 /// polyethylene).
 const MAX_SPEED: f64 = 1e4;
 
@@ -11,7 +11,7 @@ const MAX_SPEED: f64 = 1e4;
 /// bound only a few substeps later.
 const OSCILLATION: f64 = 1e3;
 
-/// Speed [m/s] of the whole cloth whose kinetic energy is allowed for rounding errors.
+/// Speed (m/s) of the whole cloth whose kinetic energy is allowed for rounding errors.
 const ROUNDING_SPEED: f64 = 1e-3;
 
 /// Measures the energy before and after a step; its buffers are sized once.
@@ -28,7 +28,7 @@ impl EnergyMonitor {
         self.before = self.energy(system, state, workspace);
     }
 
-    /// Whether the energy after `step` [s] is below the bound for the energy before it.
+    /// Whether the energy after `step` (s) is below the bound for the energy before it.
     pub fn is_possible(
         &mut self,
         system: &System,
@@ -41,12 +41,12 @@ impl EnergyMonitor {
         self.after <= bound
     }
 
-    /// The energy that [`Self::is_possible`] measured last [J].
+    /// The energy that [`Self::is_possible`] measured last (J).
     pub fn last(&self) -> f64 {
         self.after
     }
 
-    /// Kinetic energy and that of strain, elastics and contact, without weight [J].
+    /// Kinetic energy and that of strain, elastics and contact, without weight (J).
     pub fn energy(&mut self, system: &System, state: &State, workspace: &mut Workspace) -> f64 {
         self.zeros.resize(system.vertex_count(), 0.0);
         let no_inertia = Inertia {
@@ -71,10 +71,10 @@ impl EnergyMonitor {
 /// An upper bound of the energy of a cloth over a run: its energy at the start of the run plus the most that weight,
 /// air and changes between steps can have added.
 pub struct EnergyBudget {
-    /// Time [s] and energy [J] at the end of the last step. A state of another time starts a new run.
+    /// Time (s) and energy (J) at the end of the last step. A state of another time starts a new run.
     time: f64,
     after: f64,
-    /// The bound at that time [J].
+    /// The bound at that time (J).
     possible: f64,
 }
 
@@ -89,7 +89,7 @@ impl Default for EnergyBudget {
 }
 
 impl EnergyBudget {
-    /// The bound before a step from `time` [s] with energy `before` [J]: solids and pins that were moved since the
+    /// The bound before a step from `time` (s) with energy `before` (J): solids and pins that were moved since the
     /// last step may have added energy.
     pub fn start(&self, time: f64, before: f64) -> f64 {
         if time == self.time {
@@ -99,7 +99,7 @@ impl EnergyBudget {
         }
     }
 
-    /// Records a step that ended at `time` [s] with energy `after` and bound `possible` [J].
+    /// Records a step that ended at `time` (s) with energy `after` and bound `possible` (J).
     pub fn end(&mut self, time: f64, after: f64, possible: f64) {
         *self = Self {
             time,
@@ -109,7 +109,7 @@ impl EnergyBudget {
     }
 }
 
-/// Kinetic energy and that of strain, elastics, contact and weight [J], heights counted from the origin.
+/// Kinetic energy and that of strain, elastics, contact and weight (J), heights counted from the origin.
 pub fn whole_energy(system: &System, state: &State, workspace: &mut Workspace) -> f64 {
     let weight = |(x, m): (&toile_geometry::Vec3, &f64)| m * system.control.gravity.dot(x);
     let gravity: f64 = state
@@ -121,13 +121,13 @@ pub fn whole_energy(system: &System, state: &State, workspace: &mut Workspace) -
     EnergyMonitor::default().energy(system, state, workspace) - gravity
 }
 
-/// The largest energy of a stable method after `step` [s]: [`possible_energy`] times the factor by which that of
-/// symplectic methods oscillates [J].
+/// The largest energy of a stable method after `step` (s): [`possible_energy`] times the factor by which that of
+/// symplectic methods oscillates (J).
 pub fn energy_bound(system: &System, before: f64, step: f64) -> f64 {
     OSCILLATION * possible_energy(system, before, step)
 }
 
-/// Upper bound of the energy H without weight after `step` [s], when it was `before` [J]. All potentials but gravity's
+/// Upper bound of the energy H without weight after `step` (s), when it was `before` (J). All potentials but gravity's
 /// are above zero, so dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
 pub fn possible_energy(system: &System, before: f64, step: f64) -> f64 {
     let mass: f64 = system
@@ -150,7 +150,7 @@ pub fn possible_energy(system: &System, before: f64, step: f64) -> f64 {
     root * root + 0.5 * mass * ROUNDING_SPEED * ROUNDING_SPEED
 }
 
-/// Whether a speed of a vertex [m/s] is physically possible; false for NaN.
+/// Whether a speed of a vertex (m/s) is physically possible; false for NaN.
 pub fn is_possible_speed(speed: f64) -> bool {
     speed <= MAX_SPEED
 }
@@ -164,7 +164,7 @@ pub fn first_impossible_speed(state: &State) -> Option<usize> {
         .position(|v| !possible(v.norm_squared()))
 }
 
-/// The vertex with the highest speed, and the speed [m/s].
+/// The vertex with the highest speed, and the speed (m/s).
 pub fn fastest_vertex(state: &State) -> (usize, f64) {
     let mut best = (0, 0.0);
     for (v, velocity) in state.velocities.iter().enumerate() {

@@ -26,10 +26,10 @@ pub trait Scheme: Default + Send {
     /// scheme that is never stable.
     const LIMIT: f64;
 
-    /// Prepares for a step of substeps of `h` [s].
+    /// Prepares for a step of substeps of `h` (s).
     fn begin(&mut self, _model: &System, _state: &State, _workspace: &mut Workspace, _h: f64) {}
 
-    /// Advances positions, velocities and friction anchors by `h` [s].
+    /// Advances positions, velocities and friction anchors by `h` (s).
     fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64);
 }
 
@@ -49,8 +49,8 @@ const STABILITY_FRACTION: f64 = 0.9;
 /// Most substeps of one step: only a mesh with sliver triangles asks for more, and that is an error.
 const MAX_SUBSTEPS: f64 = 1e6;
 
-/// Net force on every vertex at a state [N], zero at pins: all forces of the model, with contact dashpots for a
-/// substep of `h` [s].
+/// Net force on every vertex at a state (N), zero at pins: all forces of the model, with contact dashpots for a
+/// substep of `h` (s).
 pub fn forces<'a>(
     system: &System,
     state: &State,

@@ -19,7 +19,7 @@ pub struct FrequencySearch {
 /// The vibration of the largest frequency.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FastestMode {
-    /// Angular frequency [rad/s].
+    /// Angular frequency (rad/s).
     pub frequency: f64,
     /// The vertex of largest amplitude.
     pub vertex: usize,
@@ -31,7 +31,7 @@ const ACCURATE_ITERATIONS: usize = 160;
 /// Lanczos iterations before every step of an explicit method: relative error of a few per mille.
 const STEP_ITERATIONS: usize = 30;
 
-/// The largest angular frequency of the free vertices about a state [rad/s]: the square root of
+/// The largest angular frequency of the free vertices about a state (rad/s): the square root of
 /// the largest eigenvalue of M^-1 K, K the positive semidefinite Hessian of membrane, bending,
 /// elastics and the loaded contacts at that state. At equilibrium K is the exact Hessian.
 ///
@@ -43,7 +43,7 @@ pub fn largest_frequency(system: &System, state: &State) -> f64 {
         .frequency
 }
 
-/// A bound on the frequency that contact can add [rad/s]: the largest sum over a vertex of
+/// A bound on the frequency that contact can add (rad/s): the largest sum over a vertex of
 /// w_s k_s / m, samples s at it with weight w_s and normal stiffness k_s (rows of K summed, so
 /// every eigenvalue is below it; Gershgorin 1931). With samples at vertices alone it is
 /// sqrt(stiffness / density). Zero without solid surfaces.
@@ -68,7 +68,7 @@ pub fn contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
         .sqrt()
 }
 
-/// [`contact_frequency`] raised for the contact dashpot [rad/s]: a dashpot of damping ratio zeta, evaluated at the old
+/// [`contact_frequency`] raised for the contact dashpot (rad/s): a dashpot of damping ratio zeta, evaluated at the old
 /// velocity, lowers the limit of h w from 2 to 2 (sqrt(1 + zeta^2) - zeta).
 pub fn damped_contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
     let zeta = RESTITUTION_DAMPING;
@@ -89,10 +89,10 @@ impl FrequencySearch {
         self.search(system, state, workspace, iterations)
     }
 
-    /// The largest stable substep [s] and the vertex of largest amplitude: w h = `limit` without damping, and with
+    /// The largest stable substep (s) and the vertex of largest amplitude: w h = `limit` without damping, and with
     /// the damping ratio xi of the fastest vibration h = limit / w (sqrt(1 + xi^2) - xi), the limit of a leapfrog
     /// whose damping force is evaluated at the lagging velocity (Belytschko, Liu and Moran 2000, section 6.2).
-    /// `extra` is the frequency [rad/s] of contact, added in squares.
+    /// `extra` is the frequency (rad/s) of contact, added in squares.
     pub fn stable_step(
         &mut self,
         system: &System,

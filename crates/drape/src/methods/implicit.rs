@@ -14,7 +14,7 @@ use crate::{ContactSample, DrapeError, Inertia, NewtonReport, State, System, Wor
 use std::marker::PhantomData;
 use toile_geometry::Vec3;
 
-/// Longest displacement of a vertex in one iteration of Newton and quasi-Newton methods where there are solids [m].
+/// Longest displacement of a vertex in one iteration of Newton and quasi-Newton methods where there are solids (m).
 pub const LONGEST_MOVE: f64 = 0.05;
 
 /// A rule of time integration: the potential that a step minimises, and the new state from the minimum.
@@ -23,20 +23,20 @@ pub trait TimeRule: Send {
     /// less. None for rules with numerical damping, which gain no energy from step to step.
     const MAX_ENERGY_FACTOR: Option<f64> = None;
 
-    /// Time from the start of the step to the unknown positions [s].
+    /// Time from the start of the step to the unknown positions (s).
     fn unknown_time(h: f64) -> f64 {
         h
     }
 
-    /// Number of substeps of a step of `step` [s] where the settings give none.
+    /// Number of substeps of a step of `step` (s) where the settings give none.
     fn substeps(_model: &System, _samples: &[ContactSample], _step: f64) -> u32 {
         1
     }
 
-    /// Inertia's weight per mass b [1/s2].
+    /// Inertia's weight per mass b (1/s2).
     fn weight(system: &System, state: &State, h: f64) -> f64;
 
-    /// Sets the inertial target y of each vertex [m].
+    /// Sets the inertial target y of each vertex (m).
     fn set_target(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>);
 
     /// Computes the new positions and velocities from the minimum in `state.positions`; `before` is the old state.
@@ -48,7 +48,7 @@ pub trait TimeRule: Send {
 pub struct Limits {
     /// Most iterations.
     pub iterations: usize,
-    /// Norm of the gradient [N].
+    /// Norm of the gradient (N).
     pub tolerance: f64,
 }
 
@@ -58,14 +58,14 @@ pub struct Problem<'a> {
     pub system: &'a System,
     /// Weights and targets of the vertices.
     pub inertia: Inertia<'a>,
-    /// Weight per mass [1/s2]: the weights are this times the masses.
+    /// Weight per mass (1/s2): the weights are this times the masses.
     pub weight: f64,
     /// Limits of the solver.
     pub limits: Limits,
 }
 
 impl Problem<'_> {
-    /// Longest displacement of a vertex in one iteration [m]: `near` where there are solids, since contact is detected
+    /// Longest displacement of a vertex in one iteration (m): `near` where there are solids, since contact is detected
     /// within 10 mm only and a longer step may pass through a limb; otherwise infinite.
     pub fn longest_move(&self, near: f64) -> f64 {
         if self.system.colliders.is_empty() {
@@ -147,7 +147,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         }
     }
 
-    /// Advances by `h` [s]: as one step, or in up to 64 pieces where that fails.
+    /// Advances by `h` (s): as one step, or in up to 64 pieces where that fails.
     fn advance_in_pieces(
         &mut self,
         system: &System,
@@ -180,7 +180,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         Err(self.error(system, state, failure, h))
     }
 
-    /// Advances by one piece of `h` [s].
+    /// Advances by one piece of `h` (s).
     fn advance_piece(
         &mut self,
         system: &System,
@@ -222,7 +222,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         outcome.map(|()| report)
     }
 
-    /// Checks the new state of a piece of `h` [s], and stores its contacts.
+    /// Checks the new state of a piece of `h` (s), and stores its contacts.
     fn end_piece(
         &mut self,
         system: &System,

@@ -23,7 +23,7 @@ const FACTORISED: LinearSolver = LinearSolver::Direct {
 /// twice as many iterations, and thirty cost as much as a factorisation of a thousand vertices.
 const MAX_ITERATIVE_STEP: f64 = 15.0;
 
-/// Whether steps with inertia's weight per mass `weight` [1/s2] are stiff: whether h w exceeds [`MAX_ITERATIVE_STEP`],
+/// Whether steps with inertia's weight per mass `weight` (1/s2) are stiff: whether h w exceeds [`MAX_ITERATIVE_STEP`],
 /// by the frequencies of single triangles, w^2 = C |a|^2 3 / rho.
 fn is_stiff(system: &System, weight: f64) -> bool {
     system
@@ -46,7 +46,7 @@ fn is_stiff(system: &System, weight: f64) -> bool {
 }
 
 /// Least and usual relative tolerance of the single linear solve, whose error is lost momentum, 1e-7 of it a step. A
-/// tolerance of the settings [N] lowers it down to the least, which is rounding.
+/// tolerance of the settings (N) lowers it down to the least, which is rounding.
 const ONE_SOLVE_TOLERANCE: [f64; 2] = [1e-14, 1e-8];
 
 /// Newton's method with line search: see [`Workspace::solve`].

@@ -16,9 +16,9 @@ const MIN_FRACTION: f64 = 0.1;
 pub(crate) struct ChordLimits {
     /// Most steps.
     pub steps: usize,
-    /// Stop when the gradient's norm is below this [N].
+    /// Stop when the gradient's norm is below this (N).
     pub tolerance: f64,
-    /// Longest displacement of any vertex in one step [m].
+    /// Longest displacement of any vertex in one step (m).
     pub longest_move: f64,
 }
 

@@ -15,7 +15,7 @@ const MIN_ENERGY_SHARE: f64 = 0.1;
 impl Contacts {
     /// Marks the points that a step would move back from the limit of friction as sticking and those that it
     /// would move into a surface as touching, where the energy of these kinks is not small against the decrease
-    /// of the potential that the quadratic model predicts, `predicted_decrease` [J]. Returns whether points were
+    /// of the potential that the quadratic model predicts, `predicted_decrease` (J). Returns whether points were
     /// marked, and the direction has to be computed anew.
     pub fn predict_kinks(&mut self, x: &[Vec3], step: &[Vec3], predicted_decrease: f64) -> bool {
         let mut energy = 0.0;
@@ -50,7 +50,7 @@ impl Contacts {
         }
     }
 
-    /// Adds to a force [N] the pull of the surfaces on the points marked as touching that are still above them.
+    /// Adds to a force (N) the pull of the surfaces on the points marked as touching that are still above them.
     pub fn add_landing_pull(&self, system: &System, x: &[Vec3], force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &contact.point;

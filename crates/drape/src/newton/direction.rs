@@ -128,7 +128,7 @@ impl Workspace {
         direct.solve(&hessian, &self.gradient, &mut self.direction)
     }
 
-    /// Scales the direction so that no vertex moves farther than `longest` [m].
+    /// Scales the direction so that no vertex moves farther than `longest` (m).
     pub(super) fn truncate_length(&mut self, longest: f64) {
         let length = self.longest_displacement();
         if length > longest {

@@ -29,13 +29,13 @@ const PASSES: usize = 3;
 const OF_FIRST_FORCE: f64 = 0.05;
 const OF_FORCE_OUTSIDE: f64 = 0.3;
 const OF_TOLERANCE: f64 = 0.5;
-/// Most Newton iterations of a region, and its longest displacement in all of them [m].
+/// Most Newton iterations of a region, and its longest displacement in all of them (m).
 const MAX_ITERATIONS: usize = 25;
 const LONGEST_MOVE: f64 = 5e-3;
 
 impl Workspace {
     /// Brings the regions that bear most of the net force to equilibrium, until the net force is below
-    /// `tolerance` [N] or not localised. The contacts must have been detected at the state. Tangled cloth is left
+    /// `tolerance` (N) or not localised. The contacts must have been detected at the state. Tangled cloth is left
     /// as it is: its recovery direction has to be computed anew after every displacement. Returns whether a vertex
     /// moved; contacts must then be detected again.
     pub(crate) fn eliminate(&mut self, system: &System, state: &mut State, tolerance: f64) -> bool {
@@ -109,7 +109,7 @@ impl Workspace {
     }
 
     /// Regions of free vertices around those that bear most of the net force; `total` is the sum of its squares
-    /// [N2]. Vertices of a region are in ascending order, and no two regions share a term of the potential. Empty
+    /// (N2). Vertices of a region are in ascending order, and no two regions share a term of the potential. Empty
     /// where the force is not localised.
     fn regions(&self, system: &System, total: f64) -> Vec<Vec<u32>> {
         let squares: Vec<f64> = self.gradient.iter().map(Vec3::norm_squared).collect();
@@ -161,7 +161,7 @@ impl Workspace {
     }
 }
 
-/// Minimises the potential of a region until its net force is below `tolerance` [N] or a small share of its first
+/// Minimises the potential of a region until its net force is below `tolerance` (N) or a small share of its first
 /// one. Contacts of cloth with cloth are those of the whole cloth and are not detected anew. Returns whether a
 /// vertex moved.
 fn solve_region(submodel: &mut SubModel, tolerance: f64) -> bool {

@@ -8,11 +8,11 @@ use toile_geometry::Vec3;
 
 /// The potential of a state to the second order, without inertia.
 pub struct Expansion {
-    /// Energy of strain, elastics, contact and weight [J], heights counted from the origin.
+    /// Energy of strain, elastics, contact and weight (J), heights counted from the origin.
     pub energy: f64,
-    /// Its gradient by the position of each vertex [N], zero at pins.
+    /// Its gradient by the position of each vertex (N), zero at pins.
     pub gradient: Vec<Vec3>,
-    /// Products of its Hessian with the given vectors [N]; rows and columns of pins are included.
+    /// Products of its Hessian with the given vectors (N); rows and columns of pins are included.
     pub products: Vec<Vec<Vec3>>,
     /// Contacts with solid surfaces.
     pub surface: Vec<Contact>,

@@ -31,9 +31,9 @@ use toile_sparse::{BlockJacobi, Pcg, PcgLimits};
 
 /// The inertial term sum w/2 |x - y|^2 of the potential.
 pub struct Inertia<'a> {
-    /// Weight w of each vertex [N/m].
+    /// Weight w of each vertex (N/m).
     pub weight: &'a [f64],
-    /// Inertial target y of each vertex [m].
+    /// Inertial target y of each vertex (m).
     pub target: &'a [Vec3],
 }
 
@@ -42,9 +42,9 @@ pub struct Inertia<'a> {
 pub struct NewtonSettings {
     /// Most Newton iterations.
     pub iterations: usize,
-    /// Stop when the gradient's norm is below this [N].
+    /// Stop when the gradient's norm is below this (N).
     pub tolerance: f64,
-    /// Longest displacement of any vertex in one iteration [m].
+    /// Longest displacement of any vertex in one iteration (m).
     pub longest_move: f64,
     /// Limits of the linear solver.
     pub linear: LinearSolver,
@@ -74,9 +74,9 @@ pub struct NewtonReport {
     pub iterations: usize,
     /// Conjugate-gradient iterations taken in all.
     pub linear_iterations: usize,
-    /// Norm of the gradient when the last iteration started [N].
+    /// Norm of the gradient when the last iteration started (N).
     pub gradient: f64,
-    /// Longest displacement of any vertex in the last iteration [m].
+    /// Longest displacement of any vertex in the last iteration (m).
     pub moved: f64,
     /// Fraction of the last Newton step that the line search took.
     pub fraction: f64,
@@ -180,7 +180,7 @@ impl Workspace {
         self.secants.resize(system.elastic_count(), 0.0);
     }
 
-    /// Net force on every vertex at the state's positions, zero at pins [N]: all forces but inertia, contact and
+    /// Net force on every vertex at the state's positions, zero at pins (N): all forces but inertia, contact and
     /// friction (within its cone) included.
     pub fn net_force(&mut self, system: &System, state: &State) -> &[Vec3] {
         self.fit(system);
@@ -193,8 +193,8 @@ impl Workspace {
         &self.gradient
     }
 
-    /// [`Self::net_force`] plus the forces at the state's velocities [N]: viscosity, the air on triangles, and the
-    /// dashpots of contacts for a substep `h` [s]. Drag per mass is left to the caller.
+    /// [`Self::net_force`] plus the forces at the state's velocities (N): viscosity, the air on triangles, and the
+    /// dashpots of contacts for a substep `h` (s). Drag per mass is left to the caller.
     pub(crate) fn force_in_motion(&mut self, system: &System, state: &State, h: f64) -> &[Vec3] {
         self.net_force(system, state);
         add_forces_of_motion(system, state, &mut self.gradient);
@@ -207,7 +207,7 @@ impl Workspace {
         &self.gradient
     }
 
-    /// The result of the last call of [`Self::net_force`] or [`Self::force_in_motion`] [N].
+    /// The result of the last call of [`Self::net_force`] or [`Self::force_in_motion`] (N).
     pub(crate) fn last_force(&self) -> &[Vec3] {
         &self.gradient
     }
@@ -266,7 +266,7 @@ impl Workspace {
         report.succeeded
     }
 
-    /// Potential at positions `x`, with the contact planes detected last [J].
+    /// Potential at positions `x`, with the contact planes detected last (J).
     pub(crate) fn potential(&self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
         let elements: Vec<f64> = system
             .topology
@@ -310,7 +310,7 @@ impl Workspace {
         energy + self.increment.energy(system, x)
     }
 
-    /// Computes the gradient of the potential at `x` [N], zero at pins; without `inertia` the static one.
+    /// Computes the gradient of the potential at `x` (N), zero at pins; without `inertia` the static one.
     pub(crate) fn fill_gradient(&mut self, system: &System, x: &[Vec3], inertia: Option<&Inertia>) {
         let terms = &self.increment;
         let each = self.corner_gradients.par_iter_mut().enumerate();
@@ -478,7 +478,7 @@ impl Workspace {
         0.0
     }
 
-    /// Longest displacement of a vertex in the direction [m].
+    /// Longest displacement of a vertex in the direction (m).
     fn longest_displacement(&self) -> f64 {
         let squares = self.direction.iter().map(Vec3::norm_squared);
         squares.fold(0.0, f64::max).sqrt()

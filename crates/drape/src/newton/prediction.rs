@@ -6,7 +6,7 @@
 //! dx = -H^-1 g(x; q'),    2 E = g . H^-1 g
 //! ```
 //! is a chord step of Newton's method: the gradient is that of the new shapes, the matrix still that of the old.
-//! E [J], half the squared Newton decrement, is the predicted decrease of the potential and measures the distance
+//! E (J), half the squared Newton decrement, is the predicted decrease of the potential and measures the distance
 //! to the new equilibrium.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, PcgLimits, Workspace};
@@ -18,9 +18,9 @@ use toile_sparse::dot;
 /// A first-order step towards another equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FirstOrder {
-    /// Predicted positions of the vertices [m].
+    /// Predicted positions of the vertices (m).
     pub positions: Vec<Vec3>,
-    /// Decrease of the potential that the quadratic model predicts for the full step [J].
+    /// Decrease of the potential that the quadratic model predicts for the full step (J).
     pub predicted_decrease: f64,
     /// Fraction of the step that was taken.
     pub share: f64,
@@ -28,9 +28,9 @@ pub(crate) struct FirstOrder {
 
 impl Workspace {
     /// The first-order step from an equilibrium under other rest shapes; it is shortened where cloth would pass
-    /// through cloth, where a vertex would move farther than `longest_move` [m], and where the potential would not
+    /// through cloth, where a vertex would move farther than `longest_move` (m), and where the potential would not
     /// decrease. Where no factor is available, the matrix of the state is factorised, with the inertia of a
-    /// pseudo step of `pseudo_step` [s]. None where a number is not finite.
+    /// pseudo step of `pseudo_step` (s). None where a number is not finite.
     pub(crate) fn first_order(
         &mut self,
         system: &System,

@@ -11,7 +11,7 @@ const ISOMETRIC: f64 = 0.02;
 /// Relative bound on the error of the Lanczos iteration, which approaches the largest frequency from below.
 const LANCZOS_ERROR: f64 = 2e-3;
 
-/// A bound on the largest angular frequency of the unstrained cloth [rad/s], given the largest and smallest
+/// A bound on the largest angular frequency of the unstrained cloth (rad/s), given the largest and smallest
 /// principal squared stretch of its layout: by Lanczos iteration about the layout where that is nearly isometric
 /// to the rest shapes, otherwise by bounds that do not depend on the layout.
 pub fn frequency_at_rest(system: &System, [largest, smallest]: [f64; 2]) -> f64 {
@@ -25,7 +25,7 @@ pub fn frequency_at_rest(system: &System, [largest, smallest]: [f64; 2]) -> f64 
     }
 }
 
-/// The largest angular frequency of any single triangle on its share of the masses [rad/s], which bounds that of
+/// The largest angular frequency of any single triangle on its share of the masses (rad/s), which bounds that of
 /// the whole cloth (Irons and Treharne 1971), and a vertex of that triangle.
 ///
 /// With strain B u, energy A C : strain strain / 2 and density rho, w^2 is the largest eigenvalue
@@ -54,7 +54,7 @@ pub fn stiffest(system: &System) -> (f64, usize) {
     (best.0.sqrt(), best.1)
 }
 
-/// A bound on the largest angular frequency due to bending and elastics [rad/s]: the largest row sum of
+/// A bound on the largest angular frequency due to bending and elastics (rad/s): the largest row sum of
 /// |K| / m (Gershgorin 1931).
 pub fn soft_frequency(system: &System) -> f64 {
     (0..system.vertex_count())

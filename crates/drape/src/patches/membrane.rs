@@ -8,17 +8,17 @@ use crate::laws::membrane::MembraneElement;
 /// and the opposite at a.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeMembrane {
-    /// Squared lengths at rest [m2].
+    /// Squared lengths at rest (m2).
     pub rest: [f64; 3],
-    /// K [N/m3].
+    /// K (N/m3).
     pub stiffness: [[f64; 3]; 3],
-    /// Coefficients of the principal stretches: three weights of q [1/m2] and the inverse of four times
-    /// the squared area [1/m4].
+    /// Coefficients of the principal stretches: three weights of q (1/m2) and the inverse of four times
+    /// the squared area (1/m4).
     pub shape: [f64; 4],
 }
 
 impl EdgeMembrane {
-    /// From a linear law `[C11, C22, C12, G]` [N/m].
+    /// From a linear law `[C11, C22, C12, G]` (N/m).
     pub fn new(element: &MembraneElement, law: [f64; 4]) -> Self {
         let [_, w1, w2] = element.warp;
         let [_, z1, z2] = element.weft;

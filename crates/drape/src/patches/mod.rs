@@ -62,7 +62,7 @@ const MAX_STABILITY_FRACTION: f64 = 0.99;
 /// Most attempts at an interval, each with more substeps.
 const MAX_ATTEMPTS: usize = 8;
 
-/// Longest time between two checks of the stretch [s]: cloth of 0.2 m pulled at 3 m/s stretches by 0.03
+/// Longest time between two checks of the stretch (s): cloth of 0.2 m pulled at 3 m/s stretches by 0.03
 /// meanwhile.
 const STRETCH_CHECK_STEP: f64 = 2e-3;
 

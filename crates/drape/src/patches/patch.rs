@@ -24,9 +24,9 @@ pub struct Patch {
     /// Indices of the contacts at border vertices and at halo vertices.
     border_contacts: Vec<u32>,
     halo_contacts: Vec<u32>,
-    /// Largest and smallest principal squared stretch when last measured \[1\].
+    /// Largest and smallest principal squared stretch when last measured (1).
     pub stretch: [f64; 2],
-    /// Kinetic, membrane and bending energy of the vertices and edges that it owns, when last measured [J].
+    /// Kinetic, membrane and bending energy of the vertices and edges that it owns, when last measured (J).
     pub energy: f64,
     positions: Points,
     velocities: Points,
@@ -43,7 +43,7 @@ pub struct Patch {
     halo: Vec<u32>,
     /// For each ring the groups of eight with a vertex of at most that ring.
     groups: Vec<Vec<u32>>,
-    /// Inverse masses [1/kg], zero where pinned.
+    /// Inverse masses (1/kg), zero where pinned.
     inverse_mass: Vec<f64>,
     /// Factor of gravity: one, zero where pinned.
     gravity_factor: Vec<f64>,
@@ -60,13 +60,13 @@ struct Forces {
 /// Some substeps, and what acts in them besides the forces of the patch.
 #[derive(Clone, Copy)]
 pub struct Substeps {
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub h: f64,
     /// Number of substeps: at most the number of halo rings.
     pub count: usize,
-    /// Gravity [m/s2].
+    /// Gravity (m/s2).
     pub gravity: Lane,
-    /// Drag per mass [1/s].
+    /// Drag per mass (1/s).
     pub drag: f64,
 }
 
@@ -218,7 +218,7 @@ impl Patch {
         own.map(|(at, &v)| (v, at))
     }
 
-    /// Position [m] and velocity [m/s] of the vertex with an index in the patch.
+    /// Position (m) and velocity (m/s) of the vertex with an index in the patch.
     #[inline]
     pub fn vertex(&self, at: u32) -> (Lane, Lane) {
         let at = at as usize;
@@ -380,7 +380,7 @@ impl Forces {
         4 * self.bending.cost() + self.membrane.cost()
     }
 
-    /// The gradient of membrane and bending energy at the vertices of one lane group [N].
+    /// The gradient of membrane and bending energy at the vertices of one lane group (N).
     #[inline(always)]
     fn gradient<S: Simd>(
         &self,

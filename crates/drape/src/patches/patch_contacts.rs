@@ -20,18 +20,18 @@ pub struct PatchContact {
     near_index: u32,
     /// Outward unit normal of the surface.
     normal: Lane,
-    /// The plane n . x = level of the offset surface [m].
+    /// The plane n . x = level of the offset surface (m).
     level: f64,
-    /// Normal stiffness k [N/m]; the tangential one is [`TANGENTIAL_RATIO`] of it.
+    /// Normal stiffness k (N/m); the tangential one is [`TANGENTIAL_RATIO`] of it.
     stiffness: f64,
     /// Friction coefficient.
     friction: f64,
-    /// Friction anchor: the point of the surface to which the vertex sticks [m]. Undefined while the normal
+    /// Friction anchor: the point of the surface to which the vertex sticks (m). Undefined while the normal
     /// force is zero.
     anchor: Lane,
-    /// Normal force [N].
+    /// Normal force (N).
     force: f64,
-    /// Depth below the offset surface from which on the vertex lies inside the solid itself [m]: the
+    /// Depth below the offset surface from which on the vertex lies inside the solid itself (m): the
     /// offset. Cloth only gets there when a solid is put over it.
     buried_depth: f64,
     /// Whether the vertex was that deep and has not left the offset surface since.
@@ -39,7 +39,7 @@ pub struct PatchContact {
 }
 
 impl PatchContact {
-    /// The contact force on the vertex at `position` [m] and `velocity` [m/s]: normal force and friction [N].
+    /// The contact force on the vertex at `position` (m) and `velocity` (m/s): normal force and friction (N).
     /// Updates the friction anchor.
     ///
     /// Normal force: N = k d for the depth d, with a dashpot. Friction: a spring k_t s to the anchor, limited
@@ -96,7 +96,7 @@ impl PatchContact {
         self.force > 0.0
     }
 
-    /// Energy of the normal spring, and the most that the friction spring can store at this depth [J].
+    /// Energy of the normal spring, and the most that the friction spring can store at this depth (J).
     fn energy(&self, position: Lane) -> f64 {
         let depth = (self.level - self.normal.dot(position)).max(0.0);
         let slip = self.friction * self.stiffness * depth;
@@ -112,7 +112,7 @@ pub struct PatchContacts {
     samples: Vec<SurfaceSample>,
     /// Contacts of the vertices that can reach a surface before the next detection.
     pub near: Vec<PatchContact>,
-    /// Time between two detections [s].
+    /// Time between two detections (s).
     pub interval: f64,
     chunks: Vec<Chunk>,
 }
@@ -122,7 +122,7 @@ pub struct PatchContacts {
 struct Chunk {
     near: Vec<PatchContact>,
     /// Largest error of a loaded plane when its surface was queried again: error of the distance over the
-    /// displacement since the last query \[1\]; none where no loaded plane was queried.
+    /// displacement since the last query (1); none where no loaded plane was queried.
     plane_error: Option<f64>,
 }
 
@@ -134,19 +134,19 @@ struct SurfaceSample {
     number: u32,
     /// Index of the solid.
     solid: u32,
-    /// Normal stiffness [N/m].
+    /// Normal stiffness (N/m).
     stiffness: f64,
     /// Friction coefficient.
     friction: f64,
-    /// Distance between cloth and surface at rest [m].
+    /// Distance between cloth and surface at rest (m).
     offset: f64,
-    /// Position at the last query [m].
+    /// Position at the last query (m).
     last: Vec3,
-    /// Distance to the offset surface at `last` [m]: a vertex that has moved less touches nothing.
+    /// Distance to the offset surface at `last` (m): a vertex that has moved less touches nothing.
     clearance: f64,
-    /// Distance [m] and outward normal of the surface at `last`; none where no surface is near.
+    /// Distance (m) and outward normal of the surface at `last`; none where no surface is near.
     plane: Option<(f64, Vec3)>,
-    /// Friction anchor [m] and normal force [N].
+    /// Friction anchor (m) and normal force (N).
     anchor: Lane,
     force: f64,
     /// Whether a solid was put over it and it has not come out since.
@@ -157,18 +157,18 @@ struct SurfaceSample {
 /// gradient is no outward normal.
 const FLAT_SLOPE: f64 = 0.05;
 
-/// Displacement after which the surface is queried again [m]: on a limb of 30 mm radius the tangent plane
+/// Displacement after which the surface is queried again (m): on a limb of 30 mm radius the tangent plane
 /// is 1 um off by then.
 const PLANE_REACH: f64 = 0.25e-3;
 
-/// Least detection range beyond the offset [m], for vertices at rest, which may be accelerated meanwhile.
+/// Least detection range beyond the offset (m), for vertices at rest, which may be accelerated meanwhile.
 const MIN_RANGE: f64 = 1e-3;
 
 /// Distance beyond the offset within which the smooth distance field is sampled instead of the exact
-/// distance [m].
+/// distance (m).
 const FIELD_RANGE: f64 = 0.012;
 
-/// Shortest and longest time between two detections [s]: at 3 m/s cloth moves 1.5 and 3 mm meanwhile.
+/// Shortest and longest time between two detections (s): at 3 m/s cloth moves 1.5 and 3 mm meanwhile.
 const INTERVALS: [f64; 2] = [5e-4, 1e-3];
 
 /// Bound on the plane error: the error of the distance over the displacement since the plane was set, which
@@ -244,7 +244,7 @@ impl PatchContacts {
             }));
     }
 
-    /// Detects the contacts of all vertices that can reach a surface within `time` [s], and adapts the
+    /// Detects the contacts of all vertices that can reach a surface within `time` (s), and adapts the
     /// detection interval to the error of the planes.
     pub fn detect(&mut self, system: &System, positions: &[Lane], velocities: &[Lane], time: f64) {
         if self.samples.is_empty() {
@@ -312,7 +312,7 @@ impl PatchContacts {
         near.buried = contact.buried;
     }
 
-    /// Energy of the contacts [J].
+    /// Energy of the contacts (J).
     pub fn energy(&self, positions: &[Lane]) -> f64 {
         let energies = self
             .near
@@ -336,7 +336,7 @@ impl PatchContacts {
 }
 
 impl SurfaceSample {
-    /// The contact that the vertex can have within `time` [s]. Raises `plane_error` to the error of the
+    /// The contact that the vertex can have within `time` (s). Raises `plane_error` to the error of the
     /// plane where a loaded one is queried again.
     fn detect(
         &mut self,
@@ -390,7 +390,7 @@ impl SurfaceSample {
         })
     }
 
-    /// Queries the surface: sets its plane at `position` [m] and the clearance there.
+    /// Queries the surface: sets its plane at `position` (m) and the clearance there.
     fn query_surface(&mut self, system: &System, position: Vec3) {
         let was_near = self.plane.is_some();
         (self.last, self.plane, self.clearance) = (position, None, FIELD_REACH);

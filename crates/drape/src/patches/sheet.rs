@@ -31,7 +31,7 @@ const UNLOAD_CHUNK: usize = 2048;
 
 /// A cloth cut into patches.
 pub struct Sheet {
-    /// Largest frequency while no triangle is strained [rad/s].
+    /// Largest frequency while no triangle is strained (rad/s).
     pub frequency: f64,
     key: Key,
     patches: Vec<Patch>,
@@ -174,7 +174,7 @@ impl Sheet {
         self.load();
     }
 
-    /// Advances by `count` substeps of `h` [s].
+    /// Advances by `count` substeps of `h` (s).
     pub fn advance(&mut self, system: &System, h: f64, count: usize) {
         let between_exchanges = match self.patches.len() {
             1 => count,
@@ -253,7 +253,7 @@ impl Sheet {
         });
     }
 
-    /// Largest and smallest principal squared stretch \[1\]; the largest is at least 1, the smallest at most 1,
+    /// Largest and smallest principal squared stretch (1); the largest is at least 1, the smallest at most 1,
     /// and both are NaN where a position is.
     pub fn stretch(&mut self) -> [f64; 2] {
         self.for_patches(|patch, _| patch.measure_stretch());
@@ -263,7 +263,7 @@ impl Sheet {
         })
     }
 
-    /// Energy of motion, strain, elastics and contact [J].
+    /// Energy of motion, strain, elastics and contact (J).
     pub fn energy(&mut self) -> f64 {
         self.for_patches(|patch, _| patch.measure_energy());
         let own: f64 = self.patches.iter().map(|patch| patch.energy).sum();
@@ -285,7 +285,7 @@ impl Sheet {
         own + self.contacts.energy(&self.positions) + elastics.sum::<f64>()
     }
 
-    /// The fastest vertex and its speed [m/s]; the first one whose speed is NaN, if any.
+    /// The fastest vertex and its speed (m/s); the first one whose speed is NaN, if any.
     pub fn fastest(&self) -> (usize, f64) {
         let mut best = (0, 0.0);
         for (at, v) in self.velocities.iter().enumerate() {

@@ -79,7 +79,7 @@ impl Stretches {
         self.groups.push((strains, at));
     }
 
-    /// Largest and smallest principal squared stretch, from the strains of edges [m2]; the largest is at least
+    /// Largest and smallest principal squared stretch, from the strains of edges (m2); the largest is at least
     /// 1, the smallest at most 1, and both are NaN where a strain is. They are eigenvalues of the deformed
     /// metric relative to the one at rest: 1 + u +- root(u^2 - det).
     ///

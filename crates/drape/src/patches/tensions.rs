@@ -20,13 +20,13 @@ use std::collections::BTreeMap;
 pub struct Tensions {
     /// First and second end of the edges of each group.
     ends: Vec<[Operands; 2]>,
-    /// Squared lengths at rest [m2].
+    /// Squared lengths at rest (m2).
     rest: Vec<f64>,
-    /// Strains: squared lengths less those at rest [m2].
+    /// Strains: squared lengths less those at rest (m2).
     strain: Vec<f64>,
-    /// Tensions [N/m].
+    /// Tensions (N/m).
     tension: Vec<f64>,
-    /// The matrix of tensions by strains [N/m3].
+    /// The matrix of tensions by strains (N/m3).
     stiffness: Rows,
     /// Weight of strain times tension in the energy: 1/4 where the patch owns the edge, else 0.
     energy_weight: Vec<f64>,
@@ -240,7 +240,7 @@ impl Tensions {
         }
     }
 
-    /// The gradient of the membrane's energy at the vertices of one lane group [N].
+    /// The gradient of the membrane's energy at the vertices of one lane group (N).
     #[inline(always)]
     pub fn gradient<S: Simd>(
         &self,
@@ -276,7 +276,7 @@ impl Tensions {
         self.stretches.extremes(simd, &self.strain)
     }
 
-    /// Energy of the edges that the patch owns [J]: those whose vertex of the lower number it owns.
+    /// Energy of the edges that the patch owns (J): those whose vertex of the lower number it owns.
     #[inline(always)]
     pub fn energy<S: Simd>(&mut self, simd: S, x: &Points) -> f64 {
         self.update_strains(simd, 0, x);

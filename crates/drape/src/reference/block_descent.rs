@@ -52,7 +52,7 @@ const RADIUS: f64 = 0.95;
 /// Sweeps between two translations of pieces, and between two checks that accelerated sweeps lower the potential.
 const CHECK_INTERVAL: usize = 8;
 
-/// Longest displacement of a vertex in one sweep where there are solids [m]: twice the detection range of contact.
+/// Longest displacement of a vertex in one sweep where there are solids (m): twice the detection range of contact.
 const LONGEST_MOVE: f64 = 0.02;
 
 /// Vertices of one colour per task.
@@ -96,7 +96,7 @@ impl VertexContacts {
 }
 
 impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
-    /// Negative gradient on one vertex [N] and the diagonal block of the Hessian there [N/m].
+    /// Negative gradient on one vertex (N) and the diagonal block of the Hessian there (N/m).
     fn local(
         &self,
         problem: &Problem,
@@ -162,7 +162,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         terms.add_gradient(system, x, &mut self.lagged);
     }
 
-    /// Solves every vertex once, colour by colour; returns the sum of the squared forces [N2].
+    /// Solves every vertex once, colour by colour; returns the sum of the squared forces (N2).
     fn sweep(
         &mut self,
         problem: &Problem,

@@ -11,7 +11,7 @@ const ARMIJO: f64 = 1e-4;
 /// Most trial steps of a line search, each half of the last.
 const MAX_TRIALS: usize = 16;
 
-/// Detects the contacts and computes the gradient at the state's positions; returns its norm [N].
+/// Detects the contacts and computes the gradient at the state's positions; returns its norm (N).
 pub fn update_gradient(problem: &Problem, state: &State, workspace: &mut Workspace) -> f64 {
     let system = problem.system;
     workspace.contacts.refresh(system, state, &state.positions);
@@ -62,11 +62,11 @@ pub fn truncate_length(problem: &Problem, direction: &mut [Vec3]) {
 
 /// The step of a line search.
 pub struct Line<'a> {
-    /// The full step [m].
+    /// The full step (m).
     pub direction: &'a [Vec3],
     /// Most trial steps.
     pub max_trials: usize,
-    /// In: the potential at the start, where known. Out: the potential at the end, where it is known [J].
+    /// In: the potential at the start, where known. Out: the potential at the end, where it is known (J).
     pub energy: &'a mut Option<f64>,
 }
 

@@ -48,7 +48,7 @@ impl Key {
 }
 
 impl Metric {
-    /// Builds the metric of a model with inertia's weight per mass `weight` [1/s2] where it is not up to date. False
+    /// Builds the metric of a model with inertia's weight per mass `weight` (1/s2) where it is not up to date. False
     /// where the matrix cannot be factorised.
     pub fn fit(&mut self, system: &System, weight: f64) -> bool {
         if let Some(factorised) = &self.factorised

@@ -13,7 +13,7 @@ pub struct Pieces {
     systems: Vec<PieceSystem>,
 }
 
-/// Gradient [N] and Hessian [N/m] of the potential for a translation of a piece.
+/// Gradient (N) and Hessian (N/m) of the potential for a translation of a piece.
 #[derive(Clone, Copy, Default)]
 struct PieceSystem {
     has_pin: bool,
@@ -75,7 +75,7 @@ impl Pieces {
 }
 
 impl PieceSystem {
-    /// The Newton step of the translation [m]; zero for a piece with a pin.
+    /// The Newton step of the translation (m); zero for a piece with a pin.
     fn step(&self) -> Vec3 {
         if self.has_pin {
             return Vec3::zeros();

@@ -37,7 +37,7 @@ const MAX_ITERATIONS: usize = 100_000;
 /// Factor of the masses over the stability limit at the present positions: cloth stiffens as it stretches.
 const SAFETY: f64 = 1.2;
 
-/// Longest displacement of a vertex in one iteration [m]; a faster motion is slowed down as a whole.
+/// Longest displacement of a vertex in one iteration (m); a faster motion is slowed down as a whole.
 const LONGEST_MOVE: f64 = 5e-3;
 
 impl Relaxation {

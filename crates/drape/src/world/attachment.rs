@@ -21,9 +21,9 @@ pub struct AttachmentId(pub(super) u32);
 pub enum AttachmentEnd {
     /// A vertex of an object. Of a solid it moves with the solid.
     Vertex(MeshVertex),
-    /// A point in space [m].
+    /// A point in space (m).
     Point(Vec3),
-    /// A point that moves with a solid, in the coordinates of the object's mesh [m].
+    /// A point that moves with a solid, in the coordinates of the object's mesh (m).
     Frame {
         /// The object.
         object: ObjectId,
@@ -40,7 +40,7 @@ pub enum AttachmentEnd {
         /// The weights of its corners, of sum 1.
         weights: [f64; 3],
     },
-    /// A point that moves with a frame of an animated object's track, such as a bone, in the coordinates of the frame [m].
+    /// A point that moves with a frame of an animated object's track, such as a bone, in the coordinates of the frame (m).
     TrackFrame {
         /// The object.
         object: ObjectId,
@@ -57,9 +57,9 @@ pub enum AttachmentEnd {
 pub struct ObjectAttachment {
     /// The ends.
     pub ends: [AttachmentEnd; 2],
-    /// Stiffness [N/m].
+    /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Distance below which the two vertices are merged [m]; none where they never are.
+    /// Distance below which the two vertices are merged (m); none where they never are.
     pub merge_within: Option<f64>,
 }
 

@@ -25,7 +25,7 @@ impl World {
         all
     }
 
-    /// The merged cloth at `positions` [m].
+    /// The merged cloth at `positions` (m).
     pub(super) fn merged_cloth(&self, map: &VertexMap, positions: Vec<Vec3>) -> Cloth {
         let panels = self.panels();
         let mut merged = panels.merged(&map.target, map.count);
@@ -33,7 +33,7 @@ impl World {
         merged
     }
 
-    /// The system of the world, with the merged vertices at `positions` [m] when elimination orders are chosen.
+    /// The system of the world, with the merged vertices at `positions` (m) when elimination orders are chosen.
     ///
     /// # Errors
     /// No cloth, bad meshes, materials that cannot be simulated.

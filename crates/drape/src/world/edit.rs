@@ -36,7 +36,7 @@ pub enum WorldEdit {
     Open(Vec<[MeshVertex; 2]>),
     /// Pins these vertices of an object and no others.
     Pin(ObjectId, Vec<u32>),
-    /// Replaces the rest shapes of a cloth's triangles [m].
+    /// Replaces the rest shapes of a cloth's triangles (m).
     Reshape(ObjectId, Vec<[Vec2; 3]>),
     /// Replaces the mesh of a cloth by another one of the same panels, with its layers. Positions and velocities are
     /// interpolated at the same points of the panels; seams open, pins, grips and attachments are removed.

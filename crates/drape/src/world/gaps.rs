@@ -9,15 +9,15 @@ use crate::tie::{TieEnd, TrianglePoint};
 pub struct OpenAttachment {
     /// Its place in the order of the world's attachments.
     pub index: usize,
-    /// Distance of its ends [m].
+    /// Distance of its ends (m).
     pub gap: f64,
-    /// Speed at which the gap closes, negative where it opens [m/s].
+    /// Speed at which the gap closes, negative where it opens (m/s).
     pub closing: f64,
     /// Whether both ends are held where they are: pinned, led or of a solid.
     pub is_held: bool,
 }
 
-/// Distance up to which two held ends are at one place [m]: rounding.
+/// Distance up to which two held ends are at one place (m): rounding.
 const SAME_PLACE: f64 = 1e-9;
 
 impl Simulation {

@@ -78,11 +78,11 @@ pub struct Object {
     pub name: String,
     /// The cause of its motion.
     pub kind: Kind,
-    /// Its surface [m]: of a static object in the world, of an animated one in its own frame, of a cloth as it was when
+    /// Its surface (m): of a static object in the world, of an animated one in its own frame, of a cloth as it was when
     /// it became cloth.
     #[serde(with = "super::written_mesh")]
     pub mesh: Arc<TriangleMesh>,
-    /// Rest shapes and materials of its triangles, and its starting positions [m]. Made from the mesh and the material
+    /// Rest shapes and materials of its triangles, and its starting positions (m). Made from the mesh and the material
     /// when it first becomes deformable.
     pub cloth: Option<Arc<Cloth>>,
     /// Its material until it has a cloth.
@@ -314,7 +314,7 @@ impl Object {
         }
     }
 
-    /// Places of its vertices at a time [s] while it is animated [m].
+    /// Places of its vertices at a time (s) while it is animated (m).
     pub(super) fn animated_positions(&self, time: f64) -> Vec<Vec3> {
         let loaded = &self.mesh.positions;
         animated_positions(loaded, self.track.as_ref(), self.motion.as_deref(), time)

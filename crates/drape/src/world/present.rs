@@ -102,7 +102,7 @@ impl Present<'_> {
     }
 }
 
-/// A surface with its vertices at other positions [m].
+/// A surface with its vertices at other positions (m).
 fn moved(mesh: &TriangleMesh, positions: Vec<Vec3>) -> TriangleMesh {
     TriangleMesh {
         positions,

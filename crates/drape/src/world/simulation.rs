@@ -48,7 +48,7 @@ impl Simulation {
         Self::laid_out(world, positions, solids)
     }
 
-    /// A world at rest with its merged vertices at `positions` [m], which also decide the elimination orders.
+    /// A world at rest with its merged vertices at `positions` (m), which also decide the elimination orders.
     ///
     /// # Errors
     /// Those of [`Simulation::new`]; a wrong number of positions.

@@ -17,7 +17,7 @@ pub(crate) enum MeetingPoint {
     Midpoint,
 }
 
-/// Positions [m] and velocities [m/s] of an object that the former structure did not have, or had with another mesh.
+/// Positions (m) and velocities (m/s) of an object that the former structure did not have, or had with another mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StartingMotion {
     pub positions: Vec<Vec3>,
@@ -28,7 +28,7 @@ pub(super) struct StartingMotion {
 enum Origin {
     /// Former merged vertices, ascending, and the prescribed one among them, which decides alone.
     Vertices(Vec<u32>, Option<u32>),
-    /// Position [m] and velocity [m/s] of an object that starts.
+    /// Position (m) and velocity (m/s) of an object that starts.
     Start(Vec3, Vec3),
 }
 
@@ -114,9 +114,9 @@ impl Transfer {
         }
     }
 
-    /// Positions [m] and velocities [m/s] of the new vertices. A prescribed vertex keeps its position to the bit;
+    /// Positions (m) and velocities (m/s) of the new vertices. A prescribed vertex keeps its position to the bit;
     /// others meet as `meeting` says, with the velocity that keeps their total momentum. `mass` is that of the former
-    /// vertices [kg], zero for a vertex without cloth.
+    /// vertices (kg), zero for a vertex without cloth.
     pub fn motion(
         &self,
         state: &State,
@@ -133,7 +133,7 @@ impl Transfer {
         (positions, velocities)
     }
 
-    /// The state of the new structure, with the positions [m] and velocities [m/s] of [`Transfer::motion`].
+    /// The state of the new structure, with the positions (m) and velocities (m/s) of [`Transfer::motion`].
     pub fn state(
         &self,
         (old, former): (&State, &Model),

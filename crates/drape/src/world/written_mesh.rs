@@ -1,4 +1,4 @@
-//! A mesh as it is written: its positions [m] and its triangles.
+//! A mesh as it is written: its positions (m) and its triangles.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::Arc;

@@ -17,24 +17,24 @@ use crate::lane_arithmetic::{F32s, Number, Triple};
 use crate::lanes::{Point, gather, lane_groups, scatter};
 use pulp::{Simd, WithSimd};
 
-/// Least twice the area of a triangle by which its normal is divided [m2]: that of edges of 30 nm. Smaller ones have
+/// Least twice the area of a triangle by which its normal is divided (m2): that of edges of 30 nm. Smaller ones have
 /// next to no force, and their squares stay within single precision.
 const LEAST_SIZE: f32 = 1e-15;
 
 /// The air during a substep.
 #[derive(Clone, Debug)]
 pub struct AirStep {
-    /// Velocity of the wind [m/s].
+    /// Velocity of the wind (m/s).
     wind: [f32; 3],
-    /// h rho C / 4 across and along the cloth [kg s/m3]: times twice the area and the speed it is r.
+    /// h rho C / 4 across and along the cloth (kg s/m3): times twice the area and the speed it is r.
     across: f32,
     along: f32,
-    /// Mass per area of each material [kg/m2].
+    /// Mass per area of each material (kg/m2).
     densities: Vec<f32>,
 }
 
 impl AirStep {
-    /// The air of a system in substeps of h [s]; none where it exerts no force on triangles.
+    /// The air of a system in substeps of h (s); none where it exerts no force on triangles.
     pub fn new(system: &System, h: f64) -> Option<Self> {
         let air = system.control.air;
         let share = 0.25 * h * air.density;
@@ -49,13 +49,13 @@ impl AirStep {
     }
 }
 
-/// Adds the impulses of some triangles to sums at their corners [N s].
+/// Adds the impulses of some triangles to sums at their corners (N s).
 pub struct AddAirImpulses<'a> {
     /// The triangles.
     pub batches: &'a [MembraneBatch],
     /// The points of their region at the start of the substep.
     pub starts: &'a [Point],
-    /// Their velocities [m/s].
+    /// Their velocities (m/s).
     pub velocities: &'a [Point],
     /// The sums.
     pub sums: &'a mut [Point],

@@ -11,11 +11,11 @@ pub struct AttachmentConstraint {
     from: u32,
     /// Its other end.
     pub to: AttachmentEnd,
-    /// Stiffness k [N/m].
+    /// Stiffness k (N/m).
     stiffness: f32,
-    /// Largest force [N].
+    /// Largest force (N).
     largest_force: f32,
-    /// XPBD multiplier of the three rows over the substep: force times h^2 [N s2].
+    /// XPBD multiplier of the three rows over the substep: force times h^2 (N s2).
     pub lambda: [f32; 3],
 }
 
@@ -24,7 +24,7 @@ pub struct AttachmentConstraint {
 pub enum AttachmentEnd {
     /// A vertex, as an index into the points of the region.
     Vertex(u32),
-    /// A prescribed position, relative to the origin of the points [m].
+    /// A prescribed position, relative to the origin of the points (m).
     Fixed([f32; 3]),
 }
 
@@ -41,7 +41,7 @@ impl AttachmentConstraint {
     }
 }
 
-/// Solves constraints one after the other; `kappa` is (1 + drag h) / h^2 [1/s2].
+/// Solves constraints one after the other; `kappa` is (1 + drag h) / h^2 (1/s2).
 pub fn solve_attachments(
     constraints: &mut [AttachmentConstraint],
     points: &mut [Point],

@@ -25,9 +25,9 @@ pub struct BendingForce {
     start: Vec<u32>,
     /// Slots of the columns.
     columns: Vec<Corner>,
-    /// Entries of K [N/m].
+    /// Entries of K (N/m).
     values: Vec<Row>,
-    /// Upper bound of w_max [rad/s].
+    /// Upper bound of w_max (rad/s).
     pub frequency: f64,
     /// Number of entries that are not zero.
     pub count: usize,
@@ -73,7 +73,7 @@ impl BendingForce {
         force
     }
 
-    /// The product K x for the rows of one lane group from `slot` on, a multiple of sixteen [N]: summed over
+    /// The product K x for the rows of one lane group from `slot` on, a multiple of sixteen (N): summed over
     /// differences from `here`, the positions of the rows themselves, since the rows of K sum to zero.
     #[inline(always)]
     pub fn times<S: Simd>(
@@ -199,9 +199,9 @@ pub struct Stencil {
     pub triangle: u32,
     /// Vertices of the stencil.
     pub vertices: Vec<u32>,
-    /// Weights of each in the three curvatures [1/m2].
+    /// Weights of each in the three curvatures (1/m2).
     pub weights: Vec<[f64; 3]>,
-    /// Stiffnesses A D [N m3], or A times the viscosities [N m3 s].
+    /// Stiffnesses A D (N m3), or A times the viscosities (N m3 s).
     pub stiffness: [f64; 3],
 }
 
@@ -238,11 +238,11 @@ pub fn stencils(system: &System, matrix: fn(&Material) -> BendingMatrix) -> Vec<
 #[derive(Clone, Debug)]
 pub struct BendingBatch {
     corners: Vec<Corner>,
-    /// Weights of each corner in the three curvatures [1/m2].
+    /// Weights of each corner in the three curvatures (1/m2).
     weights: Vec<[Row; 3]>,
     /// Inverse of B W B^T + (A D)^-1 kappa: 11, 22, 33, 12, 13, 23.
     inverse: [Row; 6],
-    /// Compliances (A D)^-1 [1/(N m3)].
+    /// Compliances (A D)^-1 (1/(N m3)).
     compliance: [Row; 3],
     /// B W B^T of each lane, and its compliances, in double precision.
     exact: Vec<(Matrix3<f64>, [f64; 3])>,
@@ -286,7 +286,7 @@ impl BendingBatch {
         self.exact.len()
     }
 
-    /// Inverts the systems for a substep; `kappa` is (1 + drag h) / h^2 [1/s2].
+    /// Inverts the systems for a substep; `kappa` is (1 + drag h) / h^2 (1/s2).
     pub fn set_step(&mut self, kappa: f64) {
         for (lane, (matrix, compliance)) in self.exact.iter().enumerate() {
             let mut matrix = *matrix;

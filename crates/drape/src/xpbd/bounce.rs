@@ -22,15 +22,15 @@ struct Impact {
     slots: [u32; 4],
     weights: [f32; 4],
     normal: [f32; 3],
-    /// Inverse effective mass along the normal: sum of a^2 / m over its points [1/kg].
+    /// Inverse effective mass along the normal: sum of a^2 / m over its points (1/kg).
     inverse_mass: f32,
-    /// Speed of the surface along the normal [m/s].
+    /// Speed of the surface along the normal (m/s).
     surface_speed: f32,
-    /// Accumulated normal impulse [N s].
+    /// Accumulated normal impulse (N s).
     impulse: f32,
     /// Coefficient of restitution e; none where no material gives one.
     restitution: Option<f32>,
-    /// Normal relative speed after the impact [m/s].
+    /// Normal relative speed after the impact (m/s).
     target_speed: f32,
 }
 
@@ -60,7 +60,7 @@ impl Impact {
         })
     }
 
-    /// Relative speed along the normal [m/s]; negative while approaching.
+    /// Relative speed along the normal (m/s); negative while approaching.
     fn speed(&self, velocity: &[Point]) -> f32 {
         let mut speed = -self.surface_speed;
         for (&slot, a) in self.slots.iter().zip(self.weights) {
@@ -70,7 +70,7 @@ impl Impact {
         speed
     }
 
-    /// Applies an impulse [N s] along the normal; the inverse masses are those of `points`.
+    /// Applies an impulse (N s) along the normal; the inverse masses are those of `points`.
     fn apply_impulse(&self, impulse: f32, points: &[Point], velocity: &mut [Point]) {
         for (&slot, a) in self.slots.iter().zip(self.weights) {
             let share = impulse * a * points[slot as usize][3];
@@ -84,9 +84,9 @@ impl Impact {
 /// Parameters of a substep.
 #[derive(Clone, Copy)]
 pub struct BounceStep {
-    /// Substep [s].
+    /// Substep (s).
     pub step: f32,
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     pub gravity: f32,
 }
 

@@ -12,14 +12,14 @@ use toile_geometry::{ClosestPoint, MovingSurface, Room, Vec3};
 pub struct CarriedPlane {
     /// The triangle of the surface, or [`NO_TRIANGLE`].
     pub triangle: u32,
-    /// Distance from the surface that it keeps the cloth at [m].
+    /// Distance from the surface that it keeps the cloth at (m).
     offset: f32,
     /// Barycentric weights of the first two corners of the triangle.
     weights: [f32; 2],
-    /// The place at the start of the step, and its displacement until the end [m].
+    /// The place at the start of the step, and its displacement until the end (m).
     start: Vec3,
     way: Vec3,
-    /// The normal at both ends of the step, and the vector by which the triangle turns in it [rad].
+    /// The normal at both ends of the step, and the vector by which the triangle turns in it (rad).
     normals: [[f32; 3]; 2],
     turn: [f32; 3],
 }
@@ -29,15 +29,15 @@ const NO_TRIANGLE: u32 = u32::MAX;
 
 /// A plane at two times of a step.
 pub struct CarriedMotion {
-    /// A point of the surface at the second time [m].
+    /// A point of the surface at the second time (m).
     pub point: Vec3,
     /// The normal at the second time.
     pub normal: Vec3,
-    /// Distance from the surface that the cloth is kept at [m].
+    /// Distance from the surface that the cloth is kept at (m).
     pub offset: f64,
-    /// Displacement of the point from the first time to the second [m].
+    /// Displacement of the point from the first time to the second (m).
     pub displacement: Vec3,
-    /// The vector by which the triangle turns from the first time to the second [rad].
+    /// The vector by which the triangle turns from the first time to the second (rad).
     pub turn: Vec3,
 }
 
@@ -56,7 +56,7 @@ impl Default for CarriedPlane {
 }
 
 impl CarriedPlane {
-    /// The plane at a closest point that was found at a time of the step, and how far it keeps the cloth off [m].
+    /// The plane at a closest point that was found at a time of the step, and how far it keeps the cloth off (m).
     pub fn new(
         surface: &MovingSurface,
         (closest, time): (&ClosestPoint, f64),
@@ -143,8 +143,8 @@ fn single(v: Vec3) -> [f32; 3] {
 /// Share of the room in a pinch that is used: between two walls that each took its half a point would never rest.
 const OF_PINCH: f64 = 0.9;
 
-/// How far from a place of a surface cloth is kept that would lie at `offset` from it [m]: where another wall faces it so
-/// near that cloths of a thickness [m] on both find no room, nearly half of what there is. None where the place lies inside
+/// How far from a place of a surface cloth is kept that would lie at `offset` from it (m): where another wall faces it so
+/// near that cloths of a thickness (m) on both find no room, nearly half of what there is. None where the place lies inside
 /// another part of the surface: nothing can be kept off both (Baraff, Witkin and Kass 2003).
 pub fn kept_offset(
     surface: &MovingSurface,

@@ -13,27 +13,27 @@ use toile_geometry::Vec3;
 /// Some substeps of one size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Substeps {
-    /// Substep [s].
+    /// Substep (s).
     pub substep: f64,
     /// Number of substeps.
     pub count: u32,
-    /// Drag per mass [1/s].
+    /// Drag per mass (1/s).
     pub drag: f64,
 }
 
-/// Largest displacement of a vertex or surface, at its present speed, between two detections [m]. Detection reaches
+/// Largest displacement of a vertex or surface, at its present speed, between two detections (m). Detection reaches
 /// twice as far beyond the offset, for two features that approach each other.
 const MAX_TRAVEL: f64 = 2e-3;
 
-/// Least displacement that is assumed of any vertex [m]: one at rest may be pushed by another.
+/// Least displacement that is assumed of any vertex (m): one at rest may be pushed by another.
 const MIN_TRAVEL: f64 = 5e-4;
 
-/// Largest relative displacement of the two sides of a loaded contact between two detections [m], since its plane is
+/// Largest relative displacement of the two sides of a loaded contact between two detections (m), since its plane is
 /// fixed meanwhile; and the quantile of loaded contacts that has to satisfy it.
 const MAX_SLIP: f64 = 3e-4;
 const SLIP_QUANTILE: f64 = 0.9;
 
-/// Longest time between two detections [s].
+/// Longest time between two detections (s).
 const MAX_INTERVAL: f64 = 1.0 / 60.0;
 
 /// Least number of substeps between two detections, and the same for tangled cloth, whose recovery directions change
@@ -47,9 +47,9 @@ pub(crate) struct ClothContacts {
     /// The contacts.
     pub contacts: ContactSet,
     detector: ContactDetector,
-    /// Time until the next detection [s]; none where contacts have to be detected first.
+    /// Time until the next detection (s); none where contacts have to be detected first.
     valid_for: Option<f64>,
-    /// Positions before the last substeps [m], displacements in them [m], and inverse masses [1/kg].
+    /// Positions before the last substeps (m), displacements in them (m), and inverse masses (1/kg).
     before: Vec<Vec3>,
     displacements: Vec<Vec3>,
     inverse_masses: Vec<f64>,
@@ -75,8 +75,8 @@ impl ClothContacts {
         }
     }
 
-    /// Detects the contacts and sets the time for which they are valid: at least a few substeps of `substep` [s]. Solids
-    /// move at `surface_speed` [m/s] at most.
+    /// Detects the contacts and sets the time for which they are valid: at least a few substeps of `substep` (s). Solids
+    /// move at `surface_speed` (m/s) at most.
     fn detect(&mut self, system: &System, state: &mut State, substep: f64, surface_speed: f64) {
         let offset = system.contact.cloth_offset;
         let min_time = f64::from(MIN_SUBSTEPS) * substep;
@@ -103,7 +103,7 @@ impl ClothContacts {
     }
 
     /// The quantile [`SLIP_QUANTILE`] of the relative speeds of the two sides of loaded contacts and recovery
-    /// forces [m/s].
+    /// forces (m/s).
     fn slip_speed(&self, velocities: &[Vec3]) -> f64 {
         let speed = |contact: &ClothContact| {
             let corners = contact.vertices.iter().zip(contact.weights);
@@ -124,7 +124,7 @@ impl ClothContacts {
         }
     }
 
-    /// Corrects the displacements of the last substeps, of `span` [s], where cloth would have passed through cloth
+    /// Corrects the displacements of the last substeps, of `span` (s), where cloth would have passed through cloth
     /// (continuous collision detection).
     fn resolve_impacts(&mut self, system: &System, state: &mut State, span: f64) {
         let displacements = state.positions.iter().zip(&self.before);
@@ -154,8 +154,8 @@ impl ClothContacts {
     }
 }
 
-/// The largest speed of a vertex or of a prescribed vertex [m/s]; those of prescribed motions are means over the next
-/// `min_time` [s] and over the longest interval between detections.
+/// The largest speed of a vertex or of a prescribed vertex (m/s); those of prescribed motions are means over the next
+/// `min_time` (s) and over the longest interval between detections.
 fn largest_speed(system: &System, state: &State, min_time: f64) -> f64 {
     let of_cloth = state.velocities.iter().map(Vec3::norm);
     let spans = [min_time, MAX_INTERVAL].into_iter();
@@ -242,7 +242,7 @@ impl Xpbd {
         Ok(report)
     }
 
-    /// Advances by substeps in which solids move straight on, with coordinates relative to `origin` [m].
+    /// Advances by substeps in which solids move straight on, with coordinates relative to `origin` (m).
     fn advance_part(
         &mut self,
         system: &System,

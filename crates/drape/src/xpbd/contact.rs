@@ -20,33 +20,33 @@ use toile_geometry::{MovingSurface, Vec3};
 pub struct ContactConstraint {
     /// Outward unit normal; zero while the surface is not near.
     pub normal: [f32; 3],
-    /// The plane n . x = d of the offset surface: d [m].
+    /// The plane n . x = d of the offset surface: d (m).
     pub level: f32,
-    /// Position of the point at the last query of the surface [m].
+    /// Position of the point at the last query of the surface (m).
     pub queried_at: [f32; 3],
-    /// Square of the distance from there within which the plane is still valid [m2]; negative: query again.
+    /// Square of the distance from there within which the plane is still valid (m2); negative: query again.
     pub radius2: f32,
-    /// 1 / k [m/N].
+    /// 1 / k (m/N).
     pub compliance: f32,
-    /// Compliance of the spring that holds a sticking point [m/N].
+    /// Compliance of the spring that holds a sticking point (m/N).
     pub tangential_compliance: f32,
-    /// Depth from which the normal stiffness is [`HARDER`] times larger [m].
+    /// Depth from which the normal stiffness is [`HARDER`] times larger (m).
     pub hard_from: f32,
     /// Friction coefficient.
     pub friction: f32,
-    /// Distance between cloth and surface at rest [m].
+    /// Distance between cloth and surface at rest (m).
     pub offset: f32,
     /// The sample of the model, or [`NO_SAMPLE`].
     pub sample: u32,
     /// The solid, where there is a sample.
     pub solid: u32,
-    /// XPBD multiplier of the normal constraint over the substep: force times h^2 [N s2].
+    /// XPBD multiplier of the normal constraint over the substep: force times h^2 (N s2).
     pub lambda_normal: f32,
-    /// Multiplier of friction in the plane over the substep [N s2], at most `friction` times the normal one.
+    /// Multiplier of friction in the plane over the substep (N s2), at most `friction` times the normal one.
     pub lambda_tangent: [f32; 3],
-    /// Displacement along the surface since the point stuck, at the start of the substep [m].
+    /// Displacement along the surface since the point stuck, at the start of the substep (m).
     pub slip: [f32; 3],
-    /// Displacement of the surface at the point in the substep [m].
+    /// Displacement of the surface at the point in the substep (m).
     pub surface_displacement: [f32; 3],
 }
 
@@ -60,7 +60,7 @@ pub const TANGENTIAL_SOFTNESS: f32 = (1.0 / TANGENTIAL_RATIO) as f32;
 /// 5 kPa, more than the stiffness of contact at rest bears within the offset.
 const MOVING_STIFFNESS: f32 = 10.0;
 
-/// Largest speed at which a contact moves cloth out of a solid [m/s].
+/// Largest speed at which a contact moves cloth out of a solid (m/s).
 const MAX_OUTWARD_SPEED: f32 = 1.0;
 
 /// Least distance within which a plane is valid, over the offset: two millimetres along a limb of 30 mm radius
@@ -74,7 +74,7 @@ const REACH_IN_OFFSETS: f64 = 2.0;
 /// outward normal.
 const FLAT_SLOPE: f64 = 0.05;
 
-/// The compliance of a spring of a stiffness [N/m] in single precision, finite without stiffness [m/N].
+/// The compliance of a spring of a stiffness (N/m) in single precision, finite without stiffness (m/N).
 pub fn compliance_of(stiffness: f64) -> f32 {
     (1.0 / stiffness).min(1e30) as f32
 }
@@ -213,7 +213,7 @@ impl ContactConstraint {
         self.level = (n.dot(&here) + offset - distance) as f32;
     }
 
-    /// Queries a moving surface at a position [m] and the end of the substep, exactly.
+    /// Queries a moving surface at a position (m) and the end of the substep, exactly.
     fn query_moving_surface(
         &mut self,
         surface: &MovingSurface,
@@ -252,7 +252,7 @@ impl ContactConstraint {
         self.radius2 = (radius * radius) as f32;
     }
 
-    /// Solves the contact for a point of inverse mass `weight` [1/kg] at `point`, whose position at the start of
+    /// Solves the contact for a point of inverse mass `weight` (1/kg) at `point`, whose position at the start of
     /// the substep was `start`. Returns the change of the multipliers; the caller moves the point by `weight` times
     /// it.
     #[inline(always)]
@@ -330,12 +330,12 @@ impl ContactConstraint {
         self.slip = slip.map(|x| x * share);
     }
 
-    /// The slip at which the spring of the law, which every other method has, bears as much as this one [m].
+    /// The slip at which the spring of the law, which every other method has, bears as much as this one (m).
     fn law_slip(&self, weight: f32, step: &ContactStep) -> Vec3 {
         Vec3::from(self.slip.map(f64::from)) * step.softness(self.tangential_compliance, weight)
     }
 
-    /// Takes the slip of a sample, of inverse mass `weight` [1/kg], from a state.
+    /// Takes the slip of a sample, of inverse mass `weight` (1/kg), from a state.
     pub fn recall(&mut self, state: &State, weight: f32, step: &ContactStep) {
         self.slip = [0.0; 3];
         if self.sample == NO_SAMPLE {
@@ -350,7 +350,7 @@ impl ContactConstraint {
         }
     }
 
-    /// The friction of a sample that presses, of inverse mass `weight` [1/kg], for a state after the last substep.
+    /// The friction of a sample that presses, of inverse mass `weight` (1/kg), for a state after the last substep.
     pub fn remember(
         &self,
         state: &State,
@@ -375,7 +375,7 @@ impl ContactConstraint {
 pub struct Solid<'a> {
     /// The model.
     pub system: &'a System,
-    /// Origin of the points' coordinates [m].
+    /// Origin of the points' coordinates (m).
     pub origin: Vec3,
     /// The surfaces of those that move.
     pub moving: &'a MovingSolids,
@@ -393,14 +393,14 @@ impl Solid<'_> {
 /// Parameters of a substep for contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactStep {
-    /// (1 + drag h) / h^2 [1/s2].
+    /// (1 + drag h) / h^2 (1/s2).
     pub kappa: f32,
-    /// Largest displacement out of a solid in the substep [m].
+    /// Largest displacement out of a solid in the substep (m).
     pub outward: f32,
 }
 
 impl ContactStep {
-    /// For a substep [s].
+    /// For a substep (s).
     pub fn new(kappa: f32, step: f32) -> Self {
         Self {
             kappa,
@@ -408,7 +408,7 @@ impl ContactStep {
         }
     }
 
-    /// The compliance of the spring that holds a sticking point of inverse mass `weight` [1/kg], times kappa: the law's,
+    /// The compliance of the spring that holds a sticking point of inverse mass `weight` (1/kg), times kappa: the law's,
     /// and at most the inverse mass. A point on a softer spring would vibrate for many substeps, undamped, and slide
     /// under less than its friction, for a slip of that length is lost wherever the normal force falls for a moment.
     #[inline(always)]
@@ -435,7 +435,7 @@ pub struct ContactStencil {
     pub weights: [f32; 4],
     /// The plane and its multipliers.
     pub constraint: ContactConstraint,
-    /// The point at the start of the substep [m].
+    /// The point at the start of the substep (m).
     pub begun_at: [f32; 3],
     /// Its number among the contacts of cloth with cloth; none for a sample.
     pub number: u32,
@@ -456,7 +456,7 @@ impl ContactStencil {
         sum
     }
 
-    /// Inverse mass of the point [1/kg].
+    /// Inverse mass of the point (1/kg).
     #[inline(always)]
     pub fn weight(&self, points: &[Point]) -> f32 {
         (self.vertices.iter().zip(self.weights))

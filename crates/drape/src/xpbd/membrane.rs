@@ -27,13 +27,13 @@ use pulp::Simd;
 pub struct MembraneBatch {
     /// Corners, as indices into the points of the region.
     pub corners: [Corner; 3],
-    /// a_1 and a_2 [1/m]; a_0 is minus their sum.
+    /// a_1 and a_2 (1/m); a_0 is minus their sum.
     pub warp: [Row; 2],
-    /// b_1 and b_2 [1/m].
+    /// b_1 and b_2 (1/m).
     pub weft: [Row; 2],
     /// P, Q and R times sigma.
     products: [Row; 3],
-    /// sigma / A [kg]: times the compliance of the law and kappa it is alpha / h^2, scaled.
+    /// sigma / A (kg): times the compliance of the law and kappa it is alpha / h^2, scaled.
     compliance_scale: Row,
     /// sigma.
     scale: Row,
@@ -49,9 +49,9 @@ pub type Multipliers = [Row; 3];
 /// A membrane law in single precision.
 #[derive(Clone, Copy, Debug)]
 pub struct LawRow {
-    /// C11, C22, C12, G [N/m].
+    /// C11, C22, C12, G (N/m).
     stiffness: [f32; 4],
-    /// Inverse of the 2x2 block of warp and weft: 11, 22, 12, and 1 / G [m/N].
+    /// Inverse of the 2x2 block of warp and weft: 11, 22, 12, and 1 / G (m/N).
     compliance: [f32; 4],
     /// The law itself where it is nonlinear.
     curve: Option<MembraneLaw>,
@@ -123,7 +123,7 @@ impl MembraneBatch {
         self.count as usize
     }
 
-    /// Areas of the rest shapes of one lane group; zero in unused lanes [m2].
+    /// Areas of the rest shapes of one lane group; zero in unused lanes (m2).
     #[inline(always)]
     pub fn rest_area<S: Simd>(&self, simd: S, lane_group: usize) -> F32s<S> {
         let compliance_scale = self.compliance_scale.lane_group(simd, lane_group);
@@ -131,7 +131,7 @@ impl MembraneBatch {
     }
 }
 
-/// Inverse mass of a vertex [1/kg]; zero at pins.
+/// Inverse mass of a vertex (1/kg); zero at pins.
 pub fn inverse_mass(system: &System, vertex: u32) -> f64 {
     if system.prescribed.pinned[vertex as usize] {
         0.0
@@ -143,7 +143,7 @@ pub fn inverse_mass(system: &System, vertex: u32) -> f64 {
 /// Least pivot of the 3x3 system over its diagonal entry: thirty times the rounding error.
 const MIN_PIVOT_RATIO: f32 = 4e-6;
 
-/// Solves every batch once, in order. `kappa` is (1 + drag h) / h^2 [1/s2]. With `multipliers` the multipliers of
+/// Solves every batch once, in order. `kappa` is (1 + drag h) / h^2 (1/s2). With `multipliers` the multipliers of
 /// earlier iterations enter and are updated; without, they are zero.
 #[inline(always)]
 pub fn solve<S: Simd>(

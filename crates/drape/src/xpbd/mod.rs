@@ -85,7 +85,7 @@ pub struct Xpbd {
     /// The viscosity, and its filter.
     viscosity: Option<(Viscosity, Filter)>,
     laws: Vec<LawRow>,
-    /// The substep for which filter and constraints are set up [s], and its (1 + drag h) / h^2 [1/s2].
+    /// The substep for which filter and constraints are set up (s), and its (1 + drag h) / h^2 (1/s2).
     step: f64,
     kappa: f64,
     built_for: BuiltFor,
@@ -106,7 +106,7 @@ struct BuiltFor {
     samples: Arc<Vec<ContactSample>>,
 }
 
-/// (1 + drag h) / h^2 of a substep h [s] under a drag per mass [1/s], in 1/s2.
+/// (1 + drag h) / h^2 of a substep h (s) under a drag per mass (1/s), in 1/s2.
 fn kappa(h: f64, drag: f64) -> f64 {
     (1.0 + drag * h) / (h * h)
 }
@@ -220,7 +220,7 @@ impl Xpbd {
         }
     }
 
-    /// Advances the state by `count` substeps of `substep` [s] under `drag` per mass [1/s]: a free velocity decays as
+    /// Advances the state by `count` substeps of `substep` (s) under `drag` per mass (1/s): a free velocity decays as
     /// exp(-drag t). Where the model has changed since the last call, constraints are built anew.
     ///
     /// # Errors
@@ -280,7 +280,7 @@ impl Xpbd {
         }
     }
 
-    /// Substeps from a time [s] on, divided so that moving solids move straight in each part; one part where all are at
+    /// Substeps from a time (s) on, divided so that moving solids move straight in each part; one part where all are at
     /// rest.
     fn parts(
         &mut self,
@@ -300,7 +300,7 @@ impl Xpbd {
         })
     }
 
-    /// [`Xpbd::advance`] with coordinates relative to `origin` [m], to which the contact planes refer too.
+    /// [`Xpbd::advance`] with coordinates relative to `origin` (m), to which the contact planes refer too.
     fn advance_about(
         &mut self,
         system: &System,
@@ -409,7 +409,7 @@ impl Xpbd {
     }
 
     /// Sets the velocities of pinned vertices with a prescribed motion, such that they reach their prescribed
-    /// positions after `span` [s].
+    /// positions after `span` (s).
     fn set_prescribed_velocities(&mut self, system: &System, state: &State, span: f64) {
         for grip in &system.prescribed.led {
             let v = grip.vertex as usize;
@@ -520,7 +520,7 @@ impl Xpbd {
         }
     }
 
-    /// Time by which positions are extrapolated for the bending force in substeps of h [s]; what viscosity damps
+    /// Time by which positions are extrapolated for the bending force in substeps of h (s); what viscosity damps
     /// already is left out.
     fn lead(&self, h: f64) -> f64 {
         let damped = self
@@ -587,10 +587,10 @@ fn middle(positions: &[Vec3]) -> Vec3 {
 
 /// Size and start of some substeps.
 struct SubstepSize {
-    /// Substep [s].
+    /// Substep (s).
     h: f64,
-    /// Drag per mass [1/s].
+    /// Drag per mass (1/s).
     drag: f64,
-    /// Time at the start of the first [s].
+    /// Time at the start of the first (s).
     time: f64,
 }

@@ -12,9 +12,9 @@ const BEND: f64 = 0.25;
 #[derive(Default)]
 pub struct MovingSolids {
     solids: Vec<Option<MovingSolid>>,
-    /// Start and end of the step, or of the part of it that is taken now [s].
+    /// Start and end of the step, or of the part of it that is taken now (s).
     times: [f64; 2],
-    /// Speed of the fastest vertex in it [m/s].
+    /// Speed of the fastest vertex in it (m/s).
     speed: f64,
 }
 
@@ -22,7 +22,7 @@ struct MovingSolid {
     /// The collider that it was built of.
     of: Collider,
     surface: MovingSurface,
-    /// Places of the vertices at the times asked for last [s], [m].
+    /// Places of the vertices at the times asked for last (s), (m).
     known: Vec<(f64, Arc<Vec<Vec3>>)>,
     /// Poses of the frames of its track at both ends of the step.
     frames: [Vec<Pose>; 2],
@@ -41,7 +41,7 @@ impl MovingSolid {
         }
     }
 
-    /// Places of the vertices at a time [s].
+    /// Places of the vertices at a time (s).
     fn positions(&mut self, time: f64) -> Arc<Vec<Vec3>> {
         if let Some((_, positions)) = self.known.iter().find(|(at, _)| *at == time) {
             return positions.clone();
@@ -54,7 +54,7 @@ impl MovingSolid {
         positions
     }
 
-    /// Square of the largest distance of a vertex from the straight way between two times [s], in the middle [m2].
+    /// Square of the largest distance of a vertex from the straight way between two times (s), in the middle (m2).
     fn bend2(&mut self, [start, end]: [f64; 2]) -> f64 {
         let [from, between, to] =
             [start, 0.5 * (start + end), end].map(|time| self.positions(time));
@@ -63,7 +63,7 @@ impl MovingSolid {
         all.fold(0.0, f64::max)
     }
 
-    /// Sets the surface for a step between two times [s]; gives the square of the longest way of a vertex [m2].
+    /// Sets the surface for a step between two times (s); gives the square of the longest way of a vertex (m2).
     fn set_step(&mut self, times: [f64; 2]) -> f64 {
         let [from, to] = times.map(|time| self.positions(time));
         self.surface.set_step(&from, &to);
@@ -74,9 +74,9 @@ impl MovingSolid {
 }
 
 impl MovingSolids {
-    /// Takes over the colliders of a system and says into how many parts a step between two times [s] has to be divided,
+    /// Takes over the colliders of a system and says into how many parts a step between two times (s) has to be divided,
     /// at most `most`, so that surfaces that move straight on in each stay near their true ways: a quarter of the contact
-    /// offset [m] away at most. The distance from the way falls with the square of the time.
+    /// offset (m) away at most. The distance from the way falls with the square of the time.
     pub fn parts(
         &mut self,
         colliders: &[Collider],
@@ -100,7 +100,7 @@ impl MovingSolids {
         (parts as u32).clamp(1, most.max(1))
     }
 
-    /// Sets the surfaces for a step between two times [s], or for a part of one.
+    /// Sets the surfaces for a step between two times (s), or for a part of one.
     pub fn set_step(&mut self, times: [f64; 2]) {
         self.times = times;
         let moving = self.solids.iter_mut().flatten();
@@ -120,7 +120,7 @@ impl MovingSolids {
         Some(&solid.surface)
     }
 
-    /// Where a point in a frame of a collider's track is at a share of the step, straight on between its ends [m]; none
+    /// Where a point in a frame of a collider's track is at a share of the step, straight on between its ends (m); none
     /// where there is no such frame.
     pub fn in_frame(&self, collider: u32, (frame, point): (u16, Vec3), share: f64) -> Option<Vec3> {
         let solid = self.solids.get(collider as usize)?.as_ref()?;
@@ -134,7 +134,7 @@ impl MovingSolids {
         self.solids.iter().any(Option::is_some)
     }
 
-    /// A time [s] as a share of the step.
+    /// A time (s) as a share of the step.
     pub fn share(&self, time: f64) -> f64 {
         let [from, to] = self.times;
         match to > from {
@@ -143,7 +143,7 @@ impl MovingSolids {
         }
     }
 
-    /// Speed of the fastest vertex in the step [m/s].
+    /// Speed of the fastest vertex in the step (m/s).
     pub fn speed(&self) -> f64 {
         self.speed
     }

@@ -9,35 +9,35 @@ use crate::lanes::{LANES, Point, PointLanes, lane_groups, load, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
 
-/// Largest displacement of a vertex in one substep [m]: beyond it the substep counts as unstable and is repeated
+/// Largest displacement of a vertex in one substep (m): beyond it the substep counts as unstable and is repeated
 /// in pieces.
 const MAX_DISPLACEMENT: f32 = 10.0;
 
-/// Particles by slot. The fourth component is the inverse mass [1/kg] in `start` and `now`.
+/// Particles by slot. The fourth component is the inverse mass (1/kg) in `start` and `now`.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
-    /// Positions at the start of the substep [m].
+    /// Positions at the start of the substep (m).
     pub start: Vec<Point>,
-    /// Positions extrapolated by the lead, at which the bending force is evaluated [m]; see
+    /// Positions extrapolated by the lead, at which the bending force is evaluated (m); see
     /// [`super::bending::LEAD`].
     pub ahead: Vec<Point>,
-    /// Present positions [m].
+    /// Present positions (m).
     pub now: Vec<Point>,
-    /// Positions predicted by free motion, before constraints [m].
+    /// Positions predicted by free motion, before constraints (m).
     pub free: Vec<Point>,
-    /// Rounding errors of `now` in the prediction [m], added in the next one (compensated summation).
+    /// Rounding errors of `now` in the prediction (m), added in the next one (compensated summation).
     pub low: Vec<Point>,
-    /// Velocities [m/s].
+    /// Velocities (m/s).
     pub velocity: Vec<Point>,
-    /// Velocities without the contact impulses of the substep [m/s]; only where cloth has restitution.
+    /// Velocities without the contact impulses of the substep (m/s); only where cloth has restitution.
     pub velocity_without_contact: Vec<Point>,
-    /// Impulses of the air in the substep [N s]; only where there is air.
+    /// Impulses of the air in the substep (N s); only where there is air.
     pub air_impulses: Vec<Point>,
     /// Contact of each vertex with each solid: for sixteen vertices a block for every solid.
     pub contacts: Vec<ContactBlock>,
-    /// Displacement by the unfiltered bending force, h^2 W K x [m].
+    /// Displacement by the unfiltered bending force, h^2 W K x (m).
     pub unfiltered: Vec<Point>,
-    /// Displacement d of the bending filter after two successive stages [m].
+    /// Displacement d of the bending filter after two successive stages (m).
     pub filtered: [Vec<Point>; 2],
 }
 
@@ -64,15 +64,15 @@ impl Particles {
 /// Parameters of a substep for free motion.
 #[derive(Clone, Copy)]
 pub struct MotionStep {
-    /// Substep h [s].
+    /// Substep h (s).
     pub step: f32,
-    /// Acceleration of gravity [m/s2].
+    /// Acceleration of gravity (m/s2).
     pub gravity: Point,
     /// 1 / (1 + drag h).
     pub drag_factor: f32,
-    /// Largest speed of a vertex; faster ones are slowed down to it [m/s].
+    /// Largest speed of a vertex; faster ones are slowed down to it (m/s).
     pub speed_limit: f32,
-    /// Time theta h by which positions are extrapolated for the bending force [s].
+    /// Time theta h by which positions are extrapolated for the bending force (s).
     pub lead: f32,
 }
 
@@ -146,7 +146,7 @@ impl WithSimd for Predict<'_, '_> {
 }
 
 impl FreeBending<'_> {
-    /// The velocity change by bending of one lane group of a block in a substep of h [s].
+    /// The velocity change by bending of one lane group of a block in a substep of h (s).
     #[inline(always)]
     fn gain<S: Simd>(&self, simd: S, block: usize, lane_group: usize, h: f32) -> Triple<F32s<S>> {
         match self {
@@ -167,7 +167,7 @@ impl FreeBending<'_> {
 }
 
 impl MotionStep {
-    /// Predicts one lane group from the points at the start; `gain` is the velocity change by bending [m/s].
+    /// Predicts one lane group from the points at the start; `gain` is the velocity change by bending (m/s).
     #[inline(always)]
     fn predict<S: Simd>(
         &self,
@@ -205,9 +205,9 @@ impl MotionStep {
 
 /// The arrays that a stage of the bending filter writes in a domain.
 pub struct FilterSlices<'a> {
-    /// Displacement by the unfiltered force, h^2 W K x [m].
+    /// Displacement by the unfiltered force, h^2 W K x (m).
     pub unfiltered: &'a mut [Point],
-    /// Displacements of the stage before the last; overwritten by those of the new stage [m].
+    /// Displacements of the stage before the last; overwritten by those of the new stage (m).
     pub filtered: &'a mut [Point],
 }
 
@@ -225,7 +225,7 @@ pub struct FilterStage<'a, 'b> {
     pub force: &'a BendingForce,
     /// The coefficients of the stage: mu, nu, kappa.
     pub coefficients: [f32; 3],
-    /// h^2 [s2].
+    /// h^2 (s2).
     pub step2: f32,
 }
 

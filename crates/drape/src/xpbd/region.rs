@@ -178,7 +178,7 @@ impl Regions {
         }
     }
 
-    /// Replaces the attachments by those of the control; coordinates are relative to `origin` [m].
+    /// Replaces the attachments by those of the control; coordinates are relative to `origin` (m).
     pub fn set_attachments(&mut self, system: &System, numbering: &VertexPartition, origin: Vec3) {
         for region in self.all_mut() {
             region.attachments.clear();
@@ -225,7 +225,7 @@ impl Regions {
         }
     }
 
-    /// Sets the ends of the ties to where they are at a time [s], the end of the substep.
+    /// Sets the ends of the ties to where they are at a time (s), the end of the substep.
     pub fn follow_ties(&mut self, solid: &Solid, time: f64) {
         let of = (&solid.system.control, solid.moving);
         for tie in self.all_mut().flat_map(|region| &mut region.ties) {
@@ -233,7 +233,7 @@ impl Regions {
         }
     }
 
-    /// Sets the ends of the attachments to moving solids to their positions at a time [s].
+    /// Sets the ends of the attachments to moving solids to their positions at a time (s).
     pub fn move_frames(&mut self, system: &System, origin: Vec3, time: f64) {
         for region in self.all_mut() {
             for &[constraint, frame] in &region.frames {
@@ -360,7 +360,7 @@ pub struct SweepStep<'a> {
     pub solid: Solid<'a>,
     /// The laws of the materials.
     pub laws: &'a [LawRow],
-    /// (1 + drag h) / h^2 [1/s2], and the parameters of contacts.
+    /// (1 + drag h) / h^2 (1/s2), and the parameters of contacts.
     pub contact: ContactStep,
     /// Whether it is the first sweep of a substep, which sets the multipliers to zero.
     pub is_first: bool,
@@ -371,7 +371,7 @@ pub struct SweepStep<'a> {
 }
 
 impl Region {
-    /// Sets up the bending constraints for a new size of substep; `kappa` is (1 + drag h) / h^2 [1/s2].
+    /// Sets up the bending constraints for a new size of substep; `kappa` is (1 + drag h) / h^2 (1/s2).
     pub fn set_step(&mut self, kappa: f64) {
         for batch in &mut self.bending {
             batch.set_step(kappa);

@@ -5,9 +5,9 @@
 pub struct XpbdReport {
     /// Pieces into which each substep was divided; 1 where it was taken whole.
     pub pieces: u32,
-    /// Kinetic energy at the end [J].
+    /// Kinetic energy at the end (J).
     pub kinetic_energy: f64,
-    /// Speed of the fastest vertex at the end [m/s].
+    /// Speed of the fastest vertex at the end (m/s).
     pub fastest: f64,
 }
 

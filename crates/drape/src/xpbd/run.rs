@@ -31,7 +31,7 @@ pub struct Run<'a> {
     pub bending: &'a BendingForce,
     /// The filter of the bending force; none where bending is constraints.
     pub filter: Option<&'a Filter>,
-    /// Time when the first substep begins [s].
+    /// Time when the first substep begins (s).
     pub time: f64,
     /// Sweeps over all constraints in a substep.
     pub iterations: u32,

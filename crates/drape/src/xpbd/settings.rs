@@ -15,7 +15,7 @@ pub enum Losses {
 }
 
 impl Losses {
-    /// The air in substeps of h [s], where it acts.
+    /// The air in substeps of h (s), where it acts.
     pub(super) fn air(self, system: &System, h: f64) -> Option<AirStep> {
         match self {
             Self::OfSystem => AirStep::new(system, h),
@@ -38,7 +38,7 @@ pub struct XpbdSettings {
     /// Sweeps over all constraints in a substep. One sweep with many substeps is most efficient; one substep a step
     /// needs hundreds.
     pub iterations: u32,
-    /// Largest speed of a vertex; faster ones are slowed down to it [m/s].
+    /// Largest speed of a vertex; faster ones are slowed down to it (m/s).
     pub speed_limit: f64,
     /// The forces of motion that act.
     pub losses: Losses,

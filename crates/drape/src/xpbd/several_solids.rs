@@ -52,12 +52,12 @@ fn touches(contact: &ContactConstraint, point: [f32; 3]) -> bool {
     depth(contact, Vector3::from(point)) > 0.0 || contact.lambda_normal > 0.0
 }
 
-/// Depth of a point below the offset surface [m].
+/// Depth of a point below the offset surface (m).
 fn depth(contact: &ContactConstraint, point: Vector3<f32>) -> f32 {
     contact.level - Vector3::from(contact.normal).dot(&point)
 }
 
-/// Solves the contacts of a point of inverse mass `weight` [1/kg]; `[point, start]` are its present position and that at
+/// Solves the contacts of a point of inverse mass `weight` (1/kg); `[point, start]` are its present position and that at
 /// the start of the substep. Returns the change of the sum of the multipliers.
 ///
 /// Normal multipliers: those with which the displacement u from the point without contact minimises

@@ -69,10 +69,10 @@ pub(super) fn edges_near(look: &Look, Ridges(ridges): &Ridges) -> Vec<Near> {
 /// How sharp a side of a triangle is at the start of a step.
 #[derive(Clone, Copy, Default)]
 struct Ridge {
-    /// The angle by which the surface turns there [rad]; zero where it is hollow, and where the triangle across tells of
+    /// The angle by which the surface turns there (rad); zero where it is hollow, and where the triangle across tells of
     /// the edge.
     turn: f32,
-    /// Height of the triangle over the side [m].
+    /// Height of the triangle over the side (m).
     height: f32,
 }
 
@@ -98,7 +98,7 @@ impl Ridge {
         }
     }
 
-    /// Height of the surface over a chord of half a length [m]: of an arc k l^2 / 8, where it turns evenly over the
+    /// Height of the surface over a chord of half a length (m): of an arc k l^2 / 8, where it turns evenly over the
     /// triangles, and of a roof l a / 4, where they reach farther than the chord.
     fn over_chord(&self, half: f32) -> f32 {
         0.5 * half * half * self.turn / self.height.min(half)

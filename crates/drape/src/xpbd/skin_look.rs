@@ -23,9 +23,9 @@ pub struct Near {
     pub vertices: [u32; 3],
     /// Their barycentric weights.
     pub weights: [f64; 3],
-    /// Area of cloth that meets it [m2].
+    /// Area of cloth that meets it (m2).
     pub area: f64,
-    /// Distance from the solid that the cloth is kept at [m].
+    /// Distance from the solid that the cloth is kept at (m).
     pub offset: f64,
 }
 
@@ -34,7 +34,7 @@ pub struct Near {
 pub struct StepStart<'a> {
     pub positions: &'a [Vec3],
     pub velocities: &'a [Vec3],
-    /// Length of the first part [s], and how many parts there are.
+    /// Length of the first part (s), and how many parts there are.
     pub part: f64,
     pub parts: u32,
 }
@@ -48,7 +48,7 @@ pub struct Look<'a> {
     pub solid: u32,
 }
 
-/// A box that holds the cloth throughout a step, and as much round it as contacts reach [m].
+/// A box that holds the cloth throughout a step, and as much round it as contacts reach (m).
 pub struct Within {
     low: Vec3,
     high: Vec3,
@@ -92,7 +92,7 @@ impl Look<'_> {
         }
     }
 
-    /// The distance at which a place of the solid is to keep the cloth off [m], where it comes nearer to it in the step than
+    /// The distance at which a place of the solid is to keep the cloth off (m), where it comes nearer to it in the step than
     /// it should, by the present speeds; `vertices` and `weights` are those of the point of the cloth. Cloth that is nearer
     /// to a wall that faces the other way is on the far side of something, unless both are a pinch.
     pub fn kept_off(

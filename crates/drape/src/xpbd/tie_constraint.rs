@@ -13,15 +13,15 @@ use toile_geometry::Vec3;
 pub struct TieConstraint {
     /// Vertices, as indices into the points of the region, and their weights.
     terms: Vec<(u32, f32)>,
-    /// The target relative to the origin of the points [m]; zero between two points of cloth.
+    /// The target relative to the origin of the points (m); zero between two points of cloth.
     target: [f32; 3],
     /// Index among the control's ties.
     number: u32,
-    /// Stiffness k [N/m].
+    /// Stiffness k (N/m).
     stiffness: f32,
-    /// Largest force [N].
+    /// Largest force (N).
     largest_force: f32,
-    /// XPBD multiplier of the three rows over the substep: force times h^2 [N s2].
+    /// XPBD multiplier of the three rows over the substep: force times h^2 (N s2).
     pub lambda: [f32; 3],
 }
 
@@ -53,8 +53,8 @@ impl TieConstraint {
         }
     }
 
-    /// Moves the target to where it is at a time [s], the given share of the step of moving solids; coordinates are
-    /// relative to `origin` [m].
+    /// Moves the target to where it is at a time (s), the given share of the step of moving solids; coordinates are
+    /// relative to `origin` (m).
     pub fn follow(
         &mut self,
         (control, moving): (&Control, &MovingSolids),
@@ -88,7 +88,7 @@ pub fn stiff_ties(system: &System) -> impl Iterator<Item = (u32, &Tie)> {
         .filter(|(_, tie)| tie.law.stiffness > 0.0)
 }
 
-/// Solves ties one after the other; `kappa` is (1 + drag h) / h^2 [1/s2].
+/// Solves ties one after the other; `kappa` is (1 + drag h) / h^2 (1/s2).
 pub fn solve_ties(ties: &mut [TieConstraint], points: &mut [Point], kappa: f32) {
     for tie in ties {
         let compliance = kappa / tie.stiffness;

@@ -26,11 +26,11 @@ use pulp::{Simd, WithSimd};
 /// The viscosity of a model.
 #[derive(Clone, Debug)]
 pub struct Viscosity {
-    /// Viscous matrix of stretch of each material: uu, vv, uu-vv, gamma-gamma [N s/m].
+    /// Viscous matrix of stretch of each material: uu, vv, uu-vv, gamma-gamma (N s/m).
     pub stretch: Vec<[f32; 4]>,
-    /// Upper bound of the largest rate of decay, the largest eigenvalue of W T [1/s].
+    /// Upper bound of the largest rate of decay, the largest eigenvalue of W T (1/s).
     pub rate: f64,
-    /// Time by which the viscosity of bending is in proportion to stiffness, at least, in every material [s].
+    /// Time by which the viscosity of bending is in proportion to stiffness, at least, in every material (s).
     pub bending_time: f64,
 }
 
@@ -68,7 +68,7 @@ impl Viscosity {
         all
     }
 
-    /// The filter for substeps of h [s].
+    /// The filter for substeps of h (s).
     ///
     /// # Errors
     /// Viscosity that needs more stages than there are.
@@ -145,7 +145,7 @@ fn bending_rate(system: &System) -> f64 {
     (0..system.vertex_count()).map(rate).fold(0.0, f64::max)
 }
 
-/// Time by which a material's viscosity of bending is in proportion to stiffness, at least [s].
+/// Time by which a material's viscosity of bending is in proportion to stiffness, at least (s).
 fn bending_time(material: &Material) -> f64 {
     let mut stiffness = material.bending_matrix();
     // Over curvatures of equal viscosity: that of twist is twice that of the others.
@@ -162,9 +162,9 @@ fn bending_time(material: &Material) -> f64 {
 #[derive(Clone, Debug)]
 pub struct ViscousBatch {
     corners: Vec<Corner>,
-    /// Weights of each corner in the three curvatures along the principal directions of the viscous matrix [1/m2].
+    /// Weights of each corner in the three curvatures along the principal directions of the viscous matrix (1/m2).
     weights: Vec<[Row; 3]>,
-    /// A N of the three [N m3 s].
+    /// A N of the three (N m3 s).
     viscous: [Row; 3],
     /// Corners of the triangles.
     triangles: [Corner; 3],
@@ -198,7 +198,7 @@ impl ViscousBatch {
     }
 }
 
-/// Velocities of the stages of the filter at some vertices [m/s].
+/// Velocities of the stages of the filter at some vertices (m/s).
 pub struct ViscousStage<'a> {
     /// Before the first stage.
     pub unfiltered: &'a [Point],
@@ -206,14 +206,14 @@ pub struct ViscousStage<'a> {
     pub last: &'a [Point],
     /// After the one before; overwritten by those of the new stage.
     pub new: &'a mut [Point],
-    /// T v after the last stage [N].
+    /// T v after the last stage (N).
     pub forces: &'a [Point],
     /// Points with their inverse masses.
     pub starts: &'a [Point],
 }
 
 impl ViscousStage<'_> {
-    /// Computes a stage in substeps of h [s] by its coefficients mu, nu, kappa.
+    /// Computes a stage in substeps of h (s) by its coefficients mu, nu, kappa.
     pub fn advance(self, [mu, nu, kappa]: [f32; 3], h: f32) {
         let known = self.unfiltered.iter().zip(self.last).zip(self.forces);
         for ((new, start), ((v, last), force)) in self.new.iter_mut().zip(self.starts).zip(known) {
@@ -226,7 +226,7 @@ impl ViscousStage<'_> {
     }
 }
 
-/// Adds T v of some triangles to sums at their vertices [N].
+/// Adds T v of some triangles to sums at their vertices (N).
 pub struct AddViscousForces<'a> {
     /// The viscosity.
     pub viscosity: &'a Viscosity,
@@ -236,7 +236,7 @@ pub struct AddViscousForces<'a> {
     pub bending: &'a [ViscousBatch],
     /// The points of their region at the start of the substep.
     pub starts: &'a [Point],
-    /// Their velocities [m/s].
+    /// Their velocities (m/s).
     pub velocities: &'a [Point],
     /// The sums.
     pub sums: &'a mut [Point],
@@ -335,7 +335,7 @@ fn add_stretch<S: Simd>(
     }
 }
 
-/// Least length of twice the area's normal by which it is divided [m2]: that of edges of 30 nm.
+/// Least length of twice the area's normal by which it is divided (m2): that of edges of 30 nm.
 const LEAST_SIZE: f32 = 1e-15;
 
 #[inline(always)]

@@ -52,7 +52,7 @@ fn cloth_lands_on_a_ball_and_stays_on_it() {
     }
 }
 
-/// A patch lying on a plane with friction 0.5; gravity leans by `slope` [rad] instead of it.
+/// A patch lying on a plane with friction 0.5; gravity leans by `slope` (rad) instead of it.
 fn on_a_slope(slope: f64) -> (System, State) {
     let offset = toile_drape::ContactSettings::default().offset;
     let material = Material {

@@ -26,7 +26,7 @@ pub fn scatter(index: usize) -> f64 {
     2.0 * (x - x.floor()) - 1.0
 }
 
-/// Moves the free vertices by up to `amplitude` [m].
+/// Moves the free vertices by up to `amplitude` (m).
 pub fn shake(system: &System, state: &mut State, amplitude: f64) {
     for (v, x) in state.positions.iter_mut().enumerate() {
         if !system.prescribed.pinned[v] {

@@ -9,7 +9,7 @@ use toile_drape::{
 use toile_geometry::{SurfaceTree, Vec3};
 
 /// Five steps of 1/60 s with each method's own settings. Afterwards no vertex may be farther than
-/// `reach` [m] from where it was, and a failed step must leave the state alone.
+/// `reach` (m) from where it was, and a failed step must leave the state alone.
 fn check(case: &str, make: impl Fn() -> (System, State), reach: f64) {
     for (name, kind) in MethodKind::ALL {
         let (system, start) = make();

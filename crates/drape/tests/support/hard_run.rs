@@ -10,17 +10,17 @@ pub struct End<'a> {
     pub run: &'a SceneRun,
     /// The surface of every object, in the order of the scene.
     pub meshes: Vec<TriangleMesh>,
-    /// The farthest that any vertex of cloth was from its start [m].
+    /// The farthest that any vertex of cloth was from its start (m).
     pub farthest: f64,
 }
 
 impl End<'_> {
-    /// Places of all cloth [m].
+    /// Places of all cloth (m).
     pub fn cloth(&self) -> &[Vec3] {
         &self.run.state.positions
     }
 
-    /// Mean place of an object [m].
+    /// Mean place of an object (m).
     pub fn middle(&self, object: usize) -> Vec3 {
         let places = &self.meshes[object].positions;
         places.iter().sum::<Vec3>() / places.len() as f64
@@ -34,15 +34,15 @@ pub struct Outcome {
     pub crossings: [usize; 2],
     /// Pairs of a cloth triangle and a body's at the end.
     pub body_crossings: usize,
-    /// How deep a vertex is in a body at the end [m].
+    /// How deep a vertex is in a body at the end (m).
     pub penetration: f64,
     /// Whether the end shows what the scene is about.
     pub shown: bool,
-    /// How far the energy rose above that when nothing drove any more [J].
+    /// How far the energy rose above that when nothing drove any more (J).
     pub energy_rise: f64,
     /// How far it may, as a share of the next.
     pub rise_allowed: f64,
-    /// What energies are compared with [J]: the weight at 0.1 m, the motion at the start, or motion
+    /// What energies are compared with (J): the weight at 0.1 m, the motion at the start, or motion
     /// and strain when nothing drives any more.
     pub energy_scale: f64,
     /// Change of momentum over that of the faster half of the cloth, linear and angular.
@@ -91,7 +91,7 @@ impl Outcome {
     }
 }
 
-/// What grips that cloth held back may be late by [s].
+/// What grips that cloth held back may be late by (s).
 const LATE: f64 = 0.02;
 
 /// Momentum and angular momentum about the origin.

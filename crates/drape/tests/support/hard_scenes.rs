@@ -16,9 +16,9 @@ pub struct HardScene {
     pub name: &'static str,
     /// The scene.
     pub scene: Scene,
-    /// When the last body or grip stops [s]: from then on nothing puts work in.
+    /// When the last body or grip stops (s): from then on nothing puts work in.
     pub driven_until: f64,
-    /// Velocity of each object at the start [m/s]; empty for rest.
+    /// Velocity of each object at the start (m/s); empty for rest.
     pub velocities: Vec<Vec3>,
     /// How far the energy may rise, as a share of what energies are compared with.
     pub most_rise: f64,

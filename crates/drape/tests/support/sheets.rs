@@ -3,7 +3,7 @@
 use toile_drape::{Cloth, Material, ObjectKind, SceneObject, State, System};
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// A grid of `cells` over `size` [m] in a plane, alternating diagonals.
+/// A grid of `cells` over `size` (m) in a plane, alternating diagonals.
 pub fn sheet(cells: [usize; 2], size: [f64; 2], place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
     grid(cells, size, true, place)
 }

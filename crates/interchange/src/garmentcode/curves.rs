@@ -14,8 +14,8 @@ pub(super) enum Coordinates {
     Absolute,
 }
 
-/// Reads the curvature of the edge from `start` to `end` [m]; `metres` is the size of a file
-/// unit [m].
+/// Reads the curvature of the edge from `start` to `end` (m); `metres` is the size of a file
+/// unit (m).
 pub(super) fn read_curve(
     curvature: Option<&At>,
     [start, end]: [Vec2; 2],
@@ -121,7 +121,7 @@ fn circle(
 }
 
 /// Curvature of a curve in relative coordinates; nothing for a line. `metres` is the size of a
-/// file unit [m].
+/// file unit (m).
 pub(super) fn write_curve(curve: &Curve, metres: f64) -> Option<Value> {
     let (start, end) = (curve.start(), curve.end());
     let along = end - start;

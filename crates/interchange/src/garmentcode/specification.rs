@@ -50,7 +50,7 @@ pub(super) struct SpecStitch {
 }
 
 struct Settings {
-    /// Size of a file unit [m].
+    /// Size of a file unit (m).
     metres: f64,
     coordinates: Coordinates,
 }
@@ -225,7 +225,7 @@ fn read_panel(
     })
 }
 
-/// Area inside the polygon of a loop's corners and control points [m2], to tell the outline
+/// Area inside the polygon of a loop's corners and control points (m2), to tell the outline
 /// from holes.
 pub(super) fn loop_area(edges: &[SpecEdge], walk: &[LoopEdge]) -> f64 {
     let mut points = Vec::new();

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use toile_geometry::{Curve, Rigid, Vec3};
 use toile_pattern::{Draft, DraftSeam, Facing, Piece, PieceEdge, Worn};
 
-/// Size of the unit written [m]: centimetres.
+/// Size of the unit written (m): centimetres.
 const UNIT: f64 = 0.01;
 /// Cuts nearer to each other than this fraction of an edge are one.
 const SAME_CUT: f64 = 1e-7;

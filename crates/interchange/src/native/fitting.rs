@@ -5,7 +5,7 @@ use toile_body::Figure;
 use toile_measure::Measurements;
 use toile_pattern::SizeId;
 
-/// Widths that fabric may have [m].
+/// Widths that fabric may have (m).
 pub const FABRIC_WIDTHS: RangeInclusive<f64> = 0.05..=20.0;
 
 /// How a garment is tried on: on whom, in which size and cloth, with what else. What is as the
@@ -18,7 +18,7 @@ pub struct Fitting {
     pub size: Option<SizeId>,
     /// The fabric that takes the place of every panel's.
     pub fabric: Option<FittingFabric>,
-    /// Width of the fabric [m].
+    /// Width of the fabric (m).
     pub width: Option<f64>,
     /// Layer of the garment itself among those worn with it: larger numbers lie farther out.
     pub layer: u16,
@@ -40,7 +40,7 @@ pub enum FittingWearer {
         figure: Figure,
         /// The file they were read from, if they are its own.
         file: Option<String>,
-        /// The measurements [m], [rad].
+        /// The measurements (m), (rad).
         measurements: Measurements,
     },
     /// The body of a mannequin file.

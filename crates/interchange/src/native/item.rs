@@ -15,7 +15,7 @@ pub struct Item<'a> {
     pub path: String,
 }
 
-/// A number as it is written: a value [m], [rad] or plain, or the text of a formula.
+/// A number as it is written: a value (m), (rad) or plain, or the text of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Written<'a> {
     Value(f64),
@@ -253,7 +253,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A length or angle that may not be a formula [m] or [rad].
+    /// A length or angle that may not be a formula (m) or (rad).
     pub fn fixed(&self, number: &Written<'_>) -> Result<f64, FormatError> {
         match number {
             Written::Value(value) => Ok(*value),

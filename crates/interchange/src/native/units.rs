@@ -15,7 +15,7 @@ fn decimals(unit: DisplayUnit) -> Option<i32> {
     }
 }
 
-/// The length that a number of a file means [m]; nothing if it is not finite.
+/// The length that a number of a file means (m); nothing if it is not finite.
 pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
     let value = match decimals(unit) {
         Some(places) => shifted(raw, -places)?,
@@ -24,10 +24,10 @@ pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Larger lengths [m] might leave the range of numbers that other programs read.
+/// Larger lengths (m) might leave the range of numbers that other programs read.
 const LARGEST: f64 = 1e290;
 
-/// The number a length [m] is written as; nothing if none means it to the bit.
+/// The number a length (m) is written as; nothing if none means it to the bit.
 pub fn write_length(value: f64, unit: DisplayUnit) -> Option<String> {
     if value.abs() > LARGEST {
         return None;
@@ -40,13 +40,13 @@ pub fn write_length(value: f64, unit: DisplayUnit) -> Option<String> {
     candidates.into_iter().find(exact)
 }
 
-/// The angle that a number of degrees in a file means [rad]; nothing if it is not finite.
+/// The angle that a number of degrees in a file means (rad); nothing if it is not finite.
 pub fn read_degrees(raw: &str) -> Option<f64> {
     let degrees: f64 = raw.parse().ok()?;
     degrees.is_finite().then(|| degrees.to_radians())
 }
 
-/// The number of degrees an angle [rad] is written as; nothing if none means it to the bit.
+/// The number of degrees an angle (rad) is written as; nothing if none means it to the bit.
 pub fn write_degrees(value: f64) -> Option<String> {
     let exact = |raw: &String| read_degrees(raw).map(f64::to_bits) == Some(value.to_bits());
     neighbours(value.to_degrees()).into_iter().find(exact)

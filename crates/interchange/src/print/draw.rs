@@ -10,19 +10,19 @@ use toile_geometry::{Polygon, Vec2};
 pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
 const BLUE: Ink = [0.12, 0.31, 0.62];
 const PURPLE: Ink = [0.55, 0.2, 0.55];
-/// Least width of a line that a projector shows, and of one to cut along \[m\].
+/// Least width of a line that a projector shows, and of one to cut along (m).
 const PROJECTED: [f64; 2] = [0.0012, 0.002];
-/// Letters beside the fold, and beside the grain line \[m\].
+/// Letters beside the fold, and beside the grain line (m).
 const FOLD_LETTERS: f64 = 0.005;
 const GRAIN_LETTERS: f64 = 0.0035;
-/// Places along a line that are tried for its words, the most usual first [share of its length].
+/// Places along a line that are tried for its words, the most usual first (share of its length).
 const ALONG_PLACES: [f64; 5] = [0.5, 0.38, 0.62, 0.26, 0.74];
 /// Their size over the length of the line at the most: the words then fit.
 const ALONG_SHARE: f64 = 0.1;
 
-/// Largest letters of a piece's words \[m\].
+/// Largest letters of a piece's words (m).
 const LETTERS: f64 = 0.012;
-/// Length of an arrow to where a dart or a pleat is pressed at the most \[m\], and over the width of what is folded
+/// Length of an arrow to where a dart or a pleat is pressed at the most (m), and over the width of what is folded
 /// there; the length of its head, and half the width of that over it.
 const ARROW: f64 = 0.018;
 const ARROW_SHARE: f64 = 0.9;

@@ -9,9 +9,9 @@ use toile_lettering::width;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineStyle {
     pub ink: Ink,
-    /// \[m\]
+    /// (m)
     pub width: f64,
-    /// Length of a dash \[m\]; 0 for a line without.
+    /// Length of a dash (m); 0 for a line without.
     pub dash: f64,
     /// The purpose of a line of a piece.
     pub layer: Option<Layer>,
@@ -28,9 +28,9 @@ pub(crate) enum Shape {
     Text {
         text: String,
         at: Vec2,
-        /// Height of the letters \[m\].
+        /// Height of the letters (m).
         size: f64,
-        /// Direction of the baseline \[rad\].
+        /// Direction of the baseline (rad).
         angle: f64,
         align: Align,
         ink: Ink,
@@ -91,7 +91,7 @@ impl Mark {
         (corners.map(Vec2::from).to_vec(), true)
     }
 
-    /// A box that holds it, words in a wider font too \[m\].
+    /// A box that holds it, words in a wider font too (m).
     pub fn bounds(&self) -> Bounds2 {
         match &self.shape {
             Shape::Line { points, .. } => Bounds2::of(points.iter().copied()),

@@ -63,7 +63,7 @@ pub struct PrintJob {
     pub scale: f64,
     /// Which lines are printed.
     pub lines: Lines,
-    /// Size of the drawing \[m\].
+    /// Size of the drawing (m).
     pub size: Vec2,
     /// The sizes.
     pub layers: Vec<PrintLayer>,
@@ -71,11 +71,11 @@ pub struct PrintJob {
     pub pieces: Vec<PrintPiece>,
     /// The title block.
     pub title: TitleBlock,
-    /// Lower left corner of the title block \[m\].
+    /// Lower left corner of the title block (m).
     pub title_at: Vec2,
 }
 
-/// Arm of a cross by which sheets are joined \[m\].
+/// Arm of a cross by which sheets are joined (m).
 const CROSS: f64 = 0.004;
 const GREY: [f32; 3] = [0.55, 0.55, 0.55];
 /// Lines of frames and crosses.
@@ -85,11 +85,11 @@ const JOIN: LineStyle = LineStyle {
     width: 0.000_15,
     dash: 0.0,
 };
-/// Between lines that words do not lie on \[m\]: less than the smallest letters are high.
+/// Between lines that words do not lie on (m): less than the smallest letters are high.
 const ACROSS: f64 = 0.001;
-/// White between words and where sheets overlap \[m\].
+/// White between words and where sheets overlap (m).
 const BESIDE: f64 = 0.004;
-/// Letters of a sheet's row and column \[m\].
+/// Letters of a sheet's row and column (m).
 const PLACE_LETTERS: f64 = 0.004;
 
 impl PrintJob {
@@ -265,7 +265,7 @@ impl PrintJob {
     }
 }
 
-/// Where words of a length \[m\] cross nothing on a page: along its lower edge, then higher up; in
+/// Where words of a length (m) cross nothing on a page: along its lower edge, then higher up; in
 /// the lower left corner if they cross something everywhere.
 fn free_place(page: &Page, length: f64) -> Vec2 {
     let low = page.window.min + Vec2::repeat(1.5 * PLACE_LETTERS);

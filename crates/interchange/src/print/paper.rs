@@ -3,11 +3,11 @@
 use strum::{EnumCount, IntoStaticStr, VariantArray};
 use toile_geometry::{Bounds2, Vec2};
 
-/// White that printers leave at every side \[m\].
+/// White that printers leave at every side (m).
 const MARGIN: f64 = 0.010;
-/// Width of the overlap of neighbouring sheets \[m\].
+/// Width of the overlap of neighbouring sheets (m).
 pub(crate) const OVERLAP: f64 = 0.010;
-/// White round a drawing on one page \[m\].
+/// White round a drawing on one page (m).
 const BORDER: f64 = 0.010;
 
 /// The paper.
@@ -35,7 +35,7 @@ impl Paper {
         self.into()
     }
 
-    /// Size of a sheet \[m\]; nothing for one page as large as it takes.
+    /// Size of a sheet (m); nothing for one page as large as it takes.
     pub fn sheet(self) -> Option<Vec2> {
         match self {
             Self::A4 => Some(Vec2::new(0.210, 0.297)),
@@ -45,17 +45,17 @@ impl Paper {
         }
     }
 
-    /// The window of the drawing on a sheet \[m\].
+    /// The window of the drawing on a sheet (m).
     pub fn window(self) -> Option<Vec2> {
         Some(self.sheet()? - Vec2::repeat(2.0 * MARGIN))
     }
 
-    /// From a sheet to the next \[m\].
+    /// From a sheet to the next (m).
     pub fn step(self) -> Option<Vec2> {
         Some(self.window()? - Vec2::repeat(OVERLAP))
     }
 
-    /// Height of a drawing that fills so many rows of sheets \[m\].
+    /// Height of a drawing that fills so many rows of sheets (m).
     pub fn height_of(self, rows: u32) -> Option<f64> {
         Some(f64::from(rows) * self.step()?.y + OVERLAP)
     }
@@ -66,11 +66,11 @@ impl Paper {
 pub struct Tile {
     /// Row from above, from 1; column from the left, from 1.
     pub place: [u32; 2],
-    /// Its window of the drawing \[m\].
+    /// Its window of the drawing (m).
     pub window: Bounds2,
-    /// Size of the sheet \[m\].
+    /// Size of the sheet (m).
     pub sheet: Vec2,
-    /// Page from drawing: what is added to a point \[m\].
+    /// Page from drawing: what is added to a point (m).
     pub shift: Vec2,
 }
 

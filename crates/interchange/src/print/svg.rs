@@ -6,7 +6,7 @@ use crate::svg_text::{escape, number};
 use std::fmt::Write as _;
 use toile_geometry::Vec2;
 
-/// Between two pages \[m\].
+/// Between two pages (m).
 const GAP: f64 = 0.02;
 
 /// The SVG text of pages whose marks lie on layers of these names.

@@ -22,7 +22,7 @@ pub struct TitleBlock {
     pub unit: DisplayUnit,
 }
 
-/// Room inside the block's border \[m\].
+/// Room inside the block's border (m).
 const INSET: f64 = 0.004;
 const WIDTH: f64 = 0.172;
 const TITLE_LETTERS: f64 = 0.007;
@@ -39,14 +39,14 @@ const THIN: LineStyle = LineStyle {
 };
 
 impl TitleBlock {
-    /// Size of the block \[m\], for so many sizes.
+    /// Size of the block (m), for so many sizes.
     pub fn size(&self, sizes: usize) -> Vec2 {
         let rows = self.facts_within().len().max(legend_rows(sizes));
         let height = TITLE_LETTERS + LINE * rows as f64 + self.test_box().0.y + 6.0 * INSET;
         Vec2::new(WIDTH, height)
     }
 
-    /// The box by which a print's scale is checked \[m\], and its words.
+    /// The box by which a print's scale is checked (m), and its words.
     fn test_box(&self) -> (Vec2, &'static str) {
         match Shown(self.unit).is_inch() {
             true => (Vec2::new(0.1016, 0.0508), "2 x 4 in"),
@@ -64,7 +64,7 @@ impl TitleBlock {
     }
 }
 
-/// Width of the legend \[m\].
+/// Width of the legend (m).
 const LEGEND: f64 = 0.052;
 
 fn legend_rows(sizes: usize) -> usize {

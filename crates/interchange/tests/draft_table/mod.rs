@@ -10,7 +10,7 @@ use toile_pattern::{
     Severity,
 };
 
-/// The table of one file: a line a fact, words first, then numbers [m] or [rad].
+/// The table of one file: a line a fact, words first, then numbers (m) or (rad).
 pub fn draft_table(text: &str) -> String {
     let mut table = String::new();
     match read_pattern(text) {

@@ -6,7 +6,7 @@ use toile_geometry::Vec2;
 
 pub type Line = Vec<Vec2>;
 
-/// Strokes of a file \[m\]. Those of the knife that are closed end where they start.
+/// Strokes of a file (m). Those of the knife that are closed end where they start.
 #[derive(Clone, Debug, Default)]
 pub struct Strokes {
     pub knife: Vec<Line>,
@@ -64,7 +64,7 @@ pub fn dxf(text: &str) -> Strokes {
     }
 }
 
-/// What pen 1 of a plot draws \[m\].
+/// What pen 1 of a plot draws (m).
 pub fn hpgl(text: &str) -> Vec<Line> {
     let (mut lines, mut pen, mut unit): (Vec<Line>, &str, f64) = (Vec::new(), "", 0.0);
     let mut at = Vec2::zeros();

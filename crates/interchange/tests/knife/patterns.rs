@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toile_interchange::read_pattern;
 use toile_pattern::*;
 
-/// Widths of allowances \[m\].
+/// Widths of allowances (m).
 pub const ALLOWANCES: [f64; 9] = [0.0, 0.001, 0.003, 0.006, 0.01, 0.015, 0.02, 0.03, 0.04];
 
 const KINDS: [NotchKind; 5] = [

@@ -3,9 +3,9 @@
 use crate::files::Line;
 use toile_geometry::Vec2;
 
-/// A place this near to a seam line is not inside \[m\].
+/// A place this near to a seam line is not inside (m).
 const NEAR: f64 = 5e-5;
-/// Between places of a line that are looked at \[m\].
+/// Between places of a line that are looked at (m).
 const STEP: f64 = 2.5e-4;
 /// Most places that are looked at along a side.
 const MOST: usize = 40;

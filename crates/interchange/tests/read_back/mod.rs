@@ -3,7 +3,7 @@
 
 use toile_geometry::{EdgeTree, Polygon, Vec2};
 
-/// How far a point of a line lies from a border at the most \[m\].
+/// How far a point of a line lies from a border at the most (m).
 pub fn hausdorff(points: &[Vec2], border: &Polygon) -> f64 {
     let tree = EdgeTree::of(border);
     let off = |p: &Vec2| {
@@ -13,7 +13,7 @@ pub fn hausdorff(points: &[Vec2], border: &Polygon) -> f64 {
     points.iter().map(off).fold(0.0, f64::max)
 }
 
-/// The polylines of a layer of a DXF \[m\].
+/// The polylines of a layer of a DXF (m).
 pub fn dxf_lines(text: &str, layer: &str) -> Vec<Vec<Vec2>> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found: Vec<Vec<Vec2>> = Vec::new();
@@ -38,7 +38,7 @@ pub fn dxf_lines(text: &str, layer: &str) -> Vec<Vec<Vec2>> {
     found
 }
 
-/// The lines of the paths of an SVG that have some text in their element, each subpath a line \[m\].
+/// The lines of the paths of an SVG that have some text in their element, each subpath a line (m).
 pub fn svg_paths(text: &str, marked: &str) -> Vec<Vec<Vec2>> {
     let mut found = Vec::new();
     for line in text

@@ -65,13 +65,13 @@ impl Report {
         })
     }
 
-    /// Stretch along warp and weft [%].
+    /// Stretch along warp and weft (%).
     fn stretch(&self, name: &str) -> String {
         let direction = |direction: &str| self.scaled(&format!("/{name}/{direction}"), 100.0, 1);
         format!("{} / {}", direction("warp"), direction("weft"))
     }
 
-    /// Wall and processor time [s].
+    /// Wall and processor time (s).
     fn times(&self) -> String {
         let time = |name: &str| {
             let value = self.timing[name].as_f64();

@@ -57,9 +57,9 @@ pub struct Measured {
     pub text: String,
     /// Charts: name and content of each file.
     pub charts: Vec<(String, String)>,
-    /// Wall time [s].
+    /// Wall time (s).
     pub wall_s: f64,
-    /// Processor time [s]; wall time where the system does not tell it.
+    /// Processor time (s); wall time where the system does not tell it.
     pub cpu_s: f64,
 }
 

@@ -10,7 +10,7 @@ use toile_session::{
     nest_patterns,
 };
 
-/// Edge length of the meshes [m].
+/// Edge length of the meshes (m).
 const EDGE: f64 = 0.01;
 /// Evaluations given to each marker.
 const EVALUATIONS: u64 = 20_000_000;

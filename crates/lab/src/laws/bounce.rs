@@ -7,7 +7,7 @@ use std::sync::Arc;
 use toile_drape::{Collider, ContactSettings, Material, MethodKind, State, SystemBuilder};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 
-/// Height that the cloth is dropped from [m].
+/// Height that the cloth is dropped from (m).
 const HEIGHT: f64 = 0.5;
 
 /// How high it comes back, without restitution and with some.
@@ -15,10 +15,10 @@ const STAYS: Tolerance = Tolerance::zero("height/h", "the height it is dropped f
 const COMES_BACK: Tolerance = Tolerance::value("height, m", 0.01);
 pub(super) const BOUNCE: [Tolerance; 2] = [STAYS, COMES_BACK];
 
-/// Step [s]: XPBD cuts it into twenty.
+/// Step (s): XPBD cuts it into twenty.
 const STEP: f64 = 1.0 / 960.0;
 
-/// Height that a cloth of some restitution comes back to [m].
+/// Height that a cloth of some restitution comes back to (m).
 fn back(restitution: f64) -> Result<f64, LabError> {
     let flat: Flat = rectangle(
         MeshKind::Alternating,

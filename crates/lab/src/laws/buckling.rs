@@ -15,7 +15,7 @@ const PRANDTL: f64 = 12.85;
 const LOAD: Tolerance = Tolerance::value("Gamma", 0.03);
 pub(super) const LATERAL: [Tolerance; 1] = [LOAD];
 
-/// Length of the strip [m], and its cells along and across: a twelfth and a 24th as wide as long.
+/// Length of the strip (m), and its cells along and across: a twelfth and a 24th as wide as long.
 const LENGTH: f64 = 0.1;
 const CELLS: [[usize; 2]; 2] = [[48, 4], [96, 4]];
 

@@ -11,7 +11,7 @@ use toile_drape::{Material, State, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 use toile_session::Watcher;
 
-/// Length of the strip [m], its mass per area [kg/m2], and gravity [m/s2].
+/// Length of the strip (m), its mass per area (kg/m2), and gravity (m/s2).
 const LENGTH: f64 = 0.05;
 const DENSITY: f64 = 0.2;
 const GRAVITY: f64 = 9.81;
@@ -258,7 +258,7 @@ pub(super) fn order(cases: &mut Cases) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Chord of the standard test for bending length [degree].
+/// Chord of the standard test for bending length (degree).
 const CHORD: f64 = 41.5;
 
 /// The overhang of a strip of 40 elements.

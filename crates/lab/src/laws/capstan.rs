@@ -9,16 +9,16 @@ use toile_drape::{
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
-/// Radius of the cylinder [m] and its facets: they lie 4 micrometres inside it.
+/// Radius of the cylinder (m) and its facets: they lie 4 micrometres inside it.
 const RADIUS: f64 = 0.05;
 const FACETS: u32 = 256;
-/// Free length of the strip on either side [m].
+/// Free length of the strip on either side (m).
 const FREE: f64 = 0.05;
 /// Cells along the strip, and across.
 const CELLS: [usize; 2] = [80, 2];
-/// Membrane stiffness [N/m].
+/// Membrane stiffness (N/m).
 const STRETCH: f64 = 1000.0;
-/// How far an end is drawn [m], in how many steps and of what length [s]. Tension is read while the
+/// How far an end is drawn (m), in how many steps and of what length (s). Tension is read while the
 /// end moves, when all the strip slides; its speed, 10 mm/s, is nothing beside that of sound in the
 /// cloth, 100 m/s. Friction follows the normal force of the step before, a four-hundredth less at the
 /// end.
@@ -87,7 +87,7 @@ fn strip(kind: MeshKind, friction: f64) -> Result<(Flat, System, State), LabErro
     Ok((flat, system, state))
 }
 
-/// Mean tension along a stretch of the free strip [N/m]: S l = Y (l^2 - 1) / 2 l for the stretch l of
+/// Mean tension along a stretch of the free strip (N/m): S l = Y (l^2 - 1) / 2 l for the stretch l of
 /// Saint Venant and Kirchhoff's cloth.
 fn tension(flat: &Flat, state: &State, within: [f64; 2]) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);

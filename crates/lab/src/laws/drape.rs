@@ -9,7 +9,7 @@ use toile_drape::{
 };
 use toile_geometry::{Vec3, total_area};
 
-/// Radius of the specimen and of the discs that hold it [m].
+/// Radius of the specimen and of the discs that hold it (m).
 const SPECIMEN: f64 = 0.15;
 const DISC: f64 = 0.09;
 
@@ -22,7 +22,7 @@ pub struct Drape {
     pub folds: usize,
 }
 
-/// Drapes a specimen of a material in triangles of a size [m].
+/// Drapes a specimen of a material in triangles of a size (m).
 ///
 /// # Errors
 /// The drape did not come to rest.
@@ -86,7 +86,7 @@ fn settle(system: &System, state: &mut State) -> Result<(), LabError> {
     Ok(())
 }
 
-/// A cloth of a bending length [m]: c = (D / (rho g))^(1/3).
+/// A cloth of a bending length (m): c = (D / (rho g))^(1/3).
 fn of_length(length: f64) -> Material {
     Material {
         density: 0.15,
@@ -98,7 +98,7 @@ fn of_length(length: f64) -> Material {
     }
 }
 
-/// Drape coefficients found for kinds of fabric [%], by fabric of the library: published bands,
+/// Drape coefficients found for kinds of fabric (%), by fabric of the library: published bands,
 /// collected as targets by the drape simulator of the ppf contact solver (its `targets.csv`); plain cotton also
 /// Gan, Steven and Ly 1991, who measured 68.4.
 const BANDS: [(&str, [f64; 2]); 6] = [

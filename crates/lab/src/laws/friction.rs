@@ -8,7 +8,7 @@ use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
 /// Friction coefficient of the cloth.
 const MU: f64 = 0.4;
-/// Step of implicit Euler [s].
+/// Step of implicit Euler (s).
 const SHORT_STEP: f64 = 1.0 / 500.0;
 
 /// A long board, its upper face through the origin.
@@ -30,8 +30,8 @@ pub(super) fn board() -> TriangleMesh {
     mesh
 }
 
-/// Acceleration of a cloth down a board inclined by an angle [m/s2], once it lies, and how far it
-/// moves in a fifth of a second [m].
+/// Acceleration of a cloth down a board inclined by an angle (m/s2), once it lies, and how far it
+/// moves in a fifth of a second (m).
 fn slide(angle: f64) -> Result<[f64; 2], LabError> {
     let flat: Flat = rectangle(
         MeshKind::Alternating,
@@ -62,8 +62,8 @@ fn slide(angle: f64) -> Result<[f64; 2], LabError> {
     )
 }
 
-/// Mean acceleration of some vertices along x [m/s2] in the fifth of a second after the first tenth, and how far they
-/// move in it [m].
+/// Mean acceleration of some vertices along x (m/s2) in the fifth of a second after the first tenth, and how far they
+/// move in it (m).
 fn motion(
     system: &System,
     mut state: State,

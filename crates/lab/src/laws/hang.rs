@@ -24,7 +24,7 @@ fn limp(stretch: f64) -> Material {
     }
 }
 
-/// Lengthening of a hung Saint Venant-Kirchhoff strip [m]: at height s above the tip it carries
+/// Lengthening of a hung Saint Venant-Kirchhoff strip (m): at height s above the tip it carries
 /// rho g s = Y l (l^2 - 1) / 2 per width at stretch l.
 pub(crate) fn lengthening(stretch: f64, length: f64) -> f64 {
     let pieces = 2000;
@@ -92,12 +92,12 @@ pub(crate) fn stiffening(kind: MeshKind, stiffness: f64, elements: usize) -> Res
     Ok(sunk / lengthening(stretch, LENGTH) - 1.0)
 }
 
-/// How far the tip of a limp hung strip sinks [m], and what the edge carries [N].
+/// How far the tip of a limp hung strip sinks (m), and what the edge carries (N).
 pub(crate) fn hung(kind: MeshKind, stretch: f64, elements: usize) -> Result<[f64; 2], LabError> {
     hung_with(kind, limp(stretch), elements)
 }
 
-/// How far the tip of a hung strip sinks [m], and what the edge carries [N].
+/// How far the tip of a hung strip sinks (m), and what the edge carries (N).
 fn hung_with(kind: MeshKind, material: Material, elements: usize) -> Result<[f64; 2], LabError> {
     let rows = (elements / 5).max(1);
     let flat = rectangle(

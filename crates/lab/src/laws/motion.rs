@@ -56,7 +56,7 @@ const SPINNING: [&str; 4] = [
     "implicit-midpoint",
 ];
 
-/// Gradient at which a step of the flight counts as solved [N].
+/// Gradient at which a step of the flight counts as solved (N).
 const SOLVED: f64 = 1e-13;
 
 /// The share of its momentum that a method may lose in 1000 steps of 2 ms. Forces of explicit methods
@@ -137,7 +137,7 @@ pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Time of the fall, and the longest step [s].
+/// Time of the fall, and the longest step (s).
 const FALLING: f64 = 0.5;
 const LONGEST: f64 = 1e-3;
 

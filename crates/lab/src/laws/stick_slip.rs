@@ -9,7 +9,7 @@ use std::sync::Arc;
 use toile_drape::{Collider, ContactSettings, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 
-/// Length of the strip [m], elements along it, and its bending stiffness [N m].
+/// Length of the strip (m), elements along it, and its bending stiffness (N m).
 const LENGTH: f64 = 0.1;
 const ELEMENTS: usize = 40;
 const BEND: f64 = 1e-5;

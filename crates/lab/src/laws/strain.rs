@@ -45,7 +45,7 @@ fn turned(p: Vec3) -> Vec3 {
     Rotation3::from_euler_angles(0.3, -0.7, 1.1) * p + Vec3::new(0.05, 0.1, -0.2)
 }
 
-/// The forces of a cloth whose points are put somewhere, nothing pinned, no gravity [N].
+/// The forces of a cloth whose points are put somewhere, nothing pinned, no gravity (N).
 fn forces(
     flat: &Flat,
     material: Material,
@@ -66,7 +66,7 @@ fn largest(forces: &[Vec3], chosen: &[u32]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Second Piola-Kirchhoff stress of the weave under a deformation gradient [N/m].
+/// Second Piola-Kirchhoff stress of the weave under a deformation gradient (N/m).
 fn stress(f: Matrix2<f64>) -> Matrix2<f64> {
     let Material {
         stretch: [warp, weft],
@@ -127,7 +127,7 @@ pub(super) fn patch(cases: &mut Cases) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Length of the outline's edge that leaves a corner along the strip [m].
+/// Length of the outline's edge that leaves a corner along the strip (m).
 fn edge_along(flat: &Flat, corner: u32) -> f64 {
     let at = flat.points[corner as usize];
     flat.points

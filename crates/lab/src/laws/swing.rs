@@ -24,7 +24,7 @@ const GRAVITY: f64 = 9.81;
 /// out by less than 1e-4.
 const STEPS: f64 = 400.0;
 
-/// Gradient at which a step counts as solved [N].
+/// Gradient at which a step counts as solved (N).
 const SOLVED: f64 = 1e-13;
 
 /// A strip about to move in a shape.
@@ -36,7 +36,7 @@ pub(super) struct Swing {
 }
 
 impl Swing {
-    /// Circular frequency of the motion [rad/s], by the times the projection on the shape
+    /// Circular frequency of the motion (rad/s), by the times the projection on the shape
     /// vanishes.
     fn measure(&self, settings: MethodSettings, expected: f64) -> Result<f64, LabError> {
         let mut state = self.displaced();
@@ -65,7 +65,7 @@ impl Swing {
         Ok(std::f64::consts::PI * (crossings.len() - 1) as f64 / (end - first))
     }
 
-    /// Projections on the shape at the start and after each step until `duration` [s]; without a `step` [s], the
+    /// Projections on the shape at the start and after each step until `duration` (s); without a `step` (s), the
     /// longest sound one up to that wanted.
     pub(super) fn course(
         &self,
@@ -93,7 +93,7 @@ impl Swing {
         State::at_rest(&self.system, positions)
     }
 
-    /// The longest step that keeps a disturbance of the resting strip small, up to that wanted [s].
+    /// The longest step that keeps a disturbance of the resting strip small, up to that wanted (s).
     fn sound_step(&self, settings: MethodSettings, wanted: f64) -> Result<f64, LabError> {
         let resting = State::at_rest(&self.system, self.rest.clone());
         sound_step(&self.system, &resting, settings, wanted)
@@ -149,7 +149,7 @@ fn chain(mesh: MeshKind, mode: usize) -> Result<Swing, LabError> {
 }
 
 /// A strip clamped at one end, in some elements along it, without gravity, displaced in its first mode, its bending
-/// viscous by a share of critical damping; and its frequency [rad/s].
+/// viscous by a share of critical damping; and its frequency (rad/s).
 pub(super) fn beam(
     mesh: MeshKind,
     elements: usize,

@@ -9,10 +9,10 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use toile_drape::{Material, MethodKind, MethodSettings, State, System, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 
-/// Stretch stiffness [N/m] and mass per area [kg/m2] of the strip.
+/// Stretch stiffness (N/m) and mass per area (kg/m2) of the strip.
 const STRETCH: f64 = 20.0;
 const DENSITY: f64 = 0.2;
-/// Cells along it, and their size [m].
+/// Cells along it, and their size (m).
 const CELLS: usize = 7;
 const CELL: f64 = 0.08;
 
@@ -20,9 +20,9 @@ const CELL: f64 = 0.08;
 const SWINGING: f64 = 0.45;
 const CREEPING: f64 = 1.5;
 
-/// Step of methods in double precision [s]: a rule of first order adds w h / 2 = 0.0035 to a ratio of damping.
+/// Step of methods in double precision (s): a rule of first order adds w h / 2 = 0.0035 to a ratio of damping.
 const STEP: f64 = 2.5e-4;
-/// How far the end is drawn out at first [m], and by how much more for single precision, which rounds what
+/// How far the end is drawn out at first (m), and by how much more for single precision, which rounds what
 /// moves a strip of half a metre by less than 3e-8 m in a substep.
 const DRAWN: f64 = 2e-4;
 const DRAWN_FAR: f64 = 0.04;
@@ -38,7 +38,7 @@ const ELEMENTS: usize = 8;
 /// Damping ratio of the bent strip: higher modes have more, and have died out after half a period. Steps in a period.
 const BENDING_RATIO: f64 = 0.1;
 const STEPS: f64 = 300.0;
-/// Substeps of XPBD [s]: that of its default at 60 frames a second, and a fine one.
+/// Substeps of XPBD (s): that of its default at 60 frames a second, and a fine one.
 const DEFAULT_SUBSTEP: f64 = 1.0 / 1200.0;
 const FINE_SUBSTEP: f64 = 1.0 / 4800.0;
 
@@ -56,12 +56,12 @@ const COARSE_RATE: Tolerance = Tolerance {
 pub(super) const STRETCHED: [Tolerance; 4] = [RATIO, RATE, COARSE_RATIO, COARSE_RATE];
 pub(super) const BENT: [Tolerance; 1] = [RATIO];
 
-/// Frequency of the first stretching: a quarter of a wave over linear elements with lumped masses [rad/s].
+/// Frequency of the first stretching: a quarter of a wave over linear elements with lumped masses (rad/s).
 fn frequency() -> f64 {
     2.0 * (STRETCH / DENSITY).sqrt() / CELL * (FRAC_PI_4 / CELLS as f64).sin()
 }
 
-/// A strip held at one end, viscous by a share of critical damping, drawn out by `drawn` [m] in its first mode.
+/// A strip held at one end, viscous by a share of critical damping, drawn out by `drawn` (m) in its first mode.
 /// Also its vertices at the other end.
 fn strip(ratio: f64, drawn: f64) -> Result<(System, State, Vec<u32>), LabError> {
     let length = CELL * CELLS as f64;
@@ -108,7 +108,7 @@ fn damping_ratio(course: &[f64]) -> f64 {
     decrement / (PI * PI + decrement * decrement).sqrt()
 }
 
-/// Damping ratio of a strip that swings, or the rate at which one creeps back [1/s].
+/// Damping ratio of a strip that swings, or the rate at which one creeps back (1/s).
 fn of_strip(settings: MethodSettings, step: f64, ratio: f64, drawn: f64) -> Result<f64, LabError> {
     let (system, mut state, end) = strip(ratio, drawn)?;
     let length = CELL * CELLS as f64;

@@ -12,7 +12,7 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3};
 use toile_lab::{MeshKind, card, rectangle};
 use toile_session::{Command, Quality, Session, Silent};
 
-/// How far an end may be from that recorded in any direction [m].
+/// How far an end may be from that recorded in any direction (m).
 const NEAR: f64 = 0.01;
 /// Sewn garments come to rest below this net force over weight.
 const REST: f64 = 1e-2;
@@ -49,7 +49,7 @@ pub fn check() {
     }
 }
 
-/// The box round a mesh where it ends [m].
+/// The box round a mesh where it ends (m).
 type Size = [Vec3; 2];
 
 fn size(places: &[Vec3]) -> Size {

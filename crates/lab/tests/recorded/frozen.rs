@@ -12,7 +12,7 @@ use toile_geometry::{SurfaceTree, Vec3};
 
 /// Vectors that the Hessian is multiplied with.
 const VECTORS: usize = 20;
-/// Pairs of features whose impact is timed, and how far they move [m].
+/// Pairs of features whose impact is timed, and how far they move (m).
 const IMPACTS: usize = 200;
 const MOVE: f64 = 5e-3;
 

@@ -10,7 +10,7 @@ use toile_geometry::Vec3;
 use toile_lab::card;
 use toile_session::{Command, Quality, SAMPLE, Session, Silent};
 
-/// Step in time [s].
+/// Step in time (s).
 const STEP: f64 = 1.0 / 240.0;
 /// Steps of sewing after which panels are still apart.
 const EARLY: usize = 5;

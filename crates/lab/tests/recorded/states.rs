@@ -8,7 +8,7 @@ use toile_lab::{Flat, MeshKind, card, rectangle};
 /// A model and a state of it.
 pub type Frozen = (System, State);
 
-/// Distance kept between cloths [m].
+/// Distance kept between cloths (m).
 const APART: f64 = 2e-3;
 
 /// A standard scene at its coarsest as it starts.

@@ -14,7 +14,7 @@ pub struct Guide {
     pub id: GuideId,
     /// Which way it runs.
     pub runs: GuideRun,
-    /// Where it lies on the table [m]: its height if horizontal, else how far to the right.
+    /// Where it lies on the table (m): its height if horizontal, else how far to the right.
     pub at: f64,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
 
-use super::marker_record::MarkerRecord;
+use super::cloth_record::ClothRecord;
 use super::{ClothSettings, MatchedMarks, Panel, Pattern, PieceRule, RuledPieces};
 use crate::fields::{FieldFault, ValueField, group, key};
 use crate::{Fabric, FabricId, MarkerId, PanelId, SizeId, fields};
@@ -64,12 +64,57 @@ fields!(
     fault: |self| Self::fault(self)
 );
 
+/// A marker in a journal.
+#[derive(Serialize, Deserialize)]
+struct MarkerRecord {
+    id: MarkerId,
+    name: String,
+    cloth: ClothRecord,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    rules: Vec<PieceRule>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    matched: Vec<MatchedMarks>,
+    order: Vec<OrderedSize>,
+    placements: Vec<PiecePlacement>,
+}
+
+impl From<Marker> for MarkerRecord {
+    fn from(marker: Marker) -> Self {
+        Self {
+            id: marker.id,
+            name: marker.name,
+            cloth: ClothRecord::new(marker.fabric, marker.keeps_fabric, marker.cloth),
+            rules: marker.rules,
+            matched: marker.matched,
+            order: marker.order,
+            placements: marker.placements,
+        }
+    }
+}
+
+impl From<MarkerRecord> for Marker {
+    fn from(record: MarkerRecord) -> Self {
+        let (fabric, keeps_fabric) = record.cloth.fabric();
+        Self {
+            id: record.id,
+            name: record.name,
+            fabric,
+            keeps_fabric,
+            cloth: record.cloth.settings(),
+            rules: record.rules,
+            matched: record.matched,
+            order: record.order,
+            placements: record.placements,
+        }
+    }
+}
+
 /// What a whole garment is cut from, where that is chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GarmentCloth {
     /// The fabric that takes the place of every panel's.
     pub fabric: Option<Arc<Fabric>>,
-    /// Width of the roll [m]; nothing means the fabric's own.
+    /// Width of the roll (m); nothing means the fabric's own.
     pub width: Option<f64>,
 }
 
@@ -137,9 +182,9 @@ fields!(OrderedPiece, |self, v| {
 pub struct PiecePlacement {
     /// The piece.
     pub piece: OrderedPiece,
-    /// Where the origin of its panel comes to lie [m].
+    /// Where the origin of its panel comes to lie (m).
     pub at: [f64; 2],
-    /// Angle from the warp to its grain, counter-clockwise [rad].
+    /// Angle from the warp to its grain, counter-clockwise (rad).
     pub turn: f64,
     /// Whether it lies face down.
     pub flipped: bool,
@@ -187,9 +232,9 @@ pub enum MarkerKeeps {
     },
     /// Its width.
     Width {
-        /// Its own [m].
+        /// Its own (m).
         own: f64,
-        /// That of what the garment is cut from [m].
+        /// That of what the garment is cut from (m).
         garments: f64,
     },
 }

@@ -1,13 +1,13 @@
 //! The document: what is edited, saved and undone.
 
 mod builder;
+mod cloth_record;
 mod edge_corner;
 mod guide;
 mod lineage;
 #[macro_use]
 mod cloth_settings;
 mod marker;
-mod marker_record;
 mod operation;
 mod panel;
 mod piece_rule;
@@ -44,7 +44,7 @@ use std::sync::Arc;
 use strum::{VariantArray, VariantNames};
 use toile_measure::Measurements;
 
-/// Longest name of a part [characters].
+/// Longest name of a part (characters).
 pub const NAME_LENGTH: usize = 80;
 
 /// A pattern. Cloning is cheap: parts are shared until they are edited.

@@ -44,7 +44,7 @@ pub enum OperationKind {
         line: LineName,
         /// Where the middle of the mouth is.
         mouth: Mark,
-        /// Width of the mouth along the line [m].
+        /// Width of the mouth along the line (m).
         intake: Number,
         /// Where it ends.
         apex: Apex,
@@ -65,7 +65,7 @@ pub enum OperationKind {
         ends: [PointId; 2],
         /// Plain share of the way where it is widest.
         widest: Number,
-        /// Width there [m].
+        /// Width there (m).
         intake: Number,
     },
     /// The other half: a straight stretch lies on the fold of the cloth, and the piece is the
@@ -87,7 +87,7 @@ pub enum OperationKind {
         mouth: Mark,
         /// Plain share of the dart's angle that is moved there, from 0 to 1.
         share: Number,
-        /// How far both darts then end before the place they pivot about [m].
+        /// How far both darts then end before the place they pivot about (m).
         back: Number,
         /// Which part is turned.
         turned: Turned,
@@ -127,7 +127,7 @@ pub enum OperationKind {
         held: Mark,
         /// Where it is folded.
         pleats: Vec<PleatLine>,
-        /// How deep a fold goes under [m]: a knife pleat takes twice that of cloth, others four
+        /// How deep a fold goes under (m): a knife pleat takes twice that of cloth, others four
         /// times.
         depth: Number,
         /// How it is folded.
@@ -253,7 +253,7 @@ pub struct SpreadCut {
     pub number: u16,
     /// Where it starts and ends, both on the line.
     pub ends: [Mark; 2],
-    /// How far it opens at its start and its end [m]: where that is nothing it is a hinge.
+    /// How far it opens at its start and its end (m): where that is nothing it is a hinge.
     pub openings: [Number; 2],
 }
 
@@ -416,7 +416,7 @@ impl Pressed {
 pub enum Apex {
     /// At a point of the panel's sheet.
     Point(PointId),
-    /// So far from the middle of the mouth, square to it [m].
+    /// So far from the middle of the mouth, square to it (m).
     Depth(Number),
 }
 

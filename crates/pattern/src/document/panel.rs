@@ -26,9 +26,9 @@ pub struct Panel {
     pub notches: Vec<Notch>,
     /// Its operations, in order.
     pub operations: Vec<Arc<Operation>>,
-    /// Direction of the warp [rad], from +x counter-clockwise.
+    /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: Number,
-    /// Width of cloth outside edges that have no allowance of their own [m].
+    /// Width of cloth outside edges that have no allowance of their own (m).
     pub allowance: Number,
     /// How often it is cut.
     pub cut: Cut,
@@ -36,7 +36,7 @@ pub struct Panel {
     pub fabric: FabricId,
     /// Where on the body it belongs.
     pub worn: WornRule,
-    /// How far it was moved on the table from where its sheet has it [m], if it was.
+    /// How far it was moved on the table from where its sheet has it (m), if it was.
     pub on_table: Option<[f64; 2]>,
 }
 
@@ -209,7 +209,7 @@ pub struct Edge {
     pub curve: CurveId,
     /// Where it starts and ends: points on the curve. It may run against the curve.
     pub ends: [PointId; 2],
-    /// Width of cloth outside it [m]; nothing means the panel's.
+    /// Width of cloth outside it (m); nothing means the panel's.
     pub allowance: Option<Number>,
     /// The corner at its start.
     pub corner: EdgeCorner,
@@ -357,12 +357,12 @@ pub enum WornRule {
         part: BodyPart,
         /// Which side of it.
         facing: Facing,
-        /// Height above the floor, or distance along an arm from the shoulder [m].
+        /// Height above the floor, or distance along an arm from the shoulder (m).
         level: Option<Number>,
     },
     /// Placed in space: world from panel. Mirrored copies go to the mirror place at -x.
     Placed {
-        /// Where the panel's origin goes [m].
+        /// Where the panel's origin goes (m).
         translation: [f64; 3],
         /// Unit quaternion x, y, z, w.
         rotation: [f64; 4],

@@ -13,7 +13,7 @@ pub struct Seam {
     pub name: String,
     /// Both chains, each in walking order.
     pub sides: [Vec<Span>; 2],
-    /// How much longer one side may be than the other [m].
+    /// How much longer one side may be than the other (m).
     pub ease: Number,
     /// Whether the longer side is gathered to fit the shorter, whatever its length.
     pub gathered: bool,

@@ -15,7 +15,7 @@ pub struct Sheet {
     pub name: String,
     /// The panel stage it lies on: after that operation, or as drawn. Nothing is a free sheet.
     pub on: Option<(PanelId, Option<OperationId>)>,
-    /// Where its origin lies on the table [m].
+    /// Where its origin lies on the table (m).
     pub on_table: [f64; 2],
     /// Its points: corners, handles, construction points.
     pub points: Vec<Arc<Point>>,
@@ -100,9 +100,9 @@ fields!(Point, |self, v| {
 pub enum PointRule {
     /// At coordinates of the sheet.
     At {
-        /// To the right [m].
+        /// To the right (m).
         x: Number,
-        /// Upward [m].
+        /// Upward (m).
         y: Number,
     },
     /// Where two curves cross.
@@ -125,7 +125,7 @@ pub enum PointRule {
     AlongCurve {
         /// The curve.
         curve: CurveId,
-        /// How far [m].
+        /// How far (m).
         distance: Number,
     },
     /// On a curve, at a share of its arc length.
@@ -167,18 +167,18 @@ pub enum PointRule {
     Offset {
         /// The other point.
         base: PointId,
-        /// To the right of it [m].
+        /// To the right of it (m).
         x: Number,
-        /// Above it [m].
+        /// Above it (m).
         y: Number,
     },
     /// At a distance from another point.
     Polar {
         /// The other point.
         base: PointId,
-        /// Direction [rad], from +x counter-clockwise.
+        /// Direction (rad), from +x counter-clockwise.
         angle: Number,
-        /// How far [m].
+        /// How far (m).
         distance: Number,
     },
     /// On the line through two points, at a distance from the first.
@@ -187,7 +187,7 @@ pub enum PointRule {
         base: PointId,
         /// Where to go.
         tip: PointId,
-        /// How far [m].
+        /// How far (m).
         distance: Number,
     },
     /// In the frame of two points: `base + along (tip - base) + aside (tip - base turned left)`.
@@ -323,7 +323,7 @@ const INDEX: ValueField = key("index")
     .beyond("there are not that many crossings", "write 0 or more");
 
 impl PointRule {
-    /// A point at fixed coordinates [m].
+    /// A point at fixed coordinates (m).
     pub fn at(x: f64, y: f64) -> Self {
         Self::At {
             x: x.into(),
@@ -377,7 +377,7 @@ pub enum CurveRule {
         handles: [PointId; 2],
         /// Points between the ends, in order.
         knots: Vec<Knot>,
-        /// The length it is drawn to by scaling all handles from their points [m]; nothing leaves
+        /// The length it is drawn to by scaling all handles from their points (m); nothing leaves
         /// them as they are.
         to_length: Option<Number>,
     },

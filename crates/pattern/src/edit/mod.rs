@@ -76,7 +76,7 @@ pub struct SheetHead {
     pub name: String,
     /// The panel stage it lies on.
     pub on: Option<(PanelId, Option<OperationId>)>,
-    /// Where its origin lies on the table [m].
+    /// Where its origin lies on the table (m).
     pub on_table: [f64; 2],
 }
 

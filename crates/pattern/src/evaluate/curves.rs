@@ -8,12 +8,12 @@ use crate::{Code, Curve, CurveRule, Edge, Knot, Panel, Place, PointId, PointRule
 use std::sync::Arc;
 use toile_geometry::{Curve as Piece, Path, Vec2};
 
-/// A point this near to a curve is on it [m].
+/// A point this near to a curve is on it (m).
 const ON_CURVE: f64 = 1e-6;
 /// Handles of a spline that is drawn to a length are scaled by at most this.
 const MOST_SCALE: f64 = 16.0;
 
-/// The pieces of a curve [m].
+/// The pieces of a curve (m).
 pub(super) fn curve(c: &mut Computation<'_>, curve: &Arc<Curve>) -> Option<Arc<Path>> {
     let result = pieces(c, curve).map(|pieces| Arc::new(Path::new(pieces)));
     if result.is_ok() {
@@ -98,7 +98,7 @@ fn copied(path: &Path, [start, end]: [Vec2; 2]) -> Result<Vec<Piece>, Failure> {
     Ok(placed.collect())
 }
 
-/// Points of a spline with the handles before and after each [m].
+/// Points of a spline with the handles before and after each (m).
 struct Spline {
     points: Vec<Vec2>,
     /// Of each piece: its handle at the start and at the end, from their points.
@@ -173,7 +173,7 @@ impl Spline {
     }
 }
 
-/// The stretch of its curve that an edge follows [m].
+/// The stretch of its curve that an edge follows (m).
 pub(super) fn edge(c: &mut Computation<'_>, panel: &Panel, edge: &Edge) -> Option<Arc<Path>> {
     let result = stretch(c, edge);
     if result.is_ok() {
@@ -200,7 +200,7 @@ fn stretch(c: &mut Computation<'_>, edge: &Edge) -> Result<Arc<Path>, Failure> {
     Ok(Arc::new(path.between(from, to)))
 }
 
-/// Arc length of a point on a curve from the curve's start [m].
+/// Arc length of a point on a curve from the curve's start (m).
 fn along(
     c: &mut Computation<'_>,
     path: &Path,

@@ -125,7 +125,7 @@ impl Evaluation {
         }
     }
 
-    /// Where a point lies [m]; nothing if it cannot be computed.
+    /// Where a point lies (m); nothing if it cannot be computed.
     pub fn point(&self, id: PointId) -> Option<Vec2> {
         match self.value(Node::Point(id))? {
             Value::Point(place) => Some(*place),
@@ -133,7 +133,7 @@ impl Evaluation {
         }
     }
 
-    /// Every point that can be computed [m].
+    /// Every point that can be computed (m).
     pub fn points(&self) -> BTreeMap<(SheetId, PointId), Vec2> {
         let sheets = self.pattern.sheets.iter();
         sheets
@@ -142,7 +142,7 @@ impl Evaluation {
             .collect()
     }
 
-    /// A curve as it is drawn [m]; nothing if it cannot be computed.
+    /// A curve as it is drawn (m); nothing if it cannot be computed.
     pub fn curve(&self, id: crate::CurveId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Curve(id))? {
             Value::Path(path) => Some(path),
@@ -150,7 +150,7 @@ impl Evaluation {
         }
     }
 
-    /// An edge as it is drawn [m]; nothing if it cannot be computed.
+    /// An edge as it is drawn (m); nothing if it cannot be computed.
     pub fn edge(&self, id: crate::EdgeId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Edge(id))? {
             Value::Path(path) => Some(path),
@@ -185,7 +185,7 @@ impl Evaluation {
         }
     }
 
-    /// The value of a variable, and its power of a length: 0 plain, 1 a length [m].
+    /// The value of a variable, and its power of a length: 0 plain, 1 a length (m).
     pub fn variable(&self, id: crate::VariableId) -> Option<(f64, i8)> {
         match self.value(Node::Variable(id))? {
             Value::Number(quantity) => Some((quantity.value, quantity.power)),
@@ -193,7 +193,7 @@ impl Evaluation {
         }
     }
 
-    /// Whether a variable is an angle, whose value is [rad].
+    /// Whether a variable is an angle, whose value is (rad).
     pub fn is_angle(&self, id: crate::VariableId) -> bool {
         matches!(self.value(Node::Variable(id)), Some(Value::Number(quantity)) if quantity.is_angle)
     }

@@ -73,11 +73,11 @@ pub(crate) enum Value {
 /// A seam for one set of measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SeamValue {
-    /// How much longer one side may be [m].
+    /// How much longer one side may be (m).
     pub ease: f64,
     /// Of each side, its spans in walking order; nothing where one has no place.
     pub sides: [Vec<SpanValue>; 2],
-    /// Length of each side, dart legs left out [m].
+    /// Length of each side, dart legs left out (m).
     pub lengths: [f64; 2],
 }
 

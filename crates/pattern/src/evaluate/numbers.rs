@@ -11,7 +11,7 @@ use crate::{
 use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
-/// No length of a garment is as long as this [m].
+/// No length of a garment is as long as this (m).
 const LONGEST: f64 = 1000.0;
 /// No plain number of a pattern is as large as this.
 const LARGEST: f64 = 1e6;
@@ -30,8 +30,8 @@ pub(crate) struct Computation<'e> {
 }
 
 impl Evaluation {
-    /// The value of a number that is no node's own: [m] if a length is wanted, else plain or
-    /// [rad]; nothing if it has none.
+    /// The value of a number that is no node's own: (m) if a length is wanted, else plain or
+    /// (rad); nothing if it has none.
     pub fn number(&self, number: &Number, want: Want) -> Option<f64> {
         self.number_of_kind(number, want, &Place::Pattern, "").0
     }
@@ -60,7 +60,7 @@ impl Evaluation {
         }
     }
 
-    /// The value of a length that is no node's own [m], and what is wrong with it.
+    /// The value of a length that is no node's own (m), and what is wrong with it.
     pub(crate) fn length_of(
         &self,
         number: &Number,
@@ -227,7 +227,7 @@ impl<'e> Computation<'e> {
         self.evaluation.state(node).map(|state| &state.definition)
     }
 
-    /// Where a point lies [m].
+    /// Where a point lies (m).
     pub fn point_at(&self, id: crate::PointId) -> Result<Vec2, Failure> {
         match self.needed(Node::Point(id))? {
             Value::Point(place) => Ok(*place),
@@ -237,7 +237,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// The pieces of a curve or an edge [m].
+    /// The pieces of a curve or an edge (m).
     pub fn path(&self, node: Node) -> Result<&std::sync::Arc<Path>, Failure> {
         match self.needed(node)? {
             Value::Path(path) => Ok(path),

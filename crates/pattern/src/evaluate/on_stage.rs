@@ -9,7 +9,7 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// The place of a mark of the stage that a point's sheet lies on [m].
+/// The place of a mark of the stage that a point's sheet lies on (m).
 pub(super) fn point(
     c: &mut Computation<'_>,
     point: &Point,

@@ -264,7 +264,7 @@ impl PanelEvaluation<'_, '_, '_> {
         stage
     }
 
-    /// The width of the mouth of a dart that keeps the finished length [m].
+    /// The width of the mouth of a dart that keeps the finished length (m).
     fn width_kept(
         &mut self,
         stage: &Stage,

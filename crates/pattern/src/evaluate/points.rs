@@ -9,7 +9,7 @@ use crate::{Code, Number, Place, Point, PointId, PointRule};
 use std::sync::Arc;
 use toile_geometry::{Curve, Path, Vec2};
 
-/// The place of a point [m].
+/// The place of a point (m).
 pub(super) fn point(computation: &mut Computation<'_>, point: &Arc<Point>) -> Option<Vec2> {
     if let PointRule::Mark { line, at } = &point.rule {
         return on_stage::point(computation, point, (*line, at));

@@ -66,7 +66,7 @@ fn missing(c: &mut Computation<'_>, seam: &Seam, (message, hint): (String, &str)
     ));
 }
 
-/// Where a span lies, and its length [m].
+/// Where a span lies, and its length (m).
 fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValue, f64)> {
     let name = &seam.name;
     let from = mark(c, seam, span, &span.from)?;

@@ -7,7 +7,7 @@ use toile_measure::Measurements;
 /// The wearer that a pattern is drafted for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wearer {
-    /// Their measurements [m], [rad].
+    /// Their measurements (m), (rad).
     pub measurements: Measurements,
     /// The size of the pattern that is made, whose own values numbers take; nothing for a body that
     /// is none of its sizes.

@@ -11,7 +11,7 @@ use toile_geometry::Vec2;
 pub(crate) struct Quantity {
     pub value: f64,
     pub power: i8,
-    /// Whether a plain number is an angle [rad], which is told in degrees. Nothing is refused by it.
+    /// Whether a plain number is an angle (rad), which is told in degrees. Nothing is refused by it.
     pub is_angle: bool,
 }
 
@@ -44,13 +44,13 @@ impl Failure {
 pub(crate) trait Environment {
     fn variable(&self, id: VariableId) -> Result<Quantity, Failure>;
     fn measurement(&self, name: &str) -> Result<Quantity, Failure>;
-    /// Length of a part as drawn [m].
+    /// Length of a part as drawn (m).
     fn length(&self, part: &PartReference) -> Result<f64, Failure>;
-    /// Length of a stretch after all operations [m].
+    /// Length of a stretch after all operations (m).
     fn finished(&self, part: &PartReference) -> Result<f64, Failure>;
-    /// Start and end of a part as drawn [m].
+    /// Start and end of a part as drawn (m).
     fn ends(&self, part: &PartReference) -> Result<[Vec2; 2], Failure>;
-    /// Place of a point [m].
+    /// Place of a point (m).
     fn point(&self, part: &PartReference) -> Result<Vec2, Failure>;
 }
 
@@ -175,7 +175,7 @@ pub(crate) fn compute(
 }
 
 impl Quantity {
-    /// A length [m].
+    /// A length (m).
     pub fn length(value: f64) -> Self {
         Self {
             power: 1,
@@ -192,7 +192,7 @@ impl Quantity {
         }
     }
 
-    /// An angle [rad].
+    /// An angle (rad).
     pub fn angle(value: f64) -> Self {
         Self {
             is_angle: true,

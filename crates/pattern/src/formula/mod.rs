@@ -28,7 +28,7 @@ use std::sync::Arc;
 const RESERVED: &[&str] = &["and", "or", "not"];
 /// The number of that name, unless a variable has it.
 pub(crate) const PI: &str = "pi";
-/// Longest formula that is read, each name counted as one [bytes].
+/// Longest formula that is read, each name counted as one (bytes).
 pub const FORMULA_LENGTH: usize = 2000;
 /// Deepest nesting of parentheses, signs and calls that is read.
 pub const FORMULA_DEPTH: usize = 50;

@@ -18,7 +18,7 @@ pub(crate) struct Meeting {
 /// A part of one side of a seam: spans on one piece, one after another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SidePart {
-    /// Length of its spans [m].
+    /// Length of its spans (m).
     pub length: f64,
     /// Whether it runs round its cloth as the outline does: counter-clockwise seen from the right side.
     pub along_outline: bool,

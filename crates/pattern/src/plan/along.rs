@@ -11,7 +11,7 @@ use crate::{
 };
 use toile_geometry::{Curve, Path, Vec2};
 
-/// Distances that differ by less are one [m].
+/// Distances that differ by less are one (m).
 const SAME: f64 = 1e-9;
 
 /// An edge of a panel as it is finished, from corner to corner.
@@ -23,7 +23,7 @@ pub struct FinishedEdge {
     pub line: LineId,
     /// The corners it runs between.
     pub ends: [CornerName; 2],
-    /// Its length [m].
+    /// Its length (m).
     pub length: f64,
     parts: Vec<Part>,
 }
@@ -34,7 +34,7 @@ struct Part {
     edge: EdgeName,
     shares: [f64; 2],
     path: Path,
-    /// Distance from the first corner to its start [m].
+    /// Distance from the first corner to its start (m).
     start: f64,
 }
 
@@ -102,7 +102,7 @@ pub fn finished_edge(
 }
 
 impl FinishedEdge {
-    /// How far from its first corner the place of it lies that is nearest to another [m].
+    /// How far from its first corner the place of it lies that is nearest to another (m).
     pub fn nearest(&self, near: Vec2) -> f64 {
         let found = self.parts.iter().filter_map(|part| {
             let place = part.path.nearest(near)?;
@@ -113,21 +113,21 @@ impl FinishedEdge {
         found.map_or(0.0, |(_, along)| along)
     }
 
-    /// The part at a distance from the first corner, and how far along it [m].
+    /// The part at a distance from the first corner, and how far along it (m).
     fn part(&self, along: f64) -> Option<(&Part, f64)> {
         let part = self.parts.iter().rev().find(|part| part.start < along);
         let part = part.or(self.parts.first())?;
         Some((part, (along - part.start).clamp(0.0, part.path.length())))
     }
 
-    /// Which edge is there at a distance from the first corner [m], and the share of it.
+    /// Which edge is there at a distance from the first corner (m), and the share of it.
     pub fn share(&self, along: f64) -> Option<(EdgeName, f64)> {
         let (part, local) = self.part(along)?;
         let [from, to] = part.shares;
         Some((part.edge, from + (to - from) * local / part.path.length()))
     }
 
-    /// The place at a distance from the first corner [m].
+    /// The place at a distance from the first corner (m).
     pub fn place(&self, along: f64) -> Option<Vec2> {
         let (part, along) = self.part(along)?;
         Some(part.path.point(part.path.at_length(along)?))
@@ -196,7 +196,7 @@ pub fn mark_along(
 }
 
 /// How far a spot of a finished edge is from a corner of that on the first stage that has the corner
-/// [m], less than zero against the line; nothing if that stage does not have the spot.
+/// (m), less than zero against the line; nothing if that stage does not have the spot.
 fn on_first_stage(
     evaluation: &Evaluation,
     edge: &FinishedEdge,

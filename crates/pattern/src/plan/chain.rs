@@ -9,7 +9,7 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Path;
 
-/// A point this near to a curve is on it [m], as evaluation takes it.
+/// A point this near to a curve is on it (m), as evaluation takes it.
 pub(super) const ON_CURVE: f64 = 1e-6;
 
 /// What a line of a panel is traced from.
@@ -36,7 +36,7 @@ impl Chain<'_> {
 pub(super) struct Stretch {
     pub curve: CurveId,
     pub ends: [PointId; 2],
-    /// How it runs from the first end to the second [m].
+    /// How it runs from the first end to the second (m).
     pub path: Arc<Path>,
     /// Whether it runs against its curve.
     pub is_reversed: bool,
@@ -53,7 +53,7 @@ impl Stretch {
     }
 }
 
-/// Arc length from the start of a curve to a point [m]; nothing if the point is not on it.
+/// Arc length from the start of a curve to a point (m); nothing if the point is not on it.
 pub(super) fn along(
     evaluation: &Evaluation,
     curve: &Curve,
@@ -254,7 +254,7 @@ fn apart(one: &Curve, other: &Curve) -> EditError {
     )
 }
 
-/// Twice the signed area that stretches sweep from the origin [m2].
+/// Twice the signed area that stretches sweep from the origin (m2).
 pub(super) fn swept(stretches: &[Stretch]) -> f64 {
     let curves = stretches.iter().flat_map(|s| s.path.curves());
     curves.map(|curve| curve.swept_area()).sum()

@@ -13,21 +13,21 @@ use toile_geometry::Vec2;
 /// How a new curve is to run between its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveShape {
-    /// A circular arc through a place [m].
+    /// A circular arc through a place (m).
     ArcThrough(Vec2),
-    /// A spline with handles at places [m]; handle points are added to the sheet, each beside the
+    /// A spline with handles at places (m); handle points are added to the sheet, each beside the
     /// point it belongs to, so that it follows it.
     Spline {
-        /// Handles at the start and at the end [m].
+        /// Handles at the start and at the end (m).
         handles: [Vec2; 2],
-        /// Knots in order: the handle before each, the knot, the handle after it [m].
+        /// Knots in order: the handle before each, the knot, the handle after it (m).
         knots: Vec<[Vec2; 3]>,
     },
     /// By a rule that needs no new points: a line, an arc by its bulge, a mirror image, a copy.
     Rule(CurveRule),
 }
 
-/// The edits that add an empty sheet whose origin lies at a place of the table [m]; and the sheet.
+/// The edits that add an empty sheet whose origin lies at a place of the table (m); and the sheet.
 /// Without a name it is called `sheet`, `sheet 2`, ...
 ///
 /// # Errors
@@ -55,7 +55,7 @@ pub fn add_sheet(
     Ok((vec![Edit::Put(Entity::Sheet(head))], id))
 }
 
-/// The edits that lay sheets elsewhere on the table, each with its origin at a place [m]. What is
+/// The edits that lay sheets elsewhere on the table, each with its origin at a place (m). What is
 /// traced from a sheet goes with it.
 ///
 /// # Errors
@@ -141,7 +141,7 @@ pub fn add_curve(
     Ok((additions.edits, id))
 }
 
-/// The edits that bend a curve to a circular arc through a place [m]; its ends stay.
+/// The edits that bend a curve to a circular arc through a place (m); its ends stay.
 ///
 /// # Errors
 /// The curve is not there; the place is not finite, or no arc between its ends leads through it.

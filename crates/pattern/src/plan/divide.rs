@@ -11,7 +11,7 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// The edits that put a corner on an edge at its place nearest to a point of the finished panel [m],
+/// The edits that put a corner on an edge at its place nearest to a point of the finished panel (m),
 /// or in its middle; and the corner. On a side of a split the panel that was split gets it.
 ///
 /// # Errors

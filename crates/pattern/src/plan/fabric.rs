@@ -8,31 +8,31 @@ use std::sync::Arc;
 /// A number that tells how a fabric is: what a marker or a drape takes from it. Values are in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FabricFigure {
-    /// Width of the roll [m].
+    /// Width of the roll (m).
     Width,
-    /// Mass per area [kg/m2].
+    /// Mass per area (kg/m2).
     Weight,
-    /// Thickness [m].
+    /// Thickness (m).
     Thickness,
-    /// Stiffness in stretch along the warp [N/m].
+    /// Stiffness in stretch along the warp (N/m).
     StretchWarp,
-    /// Stiffness in stretch along the weft [N/m].
+    /// Stiffness in stretch along the weft (N/m).
     StretchWeft,
-    /// How much stiffer it gets along the warp as it is stretched [1].
+    /// How much stiffer it gets along the warp as it is stretched (1).
     HardeningWarp,
-    /// How much stiffer it gets along the weft as it is stretched [1].
+    /// How much stiffer it gets along the weft as it is stretched (1).
     HardeningWeft,
-    /// Stiffness in shear [N/m].
+    /// Stiffness in shear (N/m).
     Shear,
-    /// How much it narrows where it is stretched (Poisson ratio) [1].
+    /// How much it narrows where it is stretched (Poisson ratio) (1).
     Narrowing,
-    /// Stiffness in bending along the warp [N m].
+    /// Stiffness in bending along the warp (N m).
     BendWarp,
-    /// Stiffness in bending along the weft [N m].
+    /// Stiffness in bending along the weft (N m).
     BendWeft,
-    /// Stiffness in bending on the bias [N m].
+    /// Stiffness in bending on the bias (N m).
     BendBias,
-    /// Coulomb friction against skin [1].
+    /// Coulomb friction against skin (1).
     Friction,
 }
 

@@ -10,7 +10,7 @@ use crate::{Curve, CurveId, EditError, Evaluation, PointId, Sheet};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Polygon, Vec2};
 
-/// Faces are compared with places by polygons this near to them [m].
+/// Faces are compared with places by polygons this near to them (m).
 const FLAT: f64 = 1e-5;
 /// Stretches at a node are put in order by where they are at this share of the shortest.
 const NEAR_NODE: f64 = 1e-3;
@@ -58,7 +58,7 @@ pub(super) fn face(evaluation: &Evaluation, sheet: &Sheet, place: Vec2) -> Resul
 struct Link {
     curve: CurveId,
     nodes: [usize; 2],
-    /// Arc lengths along the curve where it begins and ends [m].
+    /// Arc lengths along the curve where it begins and ends (m).
     along: [f64; 2],
     path: Path,
 }
@@ -66,17 +66,17 @@ struct Link {
 /// A walk round a face: half-links `2 link + direction` with the face on the left.
 struct Cycle {
     halves: Vec<usize>,
-    /// Signed area [m2].
+    /// Signed area (m2).
     area: f64,
     polygon: Polygon,
-    /// A place on it [m].
+    /// A place on it (m).
     inner: Vec2,
     /// The connected part of the graph it belongs to.
     component: usize,
 }
 
 struct Graph {
-    /// Points where links meet, and where they lie [m].
+    /// Points where links meet, and where they lie (m).
     nodes: Vec<(PointId, Vec2)>,
     links: Vec<Link>,
     /// Links that bound something.

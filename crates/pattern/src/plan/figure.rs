@@ -15,7 +15,7 @@ use toile_geometry::Vec2;
 /// Where a rectangle begins.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FirstCorner {
-    /// At coordinates of the sheet [m].
+    /// At coordinates of the sheet (m).
     At([Number; 2]),
     /// At a point of the sheet.
     Point(PointId),
@@ -32,7 +32,7 @@ pub struct Figure {
     pub panel: Option<PanelId>,
 }
 
-/// The edits that draw a rectangle from a corner to the right and upward, by `[width, height]` [m];
+/// The edits that draw a rectangle from a corner to the right and upward, by `[width, height]` (m);
 /// and its parts. The other corners lie beside the first, so that formulas stay formulas. Its sides
 /// are called bottom, right, top and left.
 ///
@@ -91,7 +91,7 @@ pub fn add_rectangle(
     finished(&drawn, additions, figure, panel)
 }
 
-/// The edits that draw a polygon through places of a sheet [m], each a point of its own; and its
+/// The edits that draw a polygon through places of a sheet (m), each a point of its own; and its
 /// parts.
 ///
 /// # Errors

@@ -7,11 +7,11 @@ use crate::{EdgeName, Evaluation, OperationId, PanelId};
 pub struct FinishedLength {
     /// The edge.
     pub edge: EdgeName,
-    /// Its length once its darts are closed [m].
+    /// Its length once its darts are closed (m).
     pub length: f64,
-    /// The same if none of its darts were trued, their mouths as wide [m].
+    /// The same if none of its darts were trued, their mouths as wide (m).
     pub untrued: f64,
-    /// Width of the dart's mouth [m].
+    /// Width of the dart's mouth (m).
     pub mouth: f64,
 }
 

@@ -11,10 +11,10 @@ use toile_geometry::Vec2;
 
 /// Steps in which the value of a variable is found: one is enough where a formula is linear in it.
 const STEPS: usize = 12;
-/// How far a number may be from the one that is wanted [m], [rad] or plain: well below what a point may
+/// How far a number may be from the one that is wanted (m), (rad) or plain: well below what a point may
 /// be off, as several numbers place a point.
 const NUMBER_TOLERANCE: f64 = 1e-12;
-/// How far a point may be from where it is moved to [m].
+/// How far a point may be from where it is moved to (m).
 const POINT_TOLERANCE: f64 = 1e-9;
 /// Least change of a number with a variable by which it is found.
 const LEAST_SLOPE: f64 = 1e-6;
@@ -46,7 +46,7 @@ impl FormulaChange {
     }
 }
 
-/// The edits that move a point to `to` [m] as it is drawn now, with formulas that place it changed
+/// The edits that move a point to `to` (m) as it is drawn now, with formulas that place it changed
 /// as is chosen; see [`move_point`].
 ///
 /// # Errors

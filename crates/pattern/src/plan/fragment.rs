@@ -62,7 +62,7 @@ pub struct Outside {
 pub struct OutsideValue {
     /// Where it stands in the fragment.
     pub place: NumberAddress,
-    /// Its value [m], [rad] or plain; nothing if it had none.
+    /// Its value (m), (rad) or plain; nothing if it had none.
     pub value: Option<f64>,
     /// Its power of a length.
     pub power: i8,

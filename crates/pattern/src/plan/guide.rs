@@ -4,7 +4,7 @@ use super::lookup::finite;
 use crate::{Edit, EditError, Entity, Evaluation, Guide, GuideId, GuideRun};
 use std::sync::Arc;
 
-/// The edits that add a guide at a place of the table [m]; and the guide.
+/// The edits that add a guide at a place of the table (m); and the guide.
 ///
 /// # Errors
 /// The place is not finite.
@@ -18,7 +18,7 @@ pub fn add_guide(
     Ok((vec![put(Guide { id, runs, at })?], id))
 }
 
-/// The edits that lay a guide at another place of the table [m].
+/// The edits that lay a guide at another place of the table (m).
 ///
 /// # Errors
 /// It is not there, or the place is not finite.

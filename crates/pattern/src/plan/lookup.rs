@@ -59,7 +59,7 @@ pub(super) fn seam(pattern: &Pattern, id: SeamId) -> Result<&Arc<Seam>, EditErro
     pattern.seam(id).ok_or_else(|| missing(&id))
 }
 
-/// Where a point lies [m], or a refusal that names it.
+/// Where a point lies (m), or a refusal that names it.
 pub(super) fn place(evaluation: &Evaluation, id: PointId) -> Result<Vec2, EditError> {
     let (_, found) = point(evaluation.pattern(), id)?;
     evaluation.point(id).ok_or_else(|| {
@@ -70,7 +70,7 @@ pub(super) fn place(evaluation: &Evaluation, id: PointId) -> Result<Vec2, EditEr
     })
 }
 
-/// How a curve runs [m], or a refusal that names it.
+/// How a curve runs (m), or a refusal that names it.
 pub(super) fn path(evaluation: &Evaluation, id: CurveId) -> Result<&Arc<Path>, EditError> {
     let (_, found) = curve(evaluation.pattern(), id)?;
     evaluation.curve(id).ok_or_else(|| {

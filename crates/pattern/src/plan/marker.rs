@@ -222,7 +222,7 @@ pub fn take_off_pieces(
     put(marker)
 }
 
-/// The edits that move pieces of a marker [m].
+/// The edits that move pieces of a marker (m).
 ///
 /// # Errors
 /// The marker is not there; a piece does not lie on it or is locked; the move is not finite.
@@ -236,7 +236,7 @@ pub fn move_pieces(
     })?)
 }
 
-/// The edits that turn pieces of a marker together round a point of it, counter-clockwise [rad].
+/// The edits that turn pieces of a marker together round a point of it, counter-clockwise (rad).
 ///
 /// # Errors
 /// The marker is not there; a piece does not lie on it or is locked; a number is not finite.
@@ -253,7 +253,7 @@ pub fn turn_pieces(
     })?)
 }
 
-/// The edits that turn pieces of a marker over together, about a line along the warp [m].
+/// The edits that turn pieces of a marker over together, about a line along the warp (m).
 ///
 /// # Errors
 /// The marker is not there; a piece does not lie on it or is locked; the line is not finite.
@@ -351,7 +351,7 @@ fn words(evaluation: &Evaluation, piece: OrderedPiece) -> String {
     evaluation.pattern().piece_words(piece)
 }
 
-/// An angle from above -PI to PI [rad], unchanged where it is one.
+/// An angle from above -PI to PI (rad), unchanged where it is one.
 fn principal(angle: f64) -> f64 {
     match angle {
         angle if angle > -PI && angle <= PI => angle,

@@ -19,11 +19,11 @@ pub struct NearMark {
     pub edge: EdgeName,
     /// The mark: a corner, or a share of the way along the edge.
     pub mark: Mark,
-    /// Where it is [m].
+    /// Where it is (m).
     pub at: Vec2,
 }
 
-/// The mark nearest to a place [m] on the lines of a panel as it is finished.
+/// The mark nearest to a place (m) on the lines of a panel as it is finished.
 ///
 /// # Errors
 /// The panel is not there or none of its edges can be drawn; the place is not finite.

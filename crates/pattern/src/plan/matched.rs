@@ -55,7 +55,7 @@ pub fn opposites(evaluation: &Evaluation, edge: EdgeId, share: f64) -> Vec<Oppos
     found
 }
 
-/// Length of the named edge of a stretch, mouths of darts included [m].
+/// Length of the named edge of a stretch, mouths of darts included (m).
 fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f64)> {
     let Name::Drawn(edge) = name else {
         return None;
@@ -63,7 +63,7 @@ fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f
     Some((edge, evaluation.edge(edge)?.length()))
 }
 
-/// How far along a side a share of an edge lies [m].
+/// How far along a side a share of an edge lies (m).
 fn reached(
     evaluation: &Evaluation,
     side: &[SpanValue],

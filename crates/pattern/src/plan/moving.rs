@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
-/// The edits that move a point to `to` [m] as it is drawn now.
+/// The edits that move a point to `to` (m) as it is drawn now.
 ///
 /// A value is set; a formula keeps its text and gets something added. A point constructed from
 /// others keeps its construction with new numbers, so a point on a curve or a line goes to the
@@ -54,7 +54,7 @@ fn direction(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2,
     ))
 }
 
-/// The rule with which a point of a sheet that lies at `now` comes to `to` [m], or as near as it lets it.
+/// The rule with which a point of a sheet that lies at `now` comes to `to` (m), or as near as it lets it.
 pub(super) fn moved(
     evaluation: &Evaluation,
     (sheet, old): (&Sheet, &PointRule),
@@ -156,7 +156,7 @@ pub(super) fn moved(
 }
 
 /// A mark of the stage a sheet lies on, moved along its line from the place nearest to one to that
-/// nearest to another [m].
+/// nearest to another (m).
 fn moved_mark(
     evaluation: &Evaluation,
     (sheet, line, mark): (&Sheet, LineName, &Mark),
@@ -227,8 +227,8 @@ fn moved_mark(
     })
 }
 
-/// How much farther along a curve the place nearest to `to` is than that nearest to `now` [m], and
-/// the curve's length [m].
+/// How much farther along a curve the place nearest to `to` is than that nearest to `now` (m), and
+/// the curve's length (m).
 fn along_curve(
     evaluation: &Evaluation,
     curve: crate::CurveId,
@@ -241,7 +241,7 @@ fn along_curve(
     Ok((place(to) - place(now), path.length().max(1e-12)))
 }
 
-/// The number with something added [m], [rad] or plain.
+/// The number with something added (m), (rad) or plain.
 pub(super) fn added(number: &Number, shift: f64) -> Number {
     match number {
         Number::Value(value) => Number::Value(value + shift),

@@ -57,7 +57,7 @@ pub fn set_number(
     Ok(edits)
 }
 
-/// The edits that bring the number at a place to a value [m], [rad] or plain for the measurements on
+/// The edits that bring the number at a place to a value (m), (rad) or plain for the measurements on
 /// show: a value is set, a formula stays and gets something added.
 ///
 /// # Errors
@@ -82,7 +82,7 @@ pub fn adjust_number(
     set_number(evaluation, place, added(&number, to - now))
 }
 
-/// The edits that give a number a value of its own in one size [m], [rad] or plain, or take it away
+/// The edits that give a number a value of its own in one size (m), (rad) or plain, or take it away
 /// again; in all other sizes it stays.
 ///
 /// # Errors

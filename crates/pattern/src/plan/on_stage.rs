@@ -17,7 +17,7 @@ pub(super) struct OnEdge {
     pub ends: [CornerName; 2],
     /// Share of the edge's arc length.
     pub share: f64,
-    /// Length of the whole edge [m].
+    /// Length of the whole edge (m).
     pub length: f64,
     pub at: Vec2,
 }
@@ -33,7 +33,7 @@ pub struct EdgePart {
     pub ends: [CornerName; 2],
     /// Shares of the edge's arc length where the part starts and ends.
     pub shares: [f64; 2],
-    /// Its course [m].
+    /// Its course (m).
     pub curve: Curve,
 }
 
@@ -62,7 +62,7 @@ pub fn edge_parts(evaluation: &Evaluation, panel: &Panel, stage: &Stage) -> Vec<
 }
 
 impl EdgePart {
-    /// The place on it nearest to one [m], and its share of the whole edge's arc length; nothing if
+    /// The place on it nearest to one (m), and its share of the whole edge's arc length; nothing if
     /// it has no length.
     pub fn nearest(&self, near: Vec2) -> Option<(Vec2, f64)> {
         let path = Path::new(vec![self.curve]);
@@ -74,7 +74,7 @@ impl EdgePart {
     }
 }
 
-/// The place nearest to one of a finished panel [m] on those of its edges that are asked for.
+/// The place nearest to one of a finished panel (m) on those of its edges that are asked for.
 /// Nothing if there is none.
 pub(super) fn nearest_edge(
     evaluation: &Evaluation,
@@ -153,7 +153,7 @@ pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) ->
     })
 }
 
-/// Where a mark of a line lies on a panel as it is finished [m].
+/// Where a mark of a line lies on a panel as it is finished (m).
 pub(super) fn place_of(
     evaluation: &Evaluation,
     panel: &Panel,

@@ -15,7 +15,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2};
 
-/// Room between parts and their duplicate [m].
+/// Room between parts and their duplicate (m).
 const GAP: f64 = 0.05;
 
 /// Where a fragment goes.
@@ -23,7 +23,7 @@ const GAP: f64 = 0.05;
 pub struct PasteTarget {
     /// The sheet it is drawn on; nothing makes new sheets.
     pub sheet: Option<SheetId>,
-    /// How far it is moved: on the sheet, or new sheets on the table [m].
+    /// How far it is moved: on the sheet, or new sheets on the table (m).
     pub offset: [f64; 2],
 }
 
@@ -121,7 +121,7 @@ pub fn duplicate(evaluation: &Evaluation, parts: &[PartId]) -> Result<Pasted, Ed
 }
 
 /// The edits that insert all panels of another pattern, with its sheets, seams, variables and
-/// fabrics, moved on the table [m]. Its sizes stay behind: it is drawn for those of this pattern; and
+/// fabrics, moved on the table (m). Its sizes stay behind: it is drawn for those of this pattern; and
 /// its markers, as they were laid for those.
 ///
 /// # Errors

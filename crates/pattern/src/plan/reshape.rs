@@ -19,7 +19,7 @@ pub struct PivotWish {
     pub mouth: (LineName, Mark),
     /// Plain share of the dart that is moved, from 0 to 1.
     pub share: Number,
-    /// How far the points of both darts are set back [m].
+    /// How far the points of both darts are set back (m).
     pub back: Number,
     /// Which part is turned; nothing for that without the fold, else the shorter one.
     pub turned: Option<Turned>,
@@ -111,7 +111,7 @@ fn freer_part(
 pub struct SpreadWish {
     /// The line it is cut from and to.
     pub line: LineName,
-    /// Where each cut starts and ends, and how far it opens there [m].
+    /// Where each cut starts and ends, and how far it opens there (m).
     pub cuts: Vec<([Mark; 2], [Number; 2])>,
     /// A place that stays where it is; nothing for the start of the fold, else of the line.
     pub held: Option<Mark>,
@@ -167,7 +167,7 @@ pub struct PleatWish {
     pub line: LineName,
     /// Where each pleat starts and ends.
     pub lines: Vec<[Mark; 2]>,
-    /// How deep a fold goes under [m].
+    /// How deep a fold goes under (m).
     pub depth: Number,
     /// How it is folded.
     pub kind: PleatKind,

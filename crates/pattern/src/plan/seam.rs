@@ -11,7 +11,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What is left of an edge that a dart takes in is shorter [m].
+/// What is left of an edge that a dart takes in is shorter (m).
 const LEAST_LENGTH: f64 = 1e-9;
 
 /// An edge of a copy and half of a panel, as it comes in a chain.

@@ -48,7 +48,7 @@ pub fn remove_size(evaluation: &Evaluation, size: SizeId) -> Result<Vec<Edit>, E
     remove::remove_parts(evaluation, &[size.into()])
 }
 
-/// The edits that set a measurement of a size [m] or [rad], or take it out of its table.
+/// The edits that set a measurement of a size (m) or (rad), or take it out of its table.
 ///
 /// # Errors
 /// The size is not there, or has no such measurement to take out; the name is no measurement's;

@@ -233,7 +233,7 @@ impl Mover<'_> {
         None
     }
 
-    /// Length of a span on its panel before that is folded [m]; nothing if it has no place.
+    /// Length of a span on its panel before that is folded (m); nothing if it has no place.
     fn length(&self, panel: PanelId, span: &Span) -> Option<f64> {
         let pattern = self.evaluation.pattern();
         let owner = pattern.panel(panel)?;

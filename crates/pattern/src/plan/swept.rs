@@ -10,7 +10,7 @@ const AROUND: [&str; 2] = ["tan((", ") / 4)"];
 /// The same of a bulge in the formula of an angle.
 const AROUND_BULGE: [&str; 2] = ["4 * atan2(", ", 1)"];
 
-/// The bulge of an arc that sweeps an angle [rad], positive counter-clockwise.
+/// The bulge of an arc that sweeps an angle (rad), positive counter-clockwise.
 ///
 /// # Errors
 /// The angle is a full turn or more, or has no value.
@@ -34,7 +34,7 @@ pub fn bulge_of(evaluation: &Evaluation, angle: &Number) -> Result<Number, EditE
     formula(evaluation, &text)
 }
 
-/// The angle that an arc of a bulge sweeps [rad].
+/// The angle that an arc of a bulge sweeps (rad).
 pub fn angle_of(evaluation: &Evaluation, bulge: &Number) -> Number {
     if let Number::Value(value) = bulge {
         return Number::Value(4.0 * value.atan());

@@ -13,7 +13,7 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Seam allowance of the first panel of a pattern [m]: what most home patterns have.
+/// Seam allowance of the first panel of a pattern (m): what most home patterns have.
 const ALLOWANCE: f64 = 0.01;
 
 /// What a new panel is to be called and cut from. Its seam allowance is that of the panel before it
@@ -53,7 +53,7 @@ pub fn trace_panel(
     traced(evaluation, sheet, &[outline], new)
 }
 
-/// The edits that trace the panel round a place of a sheet [m]: the smallest closed line of curves
+/// The edits that trace the panel round a place of a sheet (m): the smallest closed line of curves
 /// about it, cut at the points that lie on them; and the panel.
 ///
 /// # Errors

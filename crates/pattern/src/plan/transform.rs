@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// A point this near to where it should be is there [m].
+/// A point this near to where it should be is there (m).
 const THERE: f64 = 1e-9;
 
 /// An affine map of the plane.
@@ -16,7 +16,7 @@ const THERE: f64 = 1e-9;
 pub struct Affine {
     /// Images of the unit vectors along x and y, plain.
     pub axes: [Vec2; 2],
-    /// Image of the origin [m].
+    /// Image of the origin (m).
     pub origin: Vec2,
 }
 
@@ -29,7 +29,7 @@ impl Affine {
         }
     }
 
-    /// Moves by a vector [m].
+    /// Moves by a vector (m).
     pub fn translation(by: Vec2) -> Self {
         Self {
             axes: [Vec2::x(), Vec2::y()],
@@ -37,20 +37,20 @@ impl Affine {
         }
     }
 
-    /// Turns about a place [m] by an angle [rad], counter-clockwise.
+    /// Turns about a place (m) by an angle (rad), counter-clockwise.
     pub fn rotation(about: Vec2, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self::about(about, [Vec2::new(cos, sin), Vec2::new(-sin, cos)])
     }
 
-    /// Mirrors in the line through two places [m]. Its numbers are not finite if they are one.
+    /// Mirrors in the line through two places (m). Its numbers are not finite if they are one.
     pub fn reflection([a, b]: [Vec2; 2]) -> Self {
         let unit = (b - a) / (b - a).norm();
         let flip = |v: Vec2| unit * (2.0 * v.dot(&unit)) - v;
         Self::about(a, [flip(Vec2::x()), flip(Vec2::y())])
     }
 
-    /// Scales about a place [m], along x and along y by plain factors.
+    /// Scales about a place (m), along x and along y by plain factors.
     pub fn scaling(about: Vec2, [x, y]: [f64; 2]) -> Self {
         Self::about(about, [Vec2::x() * x, Vec2::y() * y])
     }
@@ -65,7 +65,7 @@ impl Affine {
         }
     }
 
-    /// The place whose image is a place [m]; its numbers are not finite if the map flattens the plane.
+    /// The place whose image is a place (m); its numbers are not finite if the map flattens the plane.
     pub fn source(&self, image: Vec2) -> Vec2 {
         let [x, y] = self.axes;
         let way = image - self.origin;
@@ -73,7 +73,7 @@ impl Affine {
         Vec2::new(way.perp(&y), x.perp(&way)) / area
     }
 
-    /// The image of a place [m].
+    /// The image of a place (m).
     pub fn apply(&self, place: Vec2) -> Vec2 {
         self.origin + self.axes[0] * place.x + self.axes[1] * place.y
     }
@@ -107,7 +107,7 @@ pub fn transform_points(
     move_points(evaluation, &goals?)
 }
 
-/// The edits that move points, each to a place of its own [m]; see [`transform_points`].
+/// The edits that move points, each to a place of its own (m); see [`transform_points`].
 ///
 /// # Errors
 /// A point is not there or cannot be drawn; a place is not finite; no point can move.

@@ -10,11 +10,11 @@ use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, 
 const DECIMALS: usize = 9;
 /// Most decimals of a value that someone typed, in its unit: they are shown as they were typed.
 const TYPED: usize = 6;
-/// How far a value may be from its typed decimals [of its unit].
+/// How far a value may be from its typed decimals (of its unit).
 const SAME: f64 = 1e-9;
 
 impl DisplayUnit {
-    /// Its length [m].
+    /// Its length (m).
     pub fn metres(self) -> f64 {
         match self {
             Self::Millimetre => 0.001,
@@ -91,7 +91,7 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
     Ok(value.map_or(number, Number::Value))
 }
 
-/// A length in the document's unit [m]. Digits that stand alone are read with the unit as their
+/// A length in the document's unit (m). Digits that stand alone are read with the unit as their
 /// exponent, so that 12.3 cm is 0.123 m to the bit, as in files.
 fn in_metres(text: &str, value: f64, unit: DisplayUnit) -> f64 {
     let exponent = match unit {

@@ -11,7 +11,7 @@ pub(crate) struct DartMouth {
     pub line: LineName,
     /// Middle of the mouth.
     pub middle: Spot,
-    /// Width of the mouth along the line [m].
+    /// Width of the mouth along the line (m).
     pub intake: f64,
     pub apex: DartApex,
     pub pressed: Pressed,
@@ -22,9 +22,9 @@ pub(crate) struct DartMouth {
 /// Where a dart ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum DartApex {
-    /// So far from the middle of the mouth, square to it [m].
+    /// So far from the middle of the mouth, square to it (m).
     Depth(f64),
-    /// At a place [m].
+    /// At a place (m).
     Point(Vec2),
 }
 
@@ -152,7 +152,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     Ok(result)
 }
 
-/// Puts both ends of a mouth that takes nothing in at one place of a line [m].
+/// Puts both ends of a mouth that takes nothing in at one place of a line (m).
 pub(super) fn shut_mouth(line: &mut StageLine, by: OperationId, along: f64) {
     let at = line.divide(along);
     for end in 0..2 {

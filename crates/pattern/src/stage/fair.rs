@@ -12,9 +12,9 @@ use toile_geometry::{Curve, Vec2};
 /// A dart between two stretches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closing {
-    /// Its point [m].
+    /// Its point (m).
     pub apex: Vec2,
-    /// Ends of its legs: where the stretch before it ends and the one after it starts [m].
+    /// Ends of its legs: where the stretch before it ends and the one after it starts (m).
     pub ends: [Vec2; 2],
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Row {
 pub(super) struct Redrawn {
     /// A curve for each of the row's.
     pub stretches: Vec<Vec<Curve>>,
-    /// Ends of each dart's legs [m].
+    /// Ends of each dart's legs (m).
     pub ends: Vec<[Vec2; 2]>,
 }
 
@@ -50,24 +50,24 @@ pub(crate) enum NotTrued {
 /// ends of its legs would run far along them, and the line that is smooth across it would have little
 /// to do with the edge as drawn.
 pub(crate) const MOST_GROWTH: f64 = 2.0;
-/// Angles and lengths that differ by less are the same [rad], [m].
+/// Angles and lengths that differ by less are the same (rad), (m).
 const SAME: f64 = 1e-9;
 /// A handle is at least this share of the chord where the direction counts.
 const SHORTEST_HANDLE: f64 = 0.05;
 
 impl Closing {
-    /// Unit direction of a leg from the apex, and its length [m].
+    /// Unit direction of a leg from the apex, and its length (m).
     fn leg(&self, k: usize) -> Option<(Vec2, f64)> {
         let leg = self.ends[k] - self.apex;
         Some((leg.try_normalize(1e-12)?, leg.norm()))
     }
 
-    /// The angle that lays the second leg on the first [rad].
+    /// The angle that lays the second leg on the first (rad).
     fn angle(&self) -> Option<f64> {
         Some(between(self.leg(1)?.0, self.leg(0)?.0))
     }
 
-    /// By how much the edge turns where the dart is closed [rad].
+    /// By how much the edge turns where the dart is closed (rad).
     pub fn kink(&self, before: &[Curve], after: &[Curve]) -> Option<f64> {
         Some(between(
             arriving(before)?,
@@ -196,7 +196,7 @@ impl Row {
 }
 
 impl Closing {
-    /// Both ends at a distance from the apex [m].
+    /// Both ends at a distance from the apex (m).
     fn at(&self, radius: f64) -> Option<[Vec2; 2]> {
         let [a, b] = [self.leg(0)?.0, self.leg(1)?.0];
         Some([a, b].map(|out| self.apex + out * radius))
@@ -224,7 +224,7 @@ impl Affine {
     }
 }
 
-/// An end of a stretch: how far it is displaced [m] and turned [rad].
+/// An end of a stretch: how far it is displaced (m) and turned (rad).
 #[derive(Clone, Debug, Default)]
 struct Knot {
     height: Affine,
@@ -312,12 +312,12 @@ impl Beam {
     }
 }
 
-/// A stretch displaced by a cubic with these heights [m] and turns [rad] at its ends.
+/// A stretch displaced by a cubic with these heights (m) and turns (rad) at its ends.
 struct Bent<'r> {
     stretch: &'r [Curve],
     heights: [f64; 2],
     turns: [f64; 2],
-    /// Where it starts and ends at darts [m].
+    /// Where it starts and ends at darts (m).
     ends: [Option<Vec2>; 2],
 }
 
@@ -432,7 +432,7 @@ pub(super) fn arriving(curves: &[Curve]) -> Option<Vec2> {
     own.or_else(|| (last.end() - last.point(1.0 - 1e-3)).try_normalize(1e-15))
 }
 
-/// The angle from one direction to another [rad].
+/// The angle from one direction to another (rad).
 pub(super) fn between(from: Vec2, to: Vec2) -> f64 {
     from.perp(&to).atan2(from.dot(&to))
 }

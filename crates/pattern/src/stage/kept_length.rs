@@ -6,12 +6,12 @@ use super::truing::true_darts;
 use super::{NOTHING, Stage};
 use crate::{CornerName, Role};
 
-/// Lengths that differ by less are one [m].
+/// Lengths that differ by less are one (m).
 const SAME: f64 = 1e-12;
 /// Most steps to the width: each has about 1.6 times the digits of the one before.
 const MOST_STEPS: usize = 40;
 
-/// The width of a mouth [m] with which a dart, trued, takes just the width that was asked for from the finished
+/// The width of a mouth (m) with which a dart, trued, takes just the width that was asked for from the finished
 /// outline, by secants; nothing where none does. Of a dart that cannot be trued it is the width itself.
 pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerName]) -> Option<f64> {
     let wanted = finished(stage) - mouth.intake;
@@ -44,7 +44,7 @@ pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerNam
     (beyond_before.abs() <= 1e3 * SAME).then_some(before)
 }
 
-/// Length of an outline once its darts are closed [m].
+/// Length of an outline once its darts are closed (m).
 fn finished(stage: &Stage) -> f64 {
     let edges = stage.outline().iter();
     let sewn = edges.filter(|edge| edge.name.role() != Some(Role::Leg));

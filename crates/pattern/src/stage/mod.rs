@@ -33,7 +33,7 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2};
 
-/// Widths, depths and intakes up to this are nothing [m]: what is left of a difference of two equal
+/// Widths, depths and intakes up to this are nothing (m): what is left of a difference of two equal
 /// lengths.
 pub(crate) const NOTHING: f64 = 1e-9;
 
@@ -44,7 +44,7 @@ pub struct Stage {
     pub lines: Vec<StageLine>,
     /// Its notches.
     pub notches: Vec<StageNotch>,
-    /// Direction of the warp [rad], from +x counter-clockwise.
+    /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: f64,
     /// Darts that were taken out, for their caps.
     pub darts: Vec<StageDart>,
@@ -91,9 +91,9 @@ pub struct StageEdge {
     pub from: f64,
     /// Share where it ends; less than `from` if it runs against the named edge.
     pub to: f64,
-    /// Its curve, in the direction of the line [m].
+    /// Its curve, in the direction of the line (m).
     pub curve: Curve,
-    /// Width of cloth outside it [m].
+    /// Width of cloth outside it (m).
     pub allowance: f64,
     /// How the cut line turns the corner at its start.
     pub corner: EdgeCorner,
@@ -112,7 +112,7 @@ pub struct StageNotch {
     pub half: u8,
     /// How it is cut.
     pub kind: NotchKind,
-    /// Where [m].
+    /// Where (m).
     pub point: Vec2,
     /// Unit direction into the piece.
     pub inward: Vec2,
@@ -125,11 +125,11 @@ pub struct StageDart {
     pub by: OperationId,
     /// Which half it is on.
     pub half: u8,
-    /// Start and end of the mouth along the outline [m].
+    /// Start and end of the mouth along the outline (m).
     pub mouth: [Vec2; 2],
-    /// Its point [m]; of a diamond the first end.
+    /// Its point (m); of a diamond the first end.
     pub apex: Vec2,
-    /// Where it is pivoted about [m]: its point as it was before that was set back.
+    /// Where it is pivoted about (m): its point as it was before that was set back.
     pub pivot: Vec2,
     /// The leg it is pressed towards.
     pub pressed: Pressed,

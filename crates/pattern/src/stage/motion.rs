@@ -3,7 +3,7 @@
 use super::{StageDart, StageEdge, StageNotch};
 use toile_geometry::{Curve, Vec2};
 
-/// A vector turned counter-clockwise [rad].
+/// A vector turned counter-clockwise (rad).
 pub(super) fn turned(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
@@ -12,7 +12,7 @@ pub(super) fn turned(v: Vec2, angle: f64) -> Vec2 {
 /// A turn about the origin, then a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
-    /// Counter-clockwise [rad].
+    /// Counter-clockwise (rad).
     angle: f64,
     shift: Vec2,
 }

@@ -21,11 +21,11 @@ pub(crate) enum CutError {
     ThroughHole,
 }
 
-/// Places nearer than this are one [m].
+/// Places nearer than this are one (m).
 pub(super) const SAME: f64 = 1e-9;
-/// A cut may touch the outline this near to its ends [m].
+/// A cut may touch the outline this near to its ends (m).
 const AT_END: f64 = 1e-6;
-/// How far chords may lie from curves where parts are told apart [m].
+/// How far chords may lie from curves where parts are told apart (m).
 const FLATNESS: f64 = 1e-5;
 
 /// All of a stage but the outline that is cut, each with the number of its part.
@@ -47,7 +47,7 @@ pub(super) fn outline_of(stage: &Stage, name: LineName) -> Result<usize, CutErro
 }
 
 impl StageLine {
-    /// Divides the edge at an arc length from the start of a closed line [m], unless one starts
+    /// Divides the edge at an arc length from the start of a closed line (m), unless one starts
     /// there; gives the number of the edge that starts there.
     pub(super) fn divide(&mut self, along: f64) -> usize {
         let mut before = 0.0;

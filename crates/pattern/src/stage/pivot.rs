@@ -18,7 +18,7 @@ pub(crate) struct Pivoting {
     pub mouth: Placed,
     /// Share of the dart's angle that goes there.
     pub share: f64,
-    /// How far the points of both darts are set back from where the panel is turned about [m].
+    /// How far the points of both darts are set back from where the panel is turned about (m).
     pub back: f64,
     pub turned: Turned,
     pub pressed: Pressed,

@@ -8,7 +8,7 @@ use toile_geometry::Vec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarkValue {
     Corner(CornerName),
-    /// At a distance along the line from a corner [m].
+    /// At a distance along the line from a corner (m).
     Along(CornerName, f64),
     /// A share of the way between corners.
     Between([CornerName; 2], f64),
@@ -27,7 +27,7 @@ pub(crate) struct Spot {
     pub edge: EdgeName,
     /// Share of the named edge's arc length.
     pub share: f64,
-    /// Arc length from the start of the line [m].
+    /// Arc length from the start of the line (m).
     pub along: f64,
 }
 
@@ -45,7 +45,7 @@ pub(crate) enum PlaceError {
     Beyond,
 }
 
-/// How far a share or a distance may be beyond [1] or [m]: rounding.
+/// How far a share or a distance may be beyond (1) or (m): rounding.
 const SLACK: f64 = 1e-9;
 
 impl Stage {
@@ -117,7 +117,7 @@ impl Stage {
         })
     }
 
-    /// Length of a stretch on a half [m].
+    /// Length of a stretch on a half (m).
     pub(crate) fn stretch_length(&self, half: u8, stretch: &Stretch) -> f64 {
         let parts = stretch.iter().map(|&(name, from, to)| {
             let (low, high) = (from.min(to), from.max(to));
@@ -155,7 +155,7 @@ impl StageLine {
         self.kind != crate::LineKind::Internal
     }
 
-    /// Arc length from the start of the line to a corner [m].
+    /// Arc length from the start of the line to a corner (m).
     fn corner(&self, corner: CornerName) -> Result<f64, PlaceError> {
         let called = self.called(corner);
         let mut along = 0.0;
@@ -185,7 +185,7 @@ impl StageLine {
         called
     }
 
-    /// Arc length from the start of the line to a place [m].
+    /// Arc length from the start of the line to a place (m).
     pub(super) fn placed(&self, place: Placed) -> Result<f64, PlaceError> {
         match place {
             Placed::Mark(mark) => self.along(mark),
@@ -193,7 +193,7 @@ impl StageLine {
         }
     }
 
-    /// Arc length from the start of the line to a spot of an earlier stage [m]; of one that lies in
+    /// Arc length from the start of the line to a spot of an earlier stage (m); of one that lies in
     /// a mouth by now, to the mouth.
     fn along_spot(&self, spot: Spot) -> Result<f64, PlaceError> {
         let mut before = 0.0;
@@ -215,7 +215,7 @@ impl StageLine {
         best.map(|(_, along)| along).ok_or(PlaceError::Beyond)
     }
 
-    /// Arc length from the start of the line to a mark [m].
+    /// Arc length from the start of the line to a mark (m).
     fn along(&self, mark: MarkValue) -> Result<f64, PlaceError> {
         let length = self.length();
         match mark {

@@ -12,7 +12,7 @@ use toile_geometry::{Curve, Vec2};
 #[derive(Clone, Debug)]
 pub(crate) struct Pleating {
     pub spread: Spreading,
-    /// How deep a fold goes under [m].
+    /// How deep a fold goes under (m).
     pub depth: f64,
     pub kind: PleatKind,
     pub pressed: Side,
@@ -27,7 +27,7 @@ struct Piece {
     allowance: f64,
 }
 
-/// Depths may differ by this along a line that runs square to the pleat [m].
+/// Depths may differ by this along a line that runs square to the pleat (m).
 const SAME_DEPTH: f64 = 1e-9;
 
 /// A stage with pleats: its parts moved aside, underlays between, and the lines to fold in. Pleats

@@ -15,7 +15,7 @@ pub(crate) enum SplitError {
     Meets(usize),
 }
 
-/// An end of the curve this near to the outline lies on it [m].
+/// An end of the curve this near to the outline lies on it (m).
 const ON_OUTLINE: f64 = 1e-6;
 
 /// The stage with both sides of it, left and right of the curve.
@@ -39,7 +39,7 @@ pub(crate) fn split(
     Ok(result)
 }
 
-/// Where the curve meets the outline first and last: lengths along both [m].
+/// Where the curve meets the outline first and last: lengths along both (m).
 fn meetings(curve: &Path, outline: &Path) -> Result<[(f64, f64); 2], SplitError> {
     let length = curve.length();
     let end_at = |along: f64| {

@@ -22,7 +22,7 @@ pub(crate) struct Spreading {
 pub(crate) struct SpreadAlong {
     pub number: u16,
     pub ends: [Placed; 2],
-    /// Opening at its start and its end [m].
+    /// Opening at its start and its end (m).
     pub openings: [f64; 2],
 }
 

@@ -8,10 +8,10 @@ use crate::{CornerName, EdgeCorner, LineKind, Name, OperationId, Role};
 use std::f64::consts::FRAC_PI_8;
 use toile_geometry::Curve;
 
-/// An edge that turns by more where it runs on has a kink there [rad]: a centimetre from it the line
+/// An edge that turns by more where it runs on has a kink there (rad): a centimetre from it the line
 /// is half a millimetre beside where it led.
 pub(crate) const KINK: f64 = 3.0 * std::f64::consts::PI / 180.0;
-/// Edges of two names that turn by more make a corner: neither runs on [rad].
+/// Edges of two names that turn by more make a corner: neither runs on (rad).
 pub(crate) const CORNER: f64 = std::f64::consts::PI / 6.0;
 /// Shares of an edge that differ by less are one.
 const SAME_SHARE: f64 = 1e-9;
@@ -60,7 +60,7 @@ pub(crate) fn true_darts(
 }
 
 impl Stage {
-    /// The edge that a dart is taken out of, and its length without mouths [m]; nothing where the
+    /// The edge that a dart is taken out of, and its length without mouths (m); nothing where the
     /// dart lies between two edges.
     pub fn edge_beside(&self, dart: OperationId) -> Option<(crate::EdgeName, f64)> {
         let edges = self.outline();

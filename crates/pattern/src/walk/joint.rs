@@ -4,14 +4,14 @@ use super::{Run, Walk, cloth_is_left, rings};
 use crate::{Draft, EdgeOrigin, Pattern, Piece, PieceEdge, Role};
 use toile_geometry::{Curve, Vec2};
 
-/// A line that turns by no more than this across a seam is smooth [deg]. The line a hand draws to
+/// A line that turns by no more than this across a seam is smooth (deg). The line a hand draws to
 /// smooth it, from a centimetre before the seam to a centimetre after, lies 1 cm tan(1 deg) =
 /// 0.17 mm beside it: less than the width of a pencil's line.
 pub const SMOOTH: f64 = 2.0;
-/// A line that turns by more than this has a kink that is seen when it is sewn [deg]: smoothing it
+/// A line that turns by more than this has a kink that is seen when it is sewn (deg): smoothing it
 /// likewise takes 1 cm tan(3 deg) = 0.5 mm, by which the sides of a seam may differ too.
 pub const SLIGHT_KINK: f64 = 6.0;
-/// A corner that differs less from a straight line is none [rad]: the edge goes on past the seam.
+/// A corner that differs less from a straight line is none (rad): the edge goes on past the seam.
 const STRAIGHT_ON: f64 = std::f64::consts::PI / 6.0;
 /// Shares of an edge that differ by less are one.
 const SAME_SHARE: f64 = 1e-9;
@@ -26,18 +26,18 @@ pub struct Joint {
     pub pieces: [usize; 2],
     /// The edges that leave it, on the piece of the first side and on that of the second.
     pub edges: [EdgeOrigin; 2],
-    /// The corners of the seam, each in the plane of its piece [m].
+    /// The corners of the seam, each in the plane of its piece (m).
     pub corners: [Vec2; 2],
     /// Unit directions in which the edges leave, each in the plane of its piece; darts between seam
     /// and edge closed.
     pub leaving: [Vec2; 2],
-    /// Angles of cloth between seam and edge [rad].
+    /// Angles of cloth between seam and edge (rad).
     pub angles: [f64; 2],
-    /// By how much the line turns across the seam [rad], -pi to pi: 0 smooth, above it a peak that
+    /// By how much the line turns across the seam (rad), -pi to pi: 0 smooth, above it a peak that
     /// points out of the cloth, below it a dip into the cloth.
     pub kink: f64,
     /// How far the first piece reaches beyond the second when both are laid together at the start of
-    /// the seam and walked without stretching either [m]: the difference of the sides that neither
+    /// the seam and walked without stretching either (m): the difference of the sides that neither
     /// ease nor gathers take in. 0 at the start.
     pub step: f64,
 }
@@ -84,7 +84,7 @@ impl Joint {
 
 impl Walk<'_> {
     /// The lines that cross the seam at its start and at its end; `ease` is how much longer one side
-    /// may be [m]. There is none where the edge of a side goes on past the end of the seam, by less
+    /// may be (m). There is none where the edge of a side goes on past the end of the seam, by less
     /// than 30 degrees from straight on, as where a slit begins or a third piece is sewn on.
     pub fn joints(&self, ease: f64) -> [Option<Joint>; 2] {
         [0, 1].map(|end| self.joint(end, ease))

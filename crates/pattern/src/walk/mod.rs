@@ -33,7 +33,7 @@ pub struct WalkSides(Arc<[WalkedSide; 2]>);
 #[derive(Clone, Debug)]
 struct WalkedSide {
     runs: Vec<Run>,
-    /// Arc length of all runs [m].
+    /// Arc length of all runs (m).
     length: f64,
 }
 
@@ -42,18 +42,18 @@ struct WalkedSide {
 struct Run {
     span: DraftSpan,
     path: Path,
-    /// Arc length from the start of the side to its start [m].
+    /// Arc length from the start of the side to its start (m).
     start: f64,
 }
 
 /// A place where both sides of a seam touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Arc length from the start of each side [m].
+    /// Arc length from the start of each side (m).
     pub along: [f64; 2],
     /// The pieces that touch there, by their index in the draft.
     pub pieces: [usize; 2],
-    /// The place on each, in its own plane [m].
+    /// The place on each, in its own plane (m).
     pub places: [Vec2; 2],
     /// Lays the piece that is moved on the one that stays: from the plane of the one to that of the
     /// other. It mirrors where the piece has to be turned over.
@@ -90,7 +90,7 @@ impl FixedSide {
 }
 
 impl Evaluation {
-    /// How much longer one side of a seam may be than the other [m].
+    /// How much longer one side of a seam may be than the other (m).
     pub fn ease(&self, seam: SeamOrigin) -> f64 {
         match seam {
             SeamOrigin::Seam(id) => self.seam_value(id).map_or(0.0, |value| value.ease),
@@ -124,12 +124,12 @@ impl<'d> Walk<'d> {
         self.sides.clone()
     }
 
-    /// Arc length of each side, mouths of darts left out [m].
+    /// Arc length of each side, mouths of darts left out (m).
     pub fn lengths(&self) -> [f64; 2] {
         [self.sides.0[0].length, self.sides.0[1].length]
     }
 
-    /// Where both sides touch at an arc length of the first [m], clamped to it. The second has its
+    /// Where both sides touch at an arc length of the first (m), clamped to it. The second has its
     /// place in proportion to its length, so that ease is spread evenly, as seams are sewn.
     pub fn contact(&self, along: f64, fixed: FixedSide) -> Contact {
         let [first, second] = self.lengths();
@@ -159,7 +159,7 @@ impl<'d> Walk<'d> {
     }
 
     /// The arc length of the first side at the place of a piece's seam line that is nearest to a
-    /// point of its plane [m]; nothing if that side has no stretch on the piece.
+    /// point of its plane (m); nothing if that side has no stretch on the piece.
     pub fn nearest(&self, side: usize, piece: usize, to: Vec2) -> Option<f64> {
         let own = self.sides.0[side].runs.iter();
         let own = own.filter(|run| run.span.piece == piece);
@@ -176,7 +176,7 @@ impl<'d> Walk<'d> {
     }
 
     /// The stretches of a side on their pieces, in walking order: index of the piece, and the seam
-    /// line in its plane [m].
+    /// line in its plane (m).
     pub fn lines(&self, side: usize) -> impl Iterator<Item = (usize, &Path)> {
         let runs = self.sides.0[side].runs.iter();
         runs.map(|run| (run.span.piece, &run.path))
@@ -241,7 +241,7 @@ impl WalkedSide {
         can_be_walked.then_some(Self { runs, length })
     }
 
-    /// The run, place and direction at an arc length [m]. Where two runs meet they are those of the
+    /// The run, place and direction at an arc length (m). Where two runs meet they are those of the
     /// second.
     fn at(&self, along: f64) -> (&Run, Vec2, Vec2) {
         let last = self.runs.len() - 1;

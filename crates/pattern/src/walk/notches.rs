@@ -4,11 +4,11 @@ use super::{Run, Walk, WalkedSide};
 use crate::NotchId;
 use toile_geometry::{Curve, Vec2};
 
-/// A notch has its partner within this distance along the seam [m].
+/// A notch has its partner within this distance along the seam (m).
 pub const NOTCH_REACH: f64 = 0.01;
-/// Notches that are no farther apart meet [m]: the width of a notch as it is cut.
+/// Notches that are no farther apart meet (m): the width of a notch as it is cut.
 pub const NOTCHES_MEET: f64 = 0.001;
-/// A notch this near to a seam line lies on it [m].
+/// A notch this near to a seam line lies on it (m).
 const ON_LINE: f64 = 1e-6;
 
 /// A notch on a side of a seam.
@@ -20,11 +20,11 @@ pub struct WalkedNotch {
     pub piece: usize,
     /// Which notch.
     pub id: NotchId,
-    /// Where it lies in the plane of its piece [m].
+    /// Where it lies in the plane of its piece (m).
     pub at: Vec2,
-    /// Arc length from the start of its side [m].
+    /// Arc length from the start of its side (m).
     pub along: f64,
-    /// How far its partner on the other side lies beyond the place opposite it, along that side [m];
+    /// How far its partner on the other side lies beyond the place opposite it, along that side (m);
     /// nothing if none lies within [`NOTCH_REACH`] that is not nearer to another notch. Without a
     /// notch the partner is an end of the other side that it meets, a dart that is closed there, or
     /// where one piece of it ends and the next begins.
@@ -123,7 +123,7 @@ impl Walk<'_> {
 }
 
 impl WalkedSide {
-    /// Arc lengths at which darts in it are closed, or one piece ends and the next begins [m].
+    /// Arc lengths at which darts in it are closed, or one piece ends and the next begins (m).
     fn joins(&self) -> Vec<f64> {
         let is_join = |pair: &&[Run]| {
             let [before, after] = [&pair[0], &pair[1]];

@@ -122,7 +122,7 @@ pub fn places(pattern: &Pattern, body: &Measurements, points: &[PointId]) -> Vec
     points.iter().map(place).collect()
 }
 
-/// Area that a panel's outline encloses, less its holes, for a body [m2].
+/// Area that a panel's outline encloses, less its holes, for a body (m2).
 pub fn area(pattern: &Pattern, body: &Measurements, panel: PanelId) -> f64 {
     let evaluation = Evaluation::new(pattern, wearer(pattern, body));
     let stage = evaluation.stage(panel, None).unwrap();

@@ -7,7 +7,7 @@ use super::sample::{
 use super::*;
 use std::collections::BTreeMap;
 
-/// Length of every named edge of a stage, all its parts together [m].
+/// Length of every named edge of a stage, all its parts together (m).
 fn lengths(stage: &Stage) -> BTreeMap<EdgeName, f64> {
     let mut found = BTreeMap::new();
     for edge in stage.lines.iter().flat_map(|line| &line.edges) {

@@ -20,7 +20,7 @@ fn unsewn() -> Pattern {
     pattern
 }
 
-/// Start and end of both sides of the only seam but for darts, and the lengths of the sides [m].
+/// Start and end of both sides of the only seam but for darts, and the lengths of the sides (m).
 fn sides(pattern: &Pattern, body: &Measurements) -> [(Vec2, Vec2, f64); 2] {
     let (draft, found) = pattern.resolve(body);
     assert!(

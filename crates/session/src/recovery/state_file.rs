@@ -56,7 +56,7 @@ impl DocumentState {
     }
 }
 
-/// The line that goes before the rest: its length [bytes] and its checksum.
+/// The line that goes before the rest: its length (bytes) and its checksum.
 fn first_line(body: &[u8]) -> String {
     format!("{FORMAT} {} {:08x}\n", body.len(), crc32fast::hash(body))
 }

@@ -4,7 +4,7 @@ use lopdf::content::Content;
 use lopdf::{Document, Object};
 use toile_geometry::Vec2;
 
-/// A point of a PDF [m].
+/// A point of a PDF (m).
 const POINT: f64 = 0.0254 / 72.0;
 
 /// A line on a page.
@@ -12,17 +12,17 @@ const POINT: f64 = 0.0254 / 72.0;
 pub struct Line {
     /// The layer it is on.
     pub layer: Option<String>,
-    /// [m]
+    /// (m)
     pub width: f64,
     pub closed: bool,
-    /// [m]
+    /// (m)
     pub points: Vec<Vec2>,
 }
 
 /// A page.
 #[derive(Clone, Debug)]
 pub struct Page {
-    /// [m]
+    /// (m)
     pub size: Vec2,
     pub lines: Vec<Line>,
     pub words: Vec<String>,

@@ -30,7 +30,7 @@ pub struct Layout {
     /// Length of the arena.
     pub arena: usize,
     pub units: Vec<Unit>,
-    /// Operations of one factorisation [flop].
+    /// Operations of one factorisation (flop).
     pub operations: f64,
 }
 
@@ -41,7 +41,7 @@ const ALIAS: usize = 512;
 
 /// Subtrees are cut into tasks of at most this share of all operations ...
 const TASK_SHARE: f64 = 1.0 / 32.0;
-/// ... but not below this many [flop]: about 25 microseconds.
+/// ... but not below this many (flop): about 25 microseconds.
 const TASK_LEAST: f64 = 1e6;
 
 /// Distance between columns of a dense matrix of so many rows.

@@ -92,7 +92,7 @@ impl<const D: usize, T: Number> Factor<D, T> {
         &self.graph
     }
 
-    /// Operations of one factorisation [flop].
+    /// Operations of one factorisation (flop).
     pub fn operations(&self) -> f64 {
         self.layout.operations
     }

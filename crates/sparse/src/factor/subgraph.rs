@@ -7,14 +7,14 @@ use toile_geometry::Vec3;
 pub struct Subgraph {
     /// Number in the whole graph of each vertex.
     pub vertices: Vec<u32>,
-    /// Where each vertex is [m].
+    /// Where each vertex is (m).
     pub places: Vec<Vec3>,
     start: Vec<u32>,
     adjacent: Vec<u32>,
 }
 
 impl Subgraph {
-    /// All of a graph, its vertices at some places [m].
+    /// All of a graph, its vertices at some places (m).
     pub fn whole(graph: &Graph, places: &[Vec3]) -> Self {
         let mut subgraph = Self {
             vertices: (0..places.len() as u32).collect(),

@@ -209,13 +209,13 @@ impl Symbolic {
     }
 }
 
-/// Operations of a front with so many pivots and boundary vertices [flop].
+/// Operations of a front with so many pivots and boundary vertices (flop).
 pub fn operations(pivots: usize, boundary: usize, unknowns: usize) -> f64 {
     let [p, b] = [pivots, boundary].map(|n| (n * unknowns) as f64);
     p * p * p / 3.0 + p * p * b + p * b * b
 }
 
-/// Estimated time of a front [s]: a fixed part, the operations, and the memory it fills, at rates
+/// Estimated time of a front (s): a fixed part, the operations, and the memory it fills, at rates
 /// measured on small fronts.
 fn front_time(pivots: usize, boundary: usize, unknowns: usize) -> f64 {
     const EACH: f64 = 3e-6;

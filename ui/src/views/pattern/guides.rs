@@ -25,7 +25,7 @@ pub(super) struct GuideDrag {
     runs: GuideRun,
     /// Where the pointer is.
     pointer: Pos2,
-    /// Where the guide lies on the table [m], and what is there; nothing over the ruler.
+    /// Where the guide lies on the table (m), and what is there; nothing over the ruler.
     place: Option<(f64, String)>,
 }
 
@@ -41,7 +41,7 @@ impl PatternView {
         crate::canvas::guides::on_sheet(self.seen_guides(), self.table_layout.sheet(sheet))
     }
 
-    /// Adds the guide at a place of the table [m] to what was found there: behind points and lines,
+    /// Adds the guide at a place of the table (m) to what was found there: behind points and lines,
     /// before panels. Tools that draw have no use for it.
     pub(super) fn add_guide_hit(&self, found: &mut Vec<Hit>, table: Vec2) {
         if !matches!(self.tool, Tool::Select) {
@@ -219,7 +219,7 @@ impl PatternView {
         }
     }
 
-    /// Where a guide comes to lie on the table by a pointer [m], and at what: at a point, a crossing
+    /// Where a guide comes to lie on the table by a pointer (m), and at what: at a point, a crossing
     /// or the middle of a curve near it, else on the grid; nothing over its ruler.
     fn guide_place(
         &self,

@@ -48,7 +48,7 @@ impl PatternView {
         chosen
     }
 
-    /// Where an end of a seam is on the table, or its first stretch: on the first of its panels that is seen [m].
+    /// Where an end of a seam is on the table, or its first stretch: on the first of its panels that is seen (m).
     fn seam_place(&self, id: SeamId, end: Option<usize>) -> Option<Place> {
         let seam = self.scene.seams.iter().find(|seam| seam.id == id)?;
         let is_seen = |panel: PanelId| self.scene.panel_scene(panel).is_some();

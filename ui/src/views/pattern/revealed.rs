@@ -10,7 +10,7 @@ use toile_geometry::{Bounds2, Vec2};
 pub(super) enum Revealed {
     /// A part.
     Part(Item),
-    /// All of a rectangle of the table [m].
+    /// All of a rectangle of the table (m).
     Room(Bounds2),
 }
 
@@ -20,7 +20,7 @@ impl PatternView {
         self.revealed = Some(Revealed::Part(item));
     }
 
-    /// Shows all of a rectangle of the table [m] when the view is next drawn.
+    /// Shows all of a rectangle of the table (m) when the view is next drawn.
     pub fn reveal_room(&mut self, bounds: Bounds2) {
         self.revealed = Some(Revealed::Room(bounds));
     }

@@ -1,0 +1,140 @@
+//! The cloth of a marker as journals write it: with its fabric, defaults written out. What is given and is as by
+//! default is named, so that it stays given.
+
+use super::{ClothSettings, Flaw, NapRule, Print, Roll, Spread};
+use crate::FabricId;
+use serde::{Deserialize, Serialize};
+
+/// The fabric of a marker, and how it is laid.
+#[derive(Serialize, Deserialize)]
+pub(super) struct ClothRecord {
+    fabric: FabricId,
+    #[serde(default)]
+    keeps_fabric: bool,
+    width: Option<f64>,
+    length: Option<f64>,
+    selvedge: f64,
+    end_margin: f64,
+    gap: f64,
+    nap: Option<NapRule>,
+    tilt: f64,
+    spread: Spread,
+    plies: u32,
+    price_per_metre: Option<f64>,
+    currency: String,
+    print: Option<Print>,
+    flaws: Vec<Flaw>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rolls: Option<Vec<Roll>>,
+    /// Fields that are given though they are as by default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    given: Vec<String>,
+}
+
+/// What is written of a field that may be left open: itself or the default; and that it is given where that does not
+/// show.
+struct Written(Vec<String>);
+
+impl Written {
+    fn or<T: PartialEq>(&mut self, name: &str, given: Option<T>, usual: T) -> T {
+        if given.as_ref() == Some(&usual) {
+            self.0.push(name.to_owned());
+        }
+        given.unwrap_or(usual)
+    }
+}
+
+impl ClothRecord {
+    /// The fabric of a marker, whether all pieces lie on it, and how it is laid.
+    pub(super) fn new(fabric: FabricId, keeps_fabric: bool, cloth: ClothSettings) -> Self {
+        let usual = usual(cloth.spread.unwrap_or_default());
+        let mut written = Written(Vec::new());
+        let ClothSettings {
+            width,
+            length,
+            selvedge,
+            end_margin,
+            gap,
+            nap,
+            tilt,
+            spread,
+            plies,
+            price_per_metre,
+            currency,
+            print,
+            flaws,
+            rolls,
+        } = cloth;
+        Self {
+            fabric,
+            keeps_fabric,
+            width,
+            length,
+            selvedge: written.or("selvedge", selvedge, usual.selvedge),
+            end_margin: written.or("end_margin", end_margin, usual.end_margin),
+            gap: written.or("gap", gap, usual.gap),
+            nap,
+            tilt: written.or("tilt", tilt, usual.tilt),
+            spread: written.or("spread", spread, usual.spread),
+            plies: written.or("plies", plies, usual.plies),
+            price_per_metre,
+            currency: written.or("currency", currency, usual.currency),
+            print,
+            flaws: written.or("flaws", flaws, usual.flaws),
+            rolls,
+            given: written.0,
+        }
+    }
+
+    /// The fabric of a marker, and whether all pieces lie on it.
+    pub(super) const fn fabric(&self) -> (FabricId, bool) {
+        (self.fabric, self.keeps_fabric)
+    }
+
+    /// How it is laid.
+    pub(super) fn settings(self) -> ClothSettings {
+        let usual = usual(self.spread);
+        let given =
+            |name: &str, is_usual: bool| !is_usual || self.given.iter().any(|own| own == name);
+        ClothSettings {
+            width: self.width,
+            length: self.length,
+            selvedge: given("selvedge", self.selvedge == usual.selvedge).then_some(self.selvedge),
+            end_margin: given("end_margin", self.end_margin == usual.end_margin)
+                .then_some(self.end_margin),
+            gap: given("gap", self.gap == usual.gap).then_some(self.gap),
+            nap: self.nap,
+            tilt: given("tilt", self.tilt == usual.tilt).then_some(self.tilt),
+            spread: given("spread", self.spread == usual.spread).then_some(self.spread),
+            plies: given("plies", self.plies == usual.plies).then_some(self.plies),
+            price_per_metre: self.price_per_metre,
+            currency: given("currency", self.currency.is_empty()).then(|| self.currency),
+            print: self.print,
+            flaws: given("flaws", self.flaws.is_empty()).then(|| self.flaws),
+            rolls: self.rolls,
+        }
+    }
+}
+
+/// What journals write where nothing is given: the defaults of fabric spread so.
+fn usual(spread: Spread) -> ClothRecord {
+    ClothRecord {
+        fabric: FabricId::default(),
+        keeps_fabric: false,
+        width: None,
+        length: None,
+        selvedge: super::DEFAULT_SELVEDGE,
+        end_margin: 0.0,
+        gap: super::DEFAULT_GAP,
+        nap: None,
+        tilt: 0.0,
+        spread: Spread::default(),
+        plies: spread.usual_plies(),
+        price_per_metre: None,
+        currency: String::new(),
+        print: None,
+        flaws: Vec::new(),
+        rolls: None,
+        given: Vec::new(),
+    }
+}
