@@ -108,9 +108,9 @@ impl ClothRecord {
             spread: given("spread", self.spread == usual.spread).then_some(self.spread),
             plies: given("plies", self.plies == usual.plies).then_some(self.plies),
             price_per_metre: self.price_per_metre,
-            currency: given("currency", self.currency.is_empty()).then(|| self.currency),
+            currency: given("currency", self.currency.is_empty()).then_some(self.currency),
             print: self.print,
-            flaws: given("flaws", self.flaws.is_empty()).then(|| self.flaws),
+            flaws: given("flaws", self.flaws.is_empty()).then_some(self.flaws),
             rolls: self.rolls,
         }
     }
