@@ -417,6 +417,7 @@ fn a_rule_for_a_panel_that_is_gone_is_told_and_all_else_is_laid() {
     };
     let marker = Marker {
         id: own.pattern.ids.take(),
+        name: "marker".to_owned(),
         rules: vec![
             ruled(RuledPieces::Copy(sleeve.id, 1), blocked.clone()),
             ruled(RuledPieces::Panel(front.id), blocked),

@@ -1,6 +1,6 @@
 //! The pattern document: sheets, panels, seams, formulas; edits, evaluation, diagnostics.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
-#![deny(clippy::wildcard_enum_match_arm)]
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod body_part;
 mod check;
