@@ -25,7 +25,7 @@ impl Default for AssemblyOptions {
 pub struct Assembled {
     /// The placed, unsewn garment.
     pub garment: Garment,
-    /// The meshes it was made from, which can follow an edit of the draft: see [`crate::morph`].
+    /// The meshes it was made from, which can follow an edit of the draft: see [`crate::morph()`].
     pub meshes: Arc<PieceMeshes>,
     /// Notes for the user.
     pub diagnostics: Vec<Diagnostic>,
@@ -91,7 +91,7 @@ impl Garment {
     ///
     /// # Panics
     /// When `meshes` has other triangles: it must come from this garment's meshes by
-    /// [`crate::morph`] to `draft`.
+    /// [`crate::morph()`] to `draft`.
     #[must_use]
     pub fn with_shapes(&self, draft: &Draft, meshes: &PieceMeshes) -> Self {
         let shaped = garment(draft, meshes, self.positions.clone());

@@ -1,5 +1,5 @@
 //! The standard scenes: frozen meshes and settings, so that later changes of meshing or of the
-//! mannequin move no chart. [`crate::freeze`] made them once.
+//! mannequin move no chart. [`crate::freeze()`] made them once.
 
 use crate::LabError;
 use serde::{Deserialize, Serialize};

@@ -205,7 +205,7 @@ impl Section {
 const HEAD: &str = "measured";
 
 /// A document with the sections measured in place of its own. Where all were measured, its head
-/// says where and of what ([`provenance`]); else each of those measured says so itself.
+/// says where and of what ([`provenance()`]); else each of those measured says so itself.
 pub fn page(document: &str, measured: &[Measured], provenance: &str) -> String {
     let whole = measured.len() == SECTIONS.len();
     let mut page = match whole {

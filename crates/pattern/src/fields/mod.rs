@@ -1,7 +1,7 @@
 //! The fields of every part of the document, each said once: [`fields!`](crate::fields!) lists those of a type in the
 //! order of the file, and everything that walks over fields is a [`Visitor`] or a [`VisitorMut`].
 //!
-//! What follows from the list alone: references ([`references`]), new ids in copies ([`Remap`]), numbers with their labels
+//! What follows from the list alone: references ([`references()`]), new ids in copies ([`Remap`]), numbers with their labels
 //! for inspectors ([`numbers_of`](crate::plan::numbers_of)), marks ([`marks`]), and in the crate `interchange` the reader
 //! and the writer of files with the fields they know.
 
