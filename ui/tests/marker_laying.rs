@@ -127,7 +127,7 @@ fn rolls_and_a_rule_are_given_laid_undone_and_saved() {
     // Two rolls: each thing that is said is one step.
     press(&mut window, "Add roll");
     enter(&mut window, "Roll called", "remnant");
-    enter(&mut window, "Roll length", "1.2 m");
+    enter(&mut window, "Roll length", "80 cm");
     enter(&mut window, "Roll width", "140");
     press(&mut window, "Add roll");
     assert_eq!(steps(&window), begun + 5);
@@ -141,7 +141,7 @@ fn rolls_and_a_rule_are_given_laid_undone_and_saved() {
     assert_eq!(steps(&window), begun + 7);
     let given = marker(&window);
     let rolls = given.cloth.rolls.as_deref().unwrap();
-    assert_eq!((rolls[0].length, rolls[0].width), (Some(1.2), Some(1.4)));
+    assert_eq!((rolls[0].length, rolls[0].width), (Some(0.8), Some(1.4)));
     let [PieceRule { pieces, rule, .. }] = &given.rules[..] else {
         panic!("{:?}", given.rules);
     };
@@ -153,7 +153,7 @@ fn rolls_and_a_rule_are_given_laid_undone_and_saved() {
 
     // It is what one writes by hand.
     let hand = by_hand(
-        r#""rolls": [{"name": "remnant", "width": 140, "length": 120}, {"length": 500}],
+        r#""rolls": [{"name": "remnant", "width": 140, "length": 80}, {"length": 500}],
            "rules": [{"panel": FRONT, "block": 1, "turns": [0]}]"#,
     );
     assert_eq!(window.state().session().project().pattern, hand);
