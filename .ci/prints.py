@@ -30,7 +30,7 @@ BOX_WITHIN = 25.4 / BOX_DPI
 # Darker than the grey of frames and crosses.
 BLACK = 110
 # Fewer black pixels are a speck.
-LEAST_BLACK = 8
+MIN_BLACK = 8
 
 
 class Fault(Exception):
@@ -81,7 +81,7 @@ def check_not_blank(pdf, page):
         for y in range(max(sides[1] - 2, 0), min(sides[3] + 2, height)):
             data[y * width + first:y * width + last] = b"\xff" * (last - first)
     black = blacks(bytes(data))
-    if black < LEAST_BLACK:
+    if black < MIN_BLACK:
         raise Fault(f"page {page} is blank: {black} black pixels")
 
 

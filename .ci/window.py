@@ -36,7 +36,7 @@ PATIENCE = 60.0
 INTERVAL = 0.04
 # What an answer to an input is given at least [s], and how many times the slowest so far is waited for
 # one that may not come.
-LEAST_ANSWER = 0.2
+MIN_ANSWER = 0.2
 ANSWERS = 2.0
 # Pace of a replay: how long the picture is at rest before the next input, over the slowest answer. Inputs are
 # replayed at the first pace, and at the slower one if that was too fast for the machine.
@@ -46,9 +46,9 @@ CLOTH = b"\xfa\xfd\xfe"
 # How far a number may be from its closed form [mm], [cm2].
 WITHIN = 1e-6
 # Shortest run of it across that is taken for a panel [pixels].
-LEAST_RUN = 40
+MIN_RUN = 40
 # Lines told of where two files differ.
-MOST_DIFFERS = 30
+MAX_DIFFERS = 30
 PICTURE = pathlib.Path(__file__).resolve().parent.parent / "out/ci/window.png"
 
 
@@ -150,7 +150,7 @@ class Window:
         self.xdotool("mousemove", SCREEN[0] // 2, SCREEN[1] // 2)
         # How long an answer may take is seen by one that is sure to come: the list of findings.
         self.screen.rest(1.0)
-        self.slowest, self.pace = LEAST_ANSWER, 1.0
+        self.slowest, self.pace = MIN_ANSWER, 1.0
         for _ in range(4):
             self.act("key", "F9", must="the list of findings is shown and hidden")
 
@@ -220,7 +220,7 @@ class Window:
 
         def ask():
             boxes = []
-            runs = re.compile(b"(?s)(?:" + re.escape(CLOTH) + b".){%d,}" % LEAST_RUN)
+            runs = re.compile(b"(?s)(?:" + re.escape(CLOTH) + b".){%d,}" % MIN_RUN)
             for y, row in enumerate(self.screen.pixels()):
                 for run in runs.finditer(row):
                     if run.start() % 4:
@@ -232,7 +232,7 @@ class Window:
                     met.append([left, y, right, y])
                     boxes.append([min(box[0] for box in met), min(box[1] for box in met),
                                   max(box[2] for box in met), max(box[3] for box in met)])
-            boxes = sorted(box for box in boxes if box[3] - box[1] > LEAST_RUN)
+            boxes = sorted(box for box in boxes if box[3] - box[1] > MIN_RUN)
             return boxes if len(boxes) == count else None
 
         return wait(f"{count} panels are seen", ask)
@@ -438,7 +438,7 @@ def t_shirt(record, pace):
         wait("the T-shirt is saved", file.is_file)
         own, other = (path.read_text(encoding="utf-8").splitlines() for path in (file, end))
         if own != other:
-            differs = "\n".join(list(difflib.unified_diff(other, own, str(end), str(file), n=1, lineterm=""))[:MOST_DIFFERS])
+            differs = "\n".join(list(difflib.unified_diff(other, own, str(end), str(file), n=1, lineterm=""))[:MAX_DIFFERS])
             raise Fault(f"the T-shirt is not as the test drafted it:\n{differs}")
         return f"the T-shirt in {count} inputs, {time.monotonic() - begun:.0f} s: the same file"
     return drafted

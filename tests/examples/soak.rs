@@ -71,9 +71,9 @@ const SAMPLES: usize = 2000;
 /// Header of `runs.csv`.
 const HEADER: &str = "commit,instance,seconds,seed,place,program,allowed_s,wall_s,cpu_s,load,pieces,length,density_percent,sound,deepest_m";
 /// A run that had less of the processors than this is named at the end: the machine was not idle.
-const LEAST_LOAD: f64 = 0.85;
+const MIN_LOAD: f64 = 0.85;
 /// Fewer pairs say nothing of how far their mean may be off.
-const LEAST_PAIRS: usize = 3;
+const MIN_PAIRS: usize = 3;
 
 /// What is asked.
 #[derive(Debug)]
@@ -405,7 +405,7 @@ fn table(rows: &str, commit: &str) -> (Table, Vec<String>) {
             named.push(format!("not sound, not counted: {row}"));
             continue;
         }
-        if number(load) < LEAST_LOAD {
+        if number(load) < MIN_LOAD {
             named.push(format!("the processors were not free: {row}"));
         }
         let cell = table
@@ -473,7 +473,7 @@ fn summary(table: &Table, commit: &str) -> String {
             continue;
         }
         let bounds = match paired.len() {
-            ..LEAST_PAIRS => ",".to_owned(),
+            ..MIN_PAIRS => ",".to_owned(),
             _ => {
                 let [low, high] = interval(&paired);
                 format!("{low:+.3},{high:+.3}")

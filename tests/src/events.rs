@@ -49,7 +49,7 @@ const READ_BACK: usize = 10;
 /// Events that are told when something does not hold.
 const TOLD: usize = 12;
 /// Parts a document may have before new ones are no longer drawn: copies of everything double it at every turn.
-const MOST_PARTS: usize = 600;
+const MAX_PARTS: usize = 600;
 /// Kinds of parts that are pointed at.
 const KINDS: [fn(&Item) -> bool; 6] = [
     |item| matches!(item, Item::Point(_)),
@@ -354,7 +354,7 @@ impl Run {
             return;
         };
         let doubles = ["Paste", "Duplicate"].contains(&command.name);
-        if doubles && self.app.base().pattern().parts().len() > MOST_PARTS {
+        if doubles && self.app.base().pattern().parts().len() > MAX_PARTS {
             return;
         }
         self.pressed = None;

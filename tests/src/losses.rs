@@ -17,7 +17,7 @@ pub const CHANGES: usize = 10;
 /// The counter of ids in files that are compared: beyond any that is given here.
 const COUNTED: u32 = 1_000_000;
 /// Most times a panel is cut.
-const MOST_CUT: usize = 4;
+const MAX_CUT: usize = 4;
 
 /// What a state of the document comes to. The counter of ids, which an undo does not set back, is
 /// left out of the file.
@@ -152,7 +152,7 @@ fn changes(evaluation: &Evaluation, random: &mut Random) -> Result<Vec<Edit>, Ed
 /// The edit after which a panel is cut another number of times.
 fn counted(panel: &Panel, random: &mut Random) -> Edit {
     let mut put = panel.clone();
-    put.cut.quantity = random.below(MOST_CUT + 1) as u32;
+    put.cut.quantity = random.below(MAX_CUT + 1) as u32;
     put.cut.mirrored = random.below(2) == 0;
     Edit::Put(Entity::Panel(Arc::new(put)))
 }

@@ -18,7 +18,7 @@ const PROPOSED: usize = 8;
 const TEXT_SHARE: f32 = 0.5;
 /// Room that words under a field need above the lower rim of the window, and their least width (pixels).
 const UNDER: f32 = 64.0;
-const LEAST_UNDER: f32 = 270.0;
+const MIN_WIDTH_UNDER: f32 = 270.0;
 
 /// What stands in a field beside its text, in grey. It has the room of the field: nothing moves when it changes.
 #[derive(Clone, Debug, Default)]
@@ -188,7 +188,7 @@ fn under(ui: &Ui, id: egui::Id, field: Rect, add: impl FnOnce(&mut Ui)) -> Rect 
     let shown = over.show(ui.ctx(), |ui| {
         let frame = egui::Frame::popup(ui.style()).inner_margin(4.0);
         frame.show(ui, |ui| {
-            ui.set_max_width(field.width().max(LEAST_UNDER));
+            ui.set_max_width(field.width().max(MIN_WIDTH_UNDER));
             add(ui);
         });
     });

@@ -28,7 +28,7 @@ const MARGIN: f32 = 10.0;
 /// Room that its frame takes on both sides together (pixels).
 const FRAME: f32 = 14.0;
 /// Width and height of the table below which there is no room for it (pixels).
-const LEAST_TABLE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
+const MIN_TABLE_SIZE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
 
 /// The part of the table that the inspector may take, at its right or at its left.
 fn inspector_place(table: Rect, left: bool) -> Rect {
@@ -50,7 +50,7 @@ impl ToileApp {
         let draws = matches!(self.view.tool, Tool::Slots(_));
         let is_known = self.selected_before.as_ref() == Some(&self.view.selection);
         let is_away = draws && (is_known || self.view.is_busy());
-        let has_room = table.size().min(LEAST_TABLE) == LEAST_TABLE;
+        let has_room = table.size().min(MIN_TABLE_SIZE) == MIN_TABLE_SIZE;
         if items.is_empty() || is_away || !has_room {
             return;
         }

@@ -44,7 +44,7 @@ const FIRST: &[&str] = &[
 
 /// Width of a measurement's value, and the least of its name (pixels).
 const VALUE: f32 = 84.0;
-const LEAST_LABEL: f32 = 100.0;
+const MIN_LABEL_WIDTH: f32 = 100.0;
 
 /// Width of the name of a variable and of its formula (pixels).
 const NAME: f32 = 150.0;
@@ -175,7 +175,7 @@ impl ToileApp {
                 .layout_no_wrap(text, font.clone(), Color32::PLACEHOLDER);
             text.size().x
         });
-        let width = widths.fold(LEAST_LABEL, f32::max);
+        let width = widths.fold(MIN_LABEL_WIDTH, f32::max);
         ScrollArea::horizontal()
             .id_salt("measurements across")
             .auto_shrink([false, false])

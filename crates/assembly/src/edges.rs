@@ -7,13 +7,13 @@ use toile_pattern::{Draft, Piece, PieceEdge};
 
 /// Smallest size the shape of an outline may ask for, as a share of the target edge length.
 /// Smaller would follow needle-thin points into ever smaller triangles and time steps.
-const SMALLEST_SHAPE_SIZE: f64 = 0.35;
+const MIN_SHAPE_SIZE: f64 = 0.35;
 /// A point across the piece counts as near when the way to it along the outline is this much
 /// longer than the straight way: corners wider than about 40 degrees do not count.
 const ACROSS: f64 = 2.9;
 /// Outlines with more probes than this are not searched for narrow places, which takes the
 /// square of their number in time.
-const MOST_PROBES: usize = 30_000;
+const MAX_PROBES: usize = 30_000;
 /// Turning of the outline per sample (rad): seven chords a circle at least.
 const TURN: f64 = 0.9;
 
@@ -187,7 +187,7 @@ fn set_shape_sizes(edges: &mut [Edge], spacing: f64) {
         lengths[edge.contour] += edge.length;
     }
     let left_is_inside = signed_area(&probes) > 0.0;
-    let floor = SMALLEST_SHAPE_SIZE * spacing;
+    let floor = MIN_SHAPE_SIZE * spacing;
     let mut sizes: Vec<Vec<f64>> = vec![Vec::new(); edges.len()];
     for (k, probe) in probes.iter().enumerate() {
         let inward = if left_is_inside {
@@ -196,7 +196,7 @@ fn set_shape_sizes(edges: &mut [Edge], spacing: f64) {
             Vec2::new(probe.tangent.y, -probe.tangent.x)
         };
         let mut size = spacing;
-        let others = if probes.len() <= MOST_PROBES {
+        let others = if probes.len() <= MAX_PROBES {
             &probes[..]
         } else {
             &[]

@@ -9,7 +9,7 @@ use toile_geometry::Vec2;
 use toile_pattern::{BodyPart, Draft, Facing};
 
 /// Least angle of a sector that is laid out as one (rad): flatter waists are wrapped as they are.
-const LEAST_TURN: f64 = 0.6;
+const MIN_TURN: f64 = 0.6;
 /// Farthest that an inner edge lies off its circle, as a share of its radius.
 const OFF_CIRCLE: f64 = 0.08;
 /// Farthest that cloth reaches over the sides of a sector (rad).
@@ -204,7 +204,7 @@ fn sector(mesh: &PieceMesh, laid: &FlatPiece, edges: Vec<usize>) -> Option<Inner
         let [angle, distance] = inner.polar(p);
         distance >= (1.0 - OFF_CIRCLE) * radius && angle.abs() <= 0.5 * inner.turn + OVER_SIDE
     });
-    (inner.turn >= LEAST_TURN && is_inside).then_some(inner)
+    (inner.turn >= MIN_TURN && is_inside).then_some(inner)
 }
 
 /// Points along edges of a piece as laid, in the order of its outline.

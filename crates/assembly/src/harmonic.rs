@@ -9,7 +9,7 @@ use toile_sparse::factor::{Factor, Graph, NotPositive};
 
 /// Least weight of an edge [-]: edges whose weight is nought but for rounding are kept, so that
 /// every free vertex is tied to given ones.
-const LEAST_WEIGHT: f64 = 1e-12;
+const MIN_WEIGHT: f64 = 1e-12;
 
 /// Harmonic weights of the free vertices of one mesh, factorised: shapes of its outline are followed by one
 /// solution each.
@@ -156,8 +156,8 @@ fn weights(points: &[Vec2], triangles: Vec<[usize; 3]>) -> Vec<([usize; 2], f64)
     }
     for (_, weight) in &mut edges {
         // Not `max`, which would hide a weight that is no number.
-        if *weight < LEAST_WEIGHT {
-            *weight = LEAST_WEIGHT;
+        if *weight < MIN_WEIGHT {
+            *weight = MIN_WEIGHT;
         }
     }
     edges

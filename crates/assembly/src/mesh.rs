@@ -16,7 +16,7 @@ use toile_geometry::{TriangulationError, Vec2};
 use toile_pattern::{Draft, Piece, PieceId};
 
 /// Most vertices a draft may ask for.
-const MOST_VERTICES: f64 = 5e6;
+const MAX_VERTICES: f64 = 5e6;
 
 /// One piece of a draft as a triangle mesh.
 #[derive(Clone, Debug)]
@@ -133,7 +133,7 @@ fn refuse_too_large(table: &EdgeTable, edge_length: f64) -> Result<(), AssemblyE
     let area: f64 = boxes.iter().map(|[l, h]| (h - l).x * (h - l).y).sum();
     let length: f64 = table.edges.iter().map(|e| e.length).sum();
     let vertices = area / (edge_length * edge_length) + length / edge_length;
-    if vertices > MOST_VERTICES {
+    if vertices > MAX_VERTICES {
         return Err(AssemblyError::TooLarge(vertices.round()));
     }
     Ok(())

@@ -16,7 +16,7 @@ use toile_pattern::{Draft, Piece, PieceId, SeamOrigin};
 
 /// Smallest angle of a triangle that follows an edit (rad), 15 degrees: membrane forces of sharper ones
 /// are stiff across and inexact along them. Fresh meshes have angles over 25 degrees.
-const SMALLEST_ANGLE: f64 = 0.261_799_387_799_149_4;
+const MIN_ANGLE: f64 = 0.261_799_387_799_149_4;
 /// How much smaller the angle may become of a triangle that was made sharper than that (rad), 1 degree:
 /// a narrow corner of an outline has such triangles in every mesh.
 const ANGLE_LOSS: f64 = 0.017_453_292_519_943_295;
@@ -305,10 +305,10 @@ impl PieceMesh {
 fn is_sound(old: [Vec2; 3], new: [Vec2; 3]) -> bool {
     let side = |[a, b, c]: [Vec2; 3]| orient2d(a, b, c);
     let angle = smallest_angle(old);
-    let least = if angle < SMALLEST_ANGLE {
+    let least = if angle < MIN_ANGLE {
         angle - ANGLE_LOSS
     } else {
-        SMALLEST_ANGLE
+        MIN_ANGLE
     };
     side(old) * side(new) > 0.0
         && smallest_angle(new) >= least

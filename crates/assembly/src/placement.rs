@@ -27,7 +27,7 @@ const APART_STEPS: usize = 12;
 /// Steps in which collars and hoods only rise before they also widen.
 const HEAD_LIFTS: usize = 8;
 /// How far a piece placed by its file may be pushed (m).
-const LARGEST_PUSH: f64 = 0.3;
+const MAX_PUSH: f64 = 0.3;
 
 /// Where all vertices go.
 #[derive(Clone, Debug, Default)]
@@ -278,7 +278,7 @@ impl Placer<'_> {
             };
             let direction = self.outward(&positions, place.rotation * Vec3::z() * side);
             let mut push = 0.0;
-            while push < LARGEST_PUSH {
+            while push < MAX_PUSH {
                 let moved: Vec<Vec3> = positions.iter().map(|p| p + direction * push).collect();
                 let (depth, crossings) = self.trouble(k, &moved);
                 if depth <= 0.0 && crossings == 0 {
@@ -287,7 +287,7 @@ impl Placer<'_> {
                 push += depth.max(0.01);
             }
             let name = &self.draft.pieces[self.meshes.pieces[k].draft_piece].name;
-            if push >= LARGEST_PUSH {
+            if push >= MAX_PUSH {
                 diagnostics.push(Diagnostic::warning(
                     name,
                     "it crosses the body where it is placed, and no push clears it".to_owned(),

@@ -11,7 +11,7 @@ use toile_geometry::{TriangulationError, Vec2, orient2d};
 const ROUNDS: usize = 10;
 /// A triangle is too large when its circumradius exceeds this share of the target edge length
 /// (an equilateral triangle of that edge has 0.577).
-const LARGEST_RADIUS: f64 = 0.76;
+const MAX_RADIUS: f64 = 0.76;
 /// Vertices nearer to each other than this share of the target edge length are thinned out.
 const CROWDED: f64 = 0.62;
 /// New vertices keep this distance from the boundary, as a share of the target edge length.
@@ -86,7 +86,7 @@ fn missing_vertices(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<Ve
         let size = field.size(centroid);
         if let Some((centre, radius)) = circumcircle(a, b, c) {
             let excess = radius / size;
-            if excess > LARGEST_RADIUS {
+            if excess > MAX_RADIUS {
                 let inside = walk(planar, t, centre).is_some();
                 candidates.push((excess, if inside { centre } else { centroid }));
             }

@@ -10,10 +10,10 @@ use toile_pattern::Draft;
 /// by a third at most, which keeps triangle angles over 25 degrees.
 pub(crate) const GROWTH: f64 = 0.3;
 /// Least interval on the short side of a gathered seam, as a share of the edge length.
-const SMALLEST_GATHERED: f64 = 0.3;
+const MIN_GATHERED: f64 = 0.3;
 /// Intervals shorter than this share of the edge length make their neighbours no shorter: one
 /// tiny edge must not fill a whole garment with tiny triangles.
-const SMALLEST_SPREAD: f64 = 0.15;
+const MIN_SPREAD: f64 = 0.15;
 
 /// Two vertices to sew: edge and sample on each side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,7 +172,7 @@ fn classes(
         let shortest = lengths.clone().fold(f64::INFINITY, f64::min);
         let mean = lengths.sum::<f64>() / members.len() as f64;
         let length = if members.iter().any(|m| gathered[m.0]) {
-            longest.min(shortest / SMALLEST_GATHERED).max(mean)
+            longest.min(shortest / MIN_GATHERED).max(mean)
         } else {
             mean
         };
@@ -232,7 +232,7 @@ fn grade(classes: &mut [Class], intervals: &[Interval], groups: &[usize], spacin
                 let share = intervals[m].length / class.length;
                 for (end, node) in ends(reversed).into_iter().zip(intervals[m].nodes) {
                     let known = &mut node_size[groups[node]];
-                    let size = (class.size[end] * share).max(SMALLEST_SPREAD * spacing);
+                    let size = (class.size[end] * share).max(MIN_SPREAD * spacing);
                     if size < *known - 1e-12 {
                         *known = size;
                         changed = true;

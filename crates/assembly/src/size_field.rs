@@ -5,7 +5,7 @@ use crate::sampling::GROWTH;
 use toile_geometry::Vec2;
 
 /// Cells of a bucket grid are bounded, so that needle-thin pieces cost no memory.
-const MOST_CELLS: f64 = 4e6;
+const MAX_CELLS: f64 = 4e6;
 
 /// Buckets of indices over a rectangle.
 struct Grid {
@@ -21,7 +21,7 @@ impl Grid {
         let extent = high - low;
         let cells = |c: f64| (extent.x / c + 1.0) * (extent.y / c + 1.0);
         let mut cell = cell;
-        while cells(cell) > MOST_CELLS {
+        while cells(cell) > MAX_CELLS {
             cell *= 2.0;
         }
         let columns = (extent.x / cell) as usize + 1;

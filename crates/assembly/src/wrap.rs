@@ -16,7 +16,7 @@ const FIRST_DISTANCE: f64 = 0.012;
 /// Distance between neighbouring pieces of a row, as a share of their places' spread.
 const SPREAD: f64 = 1.02;
 /// Room for folds below which a ring is not folded (m).
-const SMALLEST_FOLD: f64 = 0.04;
+const MIN_FOLD: f64 = 0.04;
 /// Distance that pieces of one leg keep from the middle of the body (m).
 const MIDDLE_CLEARANCE: f64 = 0.006;
 
@@ -108,7 +108,7 @@ fn ring_for(
     let free = arm_distance(row.part, around, frame, [band[0] + BAND, band[1] - BAND]);
     let close = OutlineCurve::ring(&points, Vec2::zeros(), FIRST_DISTANCE + distance);
     let room = free - close.reach(Vec2::zeros());
-    if ring.reach(Vec2::zeros()) <= free || room < SMALLEST_FOLD {
+    if ring.reach(Vec2::zeros()) <= free || room < MIN_FOLD {
         return ring;
     }
     let base = FIRST_DISTANCE + distance + 0.3 * room;

@@ -12,7 +12,7 @@ use toile_realtime::{
 const COVERED: f32 = 0.9;
 
 /// By how much an ellipsoid is enlarged at the most (m).
-const MOST_ENLARGED: f32 = 0.03;
+const MAX_ENLARGED: f32 = 0.03;
 
 /// The name of a part's group.
 fn group(part: Part) -> &'static str {
@@ -98,7 +98,7 @@ impl Mannequin {
             gaps.sort_by(f32::total_cmp);
             let index = (COVERED * gaps.len() as f32) as usize;
             let gap = gaps.get(index).copied().unwrap_or(0.0);
-            let more = gap.clamp(0.0, MOST_ENLARGED);
+            let more = gap.clamp(0.0, MAX_ENLARGED);
             ellipsoid.semi_axes = ellipsoid.semi_axes.map(|axis| axis + more);
         }
     }

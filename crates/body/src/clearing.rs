@@ -20,8 +20,8 @@ pub struct Cleared {
 
 /// Largest outward turns of shoulders and hips (rad): 25 and 8 degrees. Beyond them a figure no longer moves as the clip
 /// says.
-const MOST_SHOULDER: f64 = 25.0 * std::f64::consts::PI / 180.0;
-const MOST_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
+const MAX_SHOULDER: f64 = 25.0 * std::f64::consts::PI / 180.0;
+const MAX_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
 /// Skin nearer than this to where two parts join is left out, over stature: it touches in any pose.
 const JOINED: f64 = 0.075;
 /// Least number of poses a second that are looked at.
@@ -39,17 +39,17 @@ const CHANNELS: [Channel; 3] = [
     Channel {
         joints: &[(Joint::LShoulder, 1.0)],
         limb: Part::LeftArm,
-        most: MOST_SHOULDER,
+        most: MAX_SHOULDER,
     },
     Channel {
         joints: &[(Joint::RShoulder, -1.0)],
         limb: Part::RightArm,
-        most: MOST_SHOULDER,
+        most: MAX_SHOULDER,
     },
     Channel {
         joints: &[(Joint::LHip, 1.0), (Joint::RHip, -1.0)],
         limb: Part::LeftLeg,
-        most: MOST_HIP,
+        most: MAX_HIP,
     },
 ];
 

@@ -41,7 +41,7 @@ fn as_they_are() -> [f64; 3] {
 }
 
 /// Most keys of a deformation: more than any joint's range needs.
-const MOST_KEYS: usize = 16;
+const MAX_KEYS: usize = 16;
 
 impl Deformation {
     /// The reference joint's angle in a pose: its twist about the axis, from -pi to pi (rad).
@@ -125,7 +125,7 @@ impl Deformation {
         if self.unit_axis() == Vec3::zeros() || !self.axis.iter().all(|x| x.is_finite()) {
             return bad("has an axis of no direction: give one, as in [1, 0, 0]");
         }
-        if self.keys.is_empty() || self.keys.len() > MOST_KEYS {
+        if self.keys.is_empty() || self.keys.len() > MAX_KEYS {
             return bad("has no keys or more than 16: give some");
         }
         let numbers = |k: &DeformationKey| [k.shift, k.turn].concat();

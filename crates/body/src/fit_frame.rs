@@ -17,8 +17,8 @@ pub(crate) struct FoundFrame {
 }
 
 /// The least from crotch to armpits, over stature, and the fewest sections from wrist to shoulder.
-const LEAST_TRUNK: f64 = 0.1;
-const LEAST_ARM: usize = 4;
+const MIN_TRUNK: f64 = 0.1;
+const MIN_ARM: usize = 4;
 
 /// Height of the shoulder joint over the armpit, over stature.
 const JOINT_RISE: f64 = 0.037;
@@ -37,7 +37,7 @@ pub(crate) fn find(scan: &Scan) -> Result<FoundFrame, BodyError> {
     let armpit = marks.armpit.ok_or_else(|| {
         missing("armpit with arms beside the trunk: give its height as landmark armpit")
     })?;
-    if armpit - crotch < LEAST_TRUNK * height {
+    if armpit - crotch < MIN_TRUNK * height {
         return Err(BodyError::Mesh(format!(
             "has the crotch at {crotch:.3} m and the armpits at {armpit:.3} m, which leaves no trunk: give better landmarks crotch and armpit"
         )));
@@ -54,7 +54,7 @@ pub(crate) fn find(scan: &Scan) -> Result<FoundFrame, BodyError> {
         Some(p) => nearest(&rings, p),
         None => wrist_ring(&rings, height),
     };
-    if wrist_at + LEAST_ARM >= rings.len() {
+    if wrist_at + MIN_ARM >= rings.len() {
         return Err(missing(
             "arm between wrist and shoulder: give another landmark wrist",
         ));

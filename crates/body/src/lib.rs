@@ -87,7 +87,7 @@ pub use joint::Joint;
 pub use landmarks::Landmarks;
 pub use mannequin::{Mannequin, template_skin};
 pub use part_axes::{BodyLevels, PartAxis};
-pub use player::{FASTEST_TURN, MOST_FADE, MOST_RATE, PlayCommand, PlayError, Playback, Player};
+pub use player::{FASTEST_TURN, MAX_FADE, MAX_RATE, PlayCommand, PlayError, Playback, Player};
 pub use proportions::{ProportionBox, Sex};
 pub use rigging::{Particular, Rigging};
 pub use scaling::{Scaling, tags};

@@ -20,14 +20,14 @@ pub enum PlayCommand {
         /// Length of the fade (s).
         fade: f64,
     },
-    /// How fast the clock goes, from 0 to [`MOST_RATE`].
+    /// How fast the clock goes, from 0 to [`MAX_RATE`].
     Rate(f64),
 }
 
 /// Largest rate of a player.
-pub const MOST_RATE: f64 = 2.0;
+pub const MAX_RATE: f64 = 2.0;
 /// Longest fade (s).
-pub const MOST_FADE: f64 = 60.0;
+pub const MAX_FADE: f64 = 60.0;
 /// Fastest turn of a joint that a player shows (rad/s); where a clip or a fade is faster its clock goes slower. Runners'
 /// knees turn at 20 rad/s (Novacheck 1998).
 pub const FASTEST_TURN: f64 = 25.0;
@@ -168,10 +168,10 @@ impl Player {
         for clip in [Some(player.playback.shown.clip), fade, waiting] {
             clip.map_or(Ok(()), |clip| player.check_clip(clip))?;
         }
-        within("rate", player.playback.rate, MOST_RATE)?;
-        within("rate", player.playback.asked, MOST_RATE)?;
+        within("rate", player.playback.rate, MAX_RATE)?;
+        within("rate", player.playback.asked, MAX_RATE)?;
         if let Some(fade) = player.playback.fade {
-            within("fade", fade.length, MOST_FADE)?;
+            within("fade", fade.length, MAX_FADE)?;
         }
         Ok(player)
     }
@@ -196,10 +196,10 @@ impl Player {
         match command {
             PlayCommand::Start => self.playback.goes = true,
             PlayCommand::Stop => self.playback.goes = false,
-            PlayCommand::Rate(rate) => self.playback.asked = within("rate", rate, MOST_RATE)?,
+            PlayCommand::Rate(rate) => self.playback.asked = within("rate", rate, MAX_RATE)?,
             PlayCommand::Change { clip, fade } => {
                 self.check_clip(clip)?;
-                let fade = within("fade", fade, MOST_FADE)?;
+                let fade = within("fade", fade, MAX_FADE)?;
                 match self.playback.fade {
                     Some(_) => self.playback.waiting = Some((clip, fade)),
                     None => self.begin_fade(clip, fade),

@@ -14,7 +14,7 @@ const NECK_STEP: f64 = 0.0025;
 /// A shorter loop is a finger's or an ear's, over stature.
 const LIMB: f64 = 0.04;
 /// A shorter loop of a neck is of the mouth, over stature.
-const LEAST_NECK: f64 = 0.12;
+const MIN_NECK: f64 = 0.12;
 
 /// The middle of the left arm from the shoulder to the finger tips (m).
 struct ArmPath {
@@ -157,7 +157,7 @@ impl Scan {
     fn around_neck(&self, middle: Vec3) -> Option<f64> {
         let (sin, cos) = NECK_TILT.sin_cos();
         let loops = self.section(middle, [Vec3::x(), Vec3::new(0.0, -sin, cos)]);
-        self.round_the_middle(loops, LEAST_NECK)
+        self.round_the_middle(loops, MIN_NECK)
     }
 
     /// Girth across the arm through a place in its middle (m).

@@ -8,7 +8,7 @@ use toile_session::{
 };
 
 /// Most garments of one size: far more than can be laid at once.
-const MOST_GARMENTS: u32 = 10_000;
+const MAX_GARMENTS: u32 = 10_000;
 
 /// The word for every size of a pattern.
 const EVERY_SIZE: &str = "all";
@@ -22,9 +22,9 @@ pub fn sizes(text: &str) -> Result<SizeSelection, String> {
     let each = text.split(',').map(|one| {
         let (name, count) = one.rsplit_once(':').unwrap_or((one, "1"));
         match count.parse() {
-            Ok(count @ 1..=MOST_GARMENTS) => Ok((name.to_owned(), count)),
+            Ok(count @ 1..=MAX_GARMENTS) => Ok((name.to_owned(), count)),
             _ => Err(format!(
-                "{count:?} is no number of garments from 1 to {MOST_GARMENTS}; write NAME:COUNT"
+                "{count:?} is no number of garments from 1 to {MAX_GARMENTS}; write NAME:COUNT"
             )),
         }
     });

@@ -8,7 +8,7 @@ use toile_geometry::{
 use toile_pattern::NotchKind;
 
 /// Share of the allowance a notch is cut into at the most: the rest is sewn.
-const MOST_OF_ALLOWANCE: f64 = 0.6;
+const MAX_ALLOWANCE_SHARE: f64 = 0.6;
 /// Between a notch and the cloth that is sewn at the least, over its depth: what is left of the
 /// allowance beside the deepest notch.
 const CLEAR: f64 = 0.66;
@@ -89,7 +89,7 @@ impl Room {
         axes: [Vec2; 2],
     ) -> Option<(f64, Vec<Vec<Vec2>>)> {
         let width = (at - point).norm();
-        let deepest = NOTCH_DEPTH.min(MOST_OF_ALLOWANCE * width);
+        let deepest = NOTCH_DEPTH.min(MAX_ALLOWANCE_SHARE * width);
         let near = Near::new(self, at, 3.0 * deepest);
         let mut depth = deepest;
         while depth >= LEAST {

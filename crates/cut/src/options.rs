@@ -10,12 +10,12 @@ pub struct Shrinkage {
 }
 
 /// Shares that cloth can lose or win, beyond any that was measured.
-const MOST_SHRINKAGE: f64 = 0.5;
+const MAX_SHRINKAGE: f64 = 0.5;
 
 impl Shrinkage {
     /// Whether both shares are finite and from -0.5 to 0.5.
     pub fn is_sound(&self) -> bool {
-        let sound = |share: f64| share.is_finite() && share.abs() <= MOST_SHRINKAGE;
+        let sound = |share: f64| share.is_finite() && share.abs() <= MAX_SHRINKAGE;
         sound(self.warp) && sound(self.weft)
     }
 

@@ -23,7 +23,7 @@ const SAME_WARP: f64 = 0.985;
 const SAME_LENGTH: f64 = 1e-6;
 
 /// Most flips for each cap; each flip lowers the largest angle of its pair.
-const MOST_FLIPS: usize = 8;
+const MAX_FLIPS: usize = 8;
 
 /// The flip of a cap's long edge to the other diagonal of its pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ pub(crate) fn without_caps(cloth: &Cloth) -> (Cow<'_, Cloth>, Vec<Exchange>) {
     }
     let mut flipper = Flipper::new(cloth.clone());
     let mut exchanges = Vec::new();
-    let mut left = MOST_FLIPS * caps.len();
+    let mut left = MAX_FLIPS * caps.len();
     let mut open = caps;
     while let Some(t) = open.pop() {
         if left == 0 {

@@ -25,7 +25,7 @@ pub struct Cloth {
 }
 
 /// Largest number of a panel: panel numbers of many concatenated objects still fit 32 bits.
-const MOST_PANEL: u32 = 1 << 24;
+const MAX_PANEL: u32 = 1 << 24;
 
 impl Cloth {
     /// A cloth whose rest shape is the mesh itself: each triangle is a panel of its own with the size and shape it has
@@ -86,7 +86,7 @@ impl Cloth {
         if let Some(m) = (self.material.iter()).find(|&&m| usize::from(m) >= materials) {
             return Some(format!("there is no material {m}"));
         }
-        let far = self.panel.iter().find(|&&panel| panel > MOST_PANEL)?;
+        let far = self.panel.iter().find(|&&panel| panel > MAX_PANEL)?;
         Some(format!("panel {far} is out of range"))
     }
 

@@ -1,6 +1,6 @@
 //! Refinement of contact samples in triangles that cross a solid.
 
-use crate::contact_settings::MOST_EXTRA;
+use crate::contact_settings::MAX_EXTRA;
 use crate::{ContactSample, Model, State};
 use std::sync::Arc;
 
@@ -65,7 +65,7 @@ fn refine(model: &Model, samples: &mut Vec<ContactSample>, triangle: u32) {
         for sample in samples.iter_mut() {
             let corner = sample.triangle.is_none() && corners.contains(&sample.vertices[0]);
             if corner || sample.triangle == Some(triangle) {
-                sample.extra_offset = (sample.extra_offset + EXTRA_OFFSET).min(MOST_EXTRA);
+                sample.extra_offset = (sample.extra_offset + EXTRA_OFFSET).min(MAX_EXTRA);
             }
         }
         return;

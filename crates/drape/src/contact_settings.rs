@@ -9,16 +9,16 @@ pub(crate) const FIELD_REACH: f64 = 0.03;
 
 /// Largest extra offset of the contact samples of a triangle that crosses a solid (m): a crossing that remains then is
 /// not cured by distance.
-pub(crate) const MOST_EXTRA: f64 = 8e-3;
+pub(crate) const MAX_EXTRA: f64 = 8e-3;
 
 /// Largest contact offset from solids (m): the extent of the distance field less the largest extra offset.
-pub const MOST_OFFSET: f64 = FIELD_REACH - MOST_EXTRA;
+pub const MAX_OFFSET: f64 = FIELD_REACH - MAX_EXTRA;
 
 /// Settings of contact with solids and of cloth with cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSettings {
-    /// Distance of the middle of the cloth from a solid at which contact begins (m), at most [`MOST_OFFSET`]; half the
+    /// Distance of the middle of the cloth from a solid at which contact begins (m), at most [`MAX_OFFSET`]; half the
     /// cloth's thickness where that is more ([`Self::for_cloth`]). It must exceed the sagitta of an edge on the
     /// tightest curve of the body, e^2 / (8 R).
     pub offset: f64,
@@ -81,20 +81,20 @@ impl ContactSettings {
     /// Refuses an offset that exceeds the extent of distance fields.
     ///
     /// # Errors
-    /// An offset beyond [`MOST_OFFSET`]; `place` is named in the message.
+    /// An offset beyond [`MAX_OFFSET`]; `place` is named in the message.
     pub(crate) fn check_reach(&self, place: &str) -> Result<(), DrapeError> {
-        if self.offset <= MOST_OFFSET {
+        if self.offset <= MAX_OFFSET {
             return Ok(());
         }
         Err(DrapeError::Scene {
             place: place.to_owned(),
             what: format!(
-                "the middle of the cloth would keep {} m from surfaces; they are felt to {MOST_OFFSET} m at most",
+                "the middle of the cloth would keep {} m from surfaces; they are felt to {MAX_OFFSET} m at most",
                 self.offset
             ),
             remedy: format!(
-                "give a collision.offset of at most {MOST_OFFSET} and cloth at most {} m thick",
-                2.0 * MOST_OFFSET
+                "give a collision.offset of at most {MAX_OFFSET} and cloth at most {} m thick",
+                2.0 * MAX_OFFSET
             ),
         })
     }

@@ -87,7 +87,7 @@ pub const fn weight(w: f64) -> f64 {
 }
 
 /// Least linearity of the cubic curve: a pure cube has 1/2.
-const LEAST_LINEARITY: f64 = 0.51;
+const MIN_LINEARITY: f64 = 0.51;
 
 /// Stiffness C (N/m) and hardening k of the curve S = C (E + k E^3) that reaches 500 gf/cm at an
 /// extension (%) with a linearity LT.
@@ -98,7 +98,7 @@ const LEAST_LINEARITY: f64 = 0.51;
 /// C: the force is (1 + e) S.
 pub const fn tensile_curve(extension: f64, linearity: f64) -> (f64, f64) {
     let e = extension * 1e-2;
-    let lt = linearity.clamp(LEAST_LINEARITY, 1.0);
+    let lt = linearity.clamp(MIN_LINEARITY, 1.0);
     let k = (1.0 - lt) / ((lt - 0.5) * e * e);
     let green = e + 0.5 * e * e;
     let stress = KES_LOAD / (1.0 + e);

@@ -54,7 +54,7 @@ impl SwingWorkspace {
 /// softer by the square of this number, so it is below 1.
 const COURANT: f64 = 0.7;
 /// Longest substep (s).
-const LONGEST_SUBSTEP: f64 = 5e-4;
+const MAX_SUBSTEP: f64 = 5e-4;
 /// Substeps between two measurements of the kinetic energy.
 const ROUND: u32 = 20;
 /// Drag while swinging (1/s).
@@ -62,7 +62,7 @@ const DRAG: f64 = 3.0;
 /// Longest simulated time (s) on the coarsest mesh, and on a finer one, which starts from the interpolated shape of a
 /// coarser one at rest.
 const LONGEST: f64 = 3.0;
-const LONGEST_CARRIED: f64 = 0.3;
+const MAX_CARRIED_TIME: f64 = 0.3;
 /// Mean speed (m/s) whose kinetic energy a peak must not exceed for the swing to end.
 const CALM: f64 = 0.0015;
 /// A peak of kinetic energy is a new low below this share of the lowest before. With crossings left, the swing ends
@@ -88,7 +88,7 @@ impl KineticDamping {
     /// A swing from the interpolated shape of a coarser mesh at rest.
     pub fn carried(system: &System) -> Self {
         Self {
-            longest: LONGEST_CARRIED,
+            longest: MAX_CARRIED_TIME,
             ..Self::new(system)
         }
     }
@@ -194,7 +194,7 @@ fn substep(system: &System) -> f64 {
         .map(crossing)
         .sum::<f64>()
         / count as f64;
-    (COURANT * mean).min(LONGEST_SUBSTEP)
+    (COURANT * mean).min(MAX_SUBSTEP)
 }
 
 #[cfg(test)]
@@ -256,7 +256,7 @@ mod tests {
     fn finer_cloth_swings_in_shorter_substeps() {
         let [system, finer] = [0.01, 0.0025].map(|edge| strip(edge).0);
         let ratio = substep(&finer) / substep(&system);
-        assert!((ratio - 0.25).abs() < 1e-12 || substep(&system) == LONGEST_SUBSTEP);
+        assert!((ratio - 0.25).abs() < 1e-12 || substep(&system) == MAX_SUBSTEP);
         assert!(substep(&finer) < substep(&system));
     }
 }

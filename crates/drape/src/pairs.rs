@@ -27,7 +27,7 @@ pub struct Pairs {
 }
 
 /// Least s.y as a share of |s| |y|: below it the product is rounding.
-const LEAST_CURVATURE: f64 = 1e-10;
+const MIN_CURVATURE: f64 = 1e-10;
 
 impl Pairs {
     /// Removes all pairs; the last iterate remains.
@@ -56,7 +56,7 @@ impl Pairs {
             difference(&mut pair.y, gradient, &self.gradient);
             pair.product = dot(&pair.s, &pair.y);
             let scale = (dot(&pair.s, &pair.s) * dot(&pair.y, &pair.y)).sqrt();
-            match pair.product > LEAST_CURVATURE * scale {
+            match pair.product > MIN_CURVATURE * scale {
                 true => self.pairs.push_back(pair),
                 false => self.spare = Some(pair),
             }

@@ -59,7 +59,7 @@ const FIRST_STEP: f64 = 0.02;
 const NEAR_STEP: f64 = 0.1;
 /// Bounds of the pseudo time step (s): at the upper one inertia is 1e-6 of gravity over a metre.
 const SHORTEST_STEP: f64 = 1e-6;
-const LONGEST_STEP: f64 = 100.0;
+const MAX_STEP: f64 = 100.0;
 
 impl PseudoTransientContinuation {
     /// A run from any state.
@@ -68,7 +68,7 @@ impl PseudoTransientContinuation {
             pseudo_step: FIRST_STEP,
             steps: 0,
             residual: f64::INFINITY,
-            longest_step: LONGEST_STEP,
+            longest_step: MAX_STEP,
             best: f64::INFINITY,
             waited: 0,
             linear_iterations: 0,
@@ -131,7 +131,7 @@ impl PseudoTransientContinuation {
         self.memory.residual = f64::INFINITY;
         self.memory.best = f64::INFINITY;
         self.memory.waited = 0;
-        self.memory.longest_step = LONGEST_STEP;
+        self.memory.longest_step = MAX_STEP;
     }
 
     /// Takes one step.

@@ -114,7 +114,7 @@ pub struct SceneObject {
 }
 
 /// Largest number of a layer.
-pub const MOST_LAYER: u16 = 999;
+pub const MAX_LAYER: u16 = 999;
 
 /// Vertices of a cloth on a prescribed motion. Only `xpbd` supports them.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,7 +155,7 @@ pub struct SceneElastic {
 }
 
 /// Most steps of a scene: more are a mistake in step or duration.
-const MOST_STEPS: f64 = 1e7;
+const MAX_STEPS: f64 = 1e7;
 
 impl Scene {
     /// Refuses an invalid scene before anything is built.
@@ -177,7 +177,7 @@ impl Scene {
         ] {
             check_number(field, value, least)?;
         }
-        if (self.lead_in + self.duration) / self.step > MOST_STEPS {
+        if (self.lead_in + self.duration) / self.step > MAX_STEPS {
             return refuse(
                 "step".to_owned(),
                 format!("{} s takes more than 1e7 steps", self.step),
@@ -300,7 +300,7 @@ impl Scene {
                 let what = "only cloth is worn in layers".to_owned();
                 return refuse(object, what, "leave it out: bodies lie under every layer");
             }
-            if object.layer > MOST_LAYER {
+            if object.layer > MAX_LAYER {
                 let what = format!("{} is out of range", object.layer);
                 return refuse(object, what, "give a number from 0 to 999");
             }

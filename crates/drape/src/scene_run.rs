@@ -71,7 +71,7 @@ struct Origin {
 /// Steps between two searches for triangles that cross a solid between their contact samples.
 const STEPS_TO_REFINE: usize = 4;
 /// Most rounds of refined contact samples.
-const MOST_REFINEMENTS: usize = 24;
+const MAX_REFINEMENTS: usize = 24;
 
 impl Deref for SceneRun {
     type Target = Simulation;
@@ -440,7 +440,7 @@ impl SceneRun {
     /// is too sharp for the mesh.
     fn refine(&mut self) {
         let Simulation { system, state, .. } = &mut self.simulation;
-        if system.colliders.is_empty() || self.refinements >= MOST_REFINEMENTS {
+        if system.colliders.is_empty() || self.refinements >= MAX_REFINEMENTS {
             return;
         }
         let mesh = system.mesh(&state.positions);

@@ -11,7 +11,7 @@ const SIDE: usize = 4;
 
 /// Blocks a field may be divided into; the cells grow until it has no more (a floor of a hundred
 /// metres needs no fine grid).
-const MOST_BLOCKS: usize = 4_000_000;
+const MAX_BLOCKS: usize = 4_000_000;
 
 /// A signed distance (m) with a continuous gradient, negative inside.
 ///
@@ -74,7 +74,7 @@ impl DistanceField {
         loop {
             let margin = Vec3::repeat(reach + 2.0 * cell);
             let span = (high - low + 2.0 * margin) / (cell * SIDE as f64);
-            if span.map(f64::ceil).product() <= MOST_BLOCKS as f64 {
+            if span.map(f64::ceil).product() <= MAX_BLOCKS as f64 {
                 let blocks = [0, 1, 2].map(|k| span[k].ceil().max(1.0) as usize);
                 let mut samples = Vec::new();
                 samples.resize_with(blocks.iter().product(), OnceLock::new);

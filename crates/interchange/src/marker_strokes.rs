@@ -129,7 +129,7 @@ pub(crate) fn fill_of(item: usize) -> [u8; 3] {
 }
 
 /// Most lines of a print that are drawn along one side.
-const MOST_LINES: f64 = 2000.0;
+const MAX_LINES: f64 = 2000.0;
 
 impl Strokes {
     /// Everything on a marker.
@@ -202,7 +202,7 @@ impl Strokes {
         if let Some(print) = &strip.stripes {
             for axis in 0..2 {
                 let (repeat, end) = (print.repeat[axis], [length, width][axis]);
-                if repeat <= 0.0 || end / repeat > MOST_LINES {
+                if repeat <= 0.0 || end / repeat > MAX_LINES {
                     continue;
                 }
                 let first = print.origin[axis].rem_euclid(repeat);

@@ -328,7 +328,7 @@ fn one() -> f64 {
     1.0
 }
 /// Substeps or iterations a file may ask for: more is surely a mistake.
-const MOST_ITERATIONS: usize = 1_000_000;
+const MAX_ITERATIONS: usize = 1_000_000;
 
 fn usual_step() -> f64 {
     Scene::default().step
@@ -376,11 +376,11 @@ impl SceneFile {
             ("iterations", file.iterations),
         ];
         for (field, count) in counts {
-            if count.is_some_and(|n| n == 0 || n > MOST_ITERATIONS) {
+            if count.is_some_and(|n| n == 0 || n > MAX_ITERATIONS) {
                 return Err(FormatError::new(
                     format!("method.{field}"),
                     "it is out of range".to_owned(),
-                    format!("give a whole number from 1 to {MOST_ITERATIONS}"),
+                    format!("give a whole number from 1 to {MAX_ITERATIONS}"),
                 ));
             }
         }

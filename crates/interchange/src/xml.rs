@@ -4,11 +4,11 @@ use crate::FormatError;
 use roxmltree::{Document, Error, Node, ParsingOptions};
 
 /// Most elements, comments and texts a file may hold: far more than any motion or table has.
-const MOST_NODES: u32 = 20_000_000;
+const MAX_NODES: u32 = 20_000_000;
 /// Most letters that the entities a file declares may grow to.
-const MOST_EXPANDED: usize = 1 << 26;
+const MAX_EXPANDED_BYTES: usize = 1 << 26;
 /// Most references to entities that the reader follows within one.
-const MOST_NESTED: usize = 256;
+const MAX_DEPTH: usize = 256;
 
 /// A document and where its lines begin.
 pub(crate) struct Xml<'a> {
@@ -38,7 +38,7 @@ impl<'a> Xml<'a> {
         }
         let options = ParsingOptions {
             allow_dtd: true,
-            nodes_limit: MOST_NODES,
+            nodes_limit: MAX_NODES,
             ..ParsingOptions::default()
         };
         let document = Document::parse_with_options(body, options).map_err(|error| {
@@ -82,7 +82,7 @@ impl<'a> Xml<'a> {
 }
 
 /// The line of the first entity declared, if all of them, with the references there are to them,
-/// may grow beyond [`MOST_EXPANDED`].
+/// may grow beyond [`MAX_EXPANDED_BYTES`].
 fn entity_bomb(text: &str) -> Option<usize> {
     const DECLARATION: &str = "<!ENTITY";
     let first = text.find(DECLARATION)?;
@@ -100,9 +100,9 @@ fn entity_bomb(text: &str) -> Option<usize> {
         .match_indices('&')
         .filter(|(at, _)| !own.iter().any(|known| text[at + 1..].starts_with(known)))
         .count();
-    let most = if nested { MOST_NESTED } else { 1 };
+    let most = if nested { MAX_DEPTH } else { 1 };
     let grown = letters.saturating_mul(references).saturating_mul(most);
-    (grown > MOST_EXPANDED).then(|| 1 + text[..first].matches('\n').count())
+    (grown > MAX_EXPANDED_BYTES).then(|| 1 + text[..first].matches('\n').count())
 }
 
 #[cfg(test)]

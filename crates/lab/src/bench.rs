@@ -128,7 +128,7 @@ fn is_long(name: &str, work: Work) -> bool {
 const THREADS: [usize; 2] = [1, 2];
 
 /// Steps to rest at the most, and wall time after which it is given up (s).
-const MOST_STEPS: usize = 2000;
+const MAX_STEPS: usize = 2000;
 const BUDGET: f64 = 300.0;
 
 /// Runs the benchmarks named, or all that take seconds.
@@ -314,7 +314,7 @@ fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> 
         sew: SewSettings::default(),
         rest: RestSettings {
             residual,
-            steps: MOST_STEPS,
+            steps: MAX_STEPS,
             ..RestSettings::default()
         },
     };

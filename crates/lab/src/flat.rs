@@ -119,7 +119,7 @@ fn grid(kind: MeshKind, from: Vec2, to: Vec2, [columns, rows]: [usize; 2]) -> Fl
 }
 
 /// Smallest angle asked of Delaunay meshes (degree).
-const SMALLEST_ANGLE: f64 = 25.0;
+const MIN_ANGLE: f64 = 25.0;
 
 fn refined(points: Vec<Vec2>, edges: Vec<[usize; 2]>, cell: f64) -> Result<Flat, LabError> {
     let vertices = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
@@ -132,7 +132,7 @@ fn refined(points: Vec<Vec2>, edges: Vec<[usize; 2]>, cell: f64) -> Result<Flat,
         .map_err(refused)?;
     // Triangles of half the cell at the most come out at about the size of half a cell.
     let parameters = RefinementParameters::new()
-        .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE))
+        .with_angle_limit(AngleLimit::from_deg(MIN_ANGLE))
         .with_max_allowed_area(0.65 * cell * cell)
         .with_max_additional_vertices(100 * points.len() + 1000)
         .keep_constraint_edges();

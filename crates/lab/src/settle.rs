@@ -12,7 +12,7 @@ use toile_geometry::Vec3;
 pub(crate) const TIGHT: f64 = 1e-6;
 
 /// Steps to rest at the most.
-const MOST_STEPS: usize = 3000;
+const MAX_STEPS: usize = 3000;
 
 /// Leads a model to rest from a state, to a net force that is a share of the weight.
 ///
@@ -22,7 +22,7 @@ pub fn to_rest(system: &System, state: &mut State, residual: f64) -> Result<usiz
     let mut workspace = Workspace::default();
     let mut run = PseudoTransientContinuation::new(RestSettings {
         residual,
-        steps: MOST_STEPS,
+        steps: MAX_STEPS,
         ..RestSettings::default()
     });
     while !run.finished() {

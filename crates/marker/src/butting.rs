@@ -13,7 +13,7 @@ const STEPS: usize = 200;
 /// How far in all a piece that is let go may come (reaches): out of others, to an edge, along it, into a corner.
 const MOVES: f64 = 5.0;
 /// Least sine of the angle between two directions in which a piece is stopped.
-const LEAST_SINE: f64 = 0.2;
+const MIN_SINE: f64 = 0.2;
 
 /// What becomes of pieces that are let go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -257,7 +257,7 @@ impl Surroundings {
                 return (least.1.length >= -EXACT).then_some(way);
             }
             let sine = a.toward.perp(&b.toward);
-            if sine.abs() < LEAST_SINE {
+            if sine.abs() < MIN_SINE {
                 return None;
             }
             // a.toward . step = a.length, b.toward . step = b.length.

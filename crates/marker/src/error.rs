@@ -69,7 +69,13 @@ impl From<NestingError> for MarkerError {
     fn from(error: NestingError) -> Self {
         match error {
             NestingError::Cancelled => Self::Cancelled,
-            other => Self::Nesting(other),
+            refused @ (NestingError::NoItems
+            | NestingError::TooManyPieces(_)
+            | NestingError::Search(_)
+            | NestingError::TooManyShapes { .. }
+            | NestingError::Strip(_)
+            | NestingError::Refused(_)
+            | NestingError::Unsound(_)) => Self::Nesting(refused),
         }
     }
 }

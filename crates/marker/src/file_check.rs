@@ -14,7 +14,7 @@ const ROUNDING: f64 = 3e-6;
 
 /// Most that a grain may lie off the warp on fabric with a nap (rad): what lies farther off does
 /// not run along it.
-const MOST_TILT: f64 = FRAC_PI_4;
+const MAX_TILT: f64 = FRAC_PI_4;
 
 /// The result of a check of a marker file.
 #[derive(Clone, Debug)]
@@ -99,7 +99,7 @@ fn items_of(file: &MarkerFile) -> Vec<Item> {
         };
         let half_turns = (pose.turn / PI).round() * PI;
         let most = match has_nap {
-            true => MOST_TILT,
+            true => MAX_TILT,
             false => PI,
         };
         Item {
@@ -169,6 +169,12 @@ fn within_rounding(violation: &Violation) -> bool {
         Violation::Outside { by, .. } => *by < ROUNDING,
         Violation::Length { stated, found } => (stated - found).abs() < ROUNDING,
         Violation::OffPrint { by, .. } => by.amax() < ROUNDING,
-        _ => false,
+        Violation::Orientation { .. }
+        | Violation::Nap { .. }
+        | Violation::OffFold { .. }
+        | Violation::OnFlaw { .. }
+        | Violation::Moved { .. }
+        | Violation::Copy { .. }
+        | Violation::Nonsense { .. } => false,
     }
 }

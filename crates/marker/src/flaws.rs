@@ -109,11 +109,12 @@ fn as_spread([low, high]: [f64; 2], width: f64, spread: Spread) -> Vec<[f64; 2]>
     }
     let lower = [low.min(middle), high.min(middle)];
     let upper = [low.max(middle), high.max(middle)];
-    let placed = |[low, high]: [f64; 2]| match spread {
-        Spread::Folded if high <= middle => [middle - high, middle - low],
-        Spread::Folded => [low - middle, high - middle],
-        _ if high <= middle => [low, high],
-        _ => [width - high, width - low],
+    let is_folded = spread == Spread::Folded;
+    let placed = |[low, high]: [f64; 2]| match (is_folded, high <= middle) {
+        (true, true) => [middle - high, middle - low],
+        (true, false) => [low - middle, high - middle],
+        (false, true) => [low, high],
+        (false, false) => [width - high, width - low],
     };
     if high <= middle || low >= middle {
         // All on one side, or without any width, which the referee of the job refuses.

@@ -4,6 +4,7 @@
 //! its summary, drawing and file. A [`DocumentMarker`] is a marker of a document with its pieces. Lengths in
 //! metres, x along the warp.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod butting;
 mod document_marker;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toile_cut::{CutOptions, CutPiece, concerns_cutter};
 use toile_geometry::Vec2;
 use toile_interchange::{ANY_NAME, PieceSettings};
-use toile_nesting::{MOST_PIECES, NestingError};
+use toile_nesting::{MAX_PIECES, NestingError};
 use toile_pattern::{Diagnostic, DisplayUnit, Draft, Pattern, Piece};
 
 /// Garments to cut from one draft.
@@ -165,7 +165,7 @@ fn check_count(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), M
         pieces.saturating_mul(u64::from(garment.count))
     };
     let total = garments.iter().map(of).fold(0, u64::saturating_add);
-    match total > u64::from(MOST_PIECES) {
+    match total > u64::from(MAX_PIECES) {
         true => Err(NestingError::TooManyPieces(total).into()),
         false => Ok(()),
     }

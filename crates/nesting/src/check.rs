@@ -1,6 +1,6 @@
 //! Refuses jobs that cannot be done, before any work.
 
-use crate::error::{ItemProblem, MOST_PIECES, MOST_POINTS, NestingError, Refusal};
+use crate::error::{ItemProblem, MAX_PIECES, MAX_POINTS, NestingError, Refusal};
 use crate::shape::{SNUG, extent, folds_up};
 use crate::turns::orientations;
 use crate::{Fold, Item, Marker, Mirror, Nap, Placement, Strip, Violation, judge};
@@ -9,7 +9,7 @@ use toile_geometry::{CrossingKind, PolygonDefect, Vec2};
 
 fn check_outline(item: &Item) -> Option<ItemProblem> {
     let points = item.outline.rings().map(Vec::len).sum();
-    if points > MOST_POINTS {
+    if points > MAX_POINTS {
         return Some(ItemProblem::TooManyPoints(points));
     }
     let problem = |defect: &PolygonDefect| match *defect {
@@ -56,7 +56,7 @@ fn check_item(item: &Item, strip: &Strip) -> Option<ItemProblem> {
     if !(0.0..=std::f64::consts::FRAC_PI_4).contains(&item.allowed.tilt) {
         return Some(ItemProblem::Tilt(item.allowed.tilt));
     }
-    if item.quantity > MOST_PIECES {
+    if item.quantity > MAX_PIECES {
         return Some(ItemProblem::TooMany(item.quantity));
     }
     if let Some(problem) = check_fold(item, strip).or_else(|| check_locks(item)) {
@@ -198,7 +198,7 @@ pub(crate) fn check_numbered(
     };
     let mut refusals: Vec<Refusal> = items.iter().enumerate().filter_map(refusal).collect();
     let total: u64 = items.iter().map(|i| u64::from(i.quantity)).sum();
-    if refusals.is_empty() && total > u64::from(MOST_PIECES) {
+    if refusals.is_empty() && total > u64::from(MAX_PIECES) {
         return Err(NestingError::TooManyPieces(total));
     }
     if refusals.is_empty() {

@@ -4,9 +4,9 @@ use toile_geometry::Vec2;
 
 /// Most pieces of a marker: tables of all pairs grow with their square, a hundred megabytes for
 /// each island at this number.
-pub const MOST_PIECES: u32 = 2_000;
+pub const MAX_PIECES: u32 = 2_000;
 /// Most points of an outline: more are a mistake, and no-fit polygons grow with their square.
-pub(crate) const MOST_POINTS: usize = 10_000;
+pub(crate) const MAX_POINTS: usize = 10_000;
 
 /// Why a marker was not made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -16,7 +16,7 @@ pub enum NestingError {
     NoItems,
     /// More pieces than can be laid at once.
     #[error(
-        "there are {0} pieces to lay; at most {MOST_PIECES} can be laid at once: make several markers"
+        "there are {0} pieces to lay; at most {MAX_PIECES} can be laid at once: make several markers"
     )]
     TooManyPieces(u64),
     /// The search makes no sense.
@@ -112,11 +112,11 @@ pub enum ItemProblem {
     )]
     AgainstNap,
     /// More copies than can be laid at once.
-    #[error("its quantity is {0}; at most {MOST_PIECES} pieces can be laid at once")]
+    #[error("its quantity is {0}; at most {MAX_PIECES} pieces can be laid at once")]
     TooMany(u32),
     /// So many points that its no-fit polygons cannot be held.
     #[error(
-        "its outline has {0} points; at most {MOST_POINTS} can be laid: draw curves with fewer points"
+        "its outline has {0} points; at most {MAX_POINTS} can be laid: draw curves with fewer points"
     )]
     TooManyPoints(usize),
     /// It must lie on a fold and there is none.

@@ -41,7 +41,7 @@ mod violation;
 mod words;
 
 pub use clashes::{Clashes, Outside, Overlap, clashes};
-pub use error::{ItemProblem, MOST_PIECES, NestingError, Refusal};
+pub use error::{ItemProblem, MAX_PIECES, NestingError, Refusal};
 pub use marker::{
     Allowed, Flaw, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase, Placement,
     Pose, Strip, Stripes, Unplaced,

@@ -6,7 +6,7 @@
 use toile_geometry::{Bounds2, Polygon, Vec2};
 
 /// Fewest cells along either side of the grid.
-const LEAST_CELLS: usize = 16;
+const MIN_CELLS: usize = 16;
 /// Points of an outline nearer to each other than this part of its extent are one: rounding of the
 /// polygon operations leaves such pairs.
 const REPEATED: f64 = 8e-9;
@@ -71,7 +71,7 @@ impl NoFit {
         let bounds = bounds.grown(reach);
         let size = bounds.size();
         let count = (2 * edges.len()).next_power_of_two();
-        let count = count.clamp(LEAST_CELLS, most_cells);
+        let count = count.clamp(MIN_CELLS, most_cells);
         let mut no_fit = Self {
             edges,
             cells: vec![0; count * count],

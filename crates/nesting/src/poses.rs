@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use toile_geometry::{Polygon, Vec2};
 
 /// Outlines of more corners are not compared with each other.
-const MOST_CORNERS: usize = 500;
+const MAX_CORNERS: usize = 500;
 
 /// Outline, whether it is turned over and may cover flaws, and all lengths and angles: what makes
 /// two shapes the same to the search.
@@ -161,7 +161,7 @@ impl Job<'_> {
     /// same to everything but a garment that runs one way.
     fn distinct(&self, item: &Item, shapes: Vec<usize>) -> Vec<usize> {
         let corners = item.outline.outer.len();
-        if self.strip.nap == Nap::PerBundle || corners > MOST_CORNERS {
+        if self.strip.nap == Nap::PerBundle || corners > MAX_CORNERS {
             return shapes;
         }
         let mut kept: Vec<(usize, Vec<Vec2>)> = Vec::new();

@@ -90,11 +90,11 @@ pub struct Control<'a> {
 }
 
 /// Most islands.
-const MOST_ISLANDS: usize = 64;
+const MAX_ISLANDS: usize = 64;
 /// Most pairs of pieces that all islands hold together, 24 bytes each: 1 GB.
 const PAIRS_HELD: usize = 40_000_000;
 /// Islands where the bytes must not depend on the machine, and the fewest anywhere.
-const USUAL_ISLANDS: usize = 2;
+const DEFAULT_ISLANDS: usize = 2;
 /// Part of the time in which no-fit polygons are made beforehand; the rest are made when needed.
 const PREPARING: f64 = 0.3;
 /// Part of the time after which the last touch ends too.
@@ -278,7 +278,7 @@ fn checked(mut search: Search, count: usize) -> Result<Search, NestingError> {
     {
         return refuse(format!("the time is {seconds} s; give 0 or more"));
     }
-    let most = (PAIRS_HELD / count.pow(2).max(1)).clamp(1, MOST_ISLANDS);
+    let most = (PAIRS_HELD / count.pow(2).max(1)).clamp(1, MAX_ISLANDS);
     if search.islands > most {
         return refuse(format!(
             "{} islands are too many for {count} pieces and flaws; give {most} at most",
@@ -287,8 +287,8 @@ fn checked(mut search: Search, count: usize) -> Result<Search, NestingError> {
     }
     if search.islands == 0 {
         search.islands = match search.budget {
-            Budget::Evaluations(_) => USUAL_ISLANDS,
-            Budget::Seconds(_) => processors().max(USUAL_ISLANDS),
+            Budget::Evaluations(_) => DEFAULT_ISLANDS,
+            Budget::Seconds(_) => processors().max(DEFAULT_ISLANDS),
         };
         search.islands = search.islands.min(most);
     }

@@ -11,11 +11,11 @@ use std::sync::OnceLock;
 use toile_geometry::Vec2;
 
 /// Most pairs of shapes, 64 bytes each: 256 MB.
-const MOST_PAIRS: usize = 4_000_000;
+const MAX_PAIRS: usize = 4_000_000;
 /// Most rows of the loss maps.
 const ROWS: f64 = 64.0;
 /// Fewest numbers a depth raster holds: three rows of two groups.
-const LEAST_NUMBERS: f64 = 96.0;
+const MIN_NUMBERS: f64 = 96.0;
 
 /// Stands for the polygon of two shapes that may overlap.
 const NO_POLYGON: u32 = u32::MAX;
@@ -27,7 +27,7 @@ impl Job<'_> {
     pub(crate) fn pair_up(&mut self, most: usize, stop: &dyn Fn() -> bool) -> bool {
         self.keys.clear();
         let count = self.shapes.len();
-        if count * count > MOST_PAIRS {
+        if count * count > MAX_PAIRS {
             return false;
         }
         let mut rasters: BTreeMap<(usize, usize, u64), u32> = BTreeMap::new();
@@ -35,7 +35,7 @@ impl Job<'_> {
         let mut pairs = Vec::with_capacity(count * count);
         for a in &self.shapes {
             let too_many =
-                known.len() > most || rasters.len() as f64 * LEAST_NUMBERS > Maps::COARSE.numbers;
+                known.len() > most || rasters.len() as f64 * MIN_NUMBERS > Maps::COARSE.numbers;
             if too_many || stop() {
                 return false;
             }

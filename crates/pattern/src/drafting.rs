@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Rigid, Vec3};
 
 /// Most pieces a draft may have.
-const MOST_PIECES: usize = 2000;
+const MAX_PIECES: usize = 2000;
 
 /// A draft with what only its checks need.
 pub(crate) struct Drafting {
@@ -114,14 +114,14 @@ impl Drafter<'_> {
         let (Some(stage), Some(fabric)) = (stage, fabric) else {
             return;
         };
-        let room = MOST_PIECES - self.drafting.draft.pieces.len();
+        let room = MAX_PIECES - self.drafting.draft.pieces.len();
         if panel.cut.quantity as usize > room {
             self.report(
                 Severity::Error,
                 Code::TooMany,
                 place,
                 format!(
-                    "panel {:?} is cut {} times, which makes more than {MOST_PIECES} pieces",
+                    "panel {:?} is cut {} times, which makes more than {MAX_PIECES} pieces",
                     panel.name, panel.cut.quantity
                 ),
                 "cut it less often",

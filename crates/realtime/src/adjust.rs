@@ -12,7 +12,7 @@ const GRAVITY: f32 = 9.81;
 const FASTEST: f32 = 4.0;
 
 /// Longest step of the explicit scheme (s): a longer frame is taken as this.
-const LONGEST_STEP: f32 = 1.0 / 20.0;
+const MAX_STEP: f32 = 1.0 / 20.0;
 
 /// Largest stiffness over mass times the square of the step: with some six springs at a vertex,
 /// each of weight 2, symplectic Euler stays stable below 4 over 12 to 16.
@@ -265,7 +265,7 @@ impl Garment {
 /// A step that the scheme bears (s).
 fn held(dt: f32) -> f32 {
     match dt > 0.0 {
-        true => dt.min(LONGEST_STEP),
+        true => dt.min(MAX_STEP),
         false => 0.0,
     }
 }

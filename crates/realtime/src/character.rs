@@ -141,10 +141,10 @@ fn is_zero(v: &[f32; 3]) -> bool {
 }
 
 /// Groups at the most: which groups touch is kept in the bits of a word.
-pub const MOST_GROUPS: usize = 64;
+pub const MAX_GROUPS: usize = 64;
 
 /// Ellipsoids at the most: more are no coarse figure, and a slip of the pen in a file by hand.
-const MOST_ELLIPSOIDS: usize = 4096;
+const MAX_ELLIPSOIDS: usize = 4096;
 
 /// Largest coordinate of a place, and longest clip (m, s): beyond them `f32` tells millimetres and
 /// milliseconds no longer apart.
@@ -230,10 +230,10 @@ impl Character {
             }
         }
         let groups = numbered("groups", self.groups.iter().map(|group| &*group.name))?;
-        if groups.len() > MOST_GROUPS {
+        if groups.len() > MAX_GROUPS {
             return Err(RealtimeError::new(
                 "groups",
-                format!("{} groups are more than {MOST_GROUPS}", groups.len()),
+                format!("{} groups are more than {MAX_GROUPS}", groups.len()),
                 "join groups that move alike",
             ));
         }
@@ -254,7 +254,7 @@ impl Character {
     }
 
     fn check_ellipsoids(&self, numbers: &Numbers) -> Result<(), RealtimeError> {
-        if !(1..=MOST_ELLIPSOIDS).contains(&self.ellipsoids.len()) {
+        if !(1..=MAX_ELLIPSOIDS).contains(&self.ellipsoids.len()) {
             return Err(RealtimeError::new(
                 "ellipsoids",
                 format!("there are {}", self.ellipsoids.len()),

@@ -24,7 +24,7 @@ mod turn;
 
 pub use character::{
     Character, CharacterEllipsoid, CharacterFile, CharacterJoint, Group, KeyPose, KeyedClip,
-    MOST_GROUPS,
+    MAX_GROUPS,
 };
 pub use ellipsoids::Ellipsoids;
 pub use error::RealtimeError;

@@ -2,7 +2,7 @@
 
 use crate::drape::Drape;
 use crate::export_format::{Export, ExportFormat};
-use crate::journal::{Entry, MOST_COMMANDS};
+use crate::journal::{Entry, MAX_COMMANDS};
 use crate::journal_files::journal_beside;
 use crate::outfit::DraftedPart;
 use crate::output::{File, cannot};
@@ -93,7 +93,7 @@ impl Session {
                 events.push(Event::Warned {
                     message: format!(
                         "journal.jsonl was left out: it would need the first of more than \
-                         {MOST_COMMANDS} commands, which are no longer kept; save the pattern, open it \
+                         {MAX_COMMANDS} commands, which are no longer kept; save the pattern, open it \
                          and export from there"
                     ),
                 });

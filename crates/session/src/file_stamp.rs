@@ -54,11 +54,11 @@ impl Stamp {
         differing.dedup();
         let what = match &differing[..] {
             [] => "its text".to_owned(),
-            few if few.len() <= MOST_NAMED => few.join(", "),
+            few if few.len() <= MAX_NAMED => few.join(", "),
             many => format!(
                 "{} and {} more",
-                many[..MOST_NAMED].join(", "),
-                many.len() - MOST_NAMED
+                many[..MAX_NAMED].join(", "),
+                many.len() - MAX_NAMED
             ),
         };
         Some(format!(
@@ -69,7 +69,7 @@ impl Stamp {
 }
 
 /// Parts of a changed file that are named one by one.
-const MOST_NAMED: usize = 8;
+const MAX_NAMED: usize = 8;
 
 /// FNV-1a of bytes, 64 bits in hexadecimal digits (Fowler, Noll and Vo 1991).
 fn digest(bytes: &[u8]) -> String {

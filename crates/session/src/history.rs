@@ -4,9 +4,9 @@ use crate::Project;
 use std::collections::VecDeque;
 
 /// Most steps kept.
-const MOST_STEPS: usize = 1000;
+const MAX_STEPS: usize = 1000;
 /// Most steps that are there again after a crash.
-const MOST_KEPT: usize = 50;
+const MAX_RESTORED_STEPS: usize = 50;
 
 /// One step: the project on the other side of it.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ impl History {
     /// Notes a step from `before`.
     pub fn record(&mut self, before: Project, label: &str) {
         self.future.clear();
-        if self.past.len() == MOST_STEPS {
+        if self.past.len() == MAX_STEPS {
             self.past.pop_front();
         }
         self.count += 1;
@@ -81,7 +81,12 @@ impl History {
 
     /// The last steps that can be taken back, the newest first: as many as are there again after a crash.
     pub fn to_keep(&self) -> Vec<HistoryStep> {
-        self.past.iter().rev().take(MOST_KEPT).cloned().collect()
+        self.past
+            .iter()
+            .rev()
+            .take(MAX_RESTORED_STEPS)
+            .cloned()
+            .collect()
     }
 
     /// Labels of the steps that can be taken back, the oldest first.

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 
 /// Most commands that are kept.
-pub(crate) const MOST_COMMANDS: usize = 1000;
+pub(crate) const MAX_COMMANDS: usize = 1000;
 
 /// A command, and the files it reads as they were.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ impl Journal {
 
     /// The same of a command that read more files than it names.
     pub fn push_with(&mut self, mut command: Command, more: &[PathBuf]) {
-        if self.entries.len() == MOST_COMMANDS {
+        if self.entries.len() == MAX_COMMANDS {
             self.entries.pop_front();
             self.dropped += 1;
         }

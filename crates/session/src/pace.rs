@@ -33,7 +33,7 @@ const SPAN: f64 = 1.0;
 /// Share of the duration over which the present speed is measured.
 const RECENT: f64 = 0.1;
 /// Moments kept at most in a span: closer ones tell no more.
-const MOST_MOMENTS: f64 = 1000.0;
+const MAX_MOMENTS: f64 = 1000.0;
 /// A simulated second takes so many times as long as at its fastest where the slow-down is told.
 const SLOW: f64 = 2.0;
 
@@ -90,7 +90,7 @@ impl Pace {
             self.past.pop_front();
         }
         let newest = self.past.back().map_or(f64::NEG_INFINITY, |m| m.time);
-        if now.time - newest >= SPAN / MOST_MOMENTS {
+        if now.time - newest >= SPAN / MAX_MOMENTS {
             self.past.push_back(now);
         }
         let limit = self.give_up?;

@@ -16,7 +16,7 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 use toile_body::{Figure, PrimitiveEdit};
-use toile_drape::MOST_LAYER;
+use toile_drape::MAX_LAYER;
 use toile_interchange::{FABRIC_WIDTHS, Fitting, write_atomically, write_mannequin};
 use toile_measure::Measurements;
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
@@ -365,7 +365,7 @@ impl Session {
             });
         }
         let layers = worn.iter().map(|garment| garment.layer);
-        if let Some(wrong) = layers.chain([layer]).find(|&layer| layer > MOST_LAYER) {
+        if let Some(wrong) = layers.chain([layer]).find(|&layer| layer > MAX_LAYER) {
             return Err(SessionError::Number {
                 what: "the layer of a garment",
                 value: f64::from(wrong),

@@ -9,7 +9,7 @@ use toile_picture::{
 };
 
 /// Stretch at the end of the colours (%).
-const MOST_STRETCH: f64 = 10.0;
+const MAX_STRETCH: f64 = 10.0;
 /// Colour of a mannequin.
 pub(crate) const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
 
@@ -100,7 +100,7 @@ pub(crate) fn fit_png(
     let scale = ColourScale {
         map: ColourMap::Heat,
         low: 0.0,
-        high: MOST_STRETCH,
+        high: MAX_STRETCH,
         over: Some(ColourScale::OVER),
     };
     let values = vertex_stretch(drape);
@@ -115,7 +115,7 @@ pub(crate) fn fit_png(
         unit: "%".into(),
         scale,
         ends: ["relaxed".into(), "tight".into()],
-        over: format!("over {MOST_STRETCH} %"),
+        over: format!("over {MAX_STRETCH} %"),
     };
     Ok(fit_picture(&scene, &legend, &Sheet::chart(title))?.to_png()?)
 }

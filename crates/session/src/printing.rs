@@ -30,7 +30,7 @@ const MORE_ROWS: u32 = 3;
 /// Area of the drawing on one page over that of its pieces: about what laying them reaches.
 const ROOMY: f64 = 1.3;
 /// Sheets nobody joins: larger paper or a smaller scale is meant.
-const MOST_SHEETS: usize = 500;
+const MAX_SHEETS: usize = 500;
 /// Scales that can be printed: from a doll's to twice the size.
 const SCALES: [f64; 2] = [0.01, 2.0];
 
@@ -429,7 +429,7 @@ fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, Sessio
         // Long before they are counted: sheets without a line are at most a few in each piece.
         let area: f64 = outlines.iter().map(Polygon::area).sum();
         let sheets = (area / (step.x * step.y)) as usize;
-        if sheets > 10 * MOST_SHEETS {
+        if sheets > 10 * MAX_SHEETS {
             return Err(too_many(sheets));
         }
     }
@@ -445,14 +445,14 @@ fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, Sessio
         }
     }
     match best {
-        Some((sheets, _)) if sheets > MOST_SHEETS => Err(too_many(sheets)),
+        Some((sheets, _)) if sheets > MAX_SHEETS => Err(too_many(sheets)),
         best => Ok(best.map_or(job, |(_, laid)| laid)),
     }
 }
 
 fn too_many(sheets: usize) -> SessionError {
     SessionError::Conflict(format!(
-        "the print would take some {sheets} sheets, more than {MOST_SHEETS}; choose larger paper, one page, or a smaller scale"
+        "the print would take some {sheets} sheets, more than {MAX_SHEETS}; choose larger paper, one page, or a smaller scale"
     ))
 }
 

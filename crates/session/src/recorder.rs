@@ -173,7 +173,7 @@ fn surfaces(
 }
 
 /// Bytes of a file's name beyond which a surface of many objects is named by its first and how many others.
-const LONGEST_NAME: usize = 160;
+const MAX_NAME_LENGTH: usize = 160;
 
 /// The surfaces that move, each with the objects that are sewn together in it or are to be, and the names of their
 /// files; two of one name are refused.
@@ -192,7 +192,7 @@ pub(crate) fn moving_surfaces(world: &World) -> Result<Vec<(Vec<ObjectId>, Strin
         let whole = each.join("+");
         let files: Vec<String> = each.iter().map(|name| file_name(name)).collect();
         let mut name = files.join("+");
-        if name.len() > LONGEST_NAME {
+        if name.len() > MAX_NAME_LENGTH {
             name = format!("{}+{}", files[0], files.len() - 1);
         }
         let same = |(_, known): &&(_, String)| known.to_lowercase() == name.to_lowercase();

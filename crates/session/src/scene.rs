@@ -34,7 +34,7 @@ pub struct SceneOutcome {
 }
 
 /// Frames a scene may save: beyond this the frame step is surely a mistake.
-const MOST_FRAMES: f64 = 100_000.0;
+const MAX_FRAMES: f64 = 100_000.0;
 
 /// Runs a scene file and writes its frames, its last state and a report into a folder. A run that goes on from a
 /// checkpoint writes the bytes that one without interruption does, at any number of threads.
@@ -312,10 +312,10 @@ impl Course<'_> {
 /// Refuses a scene that would save more frames than anybody looks at.
 fn check_frames(scene: &Scene) -> Result<(), FormatError> {
     let count = scene.frame_step.map_or(0.0, |step| scene.duration / step);
-    match count > MOST_FRAMES {
+    match count > MAX_FRAMES {
         true => Err(FormatError::new(
             "frame_step",
-            format!("{count:.0} frames would be saved; at most {MOST_FRAMES} are"),
+            format!("{count:.0} frames would be saved; at most {MAX_FRAMES} are"),
             "give a longer frame step, or a shorter duration",
         )),
         false => Ok(()),

@@ -15,11 +15,11 @@ use toile_interchange::{FormatError, MotionFile, ObjectFile};
 const STANDS_STILL: f64 = 1.0;
 /// Longest substep of `xpbd` by default where garments are worn (s). One twice as long lengthens a waistband of poplin by a
 /// quarter, so that a skirt slides off; one half as long changes a stretch of 12 % by 2 points.
-const LONGEST_SUBSTEP: f64 = 1.0 / 2400.0;
+const MAX_SUBSTEP: f64 = 1.0 / 2400.0;
 /// Longest course of a figure that is posed before its scene begins (s).
-const LONGEST_COURSE: f64 = 600.0;
+const MAX_COURSE_DURATION: f64 = 600.0;
 /// Rounds of a loop at the most: more are surely a mistake.
-const MOST_STRIDES: f64 = 1000.0;
+const MAX_STRIDES: f64 = 1000.0;
 
 impl Builder<'_> {
     /// Dresses every body that wears something.
@@ -109,7 +109,7 @@ impl Builder<'_> {
     pub(crate) fn method(&self) -> Result<MethodSettings, FormatError> {
         let mut method = self.file.method()?;
         if method.kind == MethodKind::Xpbd && method.substeps.is_none() && self.is_worn() {
-            let substeps = (self.file.step / LONGEST_SUBSTEP).round();
+            let substeps = (self.file.step / MAX_SUBSTEP).round();
             method.substeps = Some(substeps.clamp(1.0, f64::from(u16::MAX)) as u32);
         }
         Ok(method)
@@ -153,9 +153,9 @@ impl Builder<'_> {
         };
         let ends = own.map(|own| own + STANDS_STILL);
         let posed = self.file.duration.or(ends).unwrap_or(1.0);
-        if !(posed.is_finite() && posed <= LONGEST_COURSE) {
+        if !(posed.is_finite() && posed <= MAX_COURSE_DURATION) {
             let what = format!(
-                "the figure would move for {posed:.0} s; {LONGEST_COURSE:.0} s are posed at most"
+                "the figure would move for {posed:.0} s; {MAX_COURSE_DURATION:.0} s are posed at most"
             );
             return Err(self
                 .place
@@ -226,7 +226,7 @@ impl Builder<'_> {
                 let what = "the clip is no loop that has strides".to_owned();
                 return Err(self.place.wrong(place("strides"), what, "leave it out"));
             }
-            if !(0.0..=MOST_STRIDES).contains(&strides) {
+            if !(0.0..=MAX_STRIDES).contains(&strides) {
                 let what = format!("{strides} strides are out of range");
                 let remedy = "give a number from 0 to 1000";
                 return Err(self.place.wrong(place("strides"), what, remedy));

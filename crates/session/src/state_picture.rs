@@ -53,7 +53,7 @@ pub(crate) struct RunCamera {
 
 /// How many times the size of what moves a solid at rest may have to be taken in by the camera: a body is, ground is
 /// not.
-const LARGEST_STILL: f64 = 2.0;
+const MAX_STILL: f64 = 2.0;
 
 /// Soft colours of cloths in the order of the surfaces.
 const CLOTH: [Rgb; 6] = [
@@ -145,7 +145,7 @@ impl RunCamera {
         };
         let moving = ways(false).reduce(united)?;
         let size = |[low, high]: [Vec3; 2]| (high - low).norm();
-        let near = ways(true).filter(|&still| size(still) <= LARGEST_STILL * size(moving));
+        let near = ways(true).filter(|&still| size(still) <= MAX_STILL * size(moving));
         Some(near.fold(moving, united))
     }
 }

@@ -25,7 +25,7 @@ const ON_FLOOR: f64 = 0.02;
 /// Distance from the body within which cloth touches it, in contact offsets.
 const TOUCH: f64 = 1.5;
 /// How many names a list spells out.
-const MOST_NAMES: usize = 4;
+const MAX_NAMES: usize = 4;
 
 /// Judges a garment where its run stands: at rest, or where its seams could not be closed.
 pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures) -> Verdict {
@@ -214,11 +214,11 @@ fn panels_of(job: &GarmentJob, run: &GarmentRun, parts: &[&Support]) -> String {
 fn listed(names: &[String]) -> String {
     match names.len() {
         0 => "a part".to_owned(),
-        few if few <= MOST_NAMES => names.join(" and "),
+        few if few <= MAX_NAMES => names.join(" and "),
         many => format!(
             "{} and {} more",
-            names[..MOST_NAMES - 1].join(", "),
-            many + 1 - MOST_NAMES
+            names[..MAX_NAMES - 1].join(", "),
+            many + 1 - MAX_NAMES
         ),
     }
 }

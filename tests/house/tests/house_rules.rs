@@ -98,7 +98,7 @@ const TOP_LEVEL: [&str; 11] = [
 ];
 
 /// Lines a source file may have: about one screenful of ideas.
-const LONGEST_FILE: usize = 600;
+const MAX_FILE_LINES: usize = 600;
 
 fn manifests() -> Vec<(String, toml::Table)> {
     let mut found = Vec::new();
@@ -285,7 +285,7 @@ fn source_files_stay_short() {
     for path in files_below(&root(), ".rs") {
         let lines = fs::read_to_string(&path).expect("readable").lines().count();
         assert!(
-            lines <= LONGEST_FILE,
+            lines <= MAX_FILE_LINES,
             "{} has {lines} lines: divide it",
             path.display()
         );
@@ -443,4 +443,32 @@ fn public_numbers_say_their_unit() {
         "no unit in the docs of:\n{}",
         missing.join("\n")
     );
+}
+
+/// Ways to begin the name of a bound, each with the word that the house has for it.
+const NAMES_OF_BOUNDS: [(&str, &str); 7] = [
+    ("MOST_", "MAX_"),
+    ("LARGEST_", "MAX_"),
+    ("LONGEST_", "MAX_"),
+    ("DEEPEST_", "MAX_"),
+    ("LEAST_", "MIN_"),
+    ("SMALLEST_", "MIN_"),
+    ("USUAL_", "DEFAULT_"),
+];
+
+#[test]
+fn bounds_and_defaults_are_named_by_one_word_each() {
+    let mut other = Vec::new();
+    for path in files_below(&root(), ".rs") {
+        let text = fs::read_to_string(&path).expect("readable");
+        let words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        for word in words {
+            for (start, ours) in NAMES_OF_BOUNDS {
+                if word.len() > start.len() && word.starts_with(start) {
+                    other.push(format!("{}: {word}: say {ours}", path.display()));
+                }
+            }
+        }
+    }
+    assert!(other.is_empty(), "{}", other.join("\n"));
 }

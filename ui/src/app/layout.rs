@@ -7,8 +7,8 @@ use egui::{Panel, Ui};
 /// Shares of the window's width that the 3D view begins with: alone, and with the tables under it.
 const GARMENT_SHARES: [f32; 2] = [0.245, 0.33];
 /// Height that the marker has at least, and that is left to the pattern over it where there is room (pixels).
-const LEAST_MARKER: f32 = 140.0;
-const LEAST_PATTERN: f32 = 170.0;
+const MIN_MARKER_HEIGHT: f32 = 140.0;
+const MIN_PATTERN_HEIGHT: f32 = 170.0;
 /// Width of a window from which on the tables stand beside the pattern, unless they were dragged (pixels).
 const WIDE: f32 = 1600.0;
 /// Height the tables begin with below the pattern (pixels), and under the garment (share of it).
@@ -50,12 +50,12 @@ impl ToileApp {
             let below = self.panes.tables && !self.tables_stand_beside(ui.ctx());
             let tables = if below { TABLES } else { 0.0 };
             // The pattern stays seen over it.
-            let most = (height - tables - LEAST_PATTERN).max(LEAST_MARKER);
+            let most = (height - tables - MIN_PATTERN_HEIGHT).max(MIN_MARKER_HEIGHT);
             Panel::bottom("marker")
                 .frame(frame)
                 .resizable(true)
                 .default_size((height * 0.55).min(most))
-                .size_range(LEAST_MARKER..=most)
+                .size_range(MIN_MARKER_HEIGHT..=most)
                 .show(ui, |ui| self.marker_side(ui));
         }
         Panel::left("tools")

@@ -208,7 +208,7 @@ impl ToileApp {
             let mut quantity = before;
             let label = kept_label(ui, name);
             let field = DragValue::new(&mut quantity)
-                .range(0..=toile_pattern::MOST_GARMENTS)
+                .range(0..=toile_pattern::MAX_GARMENTS)
                 .speed(0.05)
                 .update_while_editing(false);
             ui.add(field).on_hover_text(meaning).labelled_by(label);

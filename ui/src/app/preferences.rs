@@ -12,11 +12,11 @@ const DOUBLE_CLICK: f64 = 0.5;
 
 /// Size of a window that was never opened before, and the least one has (logical pixels).
 const WINDOW: [f32; 2] = [1400.0, 860.0];
-const LEAST_WINDOW: [f32; 2] = [760.0, 480.0];
+const MIN_WINDOW_SIZE: [f32; 2] = [760.0, 480.0];
 /// Least and largest enlargement of text, signs and buttons.
 const SCALES: [f32; 2] = [0.7, 2.5];
 /// Most recent files kept.
-const MOST_RECENT: usize = 10;
+const MAX_RECENT: usize = 10;
 
 /// Preferences, and the file they are in.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -84,7 +84,7 @@ impl Preferences {
             let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
             self.recent.retain(|known| *known != path);
             self.recent.insert(0, path);
-            self.recent.truncate(MOST_RECENT);
+            self.recent.truncate(MAX_RECENT);
             self.write();
         }
     }
@@ -158,7 +158,10 @@ impl Preferences {
     /// How large the window opens (logical pixels).
     fn window(&self) -> [f32; 2] {
         let [width, height] = self.window.unwrap_or(WINDOW);
-        [width.max(LEAST_WINDOW[0]), height.max(LEAST_WINDOW[1])]
+        [
+            width.max(MIN_WINDOW_SIZE[0]),
+            height.max(MIN_WINDOW_SIZE[1]),
+        ]
     }
 
     fn write(&self) {
@@ -180,7 +183,7 @@ impl Beginning {
             .with_title("Toile")
             .with_app_id("toile")
             .with_inner_size(preferences.window())
-            .with_min_inner_size(LEAST_WINDOW)
+            .with_min_inner_size(MIN_WINDOW_SIZE)
             // The first time it takes the screen, whose size nobody knows yet.
             .with_maximized(preferences.fills_screen || preferences.window.is_none())
     }

@@ -15,7 +15,7 @@ pub struct ScreenPoint(pub Pos2);
 /// to a millimetre as wide as a finger.
 const SCALES: [f64; 2] = [20.0, 40_000.0];
 /// What is smaller is not enlarged to fill the view (m).
-const LEAST_FITTED: f64 = 0.1;
+const MIN_FITTED_SIZE: f64 = 0.1;
 /// Empty border when everything is shown (share of the view).
 const BORDER: f64 = 0.06;
 
@@ -115,8 +115,8 @@ fn middle(view: Rect) -> Pos2 {
 fn fitting(view: Rect, bounds: &Bounds2) -> Option<f64> {
     let size = bounds.max - bounds.min;
     let room = 1.0 - 2.0 * BORDER;
-    let scale = (f64::from(view.width()) * room / size.x.max(LEAST_FITTED))
-        .min(f64::from(view.height()) * room / size.y.max(LEAST_FITTED));
+    let scale = (f64::from(view.width()) * room / size.x.max(MIN_FITTED_SIZE))
+        .min(f64::from(view.height()) * room / size.y.max(MIN_FITTED_SIZE));
     let is_one = scale.is_finite() && scale > 0.0;
     is_one.then(|| scale.clamp(SCALES[0], SCALES[1]))
 }

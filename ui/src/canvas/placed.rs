@@ -9,7 +9,7 @@ use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
 
 /// The most that a drag is rounded to (m).
-const MOST_ROUNDED: f64 = 0.001;
+const MAX_ROUNDING: f64 = 0.001;
 
 /// The construction of a point at a place.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,18 +76,18 @@ pub fn grid_step(scale: f64) -> f64 {
 /// What a drag rounds lengths to where a pixel is so wide (m): the least 1, 2 or 5 times a power of ten of a
 /// unit (m) that is no finer, and no more than a millimetre.
 pub fn drag_step(pixel: f64, unit: f64) -> f64 {
-    let wanted = pixel.clamp(1e-9, MOST_ROUNDED);
+    let wanted = pixel.clamp(1e-9, MAX_ROUNDING);
     let power = 10.0_f64.powf((wanted / unit).log10().floor());
     let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|step| step * power * unit);
     let is_fit =
-        |step: &f64| *step >= wanted * (1.0 - 1e-9) && *step <= MOST_ROUNDED * (1.0 + 1e-9);
+        |step: &f64| *step >= wanted * (1.0 - 1e-9) && *step <= MAX_ROUNDING * (1.0 + 1e-9);
     let most = || {
         steps
             .into_iter()
-            .rfind(|step| *step <= MOST_ROUNDED * (1.0 + 1e-9))
+            .rfind(|step| *step <= MAX_ROUNDING * (1.0 + 1e-9))
     };
     let found = steps.into_iter().find(is_fit);
-    found.or_else(most).unwrap_or(MOST_ROUNDED)
+    found.or_else(most).unwrap_or(MAX_ROUNDING)
 }
 
 /// The nearest multiple of a step, with few digits: 0.3, not 0.30000000000000004.

@@ -16,10 +16,10 @@ pub struct FigureTask {
 }
 
 /// Frames after all keys of a list at the most: a quarter of an hour.
-const MOST_FRAMES: usize = 54_000;
+const MAX_FRAMES: usize = 54_000;
 
 /// Pictures side by side at the most.
-const MOST_KEYS: usize = 16;
+const MAX_KEYS: usize = 16;
 
 impl FigureTask {
     /// Reads `--figure NAME [--keys LIST --png FILE] PATTERN…`; none where no figure is asked for.
@@ -103,9 +103,9 @@ fn read_keys(list: &str) -> Result<Vec<(RealtimeKey, usize)>, String> {
         .map(|(_, frames)| *frames)
         .fold(0, usize::saturating_add);
     match (keys.len(), whole) {
-        (1..=MOST_KEYS, 0..=MOST_FRAMES) => Ok(keys),
+        (1..=MAX_KEYS, 0..=MAX_FRAMES) => Ok(keys),
         (count, whole) => Err(format!(
-            "--keys: {count} keys and {whole} frames; give 1 to {MOST_KEYS} keys and at most {MOST_FRAMES} frames"
+            "--keys: {count} keys and {whole} frames; give 1 to {MAX_KEYS} keys and at most {MAX_FRAMES} frames"
         )),
     }
 }

@@ -10,13 +10,13 @@ use toile_cut::Words;
 use toile_geometry::Vec2;
 
 /// Smaller letters are not read (pixels).
-const LEAST_LETTERS: f32 = 7.0;
+const MIN_LETTER_HEIGHT: f32 = 7.0;
 /// Sizes of the letters that stand in for them, the first that the piece has room for (pixels).
 const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
 /// Pieces smaller than that have no name (pixels).
-const LEAST_PIECE: f64 = 12.0;
+const MIN_PIECE_SIZE: f64 = 12.0;
 /// Most names that are led outside.
-const MOST_LED: usize = 100;
+const MAX_LEADERS: usize = 100;
 /// How far outside they stand (pixels), and in how many directions a place is looked for.
 const DISTANCES: [f32; 6] = [10.0, 20.0, 34.0, 50.0, 70.0, 95.0];
 const DIRECTIONS: usize = 16;
@@ -36,7 +36,7 @@ impl MarkerView {
                 continue;
             };
             let own = scene.drawing.words.first().map_or(0.0, |words| words.size);
-            if (own * self.camera.scale) as f32 >= LEAST_LETTERS {
+            if (own * self.camera.scale) as f32 >= MIN_LETTER_HEIGHT {
                 for words in &scene.drawing.words {
                     let at = self.screen(view, words.at);
                     let text = self.own_words(&painter, words, (at, palette));
@@ -74,7 +74,7 @@ impl MarkerView {
         let boxes: Vec<Rect> = all
             .filter_map(|scene| self.seen_bounds(scene, view))
             .collect();
-        for (scene, around, (letters, size)) in led.into_iter().take(MOST_LED) {
+        for (scene, around, (letters, size)) in led.into_iter().take(MAX_LEADERS) {
             let size = size + Way::splat(2.0 * MARGIN);
             let middle = self.inner_place(scene, view);
             if let Some(rect) = place_outside((around, size), view, (&taken, &boxes)) {
@@ -111,7 +111,7 @@ impl MarkerView {
         let bounds = scene.bounds()?;
         let seen = [bounds.min, bounds.max].map(|at| self.screen(view, at));
         let seen = Rect::from_two_pos(seen[0], seen[1]);
-        let is_large = bounds.size().max() * self.camera.scale >= LEAST_PIECE;
+        let is_large = bounds.size().max() * self.camera.scale >= MIN_PIECE_SIZE;
         (is_large && view.contains(seen.center())).then_some(seen)
     }
 
@@ -139,7 +139,7 @@ impl MarkerView {
         (at, palette): (Pos2, &Palette),
     ) -> Option<TextShape> {
         let size = (words.size * self.camera.scale) as f32;
-        if size < LEAST_LETTERS {
+        if size < MIN_LETTER_HEIGHT {
             return None;
         }
         let font = theme::font(size.min(22.0));

@@ -28,7 +28,7 @@ use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
 pub const ZOOM_STEP: f64 = 1.25;
 /// Parts up to this many are named for assistive technology; of more only those of the sheets that
 /// something selected is on.
-const MOST_NAMED: usize = 600;
+const MAX_NAMED: usize = 600;
 /// Width that the inspector takes over the table (pixels).
 pub const INSPECTOR_ROOM: f32 = 300.0;
 /// Half the width of the named node of a part (pixels).
@@ -546,7 +546,7 @@ impl PatternView {
     fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
         let open = self.open();
         let mut parts = self.parts();
-        if parts.len() > MOST_NAMED {
+        if parts.len() > MAX_NAMED {
             parts.retain(|(sheet, item, _)| open.contains(sheet) || matches!(item, Item::Guide(_)));
         }
         let mut asked = None;

@@ -78,10 +78,10 @@ const FALL_ROUNDS: usize = 10;
 const FALL_STEPS: usize = 8;
 
 /// Most rounds of refined contact samples; crossings of the body that remain are reported.
-const MOST_REFINEMENTS: usize = 12;
+const MAX_REFINEMENTS: usize = 12;
 
 /// Most swings of a level: a swing that ended at a tangle is repeated once the tangle is undone.
-const MOST_SWINGS: usize = 3;
+const MAX_SWINGS: usize = 3;
 
 /// Crossings of the body are searched again once the residual is below this share of that at the last search.
 const NEXT_CHECK: f64 = 0.1;
@@ -341,7 +341,7 @@ impl GarmentRun {
         }
         if settling.cut_short && self.workspace.contacts.cloth.is_in_order() {
             settling.cut_short = false;
-            if settling.attempts.swings < MOST_SWINGS {
+            if settling.attempts.swings < MAX_SWINGS {
                 self.swing_again();
                 return Ok(());
             }
@@ -381,7 +381,7 @@ impl GarmentRun {
             settling.attempts.check_below = NEXT_CHECK * residual;
             let Simulation { system, state, .. } = &mut self.simulation;
             let crossing = body_crossings(system, state);
-            if !crossing.is_empty() && settling.attempts.refinements < MOST_REFINEMENTS {
+            if !crossing.is_empty() && settling.attempts.refinements < MAX_REFINEMENTS {
                 settling.attempts.refinements += 1;
                 for triangle in crossing {
                     state.refine_contact(system, triangle);

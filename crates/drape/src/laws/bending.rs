@@ -81,7 +81,7 @@ impl BendingStencil {
 }
 
 /// Share of the largest weight below which a weight is rounding and is dropped.
-const SMALLEST_WEIGHT: f64 = 1e-11;
+const MIN_WEIGHT: f64 = 1e-11;
 
 impl RestSheet<'_> {
     /// The stencils of all triangles, without vertices whose weight is rounding.
@@ -198,7 +198,7 @@ impl BendingStencil {
         let keep: Vec<bool> = self
             .weights
             .iter()
-            .map(|w| size(w) > SMALLEST_WEIGHT * largest)
+            .map(|w| size(w) > MIN_WEIGHT * largest)
             .collect();
         let mut at = keep.iter();
         self.vertices.retain(|_| at.next() == Some(&true));

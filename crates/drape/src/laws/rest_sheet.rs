@@ -35,10 +35,10 @@ pub(super) struct Across {
 
 /// Largest trace of the inverse of the scaled normal matrix of a fit: beyond it the vertices lie
 /// close to a conic, and another ring is added.
-const LARGEST_INVERSE: f64 = 1e3;
+const MAX_INVERSE: f64 = 1e3;
 
 /// Most rings of neighbours; without a good fit the estimate uses the two triangles of the edge only.
-const MOST_RINGS: u8 = 3;
+const MAX_RINGS: u8 = 3;
 
 impl RestSheet<'_> {
     /// The estimate of the derivative across an edge between two triangles, with a given number of rings, or with the
@@ -73,7 +73,7 @@ impl RestSheet<'_> {
             .collect();
         let mut weights = start.clone();
         let mut rings = 0;
-        for ring in 1..=given_rings.unwrap_or(MOST_RINGS) {
+        for ring in 1..=given_rings.unwrap_or(MAX_RINGS) {
             front = self.next_ring(&front, &mut visited);
             collect(self.triangles, &front, &mut points);
             if given_rings.is_some_and(|given_rings| ring < given_rings) {
@@ -249,7 +249,7 @@ fn correct(points: &[Vec2], start: &[f64], n: Vec2) -> Option<Vec<f64>> {
         missing -= r * start.get(i).copied().unwrap_or(0.0);
     }
     let inverse = normal.cholesky()?.inverse();
-    if inverse.trace() > LARGEST_INVERSE {
+    if inverse.trace() > MAX_INVERSE {
         return None;
     }
     let force = inverse * missing;

@@ -15,7 +15,7 @@ use std::marker::PhantomData;
 use toile_geometry::Vec3;
 
 /// Longest displacement of a vertex in one iteration of Newton and quasi-Newton methods where there are solids (m).
-pub const LONGEST_MOVE: f64 = 0.05;
+pub const MAX_MOVE: f64 = 0.05;
 
 /// A rule of time integration: the potential that a step minimises, and the new state from the minimum.
 pub trait TimeRule: Send {

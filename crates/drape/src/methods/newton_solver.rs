@@ -1,6 +1,6 @@
 //! Minimisers by Newton's method: to convergence, or by one linear solve.
 
-use super::implicit::{LONGEST_MOVE, Limits, Problem, Solver};
+use super::implicit::{Limits, MAX_MOVE, Problem, Solver};
 use crate::laws::membrane::Curvature;
 use crate::{LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, System, Workspace};
 use toile_sparse::dot;
@@ -78,7 +78,7 @@ impl<const STRICT: bool> Solver for Newton<STRICT> {
         let settings = NewtonSettings {
             iterations: problem.limits.iterations,
             tolerance: problem.limits.tolerance,
-            longest_move: problem.longest_move(LONGEST_MOVE),
+            longest_move: problem.longest_move(MAX_MOVE),
             curvature,
             linear,
         };

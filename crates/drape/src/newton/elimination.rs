@@ -31,7 +31,7 @@ const OF_FORCE_OUTSIDE: f64 = 0.3;
 const OF_TOLERANCE: f64 = 0.5;
 /// Most Newton iterations of a region, and its longest displacement in all of them (m).
 const MAX_ITERATIONS: usize = 25;
-const LONGEST_MOVE: f64 = 5e-3;
+const MAX_MOVE: f64 = 5e-3;
 
 impl Workspace {
     /// Brings the regions that bear most of the net force to equilibrium, until the net force is below
@@ -182,7 +182,7 @@ fn solve_region(submodel: &mut SubModel, tolerance: f64) -> bool {
     let mut settings = NewtonSettings {
         iterations: 1,
         tolerance,
-        longest_move: LONGEST_MOVE,
+        longest_move: MAX_MOVE,
         curvature: Curvature::EXACT,
         linear: LinearSolver::Direct {
             otherwise: PcgLimits {

@@ -53,7 +53,7 @@ const RADIUS: f64 = 0.95;
 const CHECK_INTERVAL: usize = 8;
 
 /// Longest displacement of a vertex in one sweep where there are solids (m): twice the detection range of contact.
-const LONGEST_MOVE: f64 = 0.02;
+const MAX_MOVE: f64 = 0.02;
 
 /// Vertices of one colour per task.
 const CHUNK: usize = 128;
@@ -205,7 +205,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
     /// displaced by gravity.
     fn choose_start(&self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
         let system = problem.system;
-        let farthest = problem.longest_move(LONGEST_MOVE);
+        let farthest = problem.longest_move(MAX_MOVE);
         let present = state.positions.clone();
         let potential = |workspace: &mut Workspace, state: &State, x: &[Vec3]| {
             workspace.contacts.refresh(system, state, x);
@@ -263,7 +263,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         }
         let first = state.positions.clone();
         self.choose_start(problem, state, workspace);
-        let longest = problem.longest_move(LONGEST_MOVE);
+        let longest = problem.longest_move(MAX_MOVE);
         let mut report = NewtonReport {
             succeeded: true,
             fraction: 1.0,

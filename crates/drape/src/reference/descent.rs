@@ -1,6 +1,6 @@
 //! Quasi-Newton methods: gradient, iteration and line search, common to all of them.
 
-use crate::methods::implicit::{LONGEST_MOVE, Problem};
+use crate::methods::implicit::{MAX_MOVE, Problem};
 use crate::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
@@ -51,7 +51,7 @@ pub fn descend(
 /// Scales a direction so that no vertex moves farther than contact detection allows, where there are solids.
 pub fn truncate_length(problem: &Problem, direction: &mut [Vec3]) {
     let moved = direction.iter().map(Vec3::norm_squared).fold(0.0, f64::max);
-    let longest = problem.longest_move(LONGEST_MOVE);
+    let longest = problem.longest_move(MAX_MOVE);
     if moved > longest * longest {
         let scale = longest / moved.sqrt();
         for d in direction {

@@ -38,7 +38,7 @@ const MAX_ITERATIONS: usize = 100_000;
 const SAFETY: f64 = 1.2;
 
 /// Longest displacement of a vertex in one iteration (m); a faster motion is slowed down as a whole.
-const LONGEST_MOVE: f64 = 5e-3;
+const MAX_MOVE: f64 = 5e-3;
 
 impl Relaxation {
     /// With the settings, and its defaults where they give none.
@@ -143,8 +143,8 @@ impl Relaxation {
             return true;
         }
         let longest = longest.sqrt();
-        if longest > LONGEST_MOVE {
-            let scale = LONGEST_MOVE / longest;
+        if longest > MAX_MOVE {
+            let scale = MAX_MOVE / longest;
             kinetic *= scale * scale;
             for v in &mut run.moves {
                 *v *= scale;

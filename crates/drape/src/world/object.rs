@@ -1,6 +1,6 @@
 //! Objects of a world: surfaces with their kind, cloth, material and motion.
 
-use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
+use crate::scene::{MAX_LAYER, ObjectKind, SceneObject};
 use crate::track::animated_positions;
 use crate::{Cloth, DrapeError, Material, Motion, SharedTrack};
 use serde::ser::Error;
@@ -239,7 +239,7 @@ impl Object {
                     return Err(self.refuse(&what, "give one for each, or one for all"));
                 }
                 let most = (0..count).map(|v| self.layers.of(v)).max().unwrap_or(0);
-                if most > MOST_LAYER {
+                if most > MAX_LAYER {
                     let what = format!("layer {most} is out of range");
                     return Err(self.refuse(&what, "give numbers from 0 to 999"));
                 }

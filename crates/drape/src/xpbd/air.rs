@@ -19,7 +19,7 @@ use pulp::{Simd, WithSimd};
 
 /// Least twice the area of a triangle by which its normal is divided (m2): that of edges of 30 nm. Smaller ones have
 /// next to no force, and their squares stay within single precision.
-const LEAST_SIZE: f32 = 1e-15;
+const MIN_SIZE: f32 = 1e-15;
 
 /// The air during a substep.
 #[derive(Clone, Debug)]
@@ -99,7 +99,7 @@ fn impulse<S: Simd>(
     let (x2, _) = gather(simd, starts, c, lane_group);
     let normal = (x1 - x0).cross(x2 - x0);
     // Twice the area; a triangle without area has no normal and no force.
-    let size = normal.norm().max(F32s::splat(simd, LEAST_SIZE));
+    let size = normal.norm().max(F32s::splat(simd, MIN_SIZE));
     let (v0, _) = gather(simd, velocities, a, lane_group);
     let (v1, _) = gather(simd, velocities, b, lane_group);
     let (v2, _) = gather(simd, velocities, c, lane_group);

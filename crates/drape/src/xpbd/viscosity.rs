@@ -336,7 +336,7 @@ fn add_stretch<S: Simd>(
 }
 
 /// Least length of twice the area's normal by which it is divided (m2): that of edges of 30 nm.
-const LEAST_SIZE: f32 = 1e-15;
+const MIN_SIZE: f32 = 1e-15;
 
 #[inline(always)]
 fn add_bending<S: Simd>(
@@ -351,7 +351,7 @@ fn add_bending<S: Simd>(
     };
     let [d1, d2] = sides(simd, &batch.triangles, starts, lane_group);
     let normal = d1.cross(d2);
-    let share = 1.0 / normal.norm().max(F32s::splat(simd, LEAST_SIZE));
+    let share = 1.0 / normal.norm().max(F32s::splat(simd, MIN_SIZE));
     let zero = F32s::splat(simd, 0.0);
     let normal = Triple::repeat(zero).add_scaled(normal, share);
     let (origin, _) = gather(simd, velocities, first, lane_group);

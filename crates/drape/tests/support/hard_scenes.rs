@@ -28,7 +28,7 @@ pub struct HardScene {
 }
 
 /// How far the energy may rise where nothing is said: what contact in substeps leaves.
-const MOST_RISE: f64 = 0.02;
+const MAX_RISE: f64 = 0.02;
 
 /// How fine and how many. Where cloth is hit hard, substeps grow with the cells of a side: stretch then
 /// crosses as many cells in each at both sizes. What one sweep leaves of a strain counts as energy at
@@ -135,7 +135,7 @@ fn of(name: &'static str, scene: Scene, driven_until: f64, shown: fn(&End) -> bo
         scene,
         driven_until,
         velocities: Vec::new(),
-        most_rise: MOST_RISE,
+        most_rise: MAX_RISE,
         shown,
     }
 }

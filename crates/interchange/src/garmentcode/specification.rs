@@ -7,7 +7,7 @@ use crate::FormatError;
 use toile_geometry::{Curve, Rigid, Vec2, Vec3};
 
 /// More panels, edges or stitches than this are refused: no garment has them.
-const MOST_PARTS: usize = 100_000;
+const MAX_PARTS: usize = 100_000;
 
 /// A whole file.
 #[derive(Debug, Default)]
@@ -197,7 +197,7 @@ fn read_panel(
     }
     let listed = panel.field("edges")?;
     let items = listed.items()?;
-    if vertices.len() > MOST_PARTS || items.len() > MOST_PARTS {
+    if vertices.len() > MAX_PARTS || items.len() > MAX_PARTS {
         return Err(listed.error("there are too many parts", "simplify the panel"));
     }
     let mut edges = Vec::new();
@@ -316,7 +316,7 @@ fn read_stitches(pattern: &At, specification: &mut Specification) -> Result<(), 
         return Ok(());
     };
     let items = stitches.items()?;
-    if items.len() > MOST_PARTS {
+    if items.len() > MAX_PARTS {
         return Err(stitches.error("there are too many stitches", "simplify the pattern"));
     }
     for item in items {

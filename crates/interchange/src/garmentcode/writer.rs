@@ -11,7 +11,7 @@ const UNIT: f64 = 0.01;
 /// Cuts nearer to each other than this fraction of an edge are one.
 const SAME_CUT: f64 = 1e-7;
 /// Rounds of carrying cuts across seams.
-const MOST_ROUNDS: usize = 32;
+const MAX_ROUNDS: usize = 32;
 
 /// A written file.
 #[derive(Clone, Debug)]
@@ -143,7 +143,7 @@ impl Writer<'_> {
     fn find_cuts(&mut self) {
         let start = |piece: &Piece| edges(piece).map(|_| vec![0.0, 1.0]).collect();
         self.cuts = self.draft.pieces.iter().map(start).collect();
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let mut changed = false;
             for seam in &self.draft.seams {
                 let sides = [0, 1].map(|side| chain(self.draft, seam, side));

@@ -5,7 +5,7 @@ use super::item::Item;
 use super::reader::Reader;
 use crate::FormatError;
 use toile_body::Figure;
-use toile_drape::MOST_LAYER;
+use toile_drape::MAX_LAYER;
 use toile_measure::Measurements;
 use toile_pattern::fields::{Clash, Kind};
 use toile_pattern::{SizeId, Want};
@@ -120,11 +120,11 @@ fn file(item: &Item<'_>) -> Result<String, FormatError> {
 
 fn layer(item: &Item<'_>) -> Result<u16, FormatError> {
     let number = item.count()?;
-    let layer = u16::try_from(number).ok().filter(|&k| k <= MOST_LAYER);
+    let layer = u16::try_from(number).ok().filter(|&k| k <= MAX_LAYER);
     layer.ok_or_else(|| {
         item.error(
             format!("{number} is no layer"),
-            format!("give a number from 0 to {MOST_LAYER}"),
+            format!("give a number from 0 to {MAX_LAYER}"),
         )
     })
 }

@@ -29,7 +29,7 @@ const TITLE_LETTERS: f64 = 0.007;
 const LETTERS: f64 = 0.0035;
 const LINE: f64 = 0.0055;
 /// Most lines of facts and of the legend.
-const MOST_LINES: usize = 10;
+const MAX_LINES: usize = 10;
 
 const THIN: LineStyle = LineStyle {
     layer: None,
@@ -60,7 +60,7 @@ impl TitleBlock {
             .facts
             .iter()
             .flat_map(|f| lines_within(f, LETTERS, room));
-        lines.take(MOST_LINES).collect()
+        lines.take(MAX_LINES).collect()
     }
 }
 
@@ -68,7 +68,7 @@ impl TitleBlock {
 const LEGEND: f64 = 0.052;
 
 fn legend_rows(sizes: usize) -> usize {
-    (if sizes > 1 { sizes } else { 0 } + 2).min(MOST_LINES)
+    (if sizes > 1 { sizes } else { 0 } + 2).min(MAX_LINES)
 }
 
 /// Everything of the block but the map of sheets.
@@ -117,7 +117,7 @@ fn legend(job: &PrintJob, at: Vec2) -> Vec<Mark> {
     if job.lines != Lines::Cut {
         rows.push((StrokeKind::Sew, 0, "sew here".to_owned()));
     }
-    rows.truncate(MOST_LINES);
+    rows.truncate(MAX_LINES);
     let mut marks = Vec::new();
     for (k, (kind, layer, words)) in rows.into_iter().enumerate() {
         let y = at.y - LINE * (k + 1) as f64;

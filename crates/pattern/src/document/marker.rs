@@ -11,7 +11,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Most garments of a size on a marker.
-pub const MOST_GARMENTS: u32 = 2_000;
+pub const MAX_GARMENTS: u32 = 2_000;
 
 /// Pieces of one fabric, laid to be cut together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -123,7 +123,7 @@ pub struct GarmentCloth {
 pub struct OrderedSize {
     /// The size; nothing is the wearer's: as the pattern is drafted for the garment.
     pub size: Option<SizeId>,
-    /// How many garments, 1 to [`MOST_GARMENTS`].
+    /// How many garments, 1 to [`MAX_GARMENTS`].
     pub quantity: u32,
 }
 
@@ -320,7 +320,7 @@ impl Marker {
                     "no garment of the size is cut",
                     "give a quantity of 1 or more, or leave the size out",
                 )),
-                _ if ordered.quantity > MOST_GARMENTS => Some(fault(
+                _ if ordered.quantity > MAX_GARMENTS => Some(fault(
                     "more than 2000 garments of the size are cut",
                     "make several markers",
                 )),

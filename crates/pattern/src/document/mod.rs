@@ -22,7 +22,7 @@ pub use edge_corner::{Corner, EdgeCorner, MitreLimit};
 pub use guide::{Guide, GuideRun};
 pub(crate) use lineage::StageLineage;
 pub use marker::{
-    GarmentCloth, MOST_GARMENTS, Marker, MarkerKeeps, OrderedPiece, OrderedSize, PiecePlacement,
+    GarmentCloth, MAX_GARMENTS, Marker, MarkerKeeps, OrderedPiece, OrderedSize, PiecePlacement,
 };
 pub use operation::{
     Apex, Bridge, Operation, OperationKind, PleatKind, PleatLine, Pressed, Side, SpreadCut, Turned,

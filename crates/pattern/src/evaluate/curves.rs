@@ -11,7 +11,7 @@ use toile_geometry::{Curve as Piece, Path, Vec2};
 /// A point this near to a curve is on it (m).
 const ON_CURVE: f64 = 1e-6;
 /// Handles of a spline that is drawn to a length are scaled by at most this.
-const MOST_SCALE: f64 = 16.0;
+const MAX_SCALE: f64 = 16.0;
 
 /// The pieces of a curve (m).
 pub(super) fn curve(c: &mut Computation<'_>, curve: &Arc<Curve>) -> Option<Arc<Path>> {
@@ -143,7 +143,7 @@ impl Spline {
         let excess = |scale: f64| -> f64 {
             self.scaled(scale).iter().map(Piece::length).sum::<f64>() - length
         };
-        let (mut low, mut high) = (0.0, MOST_SCALE);
+        let (mut low, mut high) = (0.0, MAX_SCALE);
         if excess(low) > 0.0 || excess(high) < 0.0 {
             let shortest = excess(low) + length;
             let longest = excess(high) + length;

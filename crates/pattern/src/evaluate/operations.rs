@@ -5,7 +5,7 @@ use super::numbers::Computation;
 use super::panels::PanelEvaluation;
 use crate::Want;
 use crate::stage::{
-    DartApex, DartError, DartMouth, FoldError, MOST_GROWTH, NotTrued, PlaceError, cut_dart,
+    DartApex, DartError, DartMouth, FoldError, MAX_GROWTH, NotTrued, PlaceError, cut_dart,
     cut_diamond, true_darts, unfold, width_kept,
 };
 use crate::{
@@ -243,7 +243,7 @@ impl PanelEvaluation<'_, '_, '_> {
                 ),
                 NotTrued::TooFar => (
                     format!(
-                        "its point lies so near the edge that a leg would become over {MOST_GROWTH} times as long \
+                        "its point lies so near the edge that a leg would become over {MAX_GROWTH} times as long \
                          or as short"
                     ),
                     "make it deeper or narrower, or do not true it",

@@ -4,7 +4,7 @@ use super::node::Node;
 use super::panels::PanelEvaluation;
 use crate::Want;
 use crate::stage::{
-    CutError, MOST_CUTS, PivotError, Pivoting, Pleating, SplitError, SpreadAlong, SpreadError,
+    CutError, MAX_CUTS, PivotError, Pivoting, Pleating, SplitError, SpreadAlong, SpreadError,
     Spreading, pivot_dart, pleat, split, spread,
 };
 use crate::{
@@ -225,7 +225,7 @@ impl PanelEvaluation<'_, '_, '_> {
                 "give each a number of its own",
             ),
             SpreadError::TooMany => (
-                format!("it has more than {MOST_CUTS} cuts"),
+                format!("it has more than {MAX_CUTS} cuts"),
                 "divide them among several operations",
             ),
             SpreadError::Large(number, largest) => (

@@ -37,7 +37,7 @@ const COMPARISONS: &[(&str, Comparison)] = &[
 ];
 
 /// No part's name takes as many bytes in a formula: four names of 80 characters, and quotes.
-const LONGEST_NAME: usize = 1500;
+const MAX_NAME_LENGTH: usize = 1500;
 
 struct Parser<'a> {
     cursor: Cursor<'a>,
@@ -55,7 +55,7 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Formula, FormulaError> 
         message: format!("the formula is longer than {FORMULA_LENGTH} characters"),
         hint: "split it with variables".into(),
     };
-    if text.len() > FORMULA_LENGTH * LONGEST_NAME {
+    if text.len() > FORMULA_LENGTH * MAX_NAME_LENGTH {
         return Err(too_long());
     }
     let mut parser = Parser {

@@ -17,7 +17,7 @@ const NUMBER_TOLERANCE: f64 = 1e-12;
 /// How far a point may be from where it is moved to (m).
 const POINT_TOLERANCE: f64 = 1e-9;
 /// Least change of a number with a variable by which it is found.
-const LEAST_SLOPE: f64 = 1e-6;
+const MIN_SLOPE: f64 = 1e-6;
 
 /// What becomes of a formula when what it places is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -166,7 +166,7 @@ fn solve(
         };
         for _ in 0..STEPS {
             let slope = (miss - last_miss) / (by - last);
-            if slope.is_nan() || slope.abs() <= LEAST_SLOPE {
+            if slope.is_nan() || slope.abs() <= MIN_SLOPE {
                 break;
             }
             (last, last_miss) = (by, miss);

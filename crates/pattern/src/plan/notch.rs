@@ -10,7 +10,7 @@ use crate::{
 use std::sync::Arc;
 
 /// Most notches in one row.
-const MOST_IN_ROW: u32 = 100;
+const MAX_NOTCHES_IN_ROW: u32 = 100;
 
 /// Notches at equal distances between two corners of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,10 +48,10 @@ pub fn add_notches(
     row: NotchRow,
     kind: NotchKind,
 ) -> Result<(Vec<Edit>, Vec<NotchId>), EditError> {
-    if !(1..=MOST_IN_ROW).contains(&row.count) {
+    if !(1..=MAX_NOTCHES_IN_ROW).contains(&row.count) {
         return Err(impossible(
             format!("a row of {} notches cannot be put", row.count),
-            format!("ask for 1 to {MOST_IN_ROW}"),
+            format!("ask for 1 to {MAX_NOTCHES_IN_ROW}"),
         ));
     }
     let mark = |k: u32| Mark::Between {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What is left of an edge that a dart takes in is shorter (m).
-const LEAST_LENGTH: f64 = 1e-9;
+const MIN_LENGTH: f64 = 1e-9;
 
 /// An edge of a copy and half of a panel, as it comes in a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,9 +252,8 @@ fn is_closed_between(evaluation: &Evaluation, panel: &Panel, edges: [EdgeId; 2])
     };
     let outline: Vec<_> = stage.outline().iter().filter(|e| e.half == 0).collect();
     let [first, second] = edges.map(Name::Drawn);
-    let is_dart = |edge: &StageEdge| {
-        edge.name.role() == Some(Role::Leg) || edge.curve.length() < LEAST_LENGTH
-    };
+    let is_dart =
+        |edge: &StageEdge| edge.name.role() == Some(Role::Leg) || edge.curve.length() < MIN_LENGTH;
     (0..outline.len()).any(|k| {
         let mut after = outline[k + 1..].iter().chain(&outline[..k]);
         let next = after.find(|edge| !is_dart(edge));

@@ -42,14 +42,14 @@ pub(super) struct Redrawn {
 pub(crate) enum NotTrued {
     /// No line leads across its darts.
     NoLine,
-    /// Legs would become longer or shorter than [`MOST_GROWTH`] allows.
+    /// Legs would become longer or shorter than [`MAX_GROWTH`] allows.
     TooFar,
 }
 
 /// A leg may become so many times as long, or as short. Where a dart's point lies near its edge the
 /// ends of its legs would run far along them, and the line that is smooth across it would have little
 /// to do with the edge as drawn.
-pub(crate) const MOST_GROWTH: f64 = 2.0;
+pub(crate) const MAX_GROWTH: f64 = 2.0;
 /// Angles and lengths that differ by less are the same (rad), (m).
 const SAME: f64 = 1e-9;
 /// A handle is at least this share of the chord where the direction counts.
@@ -110,7 +110,7 @@ impl Row {
         let is_near = |(closing, ends): (&Closing, &[Vec2; 2])| {
             let [new, first, second] =
                 [ends[0], closing.ends[0], closing.ends[1]].map(|end| (end - closing.apex).norm());
-            new <= MOST_GROWTH * first.max(second) && MOST_GROWTH * new >= first.min(second)
+            new <= MAX_GROWTH * first.max(second) && MAX_GROWTH * new >= first.min(second)
         };
         match pairs.into_iter().all(is_near) {
             true => Ok(redrawn),

@@ -9,7 +9,7 @@ use crate::{CornerName, Role};
 /// Lengths that differ by less are one (m).
 const SAME: f64 = 1e-12;
 /// Most steps to the width: each has about 1.6 times the digits of the one before.
-const MOST_STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// The width of a mouth (m) with which a dart, trued, takes just the width that was asked for from the finished
 /// outline, by secants; nothing where none does. Of a dart that cannot be trued it is the width itself.
@@ -28,7 +28,7 @@ pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerNam
     };
     // A mouth that is wider takes about as much more.
     let mut width = before + beyond_before;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         if beyond_before.abs() <= SAME {
             return Some(before);
         }

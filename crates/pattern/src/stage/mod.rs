@@ -16,7 +16,7 @@ mod truing;
 
 pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
 pub(crate) use diamond::cut_diamond;
-pub(crate) use fair::{MOST_GROWTH, NotTrued};
+pub(crate) use fair::{MAX_GROWTH, NotTrued};
 pub(crate) use fold::{FoldError, unfold};
 pub(crate) use kept_length::width_kept;
 pub(crate) use partition::CutError;
@@ -24,7 +24,7 @@ pub(crate) use pivot::{PivotError, Pivoting, pivot_dart};
 pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, is_sewn, reversed};
 pub(crate) use pleat::{Pleating, pleat};
 pub(crate) use split::{SplitError, split};
-pub(crate) use spread::{MOST_CUTS, SpreadAlong, SpreadError, Spreading, spread};
+pub(crate) use spread::{MAX_CUTS, SpreadAlong, SpreadError, Spreading, spread};
 pub(crate) use truing::{CORNER, KINK, true_darts};
 
 use crate::{

@@ -54,7 +54,7 @@ pub(crate) enum SpreadError {
 }
 
 /// Most cuts of one operation: a part is named by a bit a cut.
-pub(crate) const MOST_CUTS: usize = 64;
+pub(crate) const MAX_CUTS: usize = 64;
 
 /// A cut between two places of the outline, each the number of an edge that starts there.
 pub(super) struct Chord {
@@ -131,7 +131,7 @@ impl CutOpen {
         }
         let outline = outline_of(stage, wish.line).map_err(SpreadError::Line)?;
         let mut line = stage.lines[outline].clone();
-        if wish.cuts.len() > MOST_CUTS {
+        if wish.cuts.len() > MAX_CUTS {
             return Err(SpreadError::TooMany);
         }
         let lost = |error: PlaceError| CutError::Place(error);

@@ -13,7 +13,7 @@ pub const SEPARATOR: u32 = 2;
 const BALANCE: f64 = 0.2;
 
 /// Share of the vertices above which a separator saves nothing.
-const LARGEST_SEPARATOR: f64 = 0.5;
+const MAX_SEPARATOR: f64 = 0.5;
 
 /// Sweeps of which the separator is straightened.
 const STRAIGHTENED: usize = 2;
@@ -69,7 +69,7 @@ pub fn separate(graph: &Subgraph) -> Option<(Vec<u32>, Vec<u32>)> {
     let mut separator: Vec<u32> = (0..graph.len() as u32)
         .filter(|&v| side[v as usize] == SEPARATOR)
         .collect();
-    let large = separator.len() as f64 > LARGEST_SEPARATOR * graph.len() as f64;
+    let large = separator.len() as f64 > MAX_SEPARATOR * graph.len() as f64;
     if large || [0, 1].iter().any(|label| !side.contains(label)) {
         return None;
     }
