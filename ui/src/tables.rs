@@ -1,6 +1,7 @@
 //! Tables under the pattern: measurements by size, variables, wearer and layers, the history.
 
 mod fabric;
+mod fabric_figures;
 mod fabric_words;
 mod handle;
 mod history;

@@ -11,8 +11,9 @@ use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
+use toile_fabric::{Compression, LibraryFabric};
 use toile_pattern::{Fabric, Pattern};
-use toile_session::{LibraryFabric, Project, library_fabric};
+use toile_session::{Project, library_fabric};
 use toile_ui::Beginning;
 
 fn opened(file: &Path) -> Drafter {
@@ -163,7 +164,7 @@ fn a_fabric_of_a_file_is_cut_from_and_copied() {
         drafter.status()
     );
     press(&mut drafter, "Copy into the pattern");
-    assert_eq!(fabric(&drafter, "ponte").density, 0.25);
+    assert_eq!(fabric(&drafter, "ponte").material.density, 0.25);
     // One that is none is refused with its name.
     std::fs::write(&file, "words").unwrap();
     choose(&mut drafter, "Garment cut from", "a fabric file\u{2026}");
@@ -184,10 +185,7 @@ fn a_fabric_of_the_library_is_copied_changed_coloured_renamed_and_kept() {
     press(&mut drafter, "Copy into the pattern");
     let library = library_fabric("denim").unwrap();
     let copied = fabric(&drafter, "denim");
-    assert_eq!(
-        (copied.bend, copied.rheology),
-        (library.bend, library.rheology)
-    );
+    assert_eq!(copied.material, library.material);
 
     // Every figure, in its unit.
     for (field, text) in [
@@ -204,12 +202,24 @@ fn a_fabric_of_the_library_is_copied_changed_coloured_renamed_and_kept() {
         ("Bend, weft", "2 * 40"),
         ("Bend, bias", "85.5"),
         ("Friction", "0.5"),
+        ("Stretch limit, warp", "0.06"),
+        ("Stretch limit, weft", "0.1"),
+        ("Curling across", "0.1"),
+        ("Viscosity", "0.02"),
+        ("Bend viscosity", "0.5"),
+        ("Damping", "2"),
+        ("Kept, stretch", "0.05"),
+        ("Kept, fold", "0.2"),
+        ("Relaxation", "4"),
+        ("Rebound", "0.3"),
     ] {
         let steps = drafter.window.state().session().past().len();
         drafter.enter(field, text);
         let done = drafter.window.state().session().past().len();
         assert_eq!(done, steps + 1, "{field}: {}", drafter.status());
     }
+    drafter.enter("Stretch limit, weft", "");
+    choose(&mut drafter, "Compression", "tension-field");
     drafter.enter("Colour", "#203a66");
     press(&mut drafter, "Nap: all pieces point one way");
     drafter.enter("Fabric name", "indigo");
@@ -217,21 +227,38 @@ fn a_fabric_of_the_library_is_copied_changed_coloured_renamed_and_kept() {
     let near =
         |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * b.abs().max(1e-6), "{a} is not {b}");
     near(changed.width, 1.2);
-    near(changed.density, 0.41);
-    near(changed.thickness, 1.1e-3);
-    assert_eq!(changed.stretch, [5000.0, 4000.0]);
-    assert_eq!(changed.rheology.hardening, [12.0, 3.0]);
-    assert_eq!((changed.shear, changed.poisson), (150.0, 0.25));
-    for (bend, wanted) in changed.bend.into_iter().zip([90e-6, 80e-6, 85.5e-6]) {
+    near(changed.material.density, 0.41);
+    near(changed.material.thickness, 1.1e-3);
+    assert_eq!(changed.material.stretch, [5000.0, 4000.0]);
+    assert_eq!(changed.material.hardening, [12.0, 3.0]);
+    assert_eq!(
+        (changed.material.shear, changed.material.poisson),
+        (150.0, 0.25)
+    );
+    for (bend, wanted) in changed
+        .material
+        .bend
+        .into_iter()
+        .zip([90e-6, 80e-6, 85.5e-6])
+    {
         near(bend, wanted);
     }
-    assert_eq!((changed.friction, changed.nap), (0.5, true));
+    assert_eq!((changed.material.friction, changed.nap), (0.5, true));
+    assert_eq!(changed.material.strain_limit, [0.06, f64::INFINITY]);
+    assert_eq!(changed.material.compression, Compression::TensionField);
+    assert_eq!(changed.material.bend_poisson, 0.1);
+    assert_eq!(changed.material.viscosity, 0.02);
+    near(changed.material.bend_viscosity, 0.5e-6);
+    near(changed.material.stiffness_damping, 2e-3);
+    assert_eq!(changed.material.relaxed_fraction, [0.05, 0.2]);
+    assert_eq!(changed.material.relaxation_time, 4.0);
+    assert_eq!(changed.material.restitution, Some(0.3));
     assert_eq!(
         changed.colour,
         [0x20, 0x3a, 0x66].map(|byte| f64::from(byte) / 255.0)
     );
     let given = drafter.window.query_all_by_label("given in the pattern");
-    assert_eq!(given.count(), 13);
+    assert_eq!(given.count(), 24);
 
     // Out of range it is refused at the field.
     drafter.enter("Weight", "0");
@@ -241,7 +268,10 @@ fn a_fabric_of_the_library_is_copied_changed_coloured_renamed_and_kept() {
             .query_by_label_contains("give 1 to 10000")
             .is_some()
     );
-    assert_eq!(fabric(&drafter, "indigo").density, changed.density);
+    assert_eq!(
+        fabric(&drafter, "indigo").material.density,
+        changed.material.density
+    );
     drafter.key(Key::Escape);
 
     drafter.chord(Modifiers::COMMAND, Key::S);
@@ -282,8 +312,8 @@ fn panels_are_cut_from_a_fabric_by_a_tick_and_one_in_use_is_not_removed() {
     press(&mut drafter, "poplin");
     press(&mut drafter, "Copy fabric");
     assert_eq!(
-        fabric(&drafter, "poplin 2").shear,
-        fabric(&drafter, "poplin").shear
+        fabric(&drafter, "poplin 2").material.shear,
+        fabric(&drafter, "poplin").material.shear
     );
     press(&mut drafter, "poplin");
     choose(&mut drafter, "Garment cut from", "poplin of the pattern");

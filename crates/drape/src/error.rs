@@ -37,7 +37,7 @@ pub enum DrapeError {
         /// Name of the object.
         object: String,
         /// Name of the number.
-        field: &'static str,
+        field: String,
         /// Its value.
         value: f64,
         /// The remedy.

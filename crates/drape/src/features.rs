@@ -1,6 +1,7 @@
 //! Features of a world beyond elastic cloth under gravity, and the methods that support each. A world with a feature
 //! that its method does not support is refused.
 
+use crate::material::DissipativeLaws;
 use crate::world::{Kind, Object, World};
 use crate::{Compression, DrapeError, Material, MethodKind};
 use strum::{EnumCount, VariantArray, VariantNames};
@@ -97,7 +98,7 @@ impl Feature {
                 Some("damping.stiffness".to_owned())
             }
             Self::Viscosity => cloth(world, "viscosity", |m| m.is_viscous().contains(&true)),
-            Self::KeptStrain => cloth(world, "kept share", Material::keeps_strain),
+            Self::KeptStrain => cloth(world, "kept share", DissipativeLaws::keeps_strain),
             Self::Hardening => cloth(world, "hardening", |m| m.hardening.iter().any(|&k| k > 0.0)),
             Self::StrainLimit => cloth(world, "strain limit", |m| {
                 m.strain_limit.iter().any(|limit| limit.is_finite())

@@ -15,6 +15,7 @@ use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};
 use crate::laws::membrane::green_strain;
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
+use crate::material::{DissipativeLaws, MaterialLaws};
 use crate::{InternalStrain, State, System};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;

@@ -21,7 +21,7 @@ pub struct KineticDamping {
     calm: bool,
     longest: f64,
     /// Lowest peak of kinetic energy (J), and the number of peaks since.
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     lowest: f64,
     waited: u32,
 }

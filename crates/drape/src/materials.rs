@@ -2,6 +2,7 @@
 
 use crate::Material;
 use crate::laws::stretch::MembraneLaw;
+use crate::material::{DissipativeLaws, MaterialLaws};
 
 /// Materials, and the material of each triangle.
 pub struct Materials {

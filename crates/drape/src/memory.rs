@@ -57,9 +57,9 @@ pub struct RestMemory {
     pub(crate) longest_step: f64,
     pub(crate) steps: usize,
     /// Net force over weight after the last step, and its lowest so far.
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     pub(crate) residual: f64,
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     pub(crate) best: f64,
     /// Steps since the residual was lowest.
     pub(crate) waited: usize,
@@ -80,6 +80,6 @@ pub struct RelaxationMemory {
     /// Whether the next iteration starts without velocity.
     pub(crate) still: bool,
     pub(crate) iterations: usize,
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     pub(crate) residual: f64,
 }

@@ -4,6 +4,7 @@ use crate::bending_structure::Stencils;
 use crate::contact_sample::ContactSample;
 use crate::laws::bending::{BendingMatrix, BendingStencil};
 use crate::laws::membrane::MembraneElement;
+use crate::material::{DissipativeLaws, MaterialLaws};
 use crate::materials::Materials;
 use crate::topology::Topology;
 use crate::{DrapeError, Material};

@@ -1,6 +1,7 @@
 //! The scene: the description of a simulation, independent of file formats.
 
 use crate::environment::check_number;
+use crate::material::MaterialLaws;
 use crate::{
     Air, Cloth, Damping, DrapeError, Environment, Material, MethodSettings, Motion, SharedTrack,
 };

@@ -38,9 +38,9 @@ pub struct SewRun {
     stiffness: f64,
     force: f64,
     steps: usize,
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     gap: f64,
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     best_gap: f64,
     waited: usize,
 }

@@ -6,6 +6,7 @@ use crate::collider::{Collider, PrescribedVertex};
 use crate::control::{Attachment, Control};
 use crate::elastic::{Elastic, ElasticCouplings, ElasticEnd};
 use crate::laws::elastic::ElasticLaw;
+use crate::material::MaterialLaws;
 use crate::materials::Materials;
 use crate::model::{Model, ModelParts, Prescribed};
 use crate::pair_policies::PairPolicies;

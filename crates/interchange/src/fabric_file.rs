@@ -4,7 +4,7 @@ use crate::scene::json_error;
 use crate::{FormatError, MaterialFile, read_fabric_test};
 use serde::Deserialize;
 use serde_json::Value;
-use toile_drape::Material;
+use toile_drape::{Material, MaterialLaws};
 
 /// A fabric in a file of its own.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,8 +6,8 @@
 
 use crate::FormatError;
 use serde_json::{Map, Value};
-use toile_drape::kes::{bending_of_length, bending_of_overhang, drape_coefficient};
-use toile_drape::{KesValues, Material};
+use toile_fabric::kes::{bending_of_length, bending_of_overhang, drape_coefficient};
+use toile_fabric::{KesValues, Material};
 
 /// The test values of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,7 +166,7 @@ impl Reader {
         let usual = Material::default();
         let mut material = usual.clone();
         if let Some(w) = self.single("W")? {
-            material.density = toile_drape::kes::weight(w);
+            material.density = toile_fabric::kes::weight(w);
         }
         if let Some(t) = self.single("T0")? {
             material.thickness = t * 1e-3;
@@ -175,7 +175,7 @@ impl Reader {
             material.friction = friction;
         }
         if let Some(g) = self.single("G")? {
-            material.shear = toile_drape::kes::shear(g);
+            material.shear = toile_fabric::kes::shear(g);
         }
         self.tensile(&mut material)?;
         let kept_fold = self.bending(&mut material)?;
@@ -203,7 +203,7 @@ impl Reader {
             (None, None) => [1.0; 2],
         };
         for k in 0..2 {
-            let (stiffness, hardening) = toile_drape::kes::tensile_curve(em[k], lt[k]);
+            let (stiffness, hardening) = toile_fabric::kes::tensile_curve(em[k], lt[k]);
             material.stretch[k] = stiffness;
             material.hardening[k] = hardening;
         }
@@ -231,7 +231,7 @@ impl Reader {
                 };
                 kept = Some(values.kept_fold());
             }
-            Some(bending.map(toile_drape::kes::bending))
+            Some(bending.map(toile_fabric::kes::bending))
         } else if let Some(length) = self.pair("bending_length")? {
             Some(length.map(|c| bending_of_length(density, c * 1e-3)))
         } else if let Some(overhang) = self.pair("overhang")? {
@@ -290,7 +290,7 @@ mod tests {
         assert!(a.kept_fold.unwrap() > 0.08);
         let expected = 100.0 * (400.0 / std::f64::consts::PI - 81.0) / 144.0;
         assert!((a.drape_coefficient.unwrap() - expected).abs() < 1e-9);
-        assert!(a.material.check("suiting").is_ok());
+        assert!(a.material.in_domain().is_ok());
     }
 
     #[test]

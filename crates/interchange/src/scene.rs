@@ -471,7 +471,8 @@ pub fn read_scene(text: &str) -> Result<(SceneFile, Vec<String>), FormatError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_drape::{Compression, LibraryFabric};
+    use toile_drape::{Compression, MaterialLaws};
+    use toile_fabric::LibraryFabric;
 
     const FLAG: &str = r#"{ "duration": 2, "colour": "red",
         "objects": [ { "name": "flag", "kind": "deformable", "mesh": "flag.obj", "pins": [0, 4],

@@ -6,6 +6,7 @@ use crate::{
     Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, Name, OperationId, OperationKind, Panel,
     Pattern, Piece, PieceEdge, PieceLine, Place, SeamOrigin, Severity,
 };
+use toile_fabric::{Component, Domain};
 use toile_geometry::{Rings, Vec2};
 
 /// Ends of neighbouring edges may be this far apart (m): rounding, not a gap.
@@ -197,17 +198,6 @@ fn check_seam(draft: &Draft, seam: &DraftSeam, ease: f64, diagnostics: &mut Vec<
 }
 
 fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
-    let positive = [
-        ("density", fabric.density),
-        ("thickness", fabric.thickness),
-        ("warp stretch stiffness", fabric.stretch[0]),
-        ("weft stretch stiffness", fabric.stretch[1]),
-        ("shear stiffness", fabric.shear),
-        ("warp bending stiffness", fabric.bend[0]),
-        ("weft bending stiffness", fabric.bend[1]),
-        ("bias bending stiffness", fabric.bend[2]),
-        ("width", fabric.width),
-    ];
     let mut report = |what: String, hint: &str| {
         diagnostics.push(Diagnostic::error(
             Code::BadFabric,
@@ -216,25 +206,21 @@ fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
             hint,
         ));
     };
-    for (name, value) in positive {
-        if !(value.is_finite() && value > 0.0) {
-            report(format!("its {name} is {value}"), "give a number above zero");
+    for component in Component::all() {
+        let figure = component.figure;
+        let domain = match figure.positive_in_patterns {
+            true => Domain::Positive,
+            false => figure.domain,
+        };
+        let value = component.of(&fabric.material);
+        if let Some(value) = value.filter(|value| !domain.contains(*value)) {
+            let hint = figure.pattern_remedy.unwrap_or(domain.remedy());
+            report(format!("its {} is {value}", component.noun()), hint);
         }
     }
-    if !(fabric.friction.is_finite() && fabric.friction >= 0.0) {
-        report(
-            format!("its friction is {}", fabric.friction),
-            "give zero or more, usually 0.3 to 0.5",
-        );
-    }
-    if !(fabric.poisson.is_finite() && (0.0..=0.95).contains(&fabric.poisson)) {
-        report(
-            format!("its Poisson ratio is {}", fabric.poisson),
-            "give a number from 0 to 0.95, usually 0.2 to 0.3",
-        );
-    }
-    if let Some(defect) = fabric.rheology.defect() {
-        report(defect.into(), "change it, or leave it out");
+    if !Domain::Positive.contains(fabric.width) {
+        let hint = Domain::Positive.remedy();
+        report(format!("its width is {}", fabric.width), hint);
     }
     if !fabric.colour.iter().all(|c| (0.0..=1.0).contains(c)) {
         report(

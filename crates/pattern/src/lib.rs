@@ -35,7 +35,7 @@ pub use document::*;
 pub use draft::*;
 pub use edit::{Edit, EditError, Entity, Head, SheetHead};
 pub use evaluate::{Evaluation, Node, Update, Wearer};
-pub use fabric::{Fabric, Rheology};
+pub use fabric::Fabric;
 pub use formula::{
     Completion, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token, is_unit,
 };

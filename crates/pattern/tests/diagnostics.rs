@@ -387,7 +387,7 @@ fn lost_parts_wait_for_their_return() {
 #[test]
 fn bad_fabrics_folds_pairs_and_duplicates() {
     let mut pattern = sample();
-    Arc::make_mut(&mut pattern.fabrics[0]).density = 0.0;
+    Arc::make_mut(&mut pattern.fabrics[0]).material.density = 0.0;
     let place = Place::Fabric(pattern.fabrics[0].id);
     check(&pattern, &[(Code::BadFabric, place)]);
 

@@ -5,9 +5,9 @@ use crate::input::is_input;
 use crate::open::read_input;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toile_drape::{Compression, LIBRARY, LibraryFabric, Material};
-use toile_interchange::{ExpectedKind, FabricFile, FormatError, read_fabric};
-use toile_pattern::{Draft, Fabric, FabricId, Pattern, Rheology};
+use toile_fabric::{LIBRARY, LibraryFabric, Material};
+use toile_interchange::{ExpectedKind, FabricFile, read_fabric};
+use toile_pattern::{Draft, Fabric, FabricId, Pattern};
 
 /// Width of a roll of a fabric that comes without one (m).
 const WIDTH: f64 = 1.5;
@@ -69,8 +69,7 @@ impl FabricChoice {
 /// The fabric asked for by its name or its file, with what is worth telling.
 ///
 /// # Errors
-/// A name that is not there, with those that are; a file that cannot be read, or that says more
-/// than the fabric of a garment has.
+/// A name that is not there, with those that are; a file that cannot be read.
 pub(crate) fn chosen(
     pattern: &Pattern,
     asked: &str,
@@ -98,20 +97,12 @@ pub(crate) fn chosen(
 /// The fabric of a garment in a file, with what is worth telling.
 ///
 /// # Errors
-/// The file cannot be read, or says more than the fabric of a garment has.
+/// The file cannot be read.
 pub(crate) fn fabric_of_file(path: &Path) -> Result<(Arc<Fabric>, Vec<String>), SessionError> {
     let file = open_fabric(path)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
-    let fabric = of_material(&name, &file.material).map_err(|what| SessionError::Format {
-        path: path.to_owned(),
-        error: FormatError::new(
-            what,
-            "the fabric of a garment has no such figure",
-            "leave it out, or use it in a scene (`toile run`)",
-        ),
-    })?;
-    Ok((Arc::new(fabric), file.notes))
+    Ok((Arc::new(on_a_roll(&name, file.material)), file.notes))
 }
 
 /// Whether a pattern or the library has a fabric of a name.
@@ -142,10 +133,9 @@ fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
 /// A fabric of the library as one that a pattern can have; nothing where there is none of that name.
 pub fn library_fabric(name: &str) -> Option<Fabric> {
     let library = LibraryFabric::named(name)?;
-    let fabric = of_material(name, &library.material()).ok()?;
     Some(Fabric {
         colour: library.colour,
-        ..fabric
+        ..on_a_roll(name, library.material())
     })
 }
 
@@ -176,10 +166,7 @@ fn figures(material: &Material) -> [Vec<f64>; 6] {
 /// A fabric with the hardening that its cloth has: one of a name of the library may say none of its own.
 pub fn with_hardening(fabric: &Fabric) -> Fabric {
     Fabric {
-        rheology: Rheology {
-            hardening: cloth_material(fabric).hardening,
-            ..fabric.rheology
-        },
+        material: cloth_material(fabric),
         ..fabric.clone()
     }
 }
@@ -194,105 +181,58 @@ fn fabric_names(pattern: &Pattern) -> Vec<&str> {
     names
 }
 
-/// A fabric of a material.
-///
-/// # Errors
-/// The name of the first figure that a pattern's fabric has no place for.
-fn of_material(name: &str, material: &Material) -> Result<Fabric, &'static str> {
-    // Taken apart whole: a new figure does not compile before it has a place here.
-    let &Material {
-        density,
-        thickness,
-        stretch,
-        shear,
-        poisson,
-        hardening,
-        strain_limit,
-        compression,
-        bend,
-        bend_poisson,
-        viscosity,
-        bend_viscosity,
-        stiffness_damping,
-        relaxed_fraction,
-        relaxation_time,
-        friction,
-        restitution,
-    } = material;
-    let usual = Material::default();
-    let beyond = [
-        ("strain_limit", strain_limit != usual.strain_limit),
-        ("compression", compression != Compression::Full),
-        ("bend_poisson", bend_poisson != usual.bend_poisson),
-        (
-            "stiffness_damping",
-            stiffness_damping != usual.stiffness_damping,
-        ),
-        ("restitution", restitution.is_some()),
-    ];
-    if let Some((field, _)) = beyond.iter().find(|(_, beyond)| *beyond) {
-        return Err(field);
-    }
-    Ok(Fabric {
+/// A fabric of a material, on a roll of the usual width.
+fn on_a_roll(name: &str, material: Material) -> Fabric {
+    Fabric {
         id: FabricId(0),
         name: name.into(),
-        density,
-        thickness,
-        stretch,
-        shear,
-        poisson,
-        bend,
-        friction,
+        material,
         width: WIDTH,
         nap: false,
         colour: [0.72, 0.70, 0.66],
-        rheology: Rheology {
-            hardening,
-            viscosity,
-            bend_viscosity,
-            kept: relaxed_fraction,
-            relaxation_time,
-        },
-    })
-}
-
-/// The material of a fabric.
-pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
-    let own = &fabric.rheology;
-    // A fabric that has the name and the stretch of one of the library and says no hardening of its own has that
-    // of the library: patterns older than hardening keep the cloth that they name.
-    let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
-    let hardening = library
-        .filter(|material| material.stretch == fabric.stretch && own.hardening == [0.0; 2])
-        .map_or(own.hardening, |material| material.hardening);
-    Material {
-        density: fabric.density,
-        thickness: fabric.thickness,
-        stretch: fabric.stretch,
-        shear: fabric.shear,
-        poisson: fabric.poisson,
-        bend: fabric.bend,
-        friction: fabric.friction,
-        hardening,
-        viscosity: own.viscosity,
-        bend_viscosity: own.bend_viscosity,
-        relaxed_fraction: own.kept,
-        relaxation_time: own.relaxation_time,
-        ..Material::default()
     }
 }
 
-/// What of the fabrics of a draft a garment at rest does not show, in words.
+/// The material of a fabric. One that has the name and the stretch of a fabric of the library and no hardening of
+/// its own has that of the library: patterns older than hardening keep the cloth that they name.
+pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
+    let mut material = fabric.material.clone();
+    let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
+    if let Some(library) = library
+        && library.stretch == material.stretch
+        && material.hardening == [0.0; 2]
+    {
+        material.hardening = library.hardening;
+    }
+    material
+}
+
+/// The material of a fabric of a garment at rest: without restitution, which only impacts show and no method
+/// of a garment takes.
+pub(crate) fn rest_material(fabric: &Fabric) -> Material {
+    Material {
+        restitution: None,
+        ..cloth_material(fabric)
+    }
+}
+
+/// Figures of the fabrics of a draft that a garment at rest does not show, in words.
 pub(crate) fn unseen_at_rest(draft: &Draft) -> Vec<String> {
-    let timed = draft.fabrics.iter().filter(|f| f.rheology.acts_in_time());
-    timed
-        .map(|fabric| {
-            format!(
-                "fabric {:?}: viscosity and kept folds act in motion only; the garment at rest is draped without them",
-                fabric.name
-            )
-        })
-        .collect()
+    let mut notes = Vec::new();
+    for fabric in &draft.fabrics {
+        let Fabric { name, material, .. } = fabric;
+        if material.acts_in_time() {
+            notes.push(format!(
+                "fabric {name:?}: viscosity and kept folds act in motion only; the garment at rest is draped without them"
+            ));
+        }
+        if material.restitution.is_some() {
+            notes.push(format!(
+                "fabric {name:?}: restitution acts on impacts only; the garment is draped without it"
+            ));
+        }
+    }
+    notes
 }
 
 #[cfg(test)]
@@ -303,7 +243,7 @@ mod tests {
     fn the_library_is_reached_by_name() {
         let pattern = Pattern::default();
         let denim = fabric_of(&pattern, "denim").expect("in the library");
-        assert!((denim.density - 0.334).abs() < 1e-12);
+        assert!((denim.material.density - 0.334).abs() < 1e-12);
         assert!(fabric_of(&pattern, "unobtainium").is_none());
         for name in fabric_names(&pattern) {
             let fabric = fabric_of(&pattern, name).expect(name);
@@ -314,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fabric_file_takes_the_place_of_every_panels_fabric_and_says_what_it_cannot_hold() {
+    fn a_fabric_file_takes_the_place_of_every_panels_fabric_with_all_its_figures() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("ponte.json");
         let text = |more: &str| {
@@ -334,10 +274,9 @@ mod tests {
             (0.02, [0.0, 0.2])
         );
         std::fs::write(&path, text(r#", "restitution": 0.5"#)).unwrap();
-        let error = chosen(&pattern, asked).unwrap_err().to_string();
-        assert!(
-            error.contains("restitution") && error.contains("ponte.json"),
-            "{error}"
-        );
+        let (choice, _) = chosen(&pattern, asked).unwrap();
+        let fabric = choice.fabric(&pattern).unwrap();
+        assert_eq!(cloth_material(&fabric).restitution, Some(0.5));
+        assert_eq!(rest_material(&fabric).restitution, None);
     }
 }

@@ -126,7 +126,7 @@ pub use toile_body::{
     AskedStance, Axis, Description, Figure, Fit, MeshUnit, PrimitiveEdit, ProportionBox, Scaling,
 };
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
-pub use toile_drape::{Aspect, FabricSources, Finding, LIBRARY, LibraryFabric, Stage, Verdict};
+pub use toile_drape::{Aspect, Finding, Stage, Verdict};
 pub use toile_interchange::{
     ExpectedKind, Lines, MarkerSettings, Paper, Shown, SizeChoice, Tile, write_atomically,
 };

@@ -144,7 +144,7 @@ fn a_fabric_that_nothing_is_cut_from_does_not_act() {
     let before = materials(&mut session);
     let mut pattern = Pattern::clone(&session.project().pattern);
     let mut felt = Fabric::poplin(pattern.ids.take());
-    (felt.name, felt.thickness) = ("felt".into(), 0.03);
+    (felt.name, felt.material.thickness) = ("felt".into(), 0.03);
     let put = Edit::Put(Entity::Fabric(Arc::new(felt)));
     run(&mut session, edit(vec![put])).unwrap();
     assert_eq!(session.project().pattern.fabrics.len(), 2);

@@ -5,11 +5,12 @@ use std::fs;
 use toile_house::{files_below, root};
 
 /// Our libraries from below: each may at most use those before it.
-const LIBRARIES: [&str; 15] = [
+const LIBRARIES: [&str; 16] = [
     "realtime",
     "geometry",
     "measure",
     "lettering",
+    "fabric",
     "sparse",
     "pattern",
     "cut",
@@ -24,10 +25,11 @@ const LIBRARIES: [&str; 15] = [
 ];
 
 /// Ours that the suite of tests uses: all of the libraries, and the window.
-const TESTED: [&str; 14] = [
+const TESTED: [&str; 15] = [
     "house",
     "geometry",
     "measure",
+    "fabric",
     "pattern",
     "cut",
     "assembly",
@@ -47,13 +49,14 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 21] = [
+const LAYERS: [(&str, &[&str]); 22] = [
     ("toile-realtime", &[]),
     ("toile-realtime-c", &["realtime"]),
     ("toile-geometry", &[]),
     ("toile-measure", &[]),
     ("toile-lettering", &[]),
-    ("toile-pattern", &["geometry", "measure"]),
+    ("toile-fabric", &[]),
+    ("toile-pattern", &["geometry", "measure", "fabric"]),
     ("toile-cut", &["geometry", "lettering", "pattern"]),
     (
         "toile-assembly",
@@ -62,24 +65,24 @@ const LAYERS: [(&str, &[&str]); 21] = [
     ("toile-nesting", &["geometry"]),
     ("toile-body", &["geometry", "measure", "realtime"]),
     ("toile-sparse", &["geometry"]),
-    ("toile-drape", &["geometry", "sparse"]),
+    ("toile-drape", &["geometry", "sparse", "fabric"]),
     ("toile-picture", &["geometry", "lettering"]),
-    ("toile-interchange", lowest(12)),
+    ("toile-interchange", lowest(13)),
     (
         "toile-marker",
         &["geometry", "pattern", "cut", "nesting", "interchange"],
     ),
-    ("toile-session", lowest(14)),
+    ("toile-session", lowest(15)),
     ("toile", &["geometry", "measure", "session", "lab"]),
     (
         "toile-ui",
         &[
-            "geometry", "measure", "pattern", "cut", "session", "picture",
+            "geometry", "measure", "fabric", "pattern", "cut", "session", "picture",
         ],
     ),
     ("toile-house", &[]),
     ("toile-tests", &TESTED),
-    ("toile-lab", lowest(15)),
+    ("toile-lab", lowest(16)),
 ];
 
 /// What may stand at the top level besides dot-files.

@@ -1,26 +1,20 @@
 //! The table of fabrics: what the garment is cut from, and the figures of each fabric of the pattern and of the
 //! library.
 
-use super::fabric_words::{
-    bytes, colour_text, library_source, meaning, own_source, read_colour, shares,
-};
+use super::fabric_words::{bytes, colour_text, read_colour, shares};
 use crate::app::ToileApp;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{
-    Align, Color32, ComboBox, Grid, Id, Label, Layout, Popup, RichText, ScrollArea, Sense, Ui, vec2,
-};
+use egui::{Align, Color32, ComboBox, Id, Layout, Popup, RichText, ScrollArea, Sense, Ui, vec2};
+use toile_fabric::{LIBRARY, LibraryFabric};
 use toile_pattern::plan::{self, FabricFigure};
 use toile_pattern::{Edit, EditError, Entity, Fabric, FabricId, PanelId, Want};
-use toile_session::{
-    Command, FabricChoice, LIBRARY, LibraryFabric, library_fabric, with_hardening,
-};
+use toile_session::{Command, FabricChoice, library_fabric, with_hardening};
 
-/// Width of the list, of a field, and the least of what is said of a figure (pixels).
+/// Width of the list, and of a field (pixels).
 const LIST: f32 = 190.0;
 const FIELD: f32 = 84.0;
-const SOURCE: f32 = 150.0;
 /// Height of a line, and between two of them (pixels).
 const LINE: f32 = 22.0;
 const LINE_GAP: f32 = 3.0;
@@ -299,13 +293,14 @@ impl ToileApp {
             });
             ui.vertical(|ui| {
                 ui.label(RichText::new("The drape takes").strong());
-                let of_drape = |figure: &FabricFigure| *figure != FabricFigure::Width;
-                let figures: Vec<_> = FabricFigure::ALL.into_iter().filter(of_drape).collect();
+                let numbers = FabricFigure::all().filter(|figure| *figure != FabricFigure::Width);
+                let (usual, rare): (Vec<_>, Vec<_>) = numbers.partition(|f| f.is_usual());
                 ui.horizontal_top(|ui| {
-                    for column in figures.chunks(ROWS) {
+                    for column in usual.chunks(ROWS).chain(rare.chunks(ROWS)) {
                         self.figure_rows(ui, (viewed, fabric), column);
                     }
                 });
+                self.compression_choice(ui, viewed, fabric);
             });
         });
     }
@@ -324,7 +319,7 @@ impl ToileApp {
             let planned = plan::rename(&self.base, fabric.id.into(), &text).map(|mut edits| {
                 for edit in &mut edits {
                     if let Edit::Put(Entity::Fabric(renamed)) = edit {
-                        std::sync::Arc::make_mut(renamed).rheology = kept.rheology;
+                        std::sync::Arc::make_mut(renamed).material = kept.material.clone();
                     }
                 }
                 edits
@@ -395,90 +390,6 @@ impl ToileApp {
             ..(**fabric).clone()
         };
         self.edit(plan::set_fabric(&self.base, changed), "Colour fabric");
-    }
-
-    /// Figures of a fabric, a row each: name, value, unit, source.
-    fn figure_rows(
-        &mut self,
-        ui: &mut Ui,
-        (viewed, fabric): (Viewed, &Fabric),
-        figures: &[FabricFigure],
-    ) {
-        let soft = Palette::of(ui.ctx()).ink_soft;
-        let whole = with_hardening(fabric);
-        let shown_in = self.base.pattern().unit;
-        Grid::new(("fabric figures", figures.first().map(|f| f.name())))
-            .num_columns(4)
-            .show(ui, |ui| {
-                for &figure in figures {
-                    let name = RichText::new(figure.name()).color(soft);
-                    let label = ui.label(name).on_hover_text(meaning(figure)).id;
-                    let value = figure.of(&whole);
-                    let (shown, sign) = match figure {
-                        FabricFigure::Width => (number::show(value, Want::Length, shown_in), ""),
-                        _ => (shown_figure(value / figure.unit().1), figure.unit().0),
-                    };
-                    match viewed {
-                        Viewed::Own(_) => self.figure_field(ui, (figure, label), (&whole, &shown)),
-                        Viewed::Library(_) | Viewed::File => {
-                            ui.label(shown);
-                        }
-                    }
-                    ui.label(RichText::new(sign).color(soft));
-                    let source = match viewed {
-                        Viewed::Own(_) => own_source(figure, fabric),
-                        Viewed::Library(name) => LibraryFabric::named(name)
-                            .map_or("", |library| library_source(figure, library))
-                            .to_owned(),
-                        Viewed::File => "given in its file".to_owned(),
-                    };
-                    ui.scope(|ui| {
-                        ui.set_max_width(SOURCE);
-                        let words = RichText::new(&source).small().color(soft);
-                        ui.add(Label::new(words).truncate()).on_hover_text(source);
-                    });
-                    ui.end_row();
-                }
-            });
-    }
-
-    /// The field of a figure of one of the pattern's own fabrics.
-    fn figure_field(
-        &mut self,
-        ui: &mut Ui,
-        (figure, label): (FabricFigure, Id),
-        (fabric, shown): (&Fabric, &str),
-    ) {
-        let base = self.base.clone();
-        let (sign, unit) = figure.unit();
-        let read = |text: &str| {
-            let (want, unit) = match figure {
-                FabricFigure::Width => (Want::Length, 1.0),
-                _ => (Want::Plain, unit),
-            };
-            let bare = match want {
-                Want::Plain => text.trim().trim_end_matches(sign),
-                _ => text,
-            };
-            let found = number::parse(bare, want, &base)?;
-            let value = unit * base.number_or_fault(&found, want)?;
-            figure.check(value).map(|()| value)
-        };
-        let id = Id::unique(("fabric figure", fabric.id, figure.name()));
-        let entered = field(ui, |ui| {
-            self.typed.field(ui, (id, label), shown, |text| {
-                read(text).map(|_| String::new())
-            })
-        });
-        if let Entered::Text(text) = entered {
-            match read(&text) {
-                Ok(value) => {
-                    let planned = plan::set_fabric_figure(&base, fabric.clone(), (figure, value));
-                    self.enter(planned, "Change fabric", (id, text));
-                }
-                Err(fault) => self.typed.refuse(id, text, fault),
-            }
-        }
     }
 
     /// Whether all pieces point one way.
@@ -557,12 +468,11 @@ impl ToileApp {
 /// Whether all figures of two fabrics are the same.
 fn is_same_cloth(a: &Fabric, b: &Fabric) -> bool {
     let [a, b] = [a, b].map(with_hardening);
-    let mut figures = FabricFigure::ALL.into_iter();
-    figures.all(|figure| figure.of(&a) == figure.of(&b))
+    a.material == b.material && a.width == b.width
 }
 
 /// A field of the usual width.
-fn field(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Entered) -> Entered {
+pub(super) fn field(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Entered) -> Entered {
     let shown = ui.scope(|ui| {
         ui.set_width(FIELD);
         ui.vertical(show).inner
@@ -576,10 +486,4 @@ fn swatch(ui: &mut Ui, colour: [f64; 3]) {
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
     let fill = Color32::from_rgb(red, green, blue);
     ui.painter().rect_filled(rect, 2.0, fill);
-}
-
-/// A figure in four digits, of which those that say nothing are left out.
-fn shown_figure(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{rounded}")
 }

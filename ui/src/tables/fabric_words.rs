@@ -1,54 +1,18 @@
-//! What is said of the figures of a fabric: what each means, where it comes from; colours as text.
+//! Sources of the figures of a fabric; colours as text.
 
+use toile_fabric::LibraryFabric;
 use toile_pattern::Fabric;
 use toile_pattern::plan::FabricFigure;
-use toile_session::{LibraryFabric, library_fabric, library_origin, with_hardening};
+use toile_session::{library_fabric, library_origin, with_hardening};
 
-/// What a figure means to whoever sews.
-pub fn meaning(figure: FabricFigure) -> &'static str {
-    match figure {
-        FabricFigure::Width => "The roll from selvedge to selvedge, selvedges included",
-        FabricFigure::Weight => "What a square metre weighs",
-        FabricFigure::Thickness => "Of one layer laid flat",
-        FabricFigure::StretchWarp => {
-            "Force on a metre of width that would stretch it to twice its length, along the grain"
-        }
-        FabricFigure::StretchWeft => {
-            "Force on a metre of width that would stretch it to twice its length, across the grain"
-        }
-        FabricFigure::HardeningWarp | FabricFigure::HardeningWeft => {
-            "How much stiffer it gets as it is stretched: at a strain E the force is E + k E\u{b3} times the stiffness"
-        }
-        FabricFigure::Shear => {
-            "How hard it is to skew, as on the bias: force on a metre of width for each radian"
-        }
-        FabricFigure::Narrowing => "How much it narrows where it is stretched (Poisson's ratio)",
-        FabricFigure::BendWarp => {
-            "How stiff a fold across the grain is: 5 drapes softly, 100 stands"
-        }
-        FabricFigure::BendWeft => {
-            "How stiff a fold along the grain is: 5 drapes softly, 100 stands"
-        }
-        FabricFigure::BendBias => "How stiff a fold on the bias is: 5 drapes softly, 100 stands",
-        FabricFigure::Friction => "Against skin: 0 slides, 0.5 clings",
-    }
-}
-
-/// Where a figure of a fabric of the library comes from.
+/// Source of a figure of a fabric of the library.
 pub fn library_source(figure: FabricFigure, library: &LibraryFabric) -> &'static str {
-    let sources = &library.sources;
     match figure {
-        FabricFigure::Weight => sources.density,
-        FabricFigure::Thickness => sources.thickness,
-        FabricFigure::StretchWarp
-        | FabricFigure::StretchWeft
-        | FabricFigure::HardeningWarp
-        | FabricFigure::HardeningWeft => sources.stretch,
-        FabricFigure::Shear => sources.shear,
-        FabricFigure::BendWarp | FabricFigure::BendWeft | FabricFigure::BendBias => sources.bend,
-        FabricFigure::Friction => sources.friction,
-        FabricFigure::Narrowing => "usual for its kind, without a source",
         FabricFigure::Width => "a usual width, without a source",
+        FabricFigure::Material(component) => match component.figure.source {
+            Some(source) => source(&library.sources),
+            None => "usual for its kind, without a source",
+        },
     }
 }
 
@@ -103,21 +67,27 @@ pub fn read_colour(text: &str) -> Result<[f64; 3], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_session::LIBRARY;
+    use toile_fabric::{Component, Figure, LIBRARY};
 
     #[test]
     fn a_copy_of_the_library_keeps_its_sources_until_a_figure_is_changed() {
         for library in &LIBRARY {
             let mut fabric = library_fabric(library.name).unwrap();
             fabric.name = "mine".into();
-            for figure in FabricFigure::ALL {
+            for figure in FabricFigure::all() {
                 let source = own_source(figure, &fabric);
                 assert!(source.contains(library_source(figure, library)), "{source}");
             }
-            fabric.density += 0.001;
-            let source = own_source(FabricFigure::Weight, &fabric);
+            let figure = |name| {
+                FabricFigure::Material(Component {
+                    figure: Figure::named(name).unwrap(),
+                    index: 0,
+                })
+            };
+            fabric.material.density += 0.001;
+            let source = own_source(figure("density"), &fabric);
             assert_eq!(source, "given in the pattern");
-            assert!(own_source(FabricFigure::Thickness, &fabric).contains(library.name));
+            assert!(own_source(figure("thickness"), &fabric).contains(library.name));
         }
     }
 

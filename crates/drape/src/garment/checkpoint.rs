@@ -28,7 +28,7 @@ pub struct Checkpoint {
     edited: Option<EditedShapes>,
     /// Contact pairs of vertices in the sparsity pattern of the last symbolic factorisation.
     eliminated_pairs: Option<Vec<[u32; 2]>>,
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     gap_before_merging: f64,
     share: f64,
     /// By how much the body is thinner than it is (m).

@@ -11,7 +11,7 @@ pub struct ElasticLaw {
     /// Stiffness at small gaps (N/m).
     pub stiffness: f64,
     /// Largest force (N); infinite for a plain spring.
-    #[serde(with = "crate::exact")]
+    #[serde(with = "toile_fabric::exact")]
     pub largest_force: f64,
 }
 

@@ -20,7 +20,7 @@
 //! (t.E.t)^2 / (2 q(t)), q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
 //! compressive and the energy is convex, so its Hessian is exact and positive semidefinite.
 
-use serde::{Deserialize, Serialize};
+use crate::Compression;
 use std::sync::LazyLock;
 
 /// Stiffness of a strain limit as a multiple of the membrane's own.
@@ -28,16 +28,6 @@ const LIMIT_STIFFNESS: f64 = 100.0;
 
 /// Range of strain in which the stiffness of a limit rises, as a share of the limit.
 const LIMIT_ONSET: f64 = 0.02;
-
-/// Behaviour of a membrane under compression.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Compression {
-    /// The law of tension. The Hessian may omit its negative part.
-    #[default]
-    Full,
-    /// Tension field: the membrane wrinkles below the resolution of the mesh and has no compressive stress.
-    TensionField,
-}
 
 /// Stress and energy as functions of Green strain (E_uu, E_vv, gamma). Implemented by [`MembraneLaw`] and by its
 /// form over a step; materials hold a [`MembraneLaw`], so another law is a part of it.

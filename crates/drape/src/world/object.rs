@@ -1,5 +1,6 @@
 //! Objects of a world: surfaces with their kind, cloth, material and motion.
 
+use crate::material::MaterialLaws;
 use crate::scene::{MAX_LAYER, ObjectKind, SceneObject};
 use crate::track::animated_positions;
 use crate::{Cloth, DrapeError, Material, Motion, SharedTrack};

@@ -10,6 +10,7 @@ use super::tie_constraint::{TieConstraint, solve_ties, stiff_ties};
 use super::vertex_partition::{Partition, VertexPartition, batches};
 use super::viscosity::{Viscosity, ViscousBatch};
 use crate::lanes::{LANES, Point, Row};
+use crate::material::MaterialLaws;
 use crate::{ContactSample, Material, Model, System};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;

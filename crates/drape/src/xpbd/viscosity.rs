@@ -19,6 +19,7 @@ use super::bending::{Filter, FilterBounds, Stencil, stencils};
 use super::membrane::MembraneBatch;
 use crate::lane_arithmetic::{F32s, Number, Triple};
 use crate::lanes::{Corner, LANES, Point, Row, gather, lane_group_of, lane_groups, scatter};
+use crate::material::{DissipativeLaws, MaterialLaws};
 use crate::{DrapeError, Material, System};
 use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};

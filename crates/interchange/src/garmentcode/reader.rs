@@ -4,10 +4,11 @@ use super::specification::{self, SpecPanel, SpecStitch, Specification};
 use crate::FormatError;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use toile_fabric::Material;
 use toile_geometry::{Curve, Vec2, Vec3};
 use toile_pattern::{
     CurveRule, Edge, EdgeId, Fabric, FabricId, LineKind, NAME_LENGTH, PanelBuilder, Pattern,
-    PointId, PointRule, Rheology, Seam, SeamId, Span, WornRule,
+    PointId, PointRule, Seam, SeamId, Span, WornRule,
 };
 
 /// A seam whose sides differ by more than this ratio is gathered on purpose.
@@ -48,17 +49,19 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
     builder.pattern.fabrics.push(Arc::new(Fabric {
         id: fabric,
         name: "cotton weave".to_owned(),
-        density: 0.2,
-        thickness: 5e-4,
-        stretch: [1500.0, 1500.0],
-        shear: 80.0,
-        poisson: 0.3,
-        bend: [1.5e-5; 3],
-        friction: 0.4,
+        material: Material {
+            density: 0.2,
+            thickness: 5e-4,
+            stretch: [1500.0, 1500.0],
+            shear: 80.0,
+            poisson: 0.3,
+            bend: [1.5e-5; 3],
+            friction: 0.4,
+            ..Material::default()
+        },
         width: 1.5,
         nap: false,
         colour: [0.45, 0.58, 0.72],
-        rheology: Rheology::default(),
     }));
     builder.right_sides_out = specification.older && right_sides_out(&specification);
     for panel in &specification.panels {

@@ -243,6 +243,11 @@ impl<'a> Item<'a> {
         self.read_number("a number", None, units::read_plain)
     }
 
+    /// Whether it is `null`.
+    pub fn is_null(&self) -> bool {
+        matches!(self.node.value, Value::Null)
+    }
+
     /// A number that may not be a formula.
     pub fn plain_value(&self) -> Result<f64, FormatError> {
         match &self.node.value {

@@ -324,6 +324,9 @@ fn set_value(
             }
             set(count);
         }
+        ValueMut::Real(real) if item.is_null() && field.null.is_some() => {
+            *real = field.null.unwrap_or(*real);
+        }
         ValueMut::Real(real) => {
             let read = match field.want {
                 Want::Length | Want::Angle => reader.value(item, field.want)?,

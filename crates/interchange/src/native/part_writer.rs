@@ -130,6 +130,7 @@ impl<'v> Visitor<'v> for PartWriter<'_> {
         let value = match value.get() {
             ValueRef::Flag(flag) => Ok(Json::Flag(flag)),
             ValueRef::Count(number) => Ok(count(number)),
+            ValueRef::Real(real) if field.null == Some(real) => Ok(Json::Null),
             ValueRef::Real(real) => match field.want {
                 Want::Length | Want::Angle => {
                     self.writer

@@ -201,19 +201,19 @@ fn measurements(dice: &mut Dice) -> Measurements {
 fn fabric(dice: &mut Dice, id: FabricId, k: usize) -> Fabric {
     let mut fabric = Fabric::poplin(id);
     if dice.chance(50) {
-        fabric.stretch = [600.0, 450.0];
-        fabric.poisson = 0.3;
+        fabric.material.stretch = [600.0, 450.0];
+        fabric.material.poisson = 0.3;
     }
     fabric.name = format!("cloth {k}");
     fabric.nap = dice.chance(30);
     if dice.chance(20) {
-        fabric.density = dice.finite();
-        fabric.bend[1] = dice.finite();
+        fabric.material.density = dice.finite();
+        fabric.material.bend[1] = dice.finite();
     }
     if dice.chance(20) {
-        fabric.rheology.viscosity = dice.finite().abs();
-        fabric.rheology.kept = [0.0, 0.25];
-        fabric.rheology.relaxation_time = 3.5;
+        fabric.material.viscosity = dice.finite().abs();
+        fabric.material.relaxed_fraction = [0.0, 0.25];
+        fabric.material.relaxation_time = 3.5;
     }
     fabric
 }

@@ -3,10 +3,10 @@
 use crate::check::{Cases, Expected};
 use crate::shadow::{fold_count, shadow};
 use crate::{LabError, Tolerance, disc};
-use toile_drape::fabrics::{LIBRARY, LibraryFabric};
 use toile_drape::{
     Material, PseudoTransientContinuation, RestSettings, State, System, SystemBuilder, Workspace,
 };
+use toile_fabric::{LIBRARY, LibraryFabric};
 use toile_geometry::{Vec3, total_area};
 
 /// Radius of the specimen and of the discs that hold it (m).

@@ -129,6 +129,8 @@ pub struct ValueField {
     pub absent_flag: Option<bool>,
     /// The least and the most that it may be.
     pub range: Option<[f64; 2]>,
+    /// The number that is written as `null`.
+    pub null: Option<f64>,
     /// Whether it is the name of a part.
     pub is_name: bool,
     /// The largest count.
@@ -146,6 +148,7 @@ pub const fn key(key: &'static str) -> ValueField {
         is_left_out: false,
         absent_flag: None,
         range: None,
+        null: None,
         is_name: false,
         largest: u32::MAX,
         beyond: ["there are not that many", "write a smaller number"],
@@ -211,6 +214,15 @@ impl ValueField {
     pub const fn within(self, range: [f64; 2]) -> Self {
         Self {
             range: Some(range),
+            ..self
+        }
+    }
+
+    /// Written as `null` where it is this number.
+    #[must_use]
+    pub const fn null_at(self, number: f64) -> Self {
+        Self {
+            null: Some(number),
             ..self
         }
     }

@@ -4,142 +4,99 @@ use super::impossible;
 use super::names::free_name;
 use crate::{Edit, EditError, Entity, Evaluation, Fabric, FabricId, Pattern, is_part_name};
 use std::sync::Arc;
+use toile_fabric::Component;
 
-/// A number that tells how a fabric is: what a marker or a drape takes from it. Values are in SI units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A number of a fabric that the window changes: the width of its roll, or one of its material.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FabricFigure {
     /// Width of the roll (m).
     Width,
-    /// Mass per area (kg/m2).
-    Weight,
-    /// Thickness (m).
-    Thickness,
-    /// Stiffness in stretch along the warp (N/m).
-    StretchWarp,
-    /// Stiffness in stretch along the weft (N/m).
-    StretchWeft,
-    /// How much stiffer it gets along the warp as it is stretched (1).
-    HardeningWarp,
-    /// How much stiffer it gets along the weft as it is stretched (1).
-    HardeningWeft,
-    /// Stiffness in shear (N/m).
-    Shear,
-    /// How much it narrows where it is stretched (Poisson ratio) (1).
-    Narrowing,
-    /// Stiffness in bending along the warp (N m).
-    BendWarp,
-    /// Stiffness in bending along the weft (N m).
-    BendWeft,
-    /// Stiffness in bending on the bias (N m).
-    BendBias,
-    /// Coulomb friction against skin (1).
-    Friction,
+    /// A number of the material.
+    Material(Component),
 }
 
-impl FabricFigure {
-    /// All of them.
-    pub const ALL: [Self; 13] = [
-        Self::Width,
-        Self::Weight,
-        Self::Thickness,
-        Self::StretchWarp,
-        Self::StretchWeft,
-        Self::HardeningWarp,
-        Self::HardeningWeft,
-        Self::Shear,
-        Self::Narrowing,
-        Self::BendWarp,
-        Self::BendWeft,
-        Self::BendBias,
-        Self::Friction,
-    ];
+/// Widths of a roll that can be given (m).
+const WIDTHS: [f64; 2] = [0.05, 20.0];
 
-    /// Its value for a fabric.
-    pub fn of(self, fabric: &Fabric) -> f64 {
-        *self.place(&mut fabric.clone())
+impl FabricFigure {
+    /// All of them, the width first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Width).chain(Component::all().map(Self::Material))
     }
 
-    /// Its name in the trade.
-    pub fn name(self) -> &'static str {
+    /// The value for a fabric (SI); nothing where a cloth can be without it and is.
+    pub fn of(self, fabric: &Fabric) -> Option<f64> {
         match self {
-            Self::Width => "Width",
-            Self::Weight => "Weight",
-            Self::Thickness => "Thickness",
-            Self::StretchWarp => "Stretch, warp",
-            Self::StretchWeft => "Stretch, weft",
-            Self::HardeningWarp => "Hardening, warp",
-            Self::HardeningWeft => "Hardening, weft",
-            Self::Shear => "Shear",
-            Self::Narrowing => "Narrowing",
-            Self::BendWarp => "Bend, warp",
-            Self::BendWeft => "Bend, weft",
-            Self::BendBias => "Bend, bias",
-            Self::Friction => "Friction",
+            Self::Width => Some(fabric.width),
+            Self::Material(component) => component.of(&fabric.material),
         }
     }
 
-    /// The unit it is told in, and that in SI units.
+    /// The label beside it.
+    pub fn name(self) -> String {
+        match self {
+            Self::Width => "Width".to_owned(),
+            Self::Material(component) => component.label(),
+        }
+    }
+
+    /// Explanation for somebody who sews.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Width => "The roll from selvedge to selvedge, selvedges included",
+            Self::Material(component) => component.figure.about,
+        }
+    }
+
+    /// The unit it is shown in, and the value of that in SI units.
     pub fn unit(self) -> (&'static str, f64) {
         match self {
             Self::Width => ("m", 1.0),
-            Self::Weight => ("g/m\u{b2}", 1e-3),
-            Self::Thickness => ("mm", 1e-3),
-            Self::StretchWarp | Self::StretchWeft | Self::Shear => ("N/m", 1.0),
-            Self::BendWarp | Self::BendWeft | Self::BendBias => ("\u{b5}N m", 1e-6),
-            Self::HardeningWarp | Self::HardeningWeft | Self::Narrowing | Self::Friction => {
-                ("", 1.0)
+            Self::Material(component) => {
+                (component.figure.unit.shown, component.figure.unit.factor)
             }
         }
     }
 
-    /// Whether a cloth can have a value.
+    /// Whether patterns usually say it: it is always written, or published for common cloths.
+    pub fn is_usual(self) -> bool {
+        match self {
+            Self::Width => true,
+            Self::Material(Component { figure, .. }) => {
+                figure.is_always_written || figure.source.is_some()
+            }
+        }
+    }
+
+    /// Whether a cloth can be without it.
+    pub fn may_be_absent(self) -> bool {
+        match self {
+            Self::Width => false,
+            Self::Material(component) => component.figure.may_be_absent(),
+        }
+    }
+
+    /// Whether a cloth can have a value (SI).
     ///
     /// # Errors
-    /// It cannot: the values that there are, in the unit it is told in.
-    pub fn check(self, value: f64) -> Result<(), String> {
-        let [least, most] = self.range();
-        if (least..=most).contains(&value) {
-            return Ok(());
-        }
-        let (sign, unit) = self.unit();
-        // Round figures in their unit are told as such.
-        let [least, most] = [least, most].map(|end| (end / unit * 1e6).round() / 1e6);
-        Err(format!("give {least} to {most} {sign}")
-            .trim_end()
-            .to_owned())
-    }
-
-    fn place(self, fabric: &mut Fabric) -> &mut f64 {
+    /// It cannot: the values that there are, in the unit shown.
+    pub fn check(self, value: Option<f64>) -> Result<(), String> {
         match self {
-            Self::Width => &mut fabric.width,
-            Self::Weight => &mut fabric.density,
-            Self::Thickness => &mut fabric.thickness,
-            Self::StretchWarp => &mut fabric.stretch[0],
-            Self::StretchWeft => &mut fabric.stretch[1],
-            Self::HardeningWarp => &mut fabric.rheology.hardening[0],
-            Self::HardeningWeft => &mut fabric.rheology.hardening[1],
-            Self::Shear => &mut fabric.shear,
-            Self::Narrowing => &mut fabric.poisson,
-            Self::BendWarp => &mut fabric.bend[0],
-            Self::BendWeft => &mut fabric.bend[1],
-            Self::BendBias => &mut fabric.bend[2],
-            Self::Friction => &mut fabric.friction,
+            Self::Width => {
+                let [min, max] = WIDTHS;
+                match value.is_some_and(|width| (min..=max).contains(&width)) {
+                    true => Ok(()),
+                    false => Err(format!("give {min} to {max} m")),
+                }
+            }
+            Self::Material(component) => component.check(value),
         }
     }
 
-    /// The least and the largest value that a cloth can have: well beyond those of apparel, from chiffon
-    /// (30 g/m2, 1 uN m) to sole leather.
-    pub fn range(self) -> [f64; 2] {
+    fn set(self, fabric: &mut Fabric, value: Option<f64>) {
         match self {
-            Self::Width => [0.05, 20.0],
-            Self::Weight => [1e-3, 10.0],
-            Self::Thickness => [1e-5, 0.02],
-            Self::StretchWarp | Self::StretchWeft => [1.0, 1e6],
-            Self::HardeningWarp | Self::HardeningWeft => [0.0, 1e6],
-            Self::Shear => [0.1, 1e6],
-            Self::Narrowing => [0.0, 0.95],
-            Self::BendWarp | Self::BendWeft | Self::BendBias => [1e-8, 0.1],
-            Self::Friction => [0.0, 5.0],
+            Self::Width => fabric.width = value.unwrap_or(fabric.width),
+            Self::Material(component) => component.set(&mut fabric.material, value),
         }
     }
 }
@@ -175,14 +132,18 @@ pub fn add_fabric(
 /// The fabric is not there; one of its figures is none that a cloth can have.
 pub fn set_fabric(evaluation: &Evaluation, changed: Fabric) -> Result<Vec<Edit>, EditError> {
     let before = fabric(evaluation.pattern(), changed.id)?;
-    for figure in FabricFigure::ALL {
+    for figure in FabricFigure::all() {
         let value = figure.of(&changed);
         // Files may hold others: they are kept until they are changed.
         if value == figure.of(before) {
             continue;
         }
         if let Err(hint) = figure.check(value) {
-            let (name, shown) = (figure.name().to_lowercase(), value / figure.unit().1);
+            let name = figure.name().to_lowercase();
+            let shown = match value {
+                Some(value) => format!("{}", value / figure.unit().1),
+                None => "absent".to_owned(),
+            };
             let message = format!("the {name} of fabric {:?} is {shown}", changed.name);
             return Err(impossible(message, hint));
         }
@@ -190,16 +151,16 @@ pub fn set_fabric(evaluation: &Evaluation, changed: Fabric) -> Result<Vec<Edit>,
     Ok(vec![Edit::Put(Entity::Fabric(Arc::new(changed)))])
 }
 
-/// The edits that give a fabric another value of a figure, in SI units.
+/// The edits that give a fabric another value of a figure (SI).
 ///
 /// # Errors
 /// As [`set_fabric`].
 pub fn set_fabric_figure(
     evaluation: &Evaluation,
     mut changed: Fabric,
-    (figure, value): (FabricFigure, f64),
+    (figure, value): (FabricFigure, Option<f64>),
 ) -> Result<Vec<Edit>, EditError> {
-    *figure.place(&mut changed) = value;
+    figure.set(&mut changed, value);
     set_fabric(evaluation, changed)
 }
 

@@ -1,5 +1,5 @@
 //! Serialisation of numbers that may be infinite or NaN, which JSON cannot represent: they are written as words. Fields
-//! use it by `#[serde(with = "crate::exact")]`.
+//! use it by `#[serde(with = "toile_fabric::exact")]`.
 
 use serde::de::{Error, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -19,7 +19,10 @@ enum Written {
 }
 
 /// Writes a number or its word.
-pub(crate) fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
+///
+/// # Errors
+/// Those of the serialiser.
+pub fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
     let word = WORDS
         .iter()
         .find(|(_, known)| known.total_cmp(number).is_eq() || known.is_nan() && number.is_nan());
@@ -30,7 +33,10 @@ pub(crate) fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::
 }
 
 /// Reads a number or its word.
-pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+///
+/// # Errors
+/// Another word, or neither a number nor a word.
+pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     match Written::deserialize(from)? {
         Written::Number(number) => Ok(number),
         Written::Word(word) => {
@@ -45,7 +51,7 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
 }
 
 /// The same for two numbers.
-pub(crate) mod pair {
+pub mod pair {
     use super::Serialize;
     use serde::{Deserialize, Deserializer, Serializer};
 
@@ -53,12 +59,18 @@ pub(crate) mod pair {
     struct Number(#[serde(with = "super")] f64);
 
     /// Writes two numbers or their words.
-    pub(crate) fn serialize<S: Serializer>(pair: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
+    ///
+    /// # Errors
+    /// Those of the serialiser.
+    pub fn serialize<S: Serializer>(pair: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
         pair.map(Number).serialize(to)
     }
 
     /// Reads two numbers or their words.
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
+    ///
+    /// # Errors
+    /// Another word, or anything but two numbers or words.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
         let pair = <[Number; 2]>::deserialize(from)?;
         Ok(pair.map(|Number(number)| number))
     }

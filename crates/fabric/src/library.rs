@@ -4,8 +4,9 @@
 //! round figure inside a published range of its kind ("range"). Where a test has no value for the bias, it is the
 //! mean of warp and weft (see [`KesValues::material`](crate::KesValues::material)).
 
-use crate::Material;
 use crate::kes::{bending, bending_of_length, shear, tensile_curve, weight};
+use crate::material::Material;
+use crate::sources::FabricSources;
 
 /// A fabric of the library.
 #[derive(Clone, Copy, Debug)]
@@ -32,23 +33,6 @@ pub struct LibraryFabric {
     pub friction: f64,
     /// Where each figure comes from.
     pub sources: FabricSources,
-}
-
-/// Sources of the figures of a fabric.
-#[derive(Clone, Copy, Debug)]
-pub struct FabricSources {
-    /// Of the density.
-    pub density: &'static str,
-    /// Of the thickness.
-    pub thickness: &'static str,
-    /// Of the stretch.
-    pub stretch: &'static str,
-    /// Of the shear.
-    pub shear: &'static str,
-    /// Of the bending.
-    pub bend: &'static str,
-    /// Of the friction.
-    pub friction: &'static str,
 }
 
 impl LibraryFabric {
@@ -309,7 +293,7 @@ mod tests {
     #[test]
     fn every_fabric_can_be_simulated_and_names_its_sources() {
         for fabric in &LIBRARY {
-            fabric.material().check(fabric.name).unwrap();
+            fabric.material().in_domain().unwrap();
             let s = fabric.sources;
             for source in [
                 s.density,
