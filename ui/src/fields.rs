@@ -1,4 +1,4 @@
-//! Text fields: what is typed into one that was just entered takes the place of what stands there.
+//! Text fields: text typed into a field that was just entered replaces the old text.
 
 use crate::glossary::meaning;
 use crate::theme::Palette;
@@ -12,39 +12,41 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::Evaluation;
 
-/// How many names are proposed at once.
+/// Largest number of names that are proposed.
 const PROPOSED: usize = 8;
-/// Share of a field that its text has beside its value.
+/// Share of a field for its text if a value stands beside it.
 const TEXT_SHARE: f32 = 0.5;
-/// Room that words under a field need above the lower rim of the window, and their least width (pixels).
+/// Height that words under a field need above the lower edge of the window, and their least width
+/// (pixels).
 const UNDER: f32 = 64.0;
 const MIN_WIDTH_UNDER: f32 = 270.0;
 
-/// What stands in a field beside its text, in grey. It has the room of the field: nothing moves when it changes.
+/// Grey words inside a field beside its text. They use the room of the field: nothing moves when they
+/// change.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
-    /// What holds while the field is empty.
+    /// Default that applies while the field is empty.
     pub hint: String,
-    /// What its text comes to; not told while it is typed into.
+    /// Value of the text; hidden while it is edited.
     pub value: String,
 }
 
-/// How large a field of one line was, and how long a text it has room for (pixels).
+/// Size of a field of one line, and the width of text that fits (pixels).
 #[derive(Clone, Copy, Debug)]
 struct Room {
     size: egui::Vec2,
     text: f32,
 }
 
-/// A field for a text as wide as there is room. A longer one is seen whole while it is typed into, in
-/// as many lines as it needs, and beside the pointer that rests on it. The lines lie over what is below.
+/// A text field as wide as there is room. A longer text is shown whole while it is edited, in as many
+/// lines as it needs, and in a tooltip. The lines cover the widgets below.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
     text_field_beside(ui, id, text, &Beside::default())
 }
 
 fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Beside) -> Response {
     let had_focus = had_focus(ui, id);
-    // What is typed in the very frame in which the field got the keys takes the place of all, too.
+    // Text typed in the same frame in which the field got the focus replaces the old text, too.
     let given_focus = !had_focus && ui.memory(|memory| memory.has_focus(id));
     if given_focus {
         choose_all(ui, id, text);
@@ -61,9 +63,9 @@ fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Besi
         note_focus(ui, id);
     }
     if response.has_focus() && !had_focus {
-        // One that is gone to by a key may be out of sight.
+        // A field that is reached by a key may be out of sight.
         ui.scroll_to_rect(response.rect, None);
-        // A click has put the cursor where it was.
+        // A click has set the cursor and lost the selection.
         if before.is_some_and(|before| before == *text) {
             choose_all(ui, id, text);
         }
@@ -71,8 +73,8 @@ fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Besi
     response
 }
 
-/// The value of a text in the room that a field has left beside it, shortened where it is longer: the text has half of
-/// the field.
+/// The value of a text for the room beside it in the field, truncated if it is longer; the text has half
+/// of the field.
 fn value_beside(ui: &Ui, value: &str, text: &str) -> String {
     let padding = 4.0 * ui.spacing().button_padding.x;
     let whole = ui.available_width() - padding;
@@ -135,14 +137,15 @@ fn in_one_line(
     }
 }
 
-/// What a field of several lines lies in.
+/// Area that a field of several lines is shown in.
 fn over(id: egui::Id) -> Area {
     Area::new(id.with("lines"))
         .order(Order::Foreground)
         .fade_in(false)
 }
 
-/// Whether what a field of several lines lies in was shown before: at first it is measured, and takes no keys.
+/// Whether the area of a field of several lines was shown before: in its first frame it is measured, and
+/// takes no keys.
 fn is_measured(ui: &Ui, id: egui::Id, room: Room) -> bool {
     let over = over(id);
     let is_known = egui::AreaState::load(ui.ctx(), over.layer().id).is_some();
@@ -154,7 +157,7 @@ fn is_measured(ui: &Ui, id: egui::Id, room: Room) -> bool {
     is_known
 }
 
-/// A field that is typed into in several lines, over what is below it.
+/// A field edited in several lines, above the widgets below it.
 fn in_lines(ui: &mut Ui, id: egui::Id, text: &mut String, room: Room) -> Response {
     let (place, _) = ui.allocate_exact_size(room.size, Sense::hover());
     let mut lines = broken;
@@ -169,8 +172,8 @@ fn in_lines(ui: &mut Ui, id: egui::Id, text: &mut String, room: Room) -> Respons
     shown.inner
 }
 
-/// Words and names under a field that is typed into, over what is below it, which stays where it is; says which
-/// part of the screen they and the field take.
+/// Words and names under a field that is edited, above the widgets below it, which do not move; returns
+/// the rectangle of the field and these words on the screen.
 fn under(ui: &Ui, id: egui::Id, field: Rect, add: impl FnOnce(&mut Ui)) -> Rect {
     if !ui.is_rect_visible(field) {
         return field;
@@ -195,14 +198,14 @@ fn under(ui: &Ui, id: egui::Id, field: Rect, add: impl FnOnce(&mut Ui)) -> Rect 
     field.union(shown.response.rect)
 }
 
-/// A text in one line.
+/// A text laid out in one line.
 fn line_of(ui: &Ui, text: &str) -> Arc<Galley> {
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().text_color();
     ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, colour))
 }
 
-/// Lays a text out in lines no longer than a width.
+/// A text laid out in lines of at most a width.
 fn broken(ui: &Ui, text: &dyn TextBuffer, width: f32) -> Arc<Galley> {
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().text_color();
@@ -211,7 +214,7 @@ fn broken(ui: &Ui, text: &dyn TextBuffer, width: f32) -> Arc<Galley> {
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
-/// Selects all that stands in a field.
+/// Selects the whole text of a field.
 pub fn choose_all(ui: &Ui, id: egui::Id, text: &str) {
     let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
     let mut state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap_or_default();
@@ -219,13 +222,13 @@ pub fn choose_all(ui: &Ui, id: egui::Id, text: &str) {
     state.store(ui.ctx(), id);
 }
 
-/// Whether a field had the focus in the frame before: one of a dialog that was closed since has not.
+/// Whether a field had the focus in the last frame; a dialog that was closed since loses it.
 fn had_focus(ui: &Ui, id: egui::Id) -> bool {
     let frame: Option<u64> = ui.data(|data| data.get_temp(id.with("had focus")));
     frame.is_some_and(|frame| frame + 1 >= ui.ctx().cumulative_frame_nr())
 }
 
-/// Notes that a field has the focus in this frame.
+/// Records that a field has the focus in this frame.
 fn note_focus(ui: &Ui, id: egui::Id) {
     let frame = ui.ctx().cumulative_frame_nr();
     ui.data_mut(|data| data.insert_temp(id.with("had focus"), frame));
@@ -234,8 +237,8 @@ fn note_focus(ui: &Ui, id: egui::Id) {
 /// Width of labels left of their fields (pixels).
 const LABEL: f32 = 92.0;
 
-/// A field with its label left of it, grey; `add` is given the label's id. Fields under each other stand in one
-/// column.
+/// A field with a grey label left of it; `add` is given the label's id. Fields below each other are
+/// aligned.
 pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) -> R) -> R {
     let soft = Palette::of(ui.ctx()).ink_soft;
     ui.horizontal_top(|ui| {
@@ -243,12 +246,12 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
         let place = ui.vertical(|ui| {
             ui.set_width(LABEL);
             ui.set_min_height(height);
-            // Its first line is on the line of what is written in the field, in larger letters.
+            // The first line of the label is level with the larger text of the field.
             let line = ui.text_style_height(&TextStyle::Small);
             ui.add_space((0.5 * (height - line)).max(0.0).ceil());
             let words = RichText::new(capitalised(name)).small().color(soft);
             let label = ui.add(egui::Label::new(words).wrap());
-            // What messages call it, it is called by those who hear the window too.
+            // Screen readers get the name as messages write it.
             label.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
             match meaning(name) {
                 Some(meaning) => label.on_hover_text(meaning.replace('`', "")).id,
@@ -260,14 +263,14 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
     .inner
 }
 
-/// Words with a capital, as labels begin.
+/// Words with an initial capital, for labels.
 fn capitalised(words: &str) -> String {
     let mut letters = words.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);
     first.chain(letters).collect()
 }
 
-/// A list to choose a value from, beside its label; a value that is in no entry shows nothing.
+/// A drop-down list beside its label; a value without an entry is shown empty.
 pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, of: &[(T, &str)], value: &mut T) {
     let words = of.iter().find(|known| known.0 == *value);
     labelled(ui, label, |ui, name| {
@@ -288,41 +291,41 @@ pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, of: &[(T, &str)], v
 #[derive(Default)]
 pub struct TypedTexts {
     typed: HashMap<egui::Id, Typed>,
-    /// The field of a number that is being typed into.
+    /// The number field that has the focus.
     number: Option<egui::Id>,
-    /// What a click would put into that field.
+    /// Text that a click would insert into that field.
     offered: Option<String>,
-    /// Whether a click did.
+    /// Whether a click inserted it.
     given: bool,
-    /// What that field is completed to by a click on the name under the pointer.
+    /// Completion of that field by a click on the name under the pointer.
     proposed: Option<String>,
-    /// What the field is completed to by the arrow downward.
+    /// Completion of the field by the arrow-down key.
     first: Option<String>,
 }
 
-/// A text that is being typed, and what is wrong with it.
+/// A text that is being typed, and the error in it.
 #[derive(Default)]
 struct Typed {
     text: String,
     fault: String,
-    /// Whether it is typed into now, and says something else than what stood there.
+    /// Whether it is being edited, and differs from the old text.
     is_begun: bool,
-    /// The part of the screen that it and what is told under it take.
+    /// Rectangle of the field and the words under it on the screen.
     place: Option<Rect>,
 }
 
-/// What a text field came to.
+/// Outcome of a text field.
 pub enum Entered {
-    /// Nothing, or not yet.
+    /// No outcome yet.
     Nothing,
-    /// This was entered.
+    /// The text was entered.
     Text(String),
-    /// It was left.
+    /// The field was left without entering.
     Left,
 }
 
 impl TypedTexts {
-    /// A text field that keeps what is typed until it is entered or left.
+    /// A text field that keeps the typed text until it is entered or left.
     pub fn field(
         &mut self,
         ui: &mut Ui,
@@ -381,8 +384,8 @@ impl TypedTexts {
         entered
     }
 
-    /// The same for a number: a part that is clicked while it is typed into gives its length, and
-    /// names that go on with what is typed can be taken: see [`Self::show_proposals`].
+    /// A text field for a number. A click on a part inserts its length, and names that complete the typed
+    /// text are proposed: see [`Self::show_proposals`].
     pub fn number_field(
         &mut self,
         ui: &mut Ui,
@@ -407,7 +410,7 @@ impl TypedTexts {
                 return Entered::Nothing;
             }
             if let Some(words) = self.offered.take() {
-                // What stood there before is replaced; what was typed goes on.
+                // An old text is replaced; a typed one is continued.
                 let begun = before.filter(|text| text != shown).unwrap_or_default();
                 self.complete(ui, id, begun + &words);
                 self.given = true;
@@ -425,8 +428,8 @@ impl TypedTexts {
         entered
     }
 
-    /// Names that go on with what is typed into the field of a number, under it; the arrow downward takes the
-    /// first, a click any.
+    /// Shows names that complete the text in a number field, under it; arrow-down inserts the first, a
+    /// click any.
     pub fn show_proposals(&mut self, ui: &mut Ui, id: egui::Id, base: &Evaluation) {
         let Some(typed) = self.typed.get(&id).filter(|typed| typed.is_begun) else {
             return;
@@ -455,7 +458,7 @@ impl TypedTexts {
         });
     }
 
-    /// Puts a text into a field that is typed into, and goes on there.
+    /// Puts a text into a field that is edited, and continues editing.
     fn complete(&mut self, ui: &Ui, id: egui::Id, text: String) {
         let typed = self.typed.entry(id).or_default();
         typed.text = text;
@@ -473,26 +476,26 @@ impl TypedTexts {
         let last = CCursorRange::one(CCursor::new(length));
         state.cursor.set_char_range(Some(last));
         state.store(ui.ctx(), id);
-        // It had the focus all along: its text is not to be selected as if it were entered anew.
+        // The field had the focus all along: its text must not be selected as on entering it.
         note_focus(ui, id);
     }
 
-    /// Whether a number is being typed, so that parts can be pointed at.
+    /// Whether a number field has the focus, so that parts can be clicked for their length.
     pub fn takes_parts(&self) -> bool {
         self.number.is_some()
     }
 
-    /// What a click would put into the number that is being typed.
+    /// Sets the text that a click would insert into the number that is being typed.
     pub fn offer(&mut self, words: Option<String>) {
         self.offered = words;
     }
 
-    /// Whether the click of this frame was taken by a number.
+    /// Whether a number field used the click of this frame.
     pub fn took_click(&mut self) -> bool {
         std::mem::take(&mut self.given)
     }
 
-    /// Keeps a text in its field with what is wrong with it.
+    /// Keeps a text in its field, with the error in it.
     pub fn refuse(&mut self, id: egui::Id, text: String, fault: String) {
         let typed = Typed {
             text,

@@ -1,15 +1,15 @@
-//! The words of the trade and their meanings: read from the page that the documents have.
+//! The glossary, read from the page of the documentation.
 
 use std::sync::LazyLock;
 
 /// A word with its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// What it belongs to, as Panels.
+    /// Heading it stands under, as Panels.
     pub subject: &'static str,
     /// The word.
     pub word: &'static str,
-    /// What it means.
+    /// Meaning of the word.
     pub meaning: &'static str,
 }
 
@@ -17,14 +17,14 @@ pub struct Word {
 pub static GLOSSARY: LazyLock<Vec<Word>> =
     LazyLock::new(|| words(include_str!("../../docs/GLOSSARY.md")));
 
-/// The meaning of what a field or title is called, where the glossary has it.
+/// Meaning of the label of a field or title, if the glossary has it.
 pub fn meaning(label: &str) -> Option<&'static str> {
     let found = GLOSSARY.iter();
     let mut found = found.filter(|word| word.word.eq_ignore_ascii_case(label));
     found.next().map(|word| word.meaning)
 }
 
-/// The words that have a text in them or in their meaning; those that begin with it first.
+/// Words that contain a text in name or meaning; those that begin with it come first.
 pub fn found(text: &str) -> Vec<Word> {
     let text = text.trim().to_lowercase();
     let rank = |word: &Word| {
@@ -46,7 +46,7 @@ pub fn found(text: &str) -> Vec<Word> {
     ranked.into_iter().map(|(_, word)| word).collect()
 }
 
-/// The rows of the tables of a page, each with the heading it stands under.
+/// Rows of the tables of a page, each with its heading.
 fn words(page: &'static str) -> Vec<Word> {
     let mut subject = "";
     let mut words = Vec::new();

@@ -1,4 +1,4 @@
-//! The inspector: what is selected, with its name and numbers, each a value or a formula.
+//! The inspector: the selected part, with its name and numbers, each a value or a formula.
 
 mod arcs;
 mod guide_place;
@@ -22,15 +22,15 @@ use toile_pattern::{
     PartId, Want,
 };
 
-/// Width of the inspector, and the room left round it (pixels).
+/// Width of the inspector, and its distance from the edge of the table (pixels).
 const WIDTH: f32 = INSPECTOR_ROOM - FRAME - 2.0 * MARGIN;
 const MARGIN: f32 = 10.0;
-/// Room that its frame takes on both sides together (pixels).
+/// Width of the inspector's frame, both sides together (pixels).
 const FRAME: f32 = 14.0;
-/// Width and height of the table below which there is no room for it (pixels).
+/// Least width and height of the table at which the inspector is shown (pixels).
 const MIN_TABLE_SIZE: Vec2 = vec2(WIDTH + 2.0 * MARGIN, 140.0);
 
-/// The part of the table that the inspector may take, at its right or at its left.
+/// Rectangle on the table for the inspector, at the right or at the left.
 fn inspector_place(table: Rect, left: bool) -> Rect {
     let size = vec2(WIDTH + FRAME, table.height() - 2.0 * MARGIN);
     let at = match left {
@@ -42,9 +42,9 @@ fn inspector_place(table: Rect, left: bool) -> Rect {
 }
 
 impl ToileApp {
-    /// What is selected, over the upper right corner of the table, or over the left one where it would lie on what is
-    /// selected; where nothing is selected nothing is there. While a drawing tool is under way, and until it has made
-    /// something, it is out of the way.
+    /// Shows the selection in the upper right corner of the table, or in the left one if the inspector
+    /// would cover the selected part; nothing if nothing is selected. It is hidden while a drawing tool
+    /// is used, until the tool has made something.
     pub(crate) fn show_inspector(&mut self, ui: &mut Ui, table: Rect) {
         let items = self.view.selection.items().to_vec();
         let draws = matches!(self.view.tool, Tool::Slots(_));
@@ -59,8 +59,8 @@ impl ToileApp {
             let place = corners[usize::from(left)];
             self.view.selection_is_in(table, place)
         };
-        // What is newly selected is told on the right where it can be. From then on it stays in its corner as long as
-        // it covers nothing there, so that no field moves under the hands.
+        // A new selection is shown on the right if possible. From then on the inspector stays in its
+        // corner as long as it covers nothing there, so that no field moves under the user's hands.
         let is_told = self.inspector.told == self.view.selection;
         let here = is_told && self.inspector.is_left;
         self.inspector = InspectorPlace {
@@ -78,7 +78,7 @@ impl ToileApp {
         area.show(ui.ctx(), |ui| {
             frame.show(ui, |ui| {
                 ui.set_width(WIDTH);
-                // Its rows may become more than they were.
+                // The rows may grow later.
                 ui.set_max_height(place.height());
                 let rows = egui::ScrollArea::vertical()
                     .auto_shrink([false, true])
@@ -91,7 +91,7 @@ impl ToileApp {
         });
     }
 
-    /// What holds where a number of an edge is left out: its panel's.
+    /// The panel's number, which applies if an edge has none of its own, in words.
     fn of_panel(&self, panel: PanelId, left_out: &NumberEntry) -> String {
         let entries = plan::numbers_of(&self.base, panel.into());
         let same = entries.iter().find(|entry| entry.label == left_out.label);
@@ -135,7 +135,7 @@ impl ToileApp {
         self.name_field(ui, item);
         let entries = arcs::numbers_of(&self.base, item.part());
         for (k, entry) in entries.iter().enumerate() {
-            // Of several of one name, as the cuts of pleats, each has its number.
+            // Numbers with the same name, such as the cuts of pleats, are counted.
             let is_same = |other: &&NumberEntry| other.label == entry.label;
             let known = mark_words::label(&self.base, entry);
             let label = match entries.iter().filter(is_same).count() {
@@ -173,7 +173,7 @@ impl ToileApp {
         }
     }
 
-    /// What is measured of a part, in words.
+    /// Measured values of a part, in words.
     fn measured(&self, item: Item) -> Option<String> {
         let unit = self.base.pattern().unit;
         let length = |length: f64| number::show(length, Want::Length, unit);
@@ -203,12 +203,12 @@ impl ToileApp {
         }
     }
 
-    /// One number: its text, its value as it is typed, what is wrong with it.
+    /// Field of a number, with its value while it is typed, and the error in it.
     pub(crate) fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
         self.named_number_field(ui, entry, (entry.label, String::new()));
     }
 
-    /// The same under a label of its own, with what holds while it is empty.
+    /// Field of a number with another label, and the default that applies while it is empty.
     fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, told: (&str, String)) {
         let (label, hint) = told;
         labelled(ui, label, |ui, label| {
@@ -219,7 +219,7 @@ impl ToileApp {
             .show_proposals(ui, number_field_id(entry), &self.base);
     }
 
-    /// The numbers of the handles of a curve, so that all of them are set without looking for each.
+    /// Fields for the numbers of a curve's handles, so that all can be set without selecting each.
     pub(crate) fn handle_numbers(&mut self, ui: &mut Ui, curve: CurveId) {
         let handles = match self.view.scene.curve(curve) {
             Some((_, curve)) => curve.handles.clone(),
@@ -242,7 +242,7 @@ impl ToileApp {
         }
     }
 
-    /// What a number comes to that is a formula, or a part of an edge; nothing of one that says it itself.
+    /// Value of a number that is a formula or a share of an edge; `None` if its text is the value.
     fn value_of(&self, entry: &NumberEntry) -> Option<String> {
         if let Some(words) = mark_words::distance(&self.base, entry) {
             return Some(format!("= {words}"));
@@ -253,7 +253,7 @@ impl ToileApp {
         Some(format!("= {}", number::show(value, entry.want, unit)))
     }
 
-    /// The field of a number alone, with what stands beside its text.
+    /// The field of a number without its label; `beside` is shown next to its text.
     pub(crate) fn number_text_field(
         &mut self,
         ui: &mut Ui,
@@ -270,7 +270,7 @@ impl ToileApp {
         let value = |text: &str| -> Result<String, String> {
             let found = number::parse(text, want, &base)?;
             let value = base.number_or_fault(&found, want)?;
-            // What may be anything is told as what it is.
+            // A number of any kind is shown as the kind that its formula has.
             let told = match want {
                 Want::Any => base.kind(&found),
                 want => want,
@@ -297,7 +297,7 @@ impl ToileApp {
         }
     }
 
-    /// Makes what was entered into a field, or keeps it there with what is wrong.
+    /// Makes the edits entered in a field, or keeps the text there with the error.
     pub(crate) fn enter(
         &mut self,
         planned: Result<Vec<Edit>, EditError>,
@@ -397,7 +397,7 @@ impl ToileApp {
 
     fn corner_choice(&mut self, ui: &mut Ui, panel: PanelId, id: toile_pattern::EdgeId) {
         let pattern = self.base.pattern().clone();
-        // Of a side the edges are those of the panel that was split.
+        // Edges of a side belong to the panel that was split.
         let owner = pattern.owner_of(panel, id.into());
         let Some((panel, edge)) = owner.and_then(|owner| Some((owner.id, owner.edge(id)?))) else {
             return;
@@ -452,12 +452,12 @@ impl ToileApp {
     }
 }
 
-/// The field of a number.
+/// Id of the field of a number.
 pub(crate) fn number_field_id(entry: &NumberEntry) -> egui::Id {
     egui::Id::unique(("number", &entry.place))
 }
 
-/// The name of a part.
+/// Name of a part; `None` if it has no name.
 fn name_of(pattern: &toile_pattern::Pattern, part: PartId) -> Option<String> {
     Some(match part {
         PartId::Point(id) => pattern.point(id)?.1.name.clone(),
@@ -488,7 +488,7 @@ fn name_of(pattern: &toile_pattern::Pattern, part: PartId) -> Option<String> {
     })
 }
 
-/// How far the cut line may reach from a corner: a number of widths, or as far as it runs.
+/// Limit of the mitre at a corner: a multiple of the width, or none.
 fn mitre_limit(ui: &mut Ui, limit: &mut MitreLimit) {
     let mut is_limited = *limit != MitreLimit::None;
     let mut widths = match *limit {

@@ -1,7 +1,7 @@
 //! The window of Toile: the pattern on its table, the garment on the mannequin beside it.
 //!
-//! It decides nothing about documents: whatever is done becomes a command of the session. Camera,
-//! selection and tools are view state and stay here.
+//! The window does not edit documents itself: every change is a command of the session. Camera, selection
+//! and tools are view state and stay here.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod app;

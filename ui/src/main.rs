@@ -1,5 +1,5 @@
-//! Opens the window: `toile-ui [FILE]`. Without a file it shows how to begin. Or shows a figure in
-//! motion: `toile-ui --figure NAME PATTERN…`.
+//! Opens the window: `toile-ui [FILE]`; without a file on its first page. Or shows a figure in motion:
+//! `toile-ui --figure NAME PATTERN…`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,7 +14,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Dresses a figure, and shows it in a window or paints it into a file.
+/// Dresses a figure, and shows it in a window or writes a picture of it into a file.
 fn show_figure(task: &FigureTask) -> Result<ExitCode, String> {
     let words = |error: toile_session::SessionError| error.to_string();
     let mut run = RealtimeRun::dressed(task.figure, &task.patterns, &mut Silent).map_err(words)?;
@@ -76,14 +76,14 @@ fn ended(opened: eframe::Result) -> ExitCode {
     }
 }
 
-/// Says on standard error what cannot be done.
+/// Reports on standard error why something failed.
 #[allow(clippy::print_stderr)]
 fn fail(error: &str) -> ExitCode {
     eprintln!("toile-ui: {error}");
     ExitCode::FAILURE
 }
 
-/// Says on standard error why there is no window.
+/// Reports on standard error why no window opened.
 #[allow(clippy::print_stderr)]
 fn complain(error: &str) {
     eprintln!("toile-ui: no window could be opened: {error}");

@@ -27,7 +27,7 @@ use line_field::{is_entered, line_field};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, Pattern, SizeId, VariableId, Want, plan};
 
-/// Measurements that a size begins with.
+/// Initial measurements of a size.
 const FIRST: &[&str] = &[
     "height",
     "bust",
@@ -43,18 +43,18 @@ const FIRST: &[&str] = &[
     "wrist",
 ];
 
-/// Width of a measurement's value, and the least of its name (pixels).
+/// Width of the value of a measurement, and least width of the name (pixels).
 const VALUE: f32 = 84.0;
 const MIN_LABEL_WIDTH: f32 = 100.0;
 
-/// Width of the name of a variable and of its formula (pixels).
+/// Widths of the name of a variable and of the formula (pixels).
 const NAME: f32 = 150.0;
 const FORMULA: f32 = 320.0;
 
-/// Room for the button beside the field of a new variable (pixels).
+/// Width reserved for the button beside the field of a new variable (pixels).
 const ADD_BUTTON: f32 = 120.0;
 
-/// How many measurements are proposed at once.
+/// Largest number of measurements that are proposed.
 const PROPOSED: usize = 5;
 
 impl ToileApp {
@@ -85,7 +85,7 @@ impl ToileApp {
         }
     }
 
-    /// A row a measurement, a column a size.
+    /// The table of measurements: a row per measurement, a column per size.
     fn measurement_table(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
         let mut names: Vec<String> = Vec::new();
@@ -136,7 +136,7 @@ impl ToileApp {
                     chosen = Some(known.name.to_owned());
                 }
             }
-            // One that is there already is gone to.
+            // The name of an existing measurement leads to its row.
             let is_there = |name: &&String| {
                 let label = definition(name).map(|known| known.label.to_lowercase());
                 name.to_lowercase() == wanted || label.is_some_and(|label| label == wanted)
@@ -149,7 +149,8 @@ impl ToileApp {
                     known.name == wanted || known.label.to_lowercase() == wanted
                 };
                 let whole = found.iter().find(is_whole);
-                // A single one that fits is meant; else it is a name of the pattern's own.
+                // If exactly one measurement matches, it is added; else the text names a measurement of
+                // the pattern's own.
                 chosen = match (whole, &found[..]) {
                     (Some(known), _) | (None, [known]) => Some(known.name.to_owned()),
                     _ => Some(self.tables.new_measurement.trim().to_owned()),
@@ -162,7 +163,7 @@ impl ToileApp {
         }
     }
 
-    /// The sizes, which stay in sight, and under them the rows.
+    /// The sizes as column heads, which do not scroll, and the rows.
     fn measurement_rows(&mut self, ui: &mut Ui, pattern: &Pattern, names: &[String]) {
         let label = |name: &str| {
             let known = definition(name);
@@ -224,7 +225,7 @@ impl ToileApp {
             true => RichText::new(format!("{name} (base)")).strong(),
             false => RichText::new(name).strong(),
         };
-        // A click into its field must not close it.
+        // A click into the name field must not close the menu.
         let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         let (head, _) = MenuButton::from_button(Button::new(words).truncate())
             .config(stays)
@@ -300,7 +301,7 @@ impl ToileApp {
         });
     }
 
-    /// The size that is drafted: the one chosen, else the base size, else the first.
+    /// The size that is drafted: the chosen one, else the base size, else the first.
     fn shown_size(&self) -> Option<SizeId> {
         let project = self.session.project();
         let sizes = &project.pattern.sizes;
@@ -310,7 +311,7 @@ impl ToileApp {
         shown.or(base).or(sizes.first()).map(|size| size.id)
     }
 
-    /// A size like the last; the first has the wearer's measurements.
+    /// Adds a size that copies the last; the first one gets the wearer's measurements.
     fn add_size(&mut self) {
         let pattern = self.base.pattern();
         let table = match pattern.sizes.last() {
@@ -320,7 +321,7 @@ impl ToileApp {
                 let mut table = Measurements::new();
                 for name in FIRST {
                     if let Some(found) = wearer.measured(name) {
-                        // A name and value of a table are always taken by another.
+                        // One table accepts every name and value of another.
                         let _ =
                             table.set(name, (found.value * 1000.0).round() / 1000.0, found.origin);
                     }
@@ -332,7 +333,7 @@ impl ToileApp {
         self.edit(planned.map(|(edits, _)| edits), "Add size");
     }
 
-    /// A measurement in every size, as far as the wearer has it.
+    /// Adds a measurement to every size, with the wearer's value if there is one.
     fn add_measurement(&mut self, name: &str) {
         let wearer = self.session.project().body_measurements();
         let value = wearer.get(name).unwrap_or(0.5);
@@ -353,7 +354,7 @@ impl ToileApp {
         }
     }
 
-    /// A row a variable: name, number, value.
+    /// The table of variables: a row per variable with name, formula and value.
     fn variable_table(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let label = ui.label("New variable").id;
@@ -363,7 +364,7 @@ impl ToileApp {
             let entered = is_entered(ui, &response);
             if ui.button("Add variable").clicked() || entered {
                 self.add_variable();
-                // The next is typed without reaching for the field again.
+                // The next variable can be typed at once.
                 response.request_focus();
             }
         });
@@ -374,7 +375,7 @@ impl ToileApp {
             .show(ui, |ui| self.variable_rows(ui, &pattern));
     }
 
-    /// The heads of the columns, which stay in sight, and under them the rows.
+    /// The column heads, which do not scroll, and the rows.
     fn variable_rows(&mut self, ui: &mut Ui, pattern: &Pattern) {
         let heads = Grid::new("variable heads").num_columns(4).show(ui, |ui| {
             let heads = [
@@ -404,7 +405,7 @@ impl ToileApp {
             .show(ui, |ui| {
                 let last = pattern.variables.last().map(|variable| variable.id);
                 for variable in &pattern.variables {
-                    // For those who hear the window: the field beside shows the name.
+                    // For screen readers; sighted users read the name in the field.
                     let unseen = RichText::new(&variable.name).size(1.0);
                     let label = ui.label(unseen.color(Color32::TRANSPARENT)).id;
                     let field = Id::unique(("variable name", variable.id));
@@ -442,7 +443,7 @@ impl ToileApp {
                         None => "no value".into(),
                     };
                     let value = ui.label(RichText::new(words).color(palette.ink_soft));
-                    // What was just added is seen.
+                    // Scrolls to a variable that was just added.
                     if Some(variable.id) == last && std::mem::take(&mut self.tables.added) {
                         value.scroll_to_me(None);
                     }
@@ -455,8 +456,8 @@ impl ToileApp {
             });
     }
 
-    /// A variable from `name = formula`, or from a formula alone; the name of one that is there gives
-    /// it another number.
+    /// Adds a variable from `name = formula`, or from a formula alone; if the name exists, its number is
+    /// changed.
     fn add_variable(&mut self) {
         let text = self.tables.new_variable.clone();
         let (name, formula) = match text.split_once('=') {
@@ -500,9 +501,9 @@ impl ToileApp {
     }
 }
 
-/// Gives the keys to a field that was asked for; whether it has them. The Enter that asked would end the
-/// typing at once, and what is behind a dialog gets no keys in the frame in which it closes: these
-/// frames are waited for.
+/// Moves the focus to a requested field; returns whether the field has it. Waits in frames in which Enter
+/// is pressed, because the Enter of the request would end the typing at once, and in the frame in which a
+/// dialog closes, because widgets behind it get no focus then.
 fn has_been_led_to(ui: &Ui, field: Id) -> bool {
     let is_entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
     let has_keys = !is_entered && ui.memory(|memory| memory.has_focus(field));
@@ -515,7 +516,7 @@ fn has_been_led_to(ui: &Ui, field: Id) -> bool {
     has_keys
 }
 
-/// A label in a column of a width.
+/// A label in a column of a given least width.
 fn named(ui: &mut Ui, width: f32, words: RichText) -> egui::Response {
     let label = ui.scope(|ui| {
         ui.set_min_width(width);

@@ -31,25 +31,25 @@ pub struct Palette {
     pub pencil: Color32,
     /// Guides.
     pub guide: Color32,
-    /// What is selected or under the pointer, and the main button.
+    /// Selected and hovered parts, and the main button.
     pub accent: Color32,
     /// Text on the accent.
     pub on_accent: Color32,
-    /// Behind selected widgets.
+    /// Background of selected widgets.
     pub accent_soft: Color32,
-    /// Faults.
+    /// Errors.
     pub fault: Color32,
     /// Warnings.
     pub warning: Color32,
-    /// What is as it should be.
+    /// Results that are as they should be.
     pub good: Color32,
-    /// Behind the garment.
+    /// Background of the garment.
     pub stage: Color32,
-    /// The floor under the mannequin's feet; at its rim it is as what is behind it.
+    /// Floor under the mannequin; it fades into the background at the rim.
     pub floor: Color32,
 }
 
-/// By day: paper, cloth and chalk.
+/// The light theme: paper, cloth and chalk.
 pub const LIGHT: Palette = Palette {
     table: Color32::from_rgb(0xEF, 0xEC, 0xE5),
     grid: Color32::from_rgb(0xE6, 0xE2, 0xD9),
@@ -74,7 +74,7 @@ pub const LIGHT: Palette = Palette {
     floor: Color32::from_rgb(0xC4, 0xC6, 0xC7),
 };
 
-/// By night.
+/// The dark theme.
 pub const DARK: Palette = Palette {
     table: Color32::from_rgb(0x23, 0x25, 0x28),
     grid: Color32::from_rgb(0x2B, 0x2D, 0x31),
@@ -99,11 +99,12 @@ pub const DARK: Palette = Palette {
     floor: Color32::from_rgb(0x43, 0x47, 0x4C),
 };
 
-/// How far to each side of the rim between two parts of the window it is taken hold of (pixels).
+/// Half the width of the strip in which the border between two parts of the window can be dragged
+/// (pixels).
 pub const GRAB: f32 = 4.0;
 
 impl Palette {
-    /// The colours of the theme a window is in.
+    /// Colours of the present theme.
     pub fn of(context: &egui::Context) -> &'static Self {
         match context.theme() {
             Theme::Light => &LIGHT,
@@ -112,8 +113,8 @@ impl Palette {
     }
 }
 
-/// Colours of seams: both sides share one. Muted, of like lightness, told apart by hue; none is red, which is the
-/// colour of errors.
+/// Colours of seams: both sides share one. Muted, of similar lightness, distinguished by hue; none is
+/// red, which means errors.
 const SEAMS: [Color32; 10] = [
     Color32::from_rgb(0x3B, 0x7E, 0xA8),
     Color32::from_rgb(0xC0, 0x86, 0x2E),
@@ -130,7 +131,7 @@ const SEAMS: [Color32; 10] = [
 /// The second round of colours is darker by this factor, so that 20 seams differ.
 const SECOND_ROUND: f32 = 0.68;
 
-/// The colour of the seam with that number (from 1).
+/// Colour of a seam by its number (from 1).
 pub fn seam(number: usize) -> Color32 {
     let k = number.saturating_sub(1);
     let colour = SEAMS[k % SEAMS.len()];
@@ -144,12 +145,13 @@ pub fn seam(number: usize) -> Color32 {
     }
 }
 
-/// Font of that size (logical pixels).
+/// Font of a size (logical pixels).
 pub fn font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
-/// A title over fields: larger, and drawn twice a little apart, for the type has one weight only.
+/// A title above fields: larger, and drawn twice with a small offset to look bold, because the font has
+/// one weight only.
 pub fn title(ui: &mut egui::Ui, words: &str) -> egui::Response {
     let words = egui::RichText::new(words).font(font(16.0));
     let ink = Palette::of(ui.ctx()).ink;
@@ -162,7 +164,7 @@ pub fn title(ui: &mut egui::Ui, words: &str) -> egui::Response {
     response
 }
 
-/// Sets colours and type of the whole window, in both themes.
+/// Sets colours and fonts of the whole window, in both themes.
 pub fn apply(context: &egui::Context) {
     for theme in [Theme::Light, Theme::Dark] {
         context.style_mut_of(theme, |style| {
@@ -181,10 +183,10 @@ pub fn apply(context: &egui::Context) {
             style.spacing.button_padding = vec2(8.0, 4.0);
             style.spacing.interact_size = vec2(40.0, 26.0);
             style.spacing.menu_margin = Margin::same(6);
-            // A list scrolls only where it is longer than most windows are high.
+            // Drop-down lists scroll only if they are longer than most windows are high.
             style.spacing.combo_height = 480.0;
             style.interaction.resize_grab_radius_side = GRAB;
-            // What goes on beyond a rim is seen to, though the pointer is elsewhere.
+            // A scroll bar stays visible while the pointer is elsewhere, to show that there is more.
             style.spacing.scroll.dormant_handle_opacity = 0.6;
             colour(&mut style.visuals, theme);
         });

@@ -4,25 +4,25 @@ use super::ToileApp;
 use crate::theme::Palette;
 use egui::{Button, Key, Popup, RichText, Ui};
 
-/// The outcome of a dialog.
+/// Outcome of a dialog.
 pub enum Answer {
-    /// It stays open.
+    /// The dialog stays open.
     Stay,
-    /// It is closed.
+    /// The dialog is closed.
     Leave,
-    /// It is closed, and this is performed.
+    /// The dialog is closed, and this action is performed.
     Do(Box<dyn FnOnce(&mut ToileApp)>),
 }
 
-/// The filled button of a page or a dialog.
+/// Shows a filled button of a page or a dialog; returns whether it was clicked.
 pub fn filled_button(ui: &mut Ui, words: &str) -> bool {
     let palette = Palette::of(ui.ctx());
     let words = RichText::new(words).color(palette.on_accent);
     ui.add(Button::new(words).fill(palette.accent)).clicked()
 }
 
-/// The filled button of a dialog, which Enter presses too: what nothing is lost by. A button that has the
-/// keys itself, and a list that is open, take Enter before it.
+/// Shows the filled button of a dialog, which Enter presses too: the choice that loses nothing. A button
+/// that has the keyboard focus, and an open list, take Enter first.
 pub fn main_button(ui: &mut Ui, words: &str) -> bool {
     let pressed = filled_button(ui, words);
     let focused = ui.memory(|memory| memory.focused());

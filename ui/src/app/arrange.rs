@@ -1,4 +1,4 @@
-//! Copies, pastes, duplicates, lines up and spreads what is selected; inserts other patterns.
+//! Copies, pastes, duplicates, aligns and distributes the selection; inserts other patterns.
 
 use super::ToileApp;
 use super::notice::Notice;
@@ -13,13 +13,14 @@ use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
 use toile_pattern::{Edit, EditError, Entity, Evaluation, PartId, Pattern, PointId};
 use toile_session::Project;
 
-/// How far points and curves that are pasted lie beside where they were copied (m).
+/// Offset of pasted points and curves from their originals, right and down (m).
 const ASIDE: f64 = 0.02;
 
-/// Room between a new sheet's origin and what is there (m): a piece may be drawn to the left of it.
+/// Distance from the existing drawing to the origin of a new sheet (m); a piece may be drawn to the left
+/// of it.
 const SHEETS_APART: f64 = 0.4;
 
-/// Room between panels and their duplicate (m).
+/// Gap between panels and their duplicate (m).
 const BESIDE: f64 = 0.05;
 
 impl ToileApp {
@@ -28,7 +29,7 @@ impl ToileApp {
         items.map(|item| item.part()).collect()
     }
 
-    /// What is selected, as text for the clipboard.
+    /// The selected parts as text for the clipboard.
     fn copied_text(&mut self) -> Option<String> {
         let copied = plan::copy(&self.base, &self.selected_parts())
             .map_err(|error| error.to_string())
@@ -49,8 +50,8 @@ impl ToileApp {
         }
     }
 
-    /// A copy whose sheets lie where they are seen, not where the document had them before they were
-    /// laid side by side.
+    /// A copy whose sheets have the positions at which they are seen; the document may hold older
+    /// positions, from before they were laid side by side.
     fn as_laid(&self, mut fragment: Fragment) -> Fragment {
         for sheet in &mut fragment.sheets {
             let place = self.view.table_layout.sheet(sheet.id);
@@ -59,8 +60,8 @@ impl ToileApp {
         fragment
     }
 
-    /// Adds an empty sheet beside what is there, level with the one that is drawn on, and draws on it from
-    /// now on. All sheets are then laid where they are seen.
+    /// Adds an empty sheet beside the existing drawing, level with the current sheet, and makes it the
+    /// current one. All sheets then keep the positions at which they are seen.
     pub(crate) fn new_sheet(&mut self) {
         let bounds = self.view.table_layout.bounds(&self.whole_scene());
         let place = bounds.map_or_else(Vec2::zeros, |bounds| {
@@ -84,7 +85,7 @@ impl ToileApp {
         }
     }
 
-    /// Everything that lies on the table, though a part of it may be on show alone.
+    /// The scene of everything on the table, even while some panels are isolated.
     fn whole_scene(&self) -> Scene {
         let mut scene = self.view.scene.clone();
         if !self.view.isolated.is_empty() {
@@ -94,7 +95,7 @@ impl ToileApp {
         scene
     }
 
-    /// Shows what was hidden while panels were on show alone: what comes to them would be hidden too.
+    /// Ends the isolation of panels, because parts that are added would be hidden too.
     fn show_all(&mut self) {
         if !self.view.isolated.is_empty() {
             self.view.isolated.clear();
@@ -103,7 +104,7 @@ impl ToileApp {
         }
     }
 
-    /// Copies what is selected, as the menu does: keys come from the system as events.
+    /// Copies the selection by a menu command; the keys for it come from the system as events.
     pub(crate) fn copy(&mut self) {
         if self.copied_text().is_some() {
             self.wants_clipboard = true;
@@ -117,7 +118,7 @@ impl ToileApp {
         }
     }
 
-    /// Pastes what was copied last in this window.
+    /// Pastes the parts that were copied last in this window.
     pub(crate) fn paste_copied(&mut self) {
         if let Some(fragment) = self.copied.clone() {
             self.paste(&fragment);
@@ -128,7 +129,7 @@ impl ToileApp {
         self.is_open() && self.copied.is_some()
     }
 
-    /// Follows copy, cut and paste of the system while no text is typed.
+    /// Handles copy, cut and paste events of the system while no text is typed.
     pub(crate) fn take_clipboard(&mut self, context: &egui::Context) {
         self.follow_clipboard(context);
         if self.wants_clipboard {
@@ -174,8 +175,8 @@ impl ToileApp {
     }
 
     fn paste(&mut self, fragment: &Fragment) {
-        // Panels bring sheets of their own; points and curves go to the sheet that is drawn on, unless
-        // their sheet was copied.
+        // Panels bring sheets of their own; points and curves go to the current sheet, unless their sheet
+        // was copied.
         let is_bare = fragment.panels.is_empty() && fragment.whole_sheets.is_empty();
         let loose = is_bare && fragment.sheets.len() <= 1;
         let target = PasteTarget {
@@ -189,7 +190,7 @@ impl ToileApp {
         self.take_pasted(pasted, "Paste");
     }
 
-    /// Panels and sheets where they lay; where something else lies there, to the right of it in free
+    /// Pastes panels and sheets at their original places; where these are occupied, to the right in free
     /// room.
     fn pasted_free(&self, fragment: &Fragment) -> Result<Pasted, EditError> {
         let aside = |aside: f64| {
@@ -220,7 +221,7 @@ impl ToileApp {
         let parts = self.selected_parts();
         let is_whole = |part: &PartId| matches!(part, PartId::Panel(_) | PartId::Sheet(_));
         let pasted = match parts.iter().all(is_whole) {
-            // Beside the panels as they are seen, with their mirrored halves.
+            // Beside the panels as they are displayed, with their mirrored halves.
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
                 let scene = self.whole_scene();
                 let bounds = on_table((&scene, &self.view.table_layout), |id| parts.contains(&id));
@@ -237,7 +238,7 @@ impl ToileApp {
         self.take_pasted(pasted, "Duplicate");
     }
 
-    /// How far to the right of its place something of these bounds lies on nothing else (m).
+    /// Distance to the right by which a rectangle must be moved to overlap nothing (m).
     fn free_aside(&self, scene: &Scene, bounds: &Bounds2) -> f64 {
         let mut panels = on_table((scene, &self.view.table_layout), |_| true);
         panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
@@ -246,7 +247,7 @@ impl ToileApp {
             let is_beside = panel.min.y <= bounds.max.y && bounds.min.y <= panel.max.y;
             let is_under = panel.min.x < bounds.max.x + aside + BESIDE
                 && bounds.min.x + aside < panel.max.x + BESIDE;
-            // What lies touching the room that is left is passed too.
+            // A panel that touches the candidate place is passed too.
             if is_beside && is_under && panel.max.x > bounds.max.x {
                 aside = panel.max.x + BESIDE - bounds.min.x;
             }
@@ -254,7 +255,7 @@ impl ToileApp {
         aside
     }
 
-    /// Makes what was pasted, selects it, and says which numbers are no formulas any more.
+    /// Makes the pasted parts, selects them, and reports which numbers lost their formulas.
     fn take_pasted(&mut self, pasted: Result<Pasted, EditError>, label: &str) {
         let pasted = match pasted {
             Ok(pasted) => pasted,
@@ -263,7 +264,7 @@ impl ToileApp {
                 return;
             }
         };
-        // A sheet that comes to them says where it lies: then the others have to say it too.
+        // A pasted sheet stores its position: then all other sheets have to store theirs too.
         let brings_sheets = pasted
             .edits
             .iter()
@@ -300,7 +301,7 @@ impl ToileApp {
         }
     }
 
-    /// Inserts the panels of another pattern beside what is there.
+    /// Inserts the panels of another pattern beside the existing ones.
     pub(crate) fn insert_file(&mut self, path: &Path) {
         let other = match Project::open(path) {
             Ok((other, _)) => other,
@@ -319,7 +320,7 @@ impl ToileApp {
         self.view.fit();
     }
 
-    /// Groups of points that move as one: those of a part each.
+    /// Groups of points that move together: one group for each selected part.
     fn groups(&self) -> Vec<Vec<PointId>> {
         let parts = self.selected_parts();
         let groups = parts
@@ -358,8 +359,8 @@ impl ToileApp {
     }
 }
 
-/// Least rectangles on the table (m) round panels of which they or their sheets are asked for, and
-/// round sheets with no panels.
+/// Bounding rectangles on the table (m) of panels that are wanted by themselves or by their sheet, and of
+/// wanted sheets without panels.
 fn on_table(
     (scene, table_layout): (&Scene, &TableLayout),
     wanted: impl Fn(PartId) -> bool,
@@ -381,12 +382,12 @@ fn on_table(
     panels.chain(bare).collect()
 }
 
-/// Whether two rectangles have a place in common.
+/// Whether two rectangles overlap or touch.
 fn touch(a: &Bounds2, b: &Bounds2) -> bool {
     (0..2).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
 }
 
-/// The new panels; where there are none, the new sheets; else the new curves and points.
+/// The new panels; if there are none, the new sheets; else the new curves and points.
 fn select_pasted(pattern: &Pattern, parts: &[PartId]) -> Selection {
     let panels: Selection = parts
         .iter()
@@ -416,7 +417,7 @@ fn select_pasted(pattern: &Pattern, parts: &[PartId]) -> Selection {
     items.filter(|item| item.words(pattern).is_some()).collect()
 }
 
-/// A number of things in words.
+/// A count with its noun, as "1 point" or "3 points".
 pub(super) fn count(number: usize, thing: &str) -> String {
     match number {
         1 => format!("1 {thing}"),

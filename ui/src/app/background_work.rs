@@ -1,7 +1,7 @@
-//! Work on other threads: the mannequin and the meshed garment are made from a snapshot, then the drape runs
-//! live. A garment that hangs follows the edits of its pattern; how it follows is found on another thread
-//! too. Where it cannot follow, since its wearer, cloth or fellow garments are others now, it is hung anew by
-//! itself; of several changes that come meanwhile only the newest counts.
+//! Work on other threads: the mannequin and the meshed garment are made from a snapshot, then the drape
+//! runs live. A draped garment follows the edits of its pattern; the change to its simulation is computed
+//! on another thread too. If it cannot follow, because its wearer, cloth or fellow garments changed, it
+//! is draped anew by itself; of several changes meanwhile only the newest counts.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -14,83 +14,84 @@ use toile_session::{
 #[derive(Default)]
 pub struct BackgroundWork {
     body: Option<Receiver<Made<Result<(), SessionError>>>>,
-    /// The project whose mannequin is shown or being made.
+    /// Project and revision of the mannequin that is shown or being made.
     body_of: Option<(Project, u64)>,
     garment: Option<Receiver<Made<Result<GarmentJob, SessionError>>>>,
-    /// Whether what is being meshed is too old: the garment of the newest project is meshed after it.
+    /// Whether the garment that is being meshed is outdated: that of the newest project is meshed after
+    /// it.
     is_overtaken: bool,
-    /// Why the garment that is being meshed is hung.
+    /// Reason why the garment is draped.
     reason: Reason,
     edit: Option<Receiver<Made<Result<GarmentEdit, CannotFollow>>>>,
     run: Option<LiveRun>,
     last: Option<Moment>,
-    /// The garment as it is to hang, by the edit that was given last.
+    /// The garment to simulate, after the last edit that was applied to it.
     given: Option<Arc<GarmentJob>>,
-    /// The project that the garment was last made for or compared with, and its revision.
+    /// Project and revision that the garment was last made for or compared with.
     compared: Option<(Project, u64)>,
-    /// Why the garment cannot go on to the present project.
+    /// Reason why the garment cannot follow the present project.
     standstill: Option<String>,
     /// Whether the report on the garment at rest was shown.
     told: bool,
-    /// Whether the cloth that is shown is to be taken off.
+    /// Whether the displayed cloth is to be removed.
     is_undressed: bool,
 }
 
-/// Why a garment is hung.
+/// Reason why a garment is draped from the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Reason {
-    /// It was asked for.
+    /// The user asked for it.
     #[default]
     Asked,
-    /// The one that hung could not follow a change, on the same body.
+    /// The draped garment could not follow a change, on the same body.
     Change,
-    /// Its wearer is another.
+    /// The wearer changed.
     Wearer,
 }
 
-/// The result of a thread.
+/// A thread's result, with its session.
 struct Made<T> {
     session: Session,
     result: T,
 }
 
-/// The status of the garment in the 3D view.
+/// Status of the garment in the 3D view.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum GarmentStatus {
     /// No garment.
     Nothing,
-    /// A garment that is being meshed.
+    /// The garment is being meshed.
     Preparing,
-    /// The garment of the pattern, on its way.
+    /// The garment of the present pattern is moving.
     Moving,
-    /// The same, held by Pause.
+    /// The garment of the present pattern is paused.
     Held,
-    /// The same where it was stopped.
+    /// The garment of the present pattern was stopped before it was at rest.
     Stopped,
-    /// The same at rest.
+    /// The garment of the present pattern is at rest.
     AtRest,
-    /// The garment of an earlier pattern, and why.
+    /// The garment belongs to an earlier pattern; the text says why.
     OutOfDate(String),
-    /// No garment, for the one that hung cannot be made any more, and why.
+    /// No garment: the one that hung cannot be made any more; the text says why.
     NotMade(String),
 }
 
-/// The main numbers of a live drape.
+/// Main numbers of a live drape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// What is being done.
+    /// Stage of the computation.
     pub stage: Stage,
-    /// Steps taken.
+    /// Number of steps taken.
     pub step: usize,
     /// Largest seam gap (m).
     pub gap: f64,
-    /// Net force over weight.
+    /// Net force divided by weight (1).
     pub residual: f64,
-    /// Share of the way done, 0..=1.
+    /// Progress, 0..=1.
     pub share: f64,
-    /// Revision of the project it shows.
+    /// Revision of the project that the picture shows.
     revision: u64,
-    /// Whether an edit can be taken.
+    /// Whether the drape can take an edit now.
     takes_edits: bool,
 }
 
@@ -108,27 +109,27 @@ impl From<&LiveFrame> for Moment {
     }
 }
 
-/// An event of the work since the last frame.
+/// Event of the work since the last frame.
 pub enum WorkEvent {
-    /// The session knows its mannequin now.
+    /// The session has its mannequin now.
     Body,
-    /// The cloth that is shown belongs on no body any more.
+    /// The displayed cloth fits no body any more.
     Undressed,
     /// The garment is meshed and placed round its mannequin; the drape begins.
     Begun(Arc<GarmentJob>),
     /// The cloth has moved.
     Frame(LiveFrame),
-    /// The drape has come to rest and was handed to the session, with its events.
+    /// The drape has come to rest and was handed to the session; these are the session's events.
     Finished(Vec<Event>),
     /// The garment that followed an edit has come to rest with shortcomings.
     Warned(Vec<String>),
-    /// It cannot be done.
+    /// The work failed; the text says why.
     Failed(String),
 }
 
 impl BackgroundWork {
-    /// Brings the work up to a session's present project: a garment whose wearer is another now is hung anew. A
-    /// gesture that is being shown is waited for.
+    /// Brings the work up to the present project of a session: if the wearer changed, the garment is
+    /// draped anew. Does nothing during the preview of a gesture.
     pub fn follow(&mut self, session: &Session) {
         if session.is_previewing() {
             return;
@@ -145,8 +146,8 @@ impl BackgroundWork {
         }
     }
 
-    /// Has the mannequin of a session's wearer made where it is another than the one shown, and no garment brings
-    /// it.
+    /// Makes the mannequin of a session's wearer on another thread, if the one on show is another's and
+    /// no garment brings its own.
     pub fn follow_body(&mut self, session: &Session) {
         let is_known = |of: &(Project, u64)| of.1 == session.revision();
         let waits = self.body.is_some() || self.garment.is_some() || session.is_previewing();
@@ -164,14 +165,15 @@ impl BackgroundWork {
         }
     }
 
-    /// Begins to make and drape a session's garment. A drape that runs is ended.
+    /// Begins to make and drape the garment of a session. A running drape is ended.
     pub fn start_garment(&mut self, session: &Session) {
         self.hang(session, Reason::Asked);
     }
 
-    /// Hangs a garment from the start. While another is meshed it waits, and only the newest that waits counts.
+    /// Drapes a garment from the start. While another is meshed it waits, and only the newest that waits
+    /// counts.
     fn hang(&mut self, session: &Session, reason: Reason) {
-        // Cloth on the body of another wearer stays that until it is replaced.
+        // Cloth on the body of an earlier wearer keeps this reason until it is replaced.
         let stays = self.garment.is_some() && self.reason == Reason::Wearer;
         self.reason = if stays { Reason::Wearer } else { reason };
         self.leave_run();
@@ -182,7 +184,7 @@ impl BackgroundWork {
         }
     }
 
-    /// Ends the drape. What it has reached stays; while a garment is meshed nothing is reached yet.
+    /// Ends the drape and keeps its present shape. A garment that is only being meshed is dropped.
     pub fn stop(&mut self) {
         if self.garment.take().is_some() {
             self.is_undressed = true;
@@ -192,14 +194,14 @@ impl BackgroundWork {
         self.end_run();
     }
 
-    /// Forgets the garment.
+    /// Drops the garment, also one that is being meshed.
     pub fn clear(&mut self) {
         self.stop();
         self.leave_run();
         self.compared = None;
     }
 
-    /// Forgets the garment that hangs.
+    /// Drops the draped garment.
     fn leave_run(&mut self) {
         self.end_run();
         self.edit = None;
@@ -209,7 +211,7 @@ impl BackgroundWork {
         self.told = false;
     }
 
-    /// Ends the thread of the drape without waiting for its present step.
+    /// Ends the thread of the drape without waiting for the end of its present step.
     fn end_run(&mut self) {
         if let Some(run) = self.run.take() {
             run.stop();
@@ -217,7 +219,7 @@ impl BackgroundWork {
         }
     }
 
-    /// Holds the drape, or lets it go on.
+    /// Pauses the drape, or resumes it.
     pub fn toggle_pause(&mut self) {
         match &self.run {
             Some(run) if run.is_paused() => run.resume(),
@@ -226,12 +228,12 @@ impl BackgroundWork {
         }
     }
 
-    /// Whether the drape is held.
+    /// Whether the drape is paused.
     pub fn is_paused(&self) -> bool {
         self.run.as_ref().is_some_and(LiveRun::is_paused)
     }
 
-    /// Whether a garment is being meshed or draped, or is held meanwhile.
+    /// Whether a garment is being meshed or draped, or is paused.
     pub fn is_draping(&self) -> bool {
         self.garment.is_some() || self.is_moving() || self.is_paused()
     }
@@ -241,13 +243,13 @@ impl BackgroundWork {
         self.body.is_some()
     }
 
-    /// Whether the cloth that is shown is that of an earlier project.
+    /// Whether the displayed cloth belongs to an earlier project.
     pub fn is_out_of_date(&self) -> bool {
         let is_replaced = self.garment.is_some() && self.reason != Reason::Asked;
         is_replaced || matches!(self.status(), GarmentStatus::OutOfDate(_))
     }
 
-    /// Whether the cloth that is shown hung on another body than the wearer's.
+    /// Whether the displayed cloth was draped on the body of an earlier wearer.
     pub fn is_on_another_body(&self) -> bool {
         self.garment.is_some() && self.reason == Reason::Wearer
     }
@@ -258,30 +260,30 @@ impl BackgroundWork {
         !works && self.standstill.is_some()
     }
 
-    /// Whether anything may change without the person doing something.
+    /// Whether anything may change without user input.
     pub fn is_busy(&self) -> bool {
         let works = self.body.is_some() || self.garment.is_some() || self.edit.is_some();
         works || self.is_moving()
     }
 
-    /// Whether the cloth moves.
+    /// Whether the cloth is moving.
     fn is_moving(&self) -> bool {
         let stands = self.standstill.is_some() && self.last.is_some_and(|last| last.takes_edits);
         let moves = |run: &LiveRun| !run.is_finished() && !run.is_paused();
         !stands && self.run.as_ref().is_some_and(moves)
     }
 
-    /// The drape at its newest.
+    /// The newest numbers of the drape.
     pub fn moment(&self) -> Option<Moment> {
         self.last
     }
 
-    /// The verdict on the garment at rest.
+    /// Verdict on the garment at rest.
     pub fn verdict(&self) -> Option<Verdict> {
         self.run.as_ref()?.verdict()
     }
 
-    /// What the picture shows.
+    /// Status of the garment on show.
     pub fn status(&self) -> GarmentStatus {
         if self.garment.is_some() {
             return GarmentStatus::Preparing;
@@ -312,7 +314,7 @@ impl BackgroundWork {
         }
     }
 
-    /// What came about since the last look. What threads derived goes to the session.
+    /// The events since the last call. Results that threads derived are given to the session.
     pub fn news(&mut self, session: &mut Session) -> Vec<WorkEvent> {
         let mut news = Vec::new();
         self.follow(session);
@@ -336,13 +338,13 @@ impl BackgroundWork {
         news
     }
 
-    /// Whether the mannequin that was made is that of the session's wearer.
+    /// Whether the mannequin that was made fits the session's wearer.
     fn is_of_wearer(&self, session: &Session) -> bool {
         let known = self.body_of.as_ref();
         known.is_some_and(|(project, _)| project.has_same_body(session.project()))
     }
 
-    /// Begins to drape a garment that was meshed, or has a newer one meshed.
+    /// Begins to drape a garment that has been meshed, or meshes a newer one.
     fn follow_setup(&mut self, session: &mut Session, news: &mut Vec<WorkEvent>) {
         let Some(made) = take(&mut self.garment, session) else {
             return;
@@ -372,7 +374,7 @@ impl BackgroundWork {
         }
     }
 
-    /// Has the garment that hangs follow the pattern, one edit after the other.
+    /// Makes the draped garment follow the pattern, one edit after the other.
     fn follow_edits(&mut self, session: &mut Session) {
         match take(&mut self.edit, session) {
             Some(Ok(Ok(edit))) => self.give(edit),
@@ -397,7 +399,7 @@ impl BackgroundWork {
                 session.garment_edit(&given)
             }));
         } else if self.standstill.is_none() {
-            // A gesture was left: the garment is of this revision, too.
+            // A gesture was cancelled: the garment is valid for this revision, too.
             let mut job = (*given).clone();
             job.revision = session.revision();
             let change = RestChange::Nothing;
@@ -426,7 +428,7 @@ impl BackgroundWork {
 
     fn follow_run(&mut self, session: &mut Session, news: &mut Vec<WorkEvent>) {
         let Some(run) = &self.run else { return };
-        // Asked before the last frame is taken, or that frame could be missed.
+        // Read before the last frame is taken, or that frame could be missed.
         let finished = run.is_finished();
         if let Some(frame) = run.latest() {
             self.last = Some(Moment::from(&frame));
@@ -453,7 +455,7 @@ impl BackgroundWork {
     }
 }
 
-/// Why a garment that was stopped is out of date.
+/// Reason why a garment that was stopped is out of date.
 const STOPPED: &str = "the drape was stopped; drape it again";
 
 fn on_thread<T: Send + 'static>(
@@ -464,14 +466,14 @@ fn on_thread<T: Send + 'static>(
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
         let result = work(&mut session);
-        // Nobody listens any more if something else was asked for meanwhile.
+        // The receiver is gone if something else was asked for meanwhile.
         let _ = sender.send(Made { session, result });
     });
     receiver
 }
 
-/// What a thread has sent, if it has; what it derived goes to the session. A thread that ended
-/// without a word is a failure.
+/// The result a thread has sent, if any; its derived values go to the session. A thread that ended
+/// without a result counts as failed.
 fn take<T>(
     receiver: &mut Option<Receiver<Made<T>>>,
     session: &mut Session,

@@ -12,7 +12,7 @@ use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Ui};
 use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
-/// Room that a message leaves for the hint beside it (pixels).
+/// Width that a message leaves free for the hint beside it (pixels).
 const HINT_WIDTH: f32 = 160.0;
 
 impl ToileApp {
@@ -39,7 +39,7 @@ impl ToileApp {
         });
     }
 
-    /// The menu of a click with the other button: what can be done with what is selected.
+    /// The context menu of the canvas: commands for the selection.
     pub(crate) fn canvas_menu(&mut self) {
         let Some(canvas) = self.view.canvas.take() else {
             return;
@@ -86,7 +86,7 @@ impl ToileApp {
         self.command_widget(ui, command, button, None);
     }
 
-    /// Whether what a command shows or hides is on show.
+    /// Whether the part of the view that a command toggles is visible.
     fn is_on(&self, name: &str) -> bool {
         match name {
             "Rulers" => self.panes.rulers,
@@ -104,7 +104,7 @@ impl ToileApp {
         }
     }
 
-    /// A button of the menu bar; those of the history tell the step.
+    /// A button of the menu bar; the buttons of the history show the step they would undo or redo.
     fn quick_button(&mut self, ui: &mut Ui, name: &str) {
         let Some(command) = named(name) else {
             return;
@@ -131,7 +131,7 @@ impl ToileApp {
         let words = |name: &Option<String>| name.clone().unwrap_or_else(|| "the wearer's".into());
         let mut chosen = project.size_name().map(str::to_owned);
         let before = chosen.clone();
-        // Right to left: the label comes after its choice to stand before it.
+        // Right to left: the label is added after the list, so that it stands before it.
         let choice = ComboBox::from_id_salt("size")
             .selected_text(words(&chosen))
             .width(70.0)
@@ -159,7 +159,7 @@ impl ToileApp {
                     let unit = self.base.pattern().unit;
                     let [x, y] = [at.x, at.y].map(|v| number::show(v, Want::Length, unit));
                     let soft = Palette::of(ui.ctx()).ink_soft;
-                    // Of several sheets the one that is drawn on is told.
+                    // With several sheets the name of the current one is shown.
                     let pattern = self.base.pattern();
                     let sheet = pattern.sheet(sheet).filter(|_| pattern.sheets.len() > 1);
                     let name = sheet.map_or_else(String::new, |sheet| format!("{}   ", sheet.name));
@@ -175,7 +175,7 @@ impl ToileApp {
                     let hints = !hint.is_empty() && hint != words;
                     if !words.is_empty() {
                         let label = RichText::new(&words).color(colour);
-                        // Beside it there is room for what a click does.
+                        // Leaves room for the hint on mouse clicks.
                         let room = if hints { HINT_WIDTH } else { 0.0 };
                         let most = (ui.available_width() - room).max(0.0);
                         let label = ui.scope(|ui| {
@@ -197,7 +197,7 @@ impl ToileApp {
         });
     }
 
-    /// Says that some panels alone are on show, and shows all again.
+    /// Button that says how many panels are isolated, and shows all again.
     fn isolated_button(&mut self, ui: &mut Ui) {
         let words = match self.view.isolated.len() {
             0 => return,
@@ -209,8 +209,8 @@ impl ToileApp {
         }
     }
 
-    /// The latest message; else what the tool in hand asks for; else the part under the pointer;
-    /// else the worst finding.
+    /// Text of the status line: the latest message; else the request of the tool in hand; else the part
+    /// under the pointer; else the worst finding.
     fn status_words(&self, palette: &Palette) -> (String, Color32) {
         if !self.notice.text.is_empty() {
             let colour = match self.notice.tone {
@@ -226,7 +226,7 @@ impl ToileApp {
         if let Some(words) = self.view.hover.and_then(|hit| self.item_words(hit.item)) {
             return (words, palette.ink);
         }
-        // The first of the worst.
+        // The first of the most severe.
         let worst = self.findings.iter().rev().max_by_key(|f| f.severity);
         match worst {
             Some(found) if found.severity > Severity::Note => {
@@ -237,7 +237,7 @@ impl ToileApp {
         }
     }
 
-    /// What a part is, its length, and how it is sewn.
+    /// Description of a part: kind, name, length and seams.
     pub(crate) fn item_words(&self, item: Item) -> Option<String> {
         let pattern = self.base.pattern();
         let mut words = item.words(pattern)?;
@@ -260,7 +260,7 @@ impl ToileApp {
         Some(words)
     }
 
-    /// Seams an edge is sewn by, in words.
+    /// Description of the seams that an edge is part of.
     pub(crate) fn seam_words(&self, item: Item) -> String {
         let Item::Edge(panel, edge) = item else {
             return String::new();
@@ -285,7 +285,7 @@ impl ToileApp {
 }
 
 impl ToileApp {
-    /// A button for a command, greyed while it cannot be done.
+    /// A button for a command, greyed while the command is not available.
     pub(crate) fn command_button(&mut self, ui: &mut egui::Ui, name: &str) {
         if let Some(command) = named(name) {
             let button = egui::Button::new(command.name);
@@ -293,7 +293,7 @@ impl ToileApp {
         }
     }
 
-    /// The same with a button and words of one's own.
+    /// A command's widget with a given button and tooltip.
     pub(crate) fn command_widget(
         &mut self,
         ui: &mut egui::Ui,
@@ -306,7 +306,7 @@ impl ToileApp {
             .add_enabled((command.when)(self), button)
             .on_hover_text(&words)
             .on_disabled_hover_text(&words);
-        // Its key is said beside it, and is no part of its name.
+        // The key is shown beside the name, and is no part of the accessible name.
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, response.enabled(), command.name)
         });

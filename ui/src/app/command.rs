@@ -1,4 +1,4 @@
-//! A command of the window: name, key, when it can be done, what it does.
+//! A command of the window: name, key, condition and action.
 
 use super::ToileApp;
 use egui::{Key, KeyboardShortcut, Modifiers};
@@ -6,48 +6,48 @@ use strum::{EnumCount, IntoStaticStr, VariantArray};
 
 /// A command of the window.
 pub struct UiCommand {
-    /// Its name: text of its button and menu entry, and its accessible name.
+    /// Name: text of the button and menu entry, and the accessible name.
     pub name: &'static str,
-    /// One sentence on what it does.
+    /// One sentence on the effect.
     pub tip: &'static str,
-    /// Its key.
+    /// Keyboard shortcut.
     pub key: Option<KeyboardShortcut>,
-    /// The menu it is in.
+    /// Menu that contains it.
     pub menu: Menu,
-    /// Whether a rule parts it from what is above it in the menu.
+    /// Whether a separator stands before it in the menu.
     pub begins_group: bool,
-    /// Whether it can be done now.
+    /// Whether it is available now.
     pub when: fn(&ToileApp) -> bool,
-    /// Does it.
+    /// Performs it.
     pub does: fn(&mut ToileApp),
 }
 
 /// Menus, in the order of the menu bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray, IntoStaticStr)]
 pub enum Menu {
-    /// Files.
+    /// File commands.
     File,
-    /// Changes.
+    /// Editing commands.
     Edit,
-    /// What is seen.
+    /// Visibility and enlargement of the views.
     View,
-    /// Tools for sheets.
+    /// Drawing tools for sheets.
     Draw,
     /// Tools for panels.
     Panel,
-    /// Seams.
+    /// Seam commands.
     Sew,
-    /// Markers.
+    /// Marker commands.
     Marker,
-    /// The drape.
+    /// Commands for the drape.
     Garment,
 }
 
 impl Menu {
-    /// All of them.
+    /// All menus.
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// Its name.
+    /// Name of the menu.
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -77,7 +77,7 @@ pub(super) const fn command(
 }
 
 impl UiCommand {
-    /// The same as the first of a group of its menu.
+    /// This command, with a separator before it in its menu.
     pub(super) const fn under_rule(self) -> Self {
         Self {
             begins_group: true,
@@ -85,7 +85,7 @@ impl UiCommand {
         }
     }
 
-    /// What is said of it where the pointer rests: what it does, and its key.
+    /// Text of the tooltip: the effect, and the key.
     pub fn words(&self, context: &egui::Context) -> String {
         match self.key {
             Some(key) => format!("{} ({})", self.tip, shortcut_words(context, &key)),
@@ -94,21 +94,21 @@ impl UiCommand {
     }
 }
 
-/// No key beside it.
+/// No modifier key.
 pub(super) const PLAIN: Modifiers = Modifiers::NONE;
-/// With Shift.
+/// Shift.
 pub(super) const SHIFT: Modifiers = Modifiers::SHIFT;
-/// With Ctrl, on a Mac Cmd.
+/// Ctrl, on a Mac Cmd.
 pub(super) const COMMAND: Modifiers = Modifiers::COMMAND;
-/// With both.
+/// Ctrl (Cmd) and Shift.
 pub(super) const BOTH: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// When a command can always be done.
+/// Condition of a command that is always available.
 pub(super) fn always(_: &ToileApp) -> bool {
     true
 }
 
-/// A key in words, as `Ctrl+S`; signs stand for themselves.
+/// A keyboard shortcut in words, as `Ctrl+S`; keys for signs are shown as the sign.
 pub fn shortcut_words(context: &egui::Context, key: &egui::KeyboardShortcut) -> String {
     let words = context.format_shortcut(key);
     let (name, sign) = (key.logical_key.name(), key.logical_key.symbol_or_name());

@@ -12,42 +12,42 @@ pub fn commands() -> impl Iterator<Item = &'static UiCommand> {
     DOCUMENT_COMMANDS.iter().chain(TOOL_COMMANDS)
 }
 
-/// The command with that name.
+/// The command with a name.
 pub fn named(name: &str) -> Option<&'static UiCommand> {
     commands().find(|command| command.name == name)
 }
 
-/// Keys that are no commands now.
+/// Keys that have another use in this frame, and so start no command.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct KeysTaken {
-    /// Text is typed: all but those with a command key.
+    /// Text is typed: all keys without the command modifier.
     pub typing: bool,
-    /// A field for text has the focus: those it edits with too.
+    /// A text field has the focus: also the keys with the command modifier that edit text.
     pub text: bool,
-    /// That field is empty: nothing in it is undone.
+    /// The focused text field is empty: it leaves Undo and Redo to the window.
     pub empty: bool,
-    /// A tool is in hand: those a number begins with, and letters and digits of views.
+    /// A tool is in hand: keys that begin a number; letters and digits of view commands are held back.
     pub tool: bool,
-    /// A seam is walked, which Home and End lead along.
+    /// A seam is walked: Home and End move along it.
     pub walks: bool,
-    /// Escape goes a step back in a tool that is under way, or closes a menu.
+    /// Escape: it undoes a step of the tool that is under way, or closes a menu.
     pub escape: bool,
-    /// A dialog is open: all of them.
+    /// A dialog is open: all keys.
     pub modal: bool,
 }
 
-/// Whether a key with the command key is one of a field for text.
+/// Whether a text field uses a key together with the command modifier.
 fn edits_text(key: Key) -> bool {
     use Key::{A, C, V, X, Y, Z};
     matches!(key, A | C | V | X | Y | Z)
 }
 
-/// Whether a key with the command key takes an edit back, or does it again.
+/// Whether a key with the command modifier undoes or redoes.
 fn undoes(key: Key) -> bool {
     matches!(key, Key::Y | Key::Z)
 }
 
-/// Whether a key types nothing.
+/// Whether a key types no text.
 pub(super) fn is_function(key: Key) -> bool {
     use Key::{F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12};
     matches!(
@@ -56,7 +56,7 @@ pub(super) fn is_function(key: Key) -> bool {
     )
 }
 
-/// Whether a number can begin with a key.
+/// Whether a number can begin with the sign of a key.
 fn begins_number(key: Key) -> bool {
     use Key::{
         Comma, Equals, Minus, Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Period,
@@ -81,26 +81,27 @@ fn begins_number(key: Key) -> bool {
     )
 }
 
-/// The command that Home is a key of too.
+/// The command that Home starts too.
 const HOME: &str = "Fit";
 
 /// Commands whose keys were pressed in a frame.
 #[derive(Default)]
 pub struct Pressed {
-    /// Those that are to be done.
+    /// Commands to perform.
     pub commands: Vec<&'static UiCommand>,
-    /// One that is not while a tool is in hand.
+    /// A view command that was held back because a tool is in hand.
     pub held: Option<&'static UiCommand>,
 }
 
-/// Whether a command changes a view by a letter or a digit: while a tool is in hand those are typed.
+/// Whether a command changes a view by a letter or digit key; such keys type text while a tool is in
+/// hand.
 fn is_view_letter(command: &UiCommand, key: Key) -> bool {
     matches!(command.menu, Menu::View | Menu::Garment) && !is_function(key) && key != Key::Home
 }
 
 /// Commands whose keys were pressed in this frame.
 pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Pressed {
-    // Keys with more modifiers first: a key without them matches those with them too.
+    // Shortcuts with more modifiers first, because a shortcut without them matches a press with them too.
     let mut keyed: Vec<(&UiCommand, KeyboardShortcut)> = commands()
         .filter_map(|command| Some((command, command.key?)))
         .collect();
@@ -109,8 +110,8 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Pressed {
     keyed.sort_by_key(|(_, key)| std::cmp::Reverse(modifiers(key)));
     let mut pressed = Pressed::default();
     context.input_mut(|input| {
-        // Several letters may come in one frame: the first of a number, formula or name makes the
-        // others part of it.
+        // Several letters may come in one frame: if one begins a number, formula or name, the others are
+        // part of it.
         let begun = keys.tool
             && input.events.iter().any(|event| match event {
                 egui::Event::Text(text) => {

@@ -1,4 +1,4 @@
-//! Dialogs: what must be answered before something is done.
+//! Dialogs: questions to answer before something is done.
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};
@@ -26,9 +26,9 @@ pub enum Dialog {
     Open(FileChoice),
     /// The file to save to.
     SaveAs(FileChoice),
-    /// What is printed, and how.
+    /// Content and settings of a print.
     Print(Box<PrintChoice>),
-    /// What is exported, and where.
+    /// Content and folder of an export.
     Export(Box<ExportChoice>),
     /// The pattern whose panels are inserted.
     Insert(FileChoice),
@@ -38,17 +38,17 @@ pub enum Dialog {
     Wearer(FileChoice),
     /// The pattern of a garment that is worn over or under this one.
     Wear(WornWhere, FileChoice),
-    /// A file would be replaced.
+    /// Asks whether to replace an existing file.
     Replace(PathBuf),
-    /// Changes are in no file; what comes then.
+    /// Asks about unsaved changes; holds the dialog that comes next.
     Leave(Box<Dialog>),
-    /// The window is closed with changes in no file.
+    /// Asks about unsaved changes before the window closes.
     Close,
-    /// Documents a crash left.
+    /// Documents left by a crash.
     Recover,
-    /// A command by its name: what is typed, and which of those found is taken.
+    /// Search for a command by name: the typed text, and the index of the chosen result.
     Find(String, usize),
-    /// Words and their meanings: what is typed.
+    /// Glossary: the typed text.
     Words(String),
 }
 
@@ -95,7 +95,7 @@ impl ToileApp {
                 Dialog::Words(text) => Self::show_words(ui, text),
             };
         });
-        // A field for text gives up its focus by Escape first: here one press is enough.
+        // Escape only takes the focus from a text field at first: here one press closes the dialog.
         let escaped = context.input(|input| input.key_pressed(Key::Escape));
         let closes = (escaped || modal.should_close()) && !self.menu_is_open;
         if matches!(answer, Answer::Stay) && closes {
@@ -114,7 +114,7 @@ impl ToileApp {
                     }
                     _ => None,
                 };
-                // What is told after it is told of it.
+                // Messages of the action itself come after this.
                 self.notice = Notice::default();
                 then(self);
                 self.leave(next);
@@ -122,9 +122,9 @@ impl ToileApp {
         }
     }
 
-    /// What comes after a dialog, if the changes it asked about are safe or given up.
+    /// Opens the next dialog, once the changes are saved or given up.
     fn leave(&mut self, next: Option<Dialog>) {
-        // What could not be saved is not left for another pattern.
+        // A pattern that could not be saved stays open.
         if self.dialog.is_none() && !self.notice.is_fault() {
             self.dialog = next;
         }
@@ -134,7 +134,8 @@ impl ToileApp {
         }
     }
 
-    /// Asks before changes are lost, and waits until files are written; closed again, it stops that.
+    /// Asks before unsaved changes are lost, and lets the window close only once files are written; a
+    /// second request to close stops that.
     pub(crate) fn guard_closing(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         if closing && !self.closes && self.is_unsaved() {
@@ -143,7 +144,7 @@ impl ToileApp {
             self.dialog = Some(Dialog::Close);
             return;
         }
-        // What was drawn while files were written is asked for, too.
+        // Changes that were drawn while files were written are asked about, too.
         if self.closes && self.is_unsaved() && self.session.revision() != self.closes_at {
             (self.closes, self.waits_to_close) = (false, false);
             self.dialog = Some(Dialog::Close);
@@ -274,7 +275,7 @@ fn ask_replace(ui: &mut Ui, path: &std::path::Path) -> Answer {
     ui.label(format!("{} is there already.", path.display()));
     let mut answer = Answer::Stay;
     ui.horizontal(|ui| {
-        // The file that is there is not lost by Enter.
+        // Enter does not replace the existing file.
         if main_button(ui, "Another file") {
             answer = Answer::Do(Box::new(ToileApp::ask_save));
         } else if ui.button("Replace").clicked() {

@@ -1,4 +1,4 @@
-//! Commands of files, changes and views.
+//! Commands for files, edits and views.
 
 use super::ToileApp;
 use super::command::{BOTH, COMMAND, Menu, PLAIN, SHIFT, UiCommand, always, command, key};
@@ -6,14 +6,13 @@ use crate::tools::Tool;
 use egui::Key;
 use toile_pattern::plan::{Alignment, Axis};
 
-/// Enlargement at which a screen of 96 pixels an inch shows things as large as they are [pixels per
-/// metre].
+/// Enlargement that shows things at true size on a screen of 96 pixels per inch (pixels per metre).
 const TRUE_SIZE: f64 = 96.0 / 0.0254;
 
-/// By how much the interface becomes larger or smaller at once, of its usual size.
+/// Step of the scale of the interface (share of the usual size).
 const SCALE_STEP: f32 = 0.1;
 
-/// Commands of files, changes and views, in the order of their menus.
+/// Commands for files, edits and views, in the order of their menus.
 pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     command(
         Menu::File,

@@ -1,5 +1,5 @@
-//! Small pictures of garments as they last hung, for the cards of the first page: kept in the user's folder, one
-//! for each of the recent files.
+//! Small pictures of garments as they last hung, for the cards of the first page: kept in the user's
+//! folder, one for each of the recent files.
 
 use super::ToileApp;
 use super::job::Job;
@@ -7,12 +7,13 @@ use egui::ColorImage;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folder they are kept in.
+/// Name of the folder of the pictures.
 const FOLDER: &str = "drapes";
 /// Width and height of a picture (pixels).
 const SIZE: [usize; 2] = [240, 360];
 
-/// Where the picture of a pattern's file is kept: by a digest of its path (FNV-1a; Fowler, Noll, Vo 1991).
+/// Path of the picture for a pattern file, named by a digest of the file's path (FNV-1a; Fowler, Noll, Vo
+/// 1991).
 pub fn place(folder: &Path, file: &Path) -> PathBuf {
     let path = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
     let bytes = path.as_os_str().as_encoded_bytes();
@@ -24,7 +25,7 @@ pub fn place(folder: &Path, file: &Path) -> PathBuf {
     folder.join(FOLDER).join(format!("{digest:016x}.png"))
 }
 
-/// The picture in a file; nothing where there is none or it cannot be read.
+/// Reads a picture; `None` if there is none or it cannot be read.
 pub fn read(place: &Path) -> Option<ColorImage> {
     let file = std::io::BufReader::new(fs::File::open(place).ok()?);
     let mut reader = png::Decoder::new(file).read_info().ok()?;
@@ -42,8 +43,8 @@ pub fn read(place: &Path) -> Option<ColorImage> {
 }
 
 impl ToileApp {
-    /// Keeps a picture of the garment that has just come to rest, if its pattern is in a file as it is. One that
-    /// cannot be kept is missed on the first page and nowhere else.
+    /// Saves a picture of the garment that has just come to rest, if its pattern is saved in a file. If
+    /// writing fails, only the card on the first page lacks it.
     pub(super) fn keep_drape_view(&mut self) {
         if self.is_unsaved()
             || self
@@ -75,7 +76,7 @@ impl ToileApp {
     }
 }
 
-/// Removes pictures of files that are recent no more.
+/// Removes the pictures of files that are no longer among the recent ones.
 fn forget_others(folder: &Path, known: &[PathBuf]) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;

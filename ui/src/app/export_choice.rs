@@ -1,4 +1,4 @@
-//! What is exported and where, asked in one dialog.
+//! The dialog of an export: formats, marker and folder.
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};
@@ -8,22 +8,23 @@ use egui::{ComboBox, Grid, RichText, Ui};
 use std::path::{Path, PathBuf};
 use toile_session::{Export, ExportFormat};
 
-/// What is asked before an export.
+/// Settings of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportChoice {
-    /// What is written.
+    /// Formats to write.
     pub formats: Vec<ExportFormat>,
-    /// The marker of the pattern that is written; nothing lays the pieces anew.
+    /// Name of the marker to write as it is laid; with `None` the pieces are laid for the export.
     pub marker: Option<String>,
-    /// The folder it goes to, as it is typed.
+    /// Folder of the files, as typed.
     pub folder: String,
-    /// The files that would be replaced, once that was told: asked for again it is done.
+    /// Existing files that would be replaced, once the user was warned; a second confirmation replaces
+    /// them.
     pub replaced: Vec<PathBuf>,
-    /// What is wrong with it.
+    /// Error to show in the dialog.
     pub fault: String,
 }
 
-/// The formats in groups, each with the words of its box.
+/// Formats in groups, each with the label of its box.
 const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
     (
         "Garment",
@@ -62,7 +63,7 @@ const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
     ),
 ];
 
-/// What a file is for.
+/// Purpose of a format's file.
 fn meaning(format: ExportFormat) -> &'static str {
     match format {
         ExportFormat::Glb => "the garment as it hangs, for 3D programs; UVs in metres",
@@ -86,7 +87,7 @@ fn meaning(format: ExportFormat) -> &'static str {
 }
 
 impl ExportChoice {
-    /// What is written where.
+    /// The export that these settings describe.
     pub fn export(&self) -> Export {
         let export = Export {
             dir: PathBuf::from(self.folder.trim()),
@@ -99,7 +100,7 @@ impl ExportChoice {
         }
     }
 
-    /// The files that are there already and would be replaced.
+    /// Existing files that the export would replace.
     fn would_replace(&self) -> Vec<PathBuf> {
         let folder = Path::new(self.folder.trim());
         let mut there: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -121,7 +122,7 @@ impl ExportChoice {
     }
 }
 
-/// Whether a file is one that a format may write: its own, or one more of several fabrics or layers.
+/// Whether a format may write a file of this name: its own, or a further one for a fabric or a layer.
 fn is_written(format: ExportFormat, path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         return false;
@@ -143,7 +144,7 @@ fn is_written(format: ExportFormat, path: &Path) -> bool {
 }
 
 impl ToileApp {
-    /// The dialog of an export.
+    /// Shows the dialog of an export.
     pub(super) fn ask_export_choice(&self, ui: &mut Ui, choice: &mut ExportChoice) -> Answer {
         ui.heading("Export");
         for (group, formats) in GROUPS {
@@ -175,7 +176,7 @@ impl ToileApp {
         self.answer_export(ui, choice)
     }
 
-    /// Which marker is written, where the pattern has any.
+    /// Lets the user choose the marker to write, if the pattern has any.
     fn choose_marker(&self, ui: &mut Ui, choice: &mut ExportChoice) {
         let markers = &self.session.project().pattern.markers;
         if markers.is_empty() {
@@ -217,7 +218,7 @@ impl ToileApp {
         }
         let mut answer = Answer::Stay;
         ui.horizontal(|ui| {
-            // What is there already is not lost by Enter.
+            // Enter does not replace existing files.
             let (keeps, exports) = match asks {
                 true => (main_button(ui, "Keep them"), ui.button("Replace").clicked()),
                 false => (false, main_button(ui, "Export")),

@@ -10,30 +10,30 @@ use egui::Ui;
 use std::path::PathBuf;
 use toile_session::{Command, Event, ExportFormat, Session};
 
-/// An export that goes on.
+/// An export in progress.
 pub struct Exporting {
     job: Job<Exported>,
-    /// What was asked, to be asked again where it fails.
+    /// The settings, to ask again if it fails.
     choice: ExportChoice,
     is_stopped: bool,
 }
 
-/// What came of an export.
+/// Result of an export.
 struct Exported {
     session: Session,
     events: Vec<Event>,
 }
 
-/// What is remembered of exports while the window is open.
+/// Memory of exports while the window is open.
 #[derive(Default)]
 pub struct ExportMemory {
-    /// What was asked last, and of which file.
+    /// The last settings, and the pattern file they were for.
     last: Option<(ExportChoice, Option<PathBuf>)>,
-    /// Files that were written: they are replaced without a question.
+    /// Files that this window has written: these are replaced without asking.
     written: Vec<PathBuf>,
 }
 
-/// Most files that are named when they are written.
+/// Largest number of files that the message names.
 const NAMED: usize = 3;
 
 impl ToileApp {
@@ -54,7 +54,8 @@ impl ToileApp {
         self.dialog = Some(Dialog::Export(Box::new(choice)));
     }
 
-    /// What was asked last; of another file with the folder beside that, and the marker that lies.
+    /// The settings of the last export; for another pattern file, with the folder beside that file and
+    /// the marker that is laid.
     fn export_choice(&self) -> ExportChoice {
         let project = self.session.project();
         let last = self.exports.last.as_ref();
@@ -76,7 +77,7 @@ impl ToileApp {
         choice
     }
 
-    /// The marker on show, or the first, if any of its pieces lies.
+    /// Name of the marker on show, or of the first, if any piece is laid on it.
     fn laid_marker(&self) -> Option<String> {
         let marker = self
             .marker_id()
@@ -84,7 +85,7 @@ impl ToileApp {
         (!marker.placements.is_empty()).then(|| marker.name.clone())
     }
 
-    /// Whether files were all written by exports of this window.
+    /// Whether this window has written all these files by exports.
     pub(super) fn has_exported(&self, files: &[PathBuf]) -> bool {
         files.iter().all(|file| self.exports.written.contains(file))
     }
@@ -93,7 +94,7 @@ impl ToileApp {
         self.exporting.is_some()
     }
 
-    /// Whether files are being made and written.
+    /// Whether an export or a print is in progress.
     pub(super) fn is_writing(&self) -> bool {
         self.is_exporting() || self.printing.is_some()
     }
@@ -119,7 +120,7 @@ impl ToileApp {
         });
     }
 
-    /// Tells of an export that has ended. One that failed is asked for again, with the reason.
+    /// Reports an export that has ended. After a failure the dialog opens again, with the reason.
     pub(super) fn follow_export(&mut self) {
         let ended = self.exporting.as_ref().and_then(|own| own.job.result());
         let Some(result) = ended else { return };
@@ -135,9 +136,9 @@ impl ToileApp {
                 self.notice = Notice::news("The export was stopped: nothing was written");
             }
             Err(fault) => {
-                // What failed is seen before the window closes.
+                // The user sees the failure before the window closes.
                 (self.closes, self.waits_to_close) = (false, false);
-                // For another pattern, opened meanwhile, it was not asked.
+                // The settings are not for another pattern that was opened meanwhile.
                 let source = &self.session.project().source;
                 let last = self.exports.last.as_ref();
                 let is_of_pattern = last.is_some_and(|(_, of)| of == source);
@@ -151,7 +152,7 @@ impl ToileApp {
         }
     }
 
-    /// What was written, how the garment hangs, and what is worth telling.
+    /// The message after an export: files written, verdict on the garment, warnings.
     fn told_export(&mut self, choice: &ExportChoice, events: &[Event]) -> Notice {
         let mut words = String::new();
         let mut verdict = None;
@@ -188,7 +189,7 @@ impl ToileApp {
         }
     }
 
-    /// How far an export is, and the button that stops it.
+    /// Progress of the export, and the button that stops it.
     pub(super) fn export_progress(&mut self, ui: &mut Ui) {
         let Some(exporting) = &self.exporting else {
             return;

@@ -1,43 +1,43 @@
-//! A file that is being chosen: a path that is typed, and the folder it is in.
+//! The choice of a file: a typed path, and the listed folder.
 
 use std::path::{Path, PathBuf};
 
-/// How the names of patterns end.
+/// File name extensions of patterns.
 pub const PATTERNS: &[&str] = &["json", "yaml", "yml"];
-/// How the names of tables of measurements and of mannequins end.
+/// File name extensions of measurement tables and mannequins.
 pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
 
-/// A file that is being chosen.
+/// The choice of a file.
 #[derive(Clone, Debug, Default)]
 pub struct FileChoice {
-    /// The path as it is typed.
+    /// The path as typed.
     pub path: String,
-    /// The folder that is listed.
+    /// The listed folder.
     pub folder: PathBuf,
-    /// Folders in it, and files of the endings that are shown.
+    /// Subfolders, and files with the wanted extensions.
     pub entries: Vec<Entry>,
-    /// How the names of the files end that are shown.
+    /// File name extensions of the files that are listed.
     endings: &'static [&'static str],
-    /// Why the folder cannot be listed.
+    /// Reason why the folder cannot be listed.
     pub fault: String,
 }
 
-/// Something in a folder.
+/// Entry of a folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Entry {
-    /// Files come after folders.
+    /// Whether it is a file; files come after folders.
     pub is_file: bool,
-    /// Its name.
+    /// Name of the file or folder.
     pub name: String,
 }
 
 impl FileChoice {
-    /// A choice of a pattern that begins with a path.
+    /// A choice of a pattern file that starts with a path.
     pub fn new(path: &Path) -> Self {
         Self::showing(path, PATTERNS)
     }
 
-    /// A choice of a file of some endings that begins with a path.
+    /// A choice of a file with certain extensions that starts with a path.
     pub fn showing(path: &Path, endings: &'static [&'static str]) -> Self {
         let folder = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -74,7 +74,7 @@ impl FileChoice {
         self.folder = folder;
     }
 
-    /// The path that is chosen; one without a folder is in the folder that is listed.
+    /// The chosen path; a relative path is in the listed folder.
     pub fn chosen(&self) -> PathBuf {
         self.folder.join(self.path.trim())
     }

@@ -1,4 +1,4 @@
-//! New, open, save: with a path field and a list of the folder, which work everywhere.
+//! New, open, save: with a path field and a list of the folder, which work on every platform.
 
 use super::ToileApp;
 use super::dialogs::Dialog;
@@ -8,7 +8,7 @@ use crate::tables::WornWhere;
 use std::path::{Path, PathBuf};
 use toile_session::Command;
 
-/// How the names of files in the native format end.
+/// Ending of the names of files in the native format.
 pub const ENDING: &str = ".toile.json";
 
 impl ToileApp {
@@ -32,7 +32,7 @@ impl ToileApp {
         self.dialog = Some(Dialog::Wear(place, self.file_beside(PATTERNS)));
     }
 
-    /// A file of some endings in the folder of the pattern.
+    /// A choice of a file with certain extensions in the folder of the pattern.
     fn file_beside(&self, endings: &'static [&'static str]) -> FileChoice {
         let path = self.session.project().source.clone().unwrap_or_default();
         let mut choice = FileChoice::showing(&path, endings);
@@ -54,8 +54,7 @@ impl ToileApp {
         self.dialog = Some(Dialog::SaveAs(FileChoice::new(&self.save_path())));
     }
 
-    /// Goes on to a dialog that replaces the document, after asking about changes that are in no
-    /// file.
+    /// Opens a dialog that replaces the document, after asking about unsaved changes.
     fn before_leaving(&mut self, next: Dialog) {
         self.dialog = Some(match self.is_unsaved() {
             true => Dialog::Leave(Box::new(next)),
@@ -63,7 +62,7 @@ impl ToileApp {
         });
     }
 
-    /// Saves to the pattern's own file; asks for one if it has none in the native format.
+    /// Saves to the file of the pattern; asks for a file if the pattern has none in the native format.
     pub(crate) fn save(&mut self) {
         let path = self.save_path();
         let own = self.session.project().source.as_ref() == Some(&path);
@@ -76,7 +75,7 @@ impl ToileApp {
         }
     }
 
-    /// Saves to a path; a file that is there and is another's is replaced only if that was said.
+    /// Saves to a path; the existing file of another document is replaced only if `replaces` is set.
     pub(crate) fn save_to(&mut self, path: PathBuf, replaces: bool) {
         let path = match path.to_string_lossy().ends_with(".json") {
             true => path,
@@ -92,7 +91,7 @@ impl ToileApp {
         self.keep_drape_view();
     }
 
-    /// The file it came from, if that is in the native format; else one beside it.
+    /// The file the pattern came from, if that is in the native format; else one beside it.
     fn save_path(&self) -> PathBuf {
         let project = self.session.project();
         match &project.source {

@@ -1,4 +1,4 @@
-//! The list of faults of the pattern, with their places.
+//! The list of findings on the pattern, with their places.
 
 use super::ToileApp;
 use super::notice::Notice;
@@ -46,7 +46,7 @@ impl ToileApp {
         }
     }
 
-    /// Has the findings seen at their places.
+    /// Marks the findings at their places on the canvas.
     pub(super) fn mark_findings(&mut self) {
         let mut marks: Vec<FindingMark> = Vec::new();
         for found in self.findings.iter() {
@@ -74,8 +74,8 @@ impl ToileApp {
         self.view.finding_marks = marks;
     }
 
-    /// Says what went wrong by the step that was made, unless a refusal is told. It was made all the
-    /// same: so it is a warning.
+    /// Warns of an error in the pattern that the last step caused, unless a failure is shown already. The
+    /// step was made all the same: so it is a warning.
     pub(super) fn tell_new_fault(&mut self, before: &[Diagnostic]) {
         let is_new =
             |found: &&Diagnostic| found.severity == Severity::Error && !before.contains(found);
@@ -126,7 +126,7 @@ fn item_at(place: &Place) -> Option<Item> {
     })
 }
 
-/// The colour a finding is told in.
+/// Colour of the text of a finding.
 pub fn finding_colour(found: &Diagnostic, palette: &Palette) -> Color32 {
     match found.severity {
         Severity::Note => palette.ink,

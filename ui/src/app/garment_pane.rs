@@ -8,12 +8,12 @@ use egui::{
 };
 use toile_session::{Command, Quality, Stage, Verdict};
 
-/// Height of the strip over the view (pixels).
+/// Height of the strip of buttons above the view (pixels).
 const STRIP: f32 = 38.0;
 
 impl ToileApp {
     pub(crate) fn garment_side(&mut self, ui: &mut Ui) {
-        // What was changed in this frame is seen in it: no cloth stands on a body it was not made for.
+        // Changes of this frame take effect in it: cloth is never shown on a body it was not made for.
         self.background_work.follow(&self.session);
         self.background_work.follow_body(&self.session);
         Panel::top("drape")
@@ -70,7 +70,7 @@ impl ToileApp {
         }
     }
 
-    /// What the drape is doing, over the lower end of the 3D view.
+    /// Shows the progress of the drape at the bottom of the 3D view.
     pub(crate) fn drape_progress(&self, ui: &mut Ui, view: Rect) {
         let share = self
             .background_work
@@ -99,7 +99,7 @@ impl ToileApp {
         let layout = Layout::bottom_up(Align::Min);
         ui.scope_builder(UiBuilder::new().max_rect(line).layout(layout), |ui| {
             let label = Label::new(RichText::new(words).color(colour));
-            // Why it is out of date takes the lines it needs.
+            // The reason why it is out of date may take several lines.
             ui.add(match is_old {
                 true => label.wrap(),
                 false => label.truncate(),
@@ -107,7 +107,7 @@ impl ToileApp {
         });
     }
 
-    /// Whether nothing is to be told of the garment at rest.
+    /// Whether the garment at rest has no findings.
     fn is_flawless(&self) -> bool {
         let verdict = self.background_work.verdict();
         verdict.is_none_or(|verdict| verdict.findings().is_empty())
@@ -144,7 +144,8 @@ fn quality_words(quality: Quality) -> &'static str {
     }
 }
 
-/// How a garment ended: what it is that it ought not to be first, where it is not as asked for.
+/// The message at the end of a drape: the main shortcoming comes first if the garment is not as asked
+/// for.
 pub(super) fn ended_words(verdict: &Verdict, state: String) -> String {
     let headline = verdict.headline();
     match (headline.is_empty(), verdict.is_sound()) {

@@ -6,24 +6,24 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use toile_session::{SessionError, Watcher};
 
-/// Work that goes on beside the window.
+/// Work on another thread than the window.
 pub struct Job<T> {
     receiver: Receiver<Result<T, SessionError>>,
     follower: Follower,
 }
 
-/// How far work is.
+/// Progress of the work.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JobProgress {
-    /// What is being done.
+    /// Name of the present step.
     pub stage: String,
-    /// Share of the work that is done, 0..=1.
+    /// Progress, 0..=1.
     pub share: f64,
-    /// What there is to say of it.
+    /// Further information on the step.
     pub detail: String,
 }
 
-/// Follows work for a window.
+/// Passes progress to the window, and the request to stop to the work.
 #[derive(Clone, Default)]
 pub struct Follower {
     progress: Arc<Mutex<JobProgress>>,
@@ -50,7 +50,7 @@ impl Watcher for Follower {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Begins work.
+    /// Starts the work on a new thread.
     pub fn start(
         work: impl FnOnce(&mut Follower) -> Result<T, SessionError> + Send + 'static,
     ) -> Self {
@@ -59,25 +59,25 @@ impl<T: Send + 'static> Job<T> {
         let (sender, receiver) = channel();
         std::thread::spawn(move || {
             let result = work(&mut own);
-            // Nobody listens any more if the window was closed meanwhile.
+            // The receiver is gone if the window was closed meanwhile.
             let _ = sender.send(result);
         });
         Self { receiver, follower }
     }
 
-    /// How far it is.
+    /// Present progress.
     pub fn progress(&self) -> JobProgress {
         let progress = &self.follower.progress;
         let progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
         progress.clone()
     }
 
-    /// Asks it to stop as soon as it can.
+    /// Asks the work to stop as soon as it can.
     pub fn cancel(&self) {
         self.follower.stop.store(true, Ordering::Relaxed);
     }
 
-    /// What came of it, once it has ended; the words say why nothing did.
+    /// The result, once the work has ended, or a text that says why there is none.
     pub fn result(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {
             Ok(result) => Some(result.map_err(|error| error.to_string())),

@@ -1,26 +1,28 @@
-//! The parts of the window and the room that each has.
+//! The parts of the window and their sizes.
 
 use super::ToileApp;
 use crate::theme;
 use egui::{Panel, Ui};
 
-/// Shares of the window's width that the 3D view begins with: alone, and with the tables under it.
+/// Initial share of the window's width for the 3D view: alone, and with the tables under it.
 const GARMENT_SHARES: [f32; 2] = [0.245, 0.33];
-/// Height that the marker has at least, and that is left to the pattern over it where there is room (pixels).
+/// Least height of the marker, and of the pattern above it if there is room for both (pixels).
 const MIN_MARKER_HEIGHT: f32 = 140.0;
 const MIN_PATTERN_HEIGHT: f32 = 170.0;
-/// Width of a window from which on the tables stand beside the pattern, unless they were dragged (pixels).
+/// Least width of a window in which the tables stand beside the pattern, unless the user moved them
+/// (pixels).
 const WIDE: f32 = 1600.0;
-/// Height the tables begin with below the pattern (pixels), and under the garment (share of it).
+/// Initial height of the tables below the pattern (pixels), and under the garment (share of the height).
 const TABLES: f32 = 210.0;
 const TABLES_SHARE: f32 = 0.45;
-/// Width that its row of buttons takes (pixels): it begins no narrower in a window that has room for it.
+/// Width of the row of buttons of the 3D view (pixels): the view starts no narrower if the window has
+/// room for it.
 const GARMENT_ROW: f32 = 320.0;
-/// Most of the window's width that the 3D view may take.
+/// Largest share of the window's width for the 3D view.
 const GARMENT_MOST: f32 = 0.6;
 
 impl ToileApp {
-    /// Bars and views, from the rim of the window inward.
+    /// Bars and views, from the edge of the window inward.
     pub(super) fn parts(&mut self, ui: &mut Ui) {
         self.offer_length();
         let frame = theme::bar(ui.ctx());
@@ -49,7 +51,7 @@ impl ToileApp {
             let height = ui.available_height();
             let below = self.panes.tables && !self.tables_stand_beside(ui.ctx());
             let tables = if below { TABLES } else { 0.0 };
-            // The pattern stays seen over it.
+            // Part of the pattern stays visible above the marker.
             let most = (height - tables - MIN_PATTERN_HEIGHT).max(MIN_MARKER_HEIGHT);
             Panel::bottom("marker")
                 .frame(frame)
@@ -89,13 +91,13 @@ impl ToileApp {
             .show(ui, |ui| self.pattern_side(ui));
     }
 
-    /// Whether the tables stand beside the pattern: where they were dragged, else where there is room.
+    /// Whether the tables stand beside the pattern: as the user chose, else if the window is wide enough.
     pub(crate) fn tables_stand_beside(&self, context: &egui::Context) -> bool {
         let is_wide = context.content_rect().width() >= WIDE;
         self.panes.tables_beside.unwrap_or(is_wide)
     }
 
-    /// Beside the pattern: the garment, and under it the tables where they stand there.
+    /// The pane beside the pattern: the garment, and under it the tables if they stand there.
     fn side(&mut self, ui: &mut Ui, tables: bool) {
         let frame = theme::bar(ui.ctx());
         if !self.panes.garment {

@@ -1,4 +1,4 @@
-//! What a marker is laid on: fabric, width, plies, price, and what of it does not follow the garment.
+//! The cloth of a marker: fabric, width, plies, price, and any difference from the cloth of the garment.
 
 use super::ToileApp;
 use egui::{Color32, ComboBox, DragValue, Id, Label, TextStyle, Ui, vec2};
@@ -6,9 +6,9 @@ use toile_pattern::plan;
 use toile_pattern::{ClothSettings, FabricId, Marker, MarkerId, MarkerKeeps, OrderedSize};
 use toile_session::{Shown, kept_words, other_sizes_words};
 
-/// Widths that differ by less are the same (m).
+/// Widths that differ by less count as equal (m).
 const SAME_WIDTH: f64 = 1e-9;
-/// Room for a field beside its label (pixels).
+/// Width reserved for a field beside its label (pixels).
 const FIELD_ROOM: f32 = 84.0;
 
 impl ToileApp {
@@ -57,7 +57,7 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// The fabric its pieces lie on: what the garment is cut from, or always its own.
+    /// Choice of the fabric of the marker: that of the garment, or always its own.
     fn fabric_choice(
         &self,
         ui: &mut Ui,
@@ -93,7 +93,7 @@ impl ToileApp {
             .labelled_by(label);
     }
 
-    /// Other fabrics that panels are cut from, those of most panels first.
+    /// Other fabrics that panels are cut from, the most used first.
     fn fabrics_cut(&self, but: FabricId) -> Vec<(FabricId, String)> {
         let pattern = self.base.pattern();
         let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
@@ -104,7 +104,8 @@ impl ToileApp {
         named.collect()
     }
 
-    /// Its width. That of the roll, or of the fabric, is followed; another is its own.
+    /// Field for the width of the cloth. If it equals that of the roll or fabric it follows that; else
+    /// the marker has its own.
     fn width_field(&self, ui: &mut Ui, marker: &Marker, cloth: &mut ClothSettings) {
         let pattern = self.base.pattern();
         let garment = self.session.project().garment_cloth();
@@ -131,8 +132,8 @@ impl ToileApp {
         }
     }
 
-    /// Where the marker on show does not follow what the garment is cut from, or whom it is made for: the button that
-    /// mends it, and what it keeps.
+    /// If the marker on show differs from the garment in cloth or size, or has no pieces: shows the
+    /// button that corrects it, and returns a description of the difference.
     pub(super) fn mend_button(&mut self, ui: &mut Ui) -> Option<String> {
         let pattern = self.base.pattern().clone();
         let marker = pattern.marker(self.marker_id()?)?.clone();
@@ -174,7 +175,7 @@ impl ToileApp {
         Some(words)
     }
 
-    /// Orders a garment as the one on show is made: in place of the only one of an order, else beside the others.
+    /// Orders a garment in the size on show: in place of an order of one garment, else in addition.
     fn order_button(&mut self, ui: &mut Ui, marker: &Marker) {
         let project = self.session.project();
         let of_size = project.size.as_deref();
@@ -207,7 +208,7 @@ impl ToileApp {
             || pattern.ordered_pieces(marker).next().is_some()
     }
 
-    /// Why a marker has no pieces, and what to do, if that is so.
+    /// Reason why a marker has no pieces, and a remedy; `None` if it has some.
     pub(super) fn why_marker_is_empty(&self, id: MarkerId) -> Option<String> {
         let pattern = self.base.pattern();
         let marker = pattern.marker(id)?;
@@ -232,7 +233,7 @@ impl ToileApp {
     }
 }
 
-/// A label that begins a new line where its field would have no room beside it.
+/// A label that begins a new line if its field has no room beside it.
 pub(super) fn kept_label(ui: &mut Ui, words: &str) -> Id {
     let font = TextStyle::Body.resolve(ui.style());
     let galley = ui
@@ -241,7 +242,7 @@ pub(super) fn kept_label(ui: &mut Ui, words: &str) -> Id {
     if ui.available_size_before_wrap().x < galley.size().x + FIELD_ROOM {
         ui.end_row();
     }
-    // As high as the field, so that the two stand in one line where they begin a row.
+    // As high as the field, so that both are level where they begin a row.
     let size = vec2(galley.size().x, ui.spacing().interact_size.y);
     ui.add_sized(size, Label::new(words)).id
 }

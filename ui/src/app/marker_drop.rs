@@ -1,4 +1,4 @@
-//! Pieces that are let go on the marker: against their neighbours, or back where they were.
+//! Pieces dropped on the marker: laid against their neighbours, or returned to their place.
 
 use super::ToileApp;
 use super::notice::Notice;
@@ -9,7 +9,7 @@ use toile_pattern::{Edit, EditError, MarkerId, OrderedPiece, PiecePlacement};
 use toile_session::{LetGo, Obstacle};
 
 impl ToileApp {
-    /// Ends a drag of pieces that were moved by a way (m): one step of the history, or none.
+    /// Ends a drag of pieces by a vector (m): one step of the history, or none.
     pub(super) fn drop_pieces(
         &mut self,
         (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -21,7 +21,7 @@ impl ToileApp {
         self.let_go((id, pieces), ("Move pieces", how), moved);
     }
 
-    /// Lays a piece that waited at a place (m).
+    /// Lays a waiting piece at a place (m).
     pub(super) fn lay_piece(
         &mut self,
         (id, piece): (MarkerId, OrderedPiece),
@@ -43,7 +43,7 @@ impl ToileApp {
         self.let_go((id, &[piece]), ("Lay piece", how), laid);
     }
 
-    /// Lets pieces go, by the edits that lay them so far from where they are let go.
+    /// Drops pieces. `edits` gives the edits that lay them at an offset from the place of the drop (m).
     fn let_go(
         &mut self,
         (id, pieces): (MarkerId, &[OrderedPiece]),

@@ -1,4 +1,4 @@
-//! How the fabric of a marker is laid: margins, gap, nap, spread, tilt, print, and its rolls.
+//! Laying of the fabric of a marker: margins, gap, nap, spread, tilt, print, and its rolls.
 
 use super::ToileApp;
 use super::marker_cloth::kept_label;
@@ -15,16 +15,17 @@ const FIELD: f32 = 84.0;
 /// Length of a roll that is added (m).
 const NEW_ROLL: f64 = 5.0;
 
-/// What a field of a number shows while it is empty.
+/// Text in a number field that is empty.
 pub(super) enum Empty {
-    /// The number that holds then: a length (m) or an angle (rad).
+    /// The default number: a length (m) or an angle (rad).
     Means(f64),
-    /// What holds then, in words.
+    /// The default, in words.
     Words(&'static str),
 }
 
 impl ToileApp {
-    /// The rolls to choose from, and with them, where that is asked for, how the fabric is laid and the rules for pieces.
+    /// The list of rolls, and on request the fields for the laying of the fabric and the rules for
+    /// pieces.
     pub(super) fn laying_rows(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
         let Some(marker) = self.marker_id().and_then(|id| pattern.marker(id).cloned()) else {
@@ -112,7 +113,7 @@ impl ToileApp {
         }
     }
 
-    /// The rolls, of which one is on show, and what is said of that.
+    /// Choice of the roll, and the fields of the chosen one.
     fn roll_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let rolls = marker.cloth.rolls.clone().unwrap_or_default();
         ui.label("Rolls");
@@ -193,7 +194,7 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// A field of a number that may be left open. One that is typed is given, also where it is as by default.
+    /// A number field that may be empty. A typed number is stored, even if it equals the default.
     pub(super) fn given_field(
         &mut self,
         ui: &mut Ui,
@@ -237,20 +238,20 @@ impl ToileApp {
     }
 }
 
-/// What a roll is called, counted from 0.
+/// Name of a roll, numbered from 0.
 fn roll_name(roll: &Roll, number: usize) -> String {
     let name = roll.name.clone();
     name.unwrap_or_else(|| format!("roll {}", number + 1))
 }
 
-/// A text field of the usual width.
+/// Places a text field of the usual width.
 fn field_of(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Entered) -> Entered {
     let size = vec2(FIELD, ui.spacing().interact_size.y);
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(size, layout, show).inner
 }
 
-/// A list to choose from, beside its label.
+/// A drop-down list beside its label.
 fn list<T: Copy + PartialEq>(ui: &mut Ui, words: &str, all: &[(T, &str)], value: &mut T) {
     let label = kept_label(ui, words);
     let shown = all.iter().find(|known| known.0 == *value);

@@ -18,27 +18,27 @@ use toile_session::{
     DocumentMarker, FoundMarker, Search, SearchWatcher, SessionError, Start, Watcher,
 };
 
-/// Width of the field of its name (pixels).
+/// Width of the field for the name of the marker (pixels).
 const NAME_WIDTH: f32 = 110.0;
-/// Seconds a search may take.
+/// Choices for the time of a search (s).
 const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];
-/// Part of its time that a search which ended early took at most.
+/// A search that took at most this share of its time ended early.
 const EARLY: f64 = 0.8;
 
-/// A search that goes on.
+/// A search in progress.
 pub struct Searching {
     job: Job<FoundMarker>,
-    /// The marker as the search has it, where that is new.
+    /// The newest marker of the search, if not yet shown.
     newest: Arc<Mutex<Option<DocumentMarker>>>,
-    /// When it began, and the seconds it may take.
+    /// Start time, and the time the search may take (s).
     began: Instant,
     seconds: f64,
-    /// Whether it was stopped by hand.
+    /// Whether the user stopped it.
     is_stopped: bool,
 }
 
 impl Searching {
-    /// Why it ended, where that was clearly before its time.
+    /// Reason for an end clearly before the time was up; `None` if there was no such end.
     fn ended_early(&self) -> Option<String> {
         let took = self.began.elapsed().as_secs_f64();
         if took > EARLY * self.seconds {
@@ -54,7 +54,7 @@ impl Searching {
     }
 }
 
-/// How a search is asked for.
+/// Settings of a search.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchChoice {
     seconds: f64,
@@ -69,7 +69,7 @@ impl Default for SearchChoice {
 }
 
 impl ToileApp {
-    /// Shows or hides the marker; the first one is made where there is none.
+    /// Shows or hides the marker; makes the first one if there is none.
     pub(crate) fn toggle_marker(&mut self) {
         self.panes.marker = !self.panes.marker;
         if self.panes.marker && self.base.pattern().markers.is_empty() && self.has_panels() {
@@ -85,7 +85,7 @@ impl ToileApp {
         let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
         let has_marker = |id| pattern.markers.iter().any(|m| m.fabric == id);
         let fabrics = pattern.fabrics.iter().map(|fabric| fabric.id);
-        // The fabric without a marker that most panels are cut from.
+        // Prefers a fabric without a marker, then the one that most panels are cut from.
         let Some(fabric) = fabrics.max_by_key(|id| (!has_marker(*id), count(*id))) else {
             return self.say_fault("the pattern has no fabric: draw a panel first".into());
         };
@@ -130,7 +130,7 @@ impl ToileApp {
         }
     }
 
-    /// The marker's bars and its view.
+    /// The bars and the view of the marker.
     pub(crate) fn marker_side(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| self.marker_bar(ui));
         ui.horizontal_wrapped(|ui| self.search_bar(ui));
@@ -186,7 +186,8 @@ impl ToileApp {
             .on_hover_text("How the fabric is laid, its rolls, and rules for single pieces");
     }
 
-    /// How many garments of the wearer, where that is none of the sizes, and of each size.
+    /// Fields for the number of garments: of the wearer, if that is not one of the sizes, and of each
+    /// size.
     fn order_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let pattern = self.base.pattern().clone();
         let project = self.session.project();
@@ -256,8 +257,8 @@ impl ToileApp {
         }
     }
 
-    /// What the marker comes to, or how far the search is: a line that is always as high, so that words move
-    /// nothing.
+    /// The result of the marker, or the progress of the search. The height of the line is constant, so
+    /// that nothing moves.
     fn verdict_line(&mut self, ui: &mut Ui) {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
@@ -289,7 +290,7 @@ impl ToileApp {
         });
     }
 
-    /// What the marker comes to, and whether it cannot be cut as it lies.
+    /// Description of the marker's result, and whether it cannot be cut as it is laid.
     fn marker_words(&self) -> (String, bool) {
         let state = &self.marker_view.state;
         if state.laid + state.waiting == 0 {
@@ -348,7 +349,7 @@ impl ToileApp {
         let selected = self.marker_view.selection.clone();
         match action {
             MarkerAction::Drag(pieces, way) => {
-                // From where they were before the drag.
+                // Measured from the positions before the drag.
                 match plan::move_pieces(&self.base, (id, &pieces), way.into()) {
                     Ok(edits) => self.preview(&edits),
                     Err(error) => self.say_fault(error.to_string()),
@@ -399,7 +400,7 @@ impl ToileApp {
         }
     }
 
-    /// Does what is asked of the selected pieces by a command.
+    /// Applies a command to the selected pieces.
     pub(crate) fn on_pieces(&mut self, action: fn(&MarkerView) -> Option<MarkerAction>) {
         if let Some(action) = action(&self.marker_view) {
             self.do_marker(action);
@@ -419,7 +420,7 @@ impl ToileApp {
         }
     }
 
-    /// Lays the pieces in little length, on a thread of its own.
+    /// Searches for a layout of short length, on a thread of its own.
     pub(crate) fn search_marker(&mut self) {
         let Some(id) = self.marker_id() else { return };
         // A piece that is being dragged goes back: the search lays it.
@@ -488,7 +489,7 @@ impl ToileApp {
         }
     }
 
-    /// Takes over what a search found.
+    /// Applies the result of a search.
     pub(super) fn follow_search(&mut self) {
         let Some(searching) = &self.searching else {
             return;

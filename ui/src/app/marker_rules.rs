@@ -1,4 +1,4 @@
-//! Rules of a marker for the pieces that are selected, and marks that lie on the same place of its print.
+//! Rules of a marker for the selected pieces, and marks that must lie on the same place of its print.
 
 use super::ToileApp;
 use super::marker_laying::Empty;
@@ -10,18 +10,18 @@ use toile_pattern::{
     LayingRule, MarkRef, Marker, MatchedMarks, PieceRule, RuledPieces, Turn, Want,
 };
 
-/// The quarter turns, and what they are called.
+/// Quarter turns (rad), with their labels.
 const TURNS: [(f64, &str); 4] = [
     (0.0, "0\u{b0}"),
     (FRAC_PI_2, "90\u{b0}"),
     (PI, "180\u{b0}"),
     (3.0 * FRAC_PI_2, "270\u{b0}"),
 ];
-/// Turns that differ by less are the same (rad).
+/// Turns that differ by less count as equal (rad).
 const SAME_TURN: f64 = 1e-9;
 
 impl ToileApp {
-    /// The rules for the selected pieces, and the marks that match.
+    /// The rules for the selected pieces, and the matched marks.
     pub(super) fn rule_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         match self.marker_view.selection.first().copied() {
             None => {
@@ -93,7 +93,7 @@ impl ToileApp {
         }
     }
 
-    /// Whether a rule is for a piece that is selected, and not for all.
+    /// Whether a rule is for a selected piece in particular, not for all.
     fn is_for_selected(&self, rule: &PieceRule) -> bool {
         let mut selected = self.marker_view.selection.iter();
         selected.any(|piece| match rule.pieces {
@@ -103,8 +103,8 @@ impl ToileApp {
         })
     }
 
-    /// Gives the selected pieces what has changed of a rule: where a copy has a rule of its own, in that, else in that of
-    /// its panel.
+    /// Applies the changes of a rule to the selected pieces: to the rule of the copy if it has one of its
+    /// own, else to that of its panel.
     fn set_rule(&mut self, marker: &Marker, before: &LayingRule, now: &LayingRule) {
         let mut rules = marker.rules.clone();
         for piece in &self.marker_view.selection {
@@ -137,7 +137,7 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// The button that takes the notches that are selected beside the pattern.
+    /// Button that matches the notches selected in the pattern view, and the list of matched marks.
     fn matched_marks(&mut self, ui: &mut Ui, marker: &Marker) {
         let selected = self.view.selection.items().iter();
         let marks = selected.filter_map(|item| match item {
@@ -174,7 +174,7 @@ impl ToileApp {
     }
 }
 
-/// Takes over what differs between two rules.
+/// Copies the fields that differ between two rules into a third.
 fn change(rule: &mut LayingRule, before: &LayingRule, now: &LayingRule) {
     macro_rules! take {
         ($($field:ident),*) => {

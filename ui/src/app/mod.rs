@@ -1,4 +1,4 @@
-//! The window: what it holds, and one frame of it.
+//! The window: its contents, and one frame of it.
 
 mod answer;
 mod arrange;
@@ -64,12 +64,12 @@ use toile_pattern::plan::Fragment;
 use toile_pattern::{Code, Diagnostic, Evaluation};
 use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
 
-/// Time between frames while something runs by itself.
+/// Time between frames while something moves by itself.
 const FRAME: Duration = Duration::from_millis(33);
-/// The window. Documents are decided on by the session alone; this holds what is seen of them.
+/// The window. The session alone decides on documents; this holds the view of them.
 pub struct ToileApp {
     pub(crate) session: Session,
-    /// Every value as before the gesture that is shown.
+    /// The evaluated pattern without the gesture that is being previewed.
     pub(crate) base: Arc<Evaluation>,
     pub(crate) findings: Arc<Vec<Diagnostic>>,
     pub(crate) view: PatternView,
@@ -83,40 +83,41 @@ pub struct ToileApp {
     /// Whether the window closes once files are written.
     pub(crate) waits_to_close: bool,
     pub(crate) exports: ExportMemory,
-    /// What was copied last, if the clipboard still holds it.
+    /// The parts copied last, if the clipboard still holds them.
     pub(crate) copied: Option<Fragment>,
     pub(crate) wants_clipboard: bool,
     pub(crate) notice: Notice,
     pub(crate) dialog: Option<Dialog>,
-    /// Whether a menu or a list to choose from was open when the frame began.
+    /// Whether a menu or drop-down list was open at the start of the frame.
     pub(crate) menu_is_open: bool,
-    /// Whether a field had the keys when the frame before ended: Escape is its own then.
+    /// Whether a field had the keyboard at the end of the last frame: then Escape belongs to it.
     field_had_keys: bool,
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
     pub(crate) panes: Panes,
     /// Whether the tables stood beside the pattern in the last frame.
     pub(crate) tables_are_beside: bool,
-    /// What was selected when the drawing tool in hand was taken: it is not told over the table meanwhile.
+    /// The selection when the drawing tool was taken: the inspector does not describe it while that tool
+    /// is used.
     pub(crate) selected_before: Option<Selection>,
     pub(crate) inspector: InspectorPlace,
-    /// Why the file that was asked for is not open.
+    /// Reason why the requested file is not open.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
-    /// The state of the project for which that was answered.
+    /// Revision of the project for which the user agreed to close the window.
     closes_at: u64,
     pub(crate) wants_theme: bool,
-    /// A change of the size of the interface that is asked for.
+    /// A requested change of the scale of the interface.
     pub(crate) wants_scale: Option<Option<f32>>,
     pub(crate) preferences: Preferences,
     recovery: Option<Recovery>,
-    /// Documents a crash left, to be offered.
+    /// Documents left by a crash, to be offered.
     pub(crate) abandoned: Vec<Abandoned>,
-    /// Pictures of the first page.
+    /// Pictures on the first page.
     pattern_cards: pattern_cards::PatternCards,
-    /// The work on the picture of the garment that hangs.
+    /// The job that saves the picture of the draped garment.
     drape_view: Option<job::Job<()>>,
-    /// The project that was last given to be kept.
+    /// The project that was last handed to the recovery file.
     kept: Option<Project>,
     pub(crate) revision: Option<u64>,
     octave: i32,
@@ -124,18 +125,18 @@ pub struct ToileApp {
     title: String,
 }
 
-/// What a window begins with.
+/// Startup arguments of a window.
 #[derive(Default)]
 pub struct Beginning {
     /// The pattern to open.
     pub file: Option<PathBuf>,
-    /// The user's folder for what is kept from one time to the next; nothing keeps nothing.
+    /// The user's folder for settings and recovery files; with `None` nothing is stored.
     pub folder: Option<PathBuf>,
 }
 
 impl ToileApp {
-    /// A window with a pattern in it, if the file can be opened; else with a message why not.
-    /// Without a graphics card the 3D view says so, and all else works.
+    /// A window with a pattern in it, if the file can be opened; else with a message why not. Without a
+    /// graphics card the 3D view says so, and all else works.
     pub fn new(context: &egui::Context, state: Option<&RenderState>, beginning: Beginning) -> Self {
         theme::apply(context);
         context.add_plugin(pacing::Pacing::default());
@@ -192,7 +193,7 @@ impl ToileApp {
         app
     }
 
-    /// Looks for what a crash left, and keeps what is unsaved from now on.
+    /// Looks for documents left by a crash, and saves unsaved work for recovery from now on.
     fn begin_recovery(&mut self, folder: &Path) {
         let found = abandoned(folder).and_then(|found| {
             self.abandoned = found;
@@ -217,7 +218,7 @@ impl ToileApp {
         &self.session
     }
 
-    /// What is found wrong with the pattern.
+    /// Findings on the pattern.
     pub fn findings(&self) -> &[Diagnostic] {
         &self.findings
     }
@@ -248,12 +249,12 @@ impl ToileApp {
         }
     }
 
-    /// Every value as before the gesture that is shown.
+    /// The evaluated pattern without the gesture that is being previewed.
     pub fn base(&self) -> &Evaluation {
         &self.base
     }
 
-    /// Why what was asked last was not done.
+    /// Reason why the last request failed.
     pub fn fault(&self) -> Option<&str> {
         self.notice.is_fault().then_some(&*self.notice.text)
     }
@@ -264,7 +265,7 @@ impl ToileApp {
         self.follow_outcome(outcome);
     }
 
-    /// Gives a command to the session; says whether it was done. What came of it is shown.
+    /// Gives a command to the session, and shows the result; returns whether it succeeded.
     pub fn execute(&mut self, command: Command) -> bool {
         match self.session.execute(command, &mut Silent) {
             Ok(events) => {
@@ -280,14 +281,14 @@ impl ToileApp {
         }
     }
 
-    /// What was not done before is of no matter once something is done.
+    /// Clears the message of an earlier failure, once something has succeeded.
     pub(crate) fn forget_fault(&mut self) {
         if self.notice.is_fault() {
             self.notice = Notice::default();
         }
     }
 
-    /// Does a command.
+    /// Performs a command of the window.
     pub(crate) fn command(&mut self, command: &command::UiCommand) {
         self.forget_fault();
         (command.does)(self);
@@ -332,7 +333,7 @@ impl ToileApp {
         }
     }
 
-    /// Follows the session to its present revision, and the view to its enlargement.
+    /// Brings the window up to the present revision of the session, and to the present enlargement.
     pub(crate) fn refresh(&mut self) {
         let octave = self.view.camera.octave();
         let is_new = self.revision != Some(self.session.revision());
@@ -356,7 +357,7 @@ impl ToileApp {
             self.checked = self.revision;
             let mut found = self.session.diagnostics();
             if self.base.pattern().seams.is_empty() {
-                // While nothing is sewn yet, no piece was forgotten.
+                // While there is no seam at all, a piece without seams is no mistake.
                 Arc::make_mut(&mut found).retain(|found| found.code != Code::NotSewn);
             }
             let before = std::mem::replace(&mut self.findings, found);
@@ -366,7 +367,7 @@ impl ToileApp {
         self.keep_unsaved();
     }
 
-    /// Has the state of the document kept while it is in no file.
+    /// Saves the unsaved state of the document for recovery.
     fn keep_unsaved(&mut self) {
         let Some(recovery) = &self.recovery else {
             return;
@@ -388,7 +389,7 @@ impl ToileApp {
         }
     }
 
-    /// What is unsaved is given up: nothing of it is offered again.
+    /// Discards the recovery file: the unsaved changes were given up.
     fn forget_recovery(&mut self) {
         if let Some(recovery) = &self.recovery {
             recovery.clear();
@@ -461,8 +462,8 @@ impl ToileApp {
         let on_marker = context.memory(|memory| memory.has_focus(MarkerView::id()));
         let typing =
             self.types(&context) || self.view.is_typing() || self.dialog.is_some() || on_marker;
-        // While a tool is under way Escape is a step back of the tool, which the canvas takes; while
-        // a menu is open it closes that; in a field it takes back what is typed.
+        // During a gesture of a tool the canvas takes Escape, to go back one step; while a menu is open
+        // Escape closes it; in a field it reverts the typed text.
         self.menu_is_open = egui::Popup::is_any_open(&context);
         let keys = KeysTaken {
             typing,
@@ -525,20 +526,21 @@ impl ToileApp {
         self.view.guides = self.panes.guides;
         self.view.is_covered = self.dialog.is_some() || self.menu_is_open;
         let canvas = ui.available_rect_before_wrap();
-        // Before the table: a click may give a number that is typed there the length of what is clicked.
+        // Before the canvas: a click may insert the length of the clicked part into a number that is
+        // typed there.
         self.show_inspector(ui, canvas);
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);
         }
-        // A guide that is dragged out is seen from then on.
+        // Guides become visible when one is dragged out of a ruler.
         self.panes.guides = self.view.guides;
         if std::mem::take(&mut self.view.asks_guide_place) {
             self.ask_guide_place(ui);
         }
         self.canvas_menu();
         if seen(self) != before {
-            // The bars were drawn before this was known.
+            // The bars were drawn before this change.
             ui.ctx().request_repaint();
         }
     }

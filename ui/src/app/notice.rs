@@ -1,38 +1,38 @@
 //! The message of the status line.
 
-/// How a message is meant.
+/// Kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Tone {
-    /// Good to know.
+    /// Information.
     #[default]
     WorkEvent,
-    /// Probably not as meant.
+    /// Probably not intended.
     Warning,
-    /// It was not done, and why.
+    /// Failure, with the reason.
     Fault,
 }
 
 /// The latest message.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Notice {
-    /// How it is meant.
+    /// Kind of the message.
     pub tone: Tone,
-    /// What it says; empty for none.
+    /// Text; empty for no message.
     pub text: String,
 }
 
 impl Notice {
-    /// Whether something was not done.
+    /// Whether it reports a failure.
     pub fn is_fault(&self) -> bool {
         self.tone == Tone::Fault && !self.text.is_empty()
     }
 
-    /// Whether it only tells something.
+    /// Whether it is mere information.
     pub fn is_news(&self) -> bool {
         self.tone == Tone::WorkEvent
     }
 
-    /// Good to know.
+    /// Information.
     pub fn news(text: impl Into<String>) -> Self {
         Self {
             tone: Tone::WorkEvent,
@@ -40,7 +40,7 @@ impl Notice {
         }
     }
 
-    /// Probably not as meant.
+    /// A warning: probably not intended.
     pub fn warning(text: impl Into<String>) -> Self {
         Self {
             tone: Tone::Warning,
@@ -48,7 +48,7 @@ impl Notice {
         }
     }
 
-    /// It was not done, and why.
+    /// A failure, with the reason.
     pub fn fault(text: impl Into<String>) -> Self {
         Self {
             tone: Tone::Fault,

@@ -5,12 +5,12 @@ use super::command_table::is_function;
 use egui::{Context, Event, Key, Plugin, RawInput};
 use std::collections::VecDeque;
 
-/// Events that wait for their frame.
+/// Events that wait for a later frame.
 #[derive(Default)]
 pub struct Pacing {
     waiting: VecDeque<Event>,
-    /// Whether the frame before ended with something that may move the focus: the views need a
-    /// frame to show where it went.
+    /// Whether the last frame ended with an event that may move the focus: the views need a frame to show
+    /// where the focus went.
     rests: bool,
 }
 
@@ -38,8 +38,8 @@ impl Plugin for Pacing {
 }
 
 impl Pacing {
-    /// Whether an event is the press of a key that waits already and was not let go since: a key that
-    /// is held down does no more than there are frames for, and nothing after it is let go.
+    /// Whether an event repeats a key press that already waits, without a release since: a key that is
+    /// held down acts at most once a frame, so that it does not delay what follows.
     fn is_repeated(&self, event: &Event) -> bool {
         let Event::Key {
             key, pressed: true, ..
@@ -63,7 +63,7 @@ impl Pacing {
     }
 }
 
-/// Whether what is typed after an event may be meant for another field than what is typed before.
+/// Whether text typed after an event may go to another field than text typed before it.
 fn may_move_focus(event: &Event) -> bool {
     match event {
         Event::PointerButton { pressed, .. } => !pressed,

@@ -13,16 +13,16 @@ use egui::{Button, Key, RichText, ScrollArea, Ui, vec2};
 use toile_measure::definition;
 use toile_pattern::{Pattern, VariableId};
 
-/// Most commands and parts that are listed.
+/// Largest number of results in the list.
 const MOST: usize = 12;
 
-/// What was found.
+/// A search result.
 #[derive(Clone)]
 enum Found {
     Command(&'static UiCommand),
     Part(Item, String),
     Variable(VariableId, String),
-    /// A measurement that a size has, by its name in formulas, and its words.
+    /// A measurement that a size has: its name in formulas, and its description.
     Measurement(String, String),
 }
 
@@ -102,7 +102,7 @@ impl ToileApp {
         }
     }
 
-    /// Shows the table of fabrics, or hides it.
+    /// Shows or hides the table of fabrics.
     pub(crate) fn toggle_fabrics(&mut self) {
         match self.panes.tables && self.tables.tab == Tab::Fabric {
             true => self.panes.tables = false,
@@ -115,8 +115,8 @@ impl ToileApp {
         self.tables.tab = tab;
     }
 
-    /// Selects a part, and moves the table so that it is seen: of a seam the panel it begins at, of a
-    /// curve that a panel is traced along its edge.
+    /// Selects a part and brings it into view: for a seam its first panel, for a curve the panel that is
+    /// traced along it.
     fn show_part(&mut self, item: Item) {
         self.take(Tool::Select);
         self.view.select(Selection::one(item));
@@ -144,8 +144,8 @@ impl ToileApp {
     }
 }
 
-/// Commands whose name or explanation has all words that are typed, and parts, variables and
-/// measurements whose name has; what begins so comes first. Nothing typed finds commands alone.
+/// Commands whose name or tip contains all typed words, and parts, variables and measurements whose name
+/// does; matches at the beginning come first. An empty search finds commands only.
 fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let (typed, first) = (words.join(" "), words.first().map_or("", String::as_str));
@@ -167,7 +167,7 @@ fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     };
     let of_others = others.into_iter().filter_map(|(words, found)| {
         let low = words.to_lowercase();
-        // What is no command is looked for by its own name, or by what it is: "Panel front", "front".
+        // Other things match by their description or by their own name: "Panel front", "front".
         let own = low.split_once(' ').map_or("", |found| found.1);
         let name = own.split_once(" (").map_or(own, |found| found.0);
         let rank = match () {
@@ -183,7 +183,7 @@ fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     found.into_iter().take(MOST).map(|(_, one)| one).collect()
 }
 
-/// Everything of a pattern that has a name, in words.
+/// Everything in a pattern that has a name, with its description.
 fn others(pattern: &Pattern) -> Vec<(String, Found)> {
     let parts = Item::all(pattern).into_iter().filter_map(|item| {
         let words = item.words(pattern)?;

@@ -14,16 +14,16 @@ pub struct Panes {
     pub garment: bool,
     /// The marker.
     pub marker: bool,
-    /// Measurements, variables, sizes, history.
+    /// Tables of measurements, variables, sizes, history.
     pub tables: bool,
-    /// Whether these stand under the garment, beside the pattern; else they stand below it. Until they were
-    /// dragged, where there is room.
+    /// Whether the tables stand under the garment, beside the pattern, rather than below the pattern.
+    /// `None` until the user moves them: then the width of the window decides.
     pub tables_beside: Option<bool>,
-    /// Names of the tools beside their signs.
+    /// Names of the tools beside their icons.
     pub tool_names: bool,
-    /// The list of faults.
+    /// The list of findings.
     pub findings: bool,
-    /// Lines to cut along.
+    /// Cut lines.
     pub allowances: bool,
     /// Rulers.
     pub rulers: bool,
@@ -47,24 +47,24 @@ impl Default for Panes {
     }
 }
 
-/// Which table is on show, and what is typed into it.
+/// The table on show, and the texts typed into it.
 #[derive(Default)]
 pub struct Tables {
     pub tab: Tab,
     pub new_variable: String,
     pub new_measurement: String,
-    /// A variable was added and is to be seen.
+    /// Whether a variable was added that must be scrolled into view.
     pub added: bool,
-    /// A measurement whose first value is to be typed next.
+    /// A measurement whose first value is typed next.
     pub entered_measurement: Option<String>,
     pub fabric: FabricTable,
     pub wearer: WearerTable,
-    /// A variable whose number is to be typed next.
+    /// A variable whose number is typed next.
     pub entered_variable: Option<VariableId>,
 }
 
 impl Tables {
-    /// The least height that a table is of use in (pixels).
+    /// Least useful height of the table on show (pixels).
     pub fn least_height(&self) -> f32 {
         match self.tab {
             Tab::Fabric | Tab::Wearer => 290.0,
@@ -73,7 +73,7 @@ impl Tables {
         }
     }
 
-    /// Leaves what is typed: another document is opened.
+    /// Discards the typed texts when another document is opened.
     pub fn forget_typed(&mut self) {
         *self = Self {
             tab: self.tab,
@@ -94,11 +94,11 @@ pub enum Tab {
     Pattern,
 }
 
-/// In which corner of the table the inspector stands, and what it tells there.
+/// Corner of the canvas that the inspector stands in, and the selection it describes.
 #[derive(Default)]
 pub(crate) struct InspectorPlace {
-    /// What was selected when it got there.
+    /// Selection that the corner was chosen for.
     pub told: Selection,
-    /// Whether it is the left corner.
+    /// Whether it stands in the left corner.
     pub is_left: bool,
 }

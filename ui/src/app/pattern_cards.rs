@@ -19,34 +19,34 @@ use std::time::Duration;
 use toile_geometry::{Bounds2, Vec2};
 use toile_session::{Command, Session, SessionError, Silent};
 
-/// Size of a card, its name included (pixels).
+/// Size of a card, with the name (pixels).
 pub const CARD: egui::Vec2 = vec2(148.0, 150.0);
-/// Height of its name (pixels).
+/// Height of the name (pixels).
 const NAME: f32 = 26.0;
-/// Room round the pieces (pixels).
+/// Margin round the pieces (pixels).
 const MARGIN: f32 = 10.0;
-/// When a picture that is being drawn is looked for again.
+/// Time until a picture that is being drawn is looked for again.
 const SOON: Duration = Duration::from_millis(50);
-/// Enlargement that lines are drawn for: two to this power (pixels per metre).
+/// Enlargement that lines are drawn for: two to the power of this (pixels per metre).
 const OCTAVE: i32 = 8;
 
-/// The pictures of patterns that were asked for, by their files.
+/// Pictures of patterns, by the files of the patterns.
 #[derive(Default)]
 pub struct PatternCards {
     pictures: BTreeMap<PathBuf, Picture>,
 }
 
-/// A picture, or the work on it.
+/// A picture, or the job that draws it.
 enum Picture {
     Drawing(Job<(Pieces, Option<ColorImage>)>),
     Drawn(Pieces, Option<TextureHandle>),
-    /// The file is gone or cannot be read: it is said when it is opened.
+    /// The file is missing or cannot be read; opening it reports the reason.
     Missing,
 }
 
-/// The pieces of a pattern where they lie on the table (m).
+/// The pieces of a pattern at their places on the table (m).
 struct Pieces {
-    /// Fills, where they lie, and whether they are mirrored halves.
+    /// Fills, their places on the table (m), and whether they are mirrored halves.
     fills: Vec<(Fill, Vec2, bool)>,
     lines: Vec<Vec<Vec2>>,
     bounds: Bounds2,
@@ -54,7 +54,7 @@ struct Pieces {
 
 impl Pieces {
     fn of_file(path: &Path) -> Result<Self, SessionError> {
-        // Drafted as it is when it is opened: one without sizes to the average body.
+        // Drafted as by opening the file: a pattern without sizes to the average body.
         let mut session = Session::new();
         let path = path.to_owned();
         session.execute(Command::OpenPattern { path }, &mut Silent)?;
@@ -85,7 +85,7 @@ impl Pieces {
         })
     }
 
-    /// Draws the pieces as large as they fit.
+    /// Draws the pieces as large as they fit into a rectangle.
     fn paint(&self, ui: &Ui, room: Rect) {
         let bounds = self.bounds;
         let size = bounds.max - bounds.min;
@@ -124,9 +124,9 @@ impl Pieces {
 }
 
 impl PatternCards {
-    /// A card of a pattern; whether it was clicked.
+    /// Shows the card of a pattern; returns whether it was clicked.
     ///
-    /// `folder` is that of the pictures of garments as they hung.
+    /// `folder` holds the pictures of draped garments.
     pub fn card(
         &mut self,
         ui: &mut Ui,
@@ -188,13 +188,13 @@ impl PatternCards {
         response.on_hover_text(path.display().to_string()).clicked()
     }
 
-    /// Forgets the pictures.
+    /// Drops the pictures.
     pub fn clear(&mut self) {
         self.pictures.clear();
     }
 }
 
-/// Words in the middle of a room, cut to its width.
+/// Text in the middle of a rectangle, truncated to its width.
 fn words(ui: &Ui, room: Rect, words: &str, colour: Color32) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(words.to_owned(), font, colour);

@@ -11,13 +11,13 @@ use toile_geometry::Vec2;
 use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, SheetId, plan};
 use toile_session::{Command, Project};
 
-/// Largest distance of the outlines of other sizes from the true ones (m).
+/// Tolerance of the outlines of other sizes (m).
 const GRADING_TOLERANCE: f64 = 1e-4;
-/// How far an arrow key moves points, alone and with Shift (m).
+/// Distance by which an arrow key moves points, alone and with Shift (m).
 const NUDGES: [f64; 2] = [0.001, 0.01];
 
 impl ToileApp {
-    /// Whether there is a pattern, be it empty.
+    /// Whether a pattern is open, even an empty one.
     pub(crate) fn is_open(&self) -> bool {
         !self.session.project().pattern.sheets.is_empty()
     }
@@ -44,7 +44,7 @@ impl ToileApp {
         self.execute(Command::Redo);
     }
 
-    /// Takes a tool in hand; a gesture of the one before is left.
+    /// Takes a tool in hand; cancels the gesture of the previous one.
     pub(crate) fn take(&mut self, tool: Tool) {
         self.notice = Notice::default();
         self.leave_gesture();
@@ -53,7 +53,7 @@ impl ToileApp {
         self.selected_before = draws.then(|| self.view.selection.clone());
     }
 
-    /// Nothing that a tool shows is made.
+    /// Cancels the preview of a tool.
     fn leave_gesture(&mut self) {
         if self.session.cancel().is_some() {
             self.refresh();
@@ -83,7 +83,7 @@ impl ToileApp {
         self.view.select(selection);
     }
 
-    /// What an event of a tool came to.
+    /// Applies the outcome of an event that a tool handled.
     pub(crate) fn follow_outcome(&mut self, outcome: Outcome) {
         if outcome.gets_on {
             self.forget_fault();
@@ -98,7 +98,7 @@ impl ToileApp {
             PreviewChange::Edits(edits) => self.preview(&edits),
         }
         match outcome.commit {
-            // A tool that only tells something.
+            // The tool has only a message.
             Some((edits, words)) if edits.is_empty() => self.notice = Notice::news(words),
             Some((edits, label)) => {
                 self.edit(Ok(edits), &label);
@@ -131,7 +131,7 @@ impl ToileApp {
         }
     }
 
-    /// The length of a part as a formula says it.
+    /// Length of a part, written as in a formula.
     fn length_words(&self, item: Item) -> Option<String> {
         let part = match item {
             Item::Edge(panel, edge) => {
@@ -148,12 +148,12 @@ impl ToileApp {
         Some(format!("length({})", self.base.names().print_part(&part)))
     }
 
-    /// Tells why something was not done.
+    /// Reports why something failed.
     pub(crate) fn say_fault(&mut self, words: String) {
         self.notice = Notice::fault(words);
     }
 
-    /// Shows edits until they are committed or left.
+    /// Previews edits until they are committed or cancelled.
     pub(crate) fn preview(&mut self, edits: &[Edit]) {
         match self.session.preview(edits) {
             Ok(()) => self.refresh(),
@@ -161,7 +161,7 @@ impl ToileApp {
         }
     }
 
-    /// Takes over what is shown, as one step of the history.
+    /// Makes the previewed edits as one step of the history.
     pub(crate) fn commit(&mut self, label: &str) {
         match self.session.commit(label) {
             Ok(events) => {
@@ -172,7 +172,7 @@ impl ToileApp {
         }
     }
 
-    /// Makes the edits of a planner as one step of the history; says whether it was done.
+    /// Makes the edits of a planner as one step of the history; returns whether it succeeded.
     pub(crate) fn edit(&mut self, edits: Result<Vec<Edit>, EditError>, label: &str) -> bool {
         match edits {
             Ok(edits) => self.execute(Command::Edit {
@@ -186,7 +186,7 @@ impl ToileApp {
         }
     }
 
-    /// Divides the selected edge in its middle, and selects the corner.
+    /// Divides the selected edge in its middle, and selects the new corner.
     pub(crate) fn divide_edge(&mut self) {
         let Some(Item::Edge(panel, edge)) = self.view.selection.single() else {
             return;
@@ -199,11 +199,11 @@ impl ToileApp {
         }
     }
 
-    /// Removes what is selected.
+    /// Removes the selected parts.
     pub(crate) fn delete(&mut self) {
         let items = self.view.selection.items().to_vec();
         let mut parts: Vec<PartId> = items.iter().map(|item| item.part()).collect();
-        // Panels are taken off the table with the sheet they are traced from.
+        // Panels are removed together with the sheet they are traced from.
         let sheets = self.view.selection.sheets();
         let panels = self.base.pattern().panels.iter();
         let traced = panels.filter(|panel| panel.sheet().is_some_and(|id| sheets.contains(&id)));
@@ -220,7 +220,7 @@ impl ToileApp {
         self.edit(plan::remove_parts(&self.base, &parts), label);
     }
 
-    /// A panel with something changed.
+    /// The edits that change a panel by a function.
     pub(crate) fn changed_panel(
         &self,
         id: toile_pattern::PanelId,
@@ -250,7 +250,7 @@ impl ToileApp {
                 .any(|i| i.panel().is_some())
     }
 
-    /// Shows the selected panels alone, or everything again.
+    /// Isolates the selected panels, or shows everything again.
     pub(crate) fn isolate(&mut self) {
         let items = self.view.selection.items().iter();
         let panels = items.filter_map(|item| item.panel()).collect();
@@ -267,13 +267,13 @@ impl ToileApp {
         self.session.project().pattern.sizes.len() > 1
     }
 
-    /// Shows or hides all sizes over each other.
+    /// Shows or hides the outlines of all sizes on top of each other.
     pub(crate) fn toggle_grading(&mut self) {
         self.view.grading = match self.view.grading {
             Some(_) => None,
             None => Some(self.graded()),
         };
-        // What is shown now comes into view.
+        // The outlines of all sizes come into view.
         if self.view.grading.is_some() {
             self.view.fit();
         }
@@ -291,7 +291,7 @@ impl ToileApp {
         })
     }
 
-    /// Stands the tables on the other side.
+    /// Moves the tables to the other side.
     pub(crate) fn toggle_tables_side(&mut self) {
         self.panes.tables_beside = Some(!self.tables_are_beside);
     }
@@ -300,14 +300,14 @@ impl ToileApp {
         self.wants_theme = true;
     }
 
-    /// Has the interface larger or smaller by a share of its usual size, or as large as usual.
+    /// Enlarges or reduces the interface by a share of its usual size; `None` restores the usual size.
     pub(crate) fn change_scale(&mut self, step: Option<f32>) {
         self.wants_scale = Some(step);
     }
 
-    /// Moves what is selected by the arrow keys.
+    /// Moves the selected points by the arrow keys.
     pub(crate) fn nudge(&mut self, context: &egui::Context) {
-        // While a seam is walked they lead along it.
+        // While a seam is walked the arrow keys move along it.
         if matches!(self.view.tool, Tool::Walk) {
             return;
         }

@@ -6,43 +6,43 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_session::Paper;
 
-/// Two clicks no farther apart are one double click (s): as long as desktops allow, so that slow frames do not
-/// part them.
+/// Longest time between the clicks of a double click (s): as long as desktops allow, so that slow frames
+/// do not separate them.
 const DOUBLE_CLICK: f64 = 0.5;
 
-/// Size of a window that was never opened before, and the least one has (logical pixels).
+/// Size of a window that is opened for the first time, and least size of any (logical pixels).
 const WINDOW: [f32; 2] = [1400.0, 860.0];
 const MIN_WINDOW_SIZE: [f32; 2] = [760.0, 480.0];
-/// Least and largest enlargement of text, signs and buttons.
+/// Least and largest scale of text, icons and buttons.
 const SCALES: [f32; 2] = [0.7, 2.5];
-/// Most recent files kept.
+/// Largest number of recent files.
 const MAX_RECENT: usize = 10;
 
-/// Preferences, and the file they are in.
+/// Preferences, and the file they are stored in.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
     /// Files opened or saved, the latest first.
     pub recent: Vec<PathBuf>,
-    /// Whether colours are dark; nothing follows the system.
+    /// Whether colours are dark; `None` follows the system.
     pub dark: Option<bool>,
-    /// What of the window is on show.
+    /// Visible parts of the window.
     #[serde(rename = "shows")]
     pub panes: Panes,
-    /// Name of the paper that was printed on last.
+    /// Name of the last paper for printing.
     pub paper: Option<String>,
-    /// Width and height of the window while it was last not as large as the screen (logical pixels).
+    /// Width and height of the window when it was last not maximized (logical pixels).
     pub window: Option<[f32; 2]>,
-    /// Whether it was as large as the screen.
+    /// Whether it was maximized.
     pub fills_screen: bool,
-    /// Enlargement of text, signs and buttons.
+    /// Scale of text, icons and buttons.
     pub scale: Option<f32>,
     #[serde(skip)]
     file: Option<PathBuf>,
 }
 
 impl Preferences {
-    /// The preferences in a folder. What cannot be read is begun anew.
+    /// Reads the preferences in a folder. Defaults replace a file that is missing or cannot be read.
     pub fn read(folder: Option<&Path>) -> Self {
         let file = folder.map(|folder| folder.join("preferences.json"));
         let text = file
@@ -55,13 +55,13 @@ impl Preferences {
         }
     }
 
-    /// Sets the theme.
+    /// Applies the theme, the scale and the settings of input.
     pub fn apply(&self, context: &egui::Context) {
-        // Where the system says nothing, colours are light.
+        // Light colours, if the system states no preference.
         context.options_mut(|options| {
             options.fallback_theme = egui::Theme::Light;
             options.input_options.max_double_click_delay = DOUBLE_CLICK;
-            // The commands of the window change the enlargement, and note it.
+            // The commands of the window change the scale, and store it.
             options.zoom_with_keyboard = false;
         });
         context.set_zoom_factor(self.scale());
@@ -72,14 +72,14 @@ impl Preferences {
         });
     }
 
-    /// The folder they are kept in, with whatever else the window remembers.
+    /// The folder of the preferences and of everything else that the window stores.
     pub fn folder(&self) -> Option<&Path> {
         self.file.as_deref().and_then(Path::parent)
     }
 
-    /// Notes a file that was opened or saved.
+    /// Remembers a file that was opened or saved.
     pub fn opened(&mut self, path: &Path) {
-        // The samples in the program are no files.
+        // The built-in samples are no files.
         if path.exists() {
             let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
             self.recent.retain(|known| *known != path);
@@ -89,7 +89,7 @@ impl Preferences {
         }
     }
 
-    /// Changes between dark and light.
+    /// Switches between dark and light.
     pub fn change_theme(&mut self, context: &egui::Context) {
         self.dark = Some(context.theme() == egui::Theme::Light);
         self.apply(context);
@@ -101,8 +101,8 @@ impl Preferences {
         scale.unwrap_or(1.0).clamp(SCALES[0], SCALES[1])
     }
 
-    /// Makes text, signs and buttons larger or smaller by a share of their usual size; nothing means as large as
-    /// usual.
+    /// Changes the scale of text, icons and buttons by a share of the usual size; `None` restores the
+    /// usual size.
     pub fn change_scale(&mut self, context: &egui::Context, step: Option<f32>) {
         let scale = step.map_or(1.0, |step| self.scale() + step);
         self.scale = Some(((scale * 10.0).round() / 10.0).clamp(SCALES[0], SCALES[1]));
@@ -110,7 +110,7 @@ impl Preferences {
         self.write();
     }
 
-    /// Notes what of the window is on show.
+    /// Remembers the visible parts of the window.
     pub fn set_shows(&mut self, panes: Panes) {
         if self.panes != panes {
             self.panes = panes;
@@ -118,7 +118,7 @@ impl Preferences {
         }
     }
 
-    /// The paper that was printed on last, A4 at first.
+    /// Last paper for printing; A4 at first.
     pub fn paper(&self) -> Paper {
         let known = [
             Paper::A4,
@@ -133,7 +133,7 @@ impl Preferences {
         found.unwrap_or(Paper::A4)
     }
 
-    /// Notes the paper that is printed on.
+    /// Remembers the paper for printing.
     pub fn set_paper(&mut self, paper: Paper) {
         if self.paper() != paper {
             self.paper = Some(paper.name().to_owned());
@@ -141,7 +141,7 @@ impl Preferences {
         }
     }
 
-    /// Notes the size of the window, which is written when it closes.
+    /// Remembers the size of the window, which is written when it closes.
     pub fn note_window(&mut self, context: &egui::Context) {
         self.fills_screen = context.input(|input| input.viewport().maximized.unwrap_or_default());
         let size = context.content_rect().size();
@@ -155,7 +155,7 @@ impl Preferences {
         self.write();
     }
 
-    /// How large the window opens (logical pixels).
+    /// Size at which the window opens (logical pixels).
     fn window(&self) -> [f32; 2] {
         let [width, height] = self.window.unwrap_or(WINDOW);
         [
@@ -169,14 +169,14 @@ impl Preferences {
             return;
         };
         let folder = file.parent().unwrap_or(Path::new("."));
-        // Preferences that cannot be kept are no reason to disturb anybody.
+        // A failure to store preferences is not worth a message.
         let _ = std::fs::create_dir_all(folder);
         let _ = toile_session::write_atomically(file, &text);
     }
 }
 
 impl Beginning {
-    /// The window to open: as large as it was when it was closed last.
+    /// The window to open, with the size at which it was last closed.
     pub fn viewport(&self) -> egui::ViewportBuilder {
         let preferences = Preferences::read(self.folder.as_deref());
         egui::ViewportBuilder::default()
@@ -184,7 +184,7 @@ impl Beginning {
             .with_app_id("toile")
             .with_inner_size(preferences.window())
             .with_min_inner_size(MIN_WINDOW_SIZE)
-            // The first time it takes the screen, whose size nobody knows yet.
+            // The first window is maximized, because the size of the screen is not known yet.
             .with_maximized(preferences.fills_screen || preferences.window.is_none())
     }
 }

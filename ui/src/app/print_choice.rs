@@ -1,4 +1,4 @@
-//! What is printed and how, asked in one dialog.
+//! The dialog of a print: paper, scale, panels and file.
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};
@@ -7,25 +7,25 @@ use crate::theme::Palette;
 use egui::{ComboBox, Grid, RichText, Ui};
 use toile_session::{Lines, Paper, PrintOptions, SizeSelection};
 
-/// What is asked before printing.
+/// Settings of a print.
 #[derive(Clone, Debug)]
 pub struct PrintChoice {
-    /// What and how.
+    /// Content and layout of the print.
     pub options: PrintOptions,
-    /// Names of the panels that are selected.
+    /// Names of the selected panels.
     pub selected: Vec<String>,
-    /// Whether only those are printed.
+    /// Whether only the selected panels are printed.
     pub only_selected: bool,
-    /// The scale as it is typed, as in 1:4.
+    /// The scale as typed, as in 1:4.
     pub scale: String,
-    /// The file it goes to.
+    /// Path of the file to write.
     pub path: String,
-    /// What is wrong with it.
+    /// Error to show in the dialog.
     pub fault: String,
 }
 
 impl ToileApp {
-    /// The dialog of a print.
+    /// Shows the dialog of a print.
     pub(super) fn ask_print_choice(&self, ui: &mut Ui, choice: &mut PrintChoice) -> Answer {
         ui.heading("Print");
         let sizes = &self.session.project().pattern.sizes;
@@ -104,7 +104,7 @@ impl ToileApp {
     }
 }
 
-/// A choice from a list.
+/// A choice from a drop-down list.
 fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     (name, label): (&str, egui::Id),
@@ -124,7 +124,7 @@ fn choose<T: Clone + PartialEq>(
         .labelled_by(label);
 }
 
-/// A scale as it is typed: 1:4, 1/4, 25 % or 0.25.
+/// Reads a typed scale: 1:4, 1/4, 25 % or 0.25.
 fn read_scale(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".");
     let number = |text: &str| text.trim().parse::<f64>().ok();

@@ -8,10 +8,10 @@ use super::print_choice::PrintChoice;
 use std::path::PathBuf;
 use toile_session::{PrintOptions, Printed, SizeSelection, print_pattern};
 
-/// A print that is being made.
+/// A print in progress.
 pub struct Printing {
     job: Job<Printed>,
-    /// What was asked, to be asked again where it fails.
+    /// The settings, to ask again if it fails.
     choice: PrintChoice,
     is_stopped: bool,
 }
@@ -44,7 +44,7 @@ impl ToileApp {
         })));
     }
 
-    /// Names of the panels that are selected, or have a part that is.
+    /// Names of the panels that are selected, or have a selected part.
     fn selected_panels(&self) -> Vec<String> {
         let pattern = self.base.pattern();
         let items = self.view.selection.items();
@@ -65,7 +65,7 @@ impl ToileApp {
         });
     }
 
-    /// Tells of a print that has ended. One that failed is asked for again, with the reason.
+    /// Reports a print that has ended. After a failure the dialog opens again, with the reason.
     pub(super) fn follow_printing(&mut self) {
         let Some(printing) = &self.printing else {
             return;
@@ -90,7 +90,7 @@ impl ToileApp {
                 }
             }
             Err(fault) => {
-                // What failed is seen before the window closes.
+                // The user sees the failure before the window closes.
                 if !printing.is_stopped {
                     (self.closes, self.waits_to_close) = (false, false);
                 }
@@ -105,7 +105,7 @@ impl ToileApp {
         self.printing = None;
     }
 
-    /// Stops the print that is being made.
+    /// Stops the print in progress.
     pub(super) fn stop_printing(&mut self) {
         if let Some(printing) = &mut self.printing {
             printing.is_stopped = true;

@@ -28,7 +28,7 @@ impl ToileApp {
         !self.session.project().pattern.seams.is_empty()
     }
 
-    /// Walks the selected seam, or that of the selected edge, or one that is clicked.
+    /// Walks the selected seam, or the seam of the selected edge, or else lets the user click one.
     pub(crate) fn walk_seam(&mut self) {
         if !self.has_seam() && self.has_edge() {
             self.select_seam();
@@ -39,7 +39,7 @@ impl ToileApp {
         self.take(Tool::Walk);
     }
 
-    /// Sews the other ends of the second sides together.
+    /// Reverses the second side of each selected seam, so that the opposite ends are sewn together.
     pub(crate) fn flip_seam(&mut self) {
         let mut edits = Vec::new();
         for seam in self.selected_seams() {
@@ -52,7 +52,7 @@ impl ToileApp {
         self.execute(Command::Edit { edits, label });
     }
 
-    /// How the edges beside a seam go on across it, in words.
+    /// Shows how the edges beside a seam continue across it.
     pub(crate) fn seam_joints(&mut self, ui: &mut Ui, seam: SeamId) {
         let palette = Palette::of(ui.ctx());
         for (words, tone) in crossing_lines((&self.base, &self.view.scene), seam) {

@@ -1,4 +1,4 @@
-//! The tool bar: signs of the tools in named groups, with their names beside them where these are asked for.
+//! The tool bar: icons of the tools in named groups, with their names beside them if wanted.
 
 use super::ToileApp;
 use super::command::shortcut_words;
@@ -8,18 +8,18 @@ use crate::theme::{self, Palette};
 use crate::tools::Tool;
 use egui::{Button, RichText, Ui, pos2, vec2};
 
-/// Widths of the tool bar: signs alone, and with names and keys (pixels).
+/// Widths of the tool bar: icons only, and with names and keys (pixels).
 const WIDTHS: [f32; 2] = [44.0, 186.0];
-/// Heights of its buttons, where there is little room and where there is enough (pixels).
+/// Least and largest height of a button (pixels).
 const HEIGHTS: [f32; 2] = [16.0, 28.0];
 /// Height of the name of a group (pixels).
 const GROUP: f32 = 15.0;
-/// Side of a sign at the most (pixels).
+/// Largest side of an icon (pixels).
 const SIGN: f32 = 20.0;
-/// Size of the name of a group (pixels).
+/// Font size of the name of a group (pixels).
 const GROUP_TEXT: f32 = 10.5;
 
-/// Its groups: the name of each, none for the first, and the commands that take its tools in hand.
+/// Groups of tools: the name of each, empty for the first, and the commands that take the tools in hand.
 const GROUPS: &[(&str, &[&str])] = &[
     ("", &["Select"]),
     (
@@ -58,7 +58,7 @@ const GROUPS: &[(&str, &[&str])] = &[
     ("Sew", &["Seam", "Matched notches", "Walk seam"]),
 ];
 
-/// The commands of its buttons.
+/// The commands of all buttons.
 #[cfg(test)]
 pub(super) fn tools() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().flat_map(|(_, names)| names.iter().copied())
@@ -71,7 +71,7 @@ impl ToileApp {
     }
 
     pub(crate) fn tool_bar(&mut self, ui: &mut Ui) {
-        // The buttons are as high as there is room for all of them.
+        // The height of the buttons is chosen so that all of them fit.
         let named_groups = GROUPS.iter().filter(|(name, _)| !name.is_empty()).count();
         let count: usize = GROUPS.iter().map(|(_, names)| names.len()).sum();
         let room = ui.available_height() - named_groups as f32 * GROUP;
@@ -102,7 +102,7 @@ impl ToileApp {
         let key = command.key.map(|key| shortcut_words(ui.ctx(), &key));
         let side = height.min(SIGN);
         let button = match self.panes.tool_names {
-            // The sign stands where the name would begin.
+            // Spaces leave room for the icon before the name.
             true => Button::new(RichText::new(format!("{}{name}", " ".repeat(8))).small())
                 .shortcut_text(RichText::new(key.unwrap_or_default()).small()),
             false => Button::new(RichText::new("").size(8.0)),
@@ -133,7 +133,7 @@ impl ToileApp {
         tool_icons::paint(ui.painter(), place, name, colour);
     }
 
-    /// The name of the command that takes the tool in hand.
+    /// Name of the command that takes the present tool in hand.
     fn tool_name(&self) -> &'static str {
         match self.view.tool {
             Tool::Select => "Select",
@@ -143,7 +143,7 @@ impl ToileApp {
     }
 }
 
-/// The name of a group over its tools.
+/// The name of a group above its tools.
 fn group_name(ui: &mut Ui, name: &str) {
     let size = vec2(ui.available_width(), GROUP);
     let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());

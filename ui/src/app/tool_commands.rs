@@ -1,4 +1,4 @@
-//! Commands that take a tool in hand, and those of seams and the garment.
+//! Commands that take a tool in hand, and commands for seams and the garment.
 
 use super::ToileApp;
 use super::command::{BOTH, Menu, PLAIN, SHIFT, UiCommand, always, command, key};
@@ -8,7 +8,7 @@ use crate::tools::{Tool, alter, arc, draw, panel, parts, ring, seam};
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
 
-/// Commands that take a tool in hand, and those of seams and the garment, in the order of their
+/// Commands that take a tool in hand, and commands for seams and the garment, in the order of their
 /// menus.
 pub static TOOL_COMMANDS: &[UiCommand] = &[
     command(

@@ -1,37 +1,37 @@
-//! Signs of the tools, drawn of a few strokes on a square of 20 units, y downward.
+//! Icons of the tools, drawn in a few strokes on a square of 20 units, y downward.
 
 use egui::epaint::{CircleShape, CubicBezierShape};
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 
-/// Side of the square that signs are drawn on.
+/// Side of the square that icons are drawn on (units).
 const SIDE: f32 = 20.0;
-/// Width of strokes (units).
+/// Stroke width (units).
 const WIDTH: f32 = 1.4;
-/// Dashes and the gaps between them (units).
+/// Length of dashes, and of the gaps between them (units).
 const DASH: [f32; 2] = [2.2, 1.6];
 
-/// A place on the square.
+/// A point on the square (units).
 type Place = (f32, f32);
 
-/// A stroke of a sign.
+/// A stroke of an icon.
 enum Stroked {
-    /// A line through places.
+    /// A polyline.
     Line(&'static [Place]),
-    /// The same in dashes.
+    /// A dashed polyline.
     Dashed(&'static [Place]),
-    /// A closed line that is filled.
+    /// A filled polygon.
     Filled(&'static [Place]),
     /// A cubic curve.
     Curve([Place; 4]),
-    /// A point that is drawn.
+    /// An existing point.
     Dot(Place),
-    /// A point that is made.
+    /// A point that the tool makes.
     Ring(Place),
 }
 
 use Stroked::{Curve, Dashed, Dot, Filled, Line, Ring};
 
-/// The strokes of the sign of a tool's command; none of one without a sign.
+/// Strokes of the icon for a tool's command; empty for a command without an icon.
 fn strokes(command: &str) -> &'static [Stroked] {
     match command {
         "Select" => &[Filled(&[
@@ -303,7 +303,7 @@ fn strokes(command: &str) -> &'static [Stroked] {
     }
 }
 
-/// Draws the sign of a command in the middle of a rectangle.
+/// Draws the icon of a command in the middle of a rectangle.
 pub fn paint(painter: &Painter, rect: Rect, command: &str, colour: Color32) {
     let scale = rect.size().min_elem() / SIDE;
     let at = |(x, y): Place| rect.center() + egui::vec2(x - SIDE / 2.0, y - SIDE / 2.0) * scale;
@@ -318,7 +318,7 @@ pub fn paint(painter: &Painter, rect: Rect, command: &str, colour: Color32) {
                 let [dash, gap] = DASH.map(|length| length * scale);
                 painter.extend(Shape::dashed_line(&all(places), stroke, dash, gap));
             }
-            // An outline no wider than a stroke closes it: convex or not, it is small.
+            // Filled as if convex: the outline and the small size hide the errors at other polygons.
             Filled(places) => {
                 painter.add(Shape::convex_polygon(
                     all(places),
@@ -365,7 +365,7 @@ mod tests {
             for stroked in strokes {
                 let inside = match stroked {
                     Line(places) | Dashed(places) | Filled(places) => places.iter().all(is_on),
-                    // The ends; what bends it may lie outside.
+                    // End points only: control points may lie outside.
                     Curve(places) => is_on(&places[0]) && is_on(&places[3]),
                     Dot(place) | Ring(place) => is_on(place),
                 };

@@ -1,4 +1,4 @@
-//! The window without a pattern: how to begin.
+//! The page shown while no pattern is open: a new pattern, a file, samples.
 
 use super::ToileApp;
 use super::answer::{Answer, filled_button, main_button};
@@ -10,11 +10,11 @@ use toile_session::{Command, SAMPLES};
 
 /// Width of the page (pixels).
 const WIDTH: f32 = 780.0;
-/// Width of its two buttons beside each other (pixels).
+/// Initial guess of the width of the two buttons side by side (pixels).
 const BUTTONS: f32 = 204.0;
 
 impl ToileApp {
-    /// How to begin: a new pattern, a file, or one of those whose cards are shown.
+    /// Shows the first page: a new pattern, a file, or a pattern from its card.
     pub(crate) fn welcome(&mut self, ui: &mut Ui) {
         let palette = Palette::of(ui.ctx());
         let mut open: Option<PathBuf> = None;
@@ -33,7 +33,7 @@ impl ToileApp {
                     ui.label(RichText::new(words).color(palette.fault));
                     ui.add_space(12.0);
                 }
-                // As wide as its buttons came out, so that it lies in the middle.
+                // Centred by the width that the buttons had in the last frame.
                 let buttons = egui::Id::unique("welcome buttons");
                 let known: Option<f32> = ui.data(|data| data.get_temp(buttons));
                 ui.horizontal(|ui| {
@@ -72,13 +72,13 @@ impl ToileApp {
             });
         });
         if let Some(path) = open {
-            // Files may have changed when the page is seen again.
+            // Files may have changed when the page is shown again.
             self.pattern_cards.clear();
             self.open(&path);
         }
     }
 
-    /// Cards of patterns in rows under a title; the file of one that was clicked.
+    /// Shows cards of patterns in rows under a title; returns the file of a clicked card.
     fn cards(
         &mut self,
         ui: &mut Ui,
@@ -109,7 +109,7 @@ impl ToileApp {
         open
     }
 
-    /// Offers the documents a crash left.
+    /// Offers the documents left by a crash.
     pub(super) fn ask_recover(&mut self, ui: &mut Ui) -> Answer {
         let palette = Palette::of(ui.ctx());
         ui.heading("Recover unsaved work?");
@@ -129,7 +129,7 @@ impl ToileApp {
                     };
                     ui.label(RichText::new(words).color(palette.ink_soft));
                 }
-                // Enter takes the first.
+                // Enter recovers the first.
                 let recovers = match k {
                     0 => main_button(ui, "Recover"),
                     _ => filled_button(ui, "Recover"),
@@ -157,7 +157,8 @@ impl ToileApp {
         }
     }
 
-    /// Goes on with a document that a crash left. Its files go when its state is kept anew.
+    /// Continues with a document left by a crash. Its recovery files are removed when the state is stored
+    /// anew.
     fn recover(&mut self, k: usize) {
         let document = self.abandoned.remove(k);
         let restore = Command::RestorePattern {
@@ -173,7 +174,7 @@ impl ToileApp {
     }
 }
 
-/// The name of a pattern file, without the endings of its kind.
+/// Name of a pattern file without `.json` and `.toile`.
 fn name_of(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.trim_end_matches(".json").trim_end_matches(".toile");

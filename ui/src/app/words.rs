@@ -1,4 +1,4 @@
-//! The glossary as a dialog: words of the trade, searched, with their meanings.
+//! The glossary as a dialog: words of the trade with their meanings, and a search.
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};
@@ -15,7 +15,7 @@ impl ToileApp {
         self.dialog = Some(Dialog::Words(String::new()));
     }
 
-    /// The words that have what is typed, with their meanings.
+    /// Shows the words that match the search, with their meanings.
     pub(super) fn show_words(ui: &mut Ui, text: &mut String) -> Answer {
         ui.heading("Words");
         let label = ui.label("Find a word").id;
@@ -34,7 +34,7 @@ impl ToileApp {
             }
             let mut subject = "";
             for word in found {
-                // Under headings only in the order of the page.
+                // Headings appear only while nothing is searched.
                 if text.trim().is_empty() && word.subject != subject {
                     subject = word.subject;
                     ui.add_space(8.0);

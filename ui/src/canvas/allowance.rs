@@ -1,11 +1,11 @@
-//! Lines to cut along, as they are drafted.
+//! Cut lines of panels, as drafted.
 
 use std::sync::Arc;
 use toile_cut::{CutOptions, CutPiece};
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, PanelId, Pattern, Piece};
 
-/// The cut lines of panels. Each is kept until the piece it is cut from changes.
+/// Cut lines of panels. Each is kept until its piece changes.
 #[derive(Clone, Debug, Default)]
 pub struct CutLines {
     known: Vec<CutLine>,
@@ -20,7 +20,7 @@ struct CutLine {
 }
 
 impl CutLines {
-    /// Follows a draft; says how many lines were made anew.
+    /// Updates the cut lines to a draft; returns how many were computed anew.
     pub fn follow(&mut self, pattern: &Pattern, draft: &Draft) -> u64 {
         let mut old = std::mem::take(&mut self.known);
         let mut made = 0;
@@ -35,7 +35,7 @@ impl CutLines {
                     made += 1;
                     let cut =
                         CutPiece::new((pattern, draft), number, (None, &CutOptions::default()));
-                    // A piece that cannot be cut is among the findings.
+                    // The findings report a piece that cannot be cut.
                     let rings = cut.map_or_else(|_| Vec::new(), |cut| closed(&cut));
                     CutLine {
                         piece: piece.clone(),
@@ -47,7 +47,7 @@ impl CutLines {
         made
     }
 
-    /// The lines to cut a panel along, closed (m).
+    /// The closed cut lines of a panel, in its plane (m).
     pub fn of(&self, panel: PanelId) -> &[Vec<Vec2>] {
         let found = self.known.iter().find(|line| line.piece.id.panel == panel);
         found.map_or(&[], |line| &line.rings)

@@ -14,12 +14,12 @@ pub struct ScreenPoint(pub Pos2);
 /// Smallest and largest enlargement (logical pixels per metre): from a whole marker on the screen
 /// to a millimetre as wide as a finger.
 const SCALES: [f64; 2] = [20.0, 40_000.0];
-/// What is smaller is not enlarged to fill the view (m).
+/// Smaller parts are not enlarged to fill the view (m).
 const MIN_FITTED_SIZE: f64 = 0.1;
 /// Empty border when everything is shown (share of the view).
 const BORDER: f64 = 0.06;
 
-/// How the table is seen.
+/// Position and enlargement of the view on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableCamera {
     /// Table point in the middle of the view (m).
@@ -38,13 +38,13 @@ impl Default for TableCamera {
 }
 
 impl TableCamera {
-    /// Where a table point is seen.
+    /// Screen point of a table point.
     pub fn screen(&self, view: Rect, point: TablePoint) -> ScreenPoint {
         let from_centre = (point.0 - self.centre) * self.scale;
         ScreenPoint(middle(view) + ScreenVector::new(from_centre.x as f32, -from_centre.y as f32))
     }
 
-    /// The table point that is seen there.
+    /// Table point of a screen point.
     pub fn table(&self, view: Rect, point: ScreenPoint) -> TablePoint {
         TablePoint(self.centre + self.table_vector(point.0 - middle(view)))
     }
@@ -59,7 +59,7 @@ impl TableCamera {
         self.centre -= self.table_vector(on_screen);
     }
 
-    /// Enlarges by a factor; the table point under `fixed` stays there.
+    /// Zooms by a factor; the table point under `fixed` stays there.
     pub fn zoom(&mut self, view: Rect, fixed: ScreenPoint, factor: f64) {
         let before = self.table(view, fixed);
         self.scale = (self.scale * factor).clamp(SCALES[0], SCALES[1]);
@@ -67,13 +67,13 @@ impl TableCamera {
         self.centre += before.0 - after.0;
     }
 
-    /// How finely curves are drawn at this enlargement: a power of two (pixels per metre) that the
-    /// enlargement does not reach.
+    /// Level of detail of curves: exponent of the next power of two above the enlargement (pixels per
+    /// metre).
     pub fn octave(&self) -> i32 {
         self.scale.log2().floor() as i32 + 1
     }
 
-    /// Shows all of a part of the table.
+    /// Shows a whole rectangle of the table.
     pub fn fit(&mut self, view: Rect, bounds: &Bounds2) {
         if let Some(scale) = fitting(view, bounds) {
             self.scale = scale;
@@ -81,15 +81,15 @@ impl TableCamera {
         }
     }
 
-    /// Shows all of a part of the table in a part of the view.
+    /// Shows a whole rectangle of the table in a part of the view.
     pub fn fit_into(&mut self, view: Rect, room: Rect, bounds: &Bounds2) {
         self.fit(room, bounds);
         self.centre += self.table_vector(middle(view) - middle(room));
     }
 
-    /// Moves the table, and shows it smaller if need be, just so far that all of a part is seen.
+    /// Moves the table, and zooms out if necessary, by just enough to show a whole rectangle.
     pub fn reveal(&mut self, view: Rect, bounds: &Bounds2) {
-        // What touches the rim of the view is hardly seen.
+        // Parts that touch the edge of the view are hard to see.
         let clear = view.shrink(0.5 * BORDER as f32 * view.size().min_elem());
         let is_seen = |at: Vec2| clear.contains(self.screen(view, TablePoint(at)).0);
         let Some(scale) = fitting(view, bounds) else {
@@ -106,12 +106,13 @@ impl TableCamera {
     }
 }
 
-/// The middle of a view on a whole pixel, so that lines of the table are sharp and a click says a round place.
+/// Middle of a view on a whole pixel, so that lines of the table are sharp and a click gives round
+/// coordinates.
 fn middle(view: Rect) -> Pos2 {
     view.center().round()
 }
 
-/// The enlargement at which a part of the table fills the view up to its border.
+/// Enlargement at which a rectangle of the table fills the view up to its border.
 fn fitting(view: Rect, bounds: &Bounds2) -> Option<f64> {
     let size = bounds.max - bounds.min;
     let room = 1.0 - 2.0 * BORDER;

@@ -3,22 +3,22 @@
 use egui::Pos2;
 use toile_pattern::{GuideId, GuideRun};
 
-/// A guide as it is drawn.
+/// A guide as drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawnGuide {
-    /// Which; nothing for one that is not in the document yet.
+    /// Guide in the document; `None` for one that is being added.
     pub id: Option<GuideId>,
-    /// Which way it runs.
+    /// Direction of the guide.
     pub runs: GuideRun,
-    /// Where it lies on the table (m).
+    /// Coordinate across its direction, on the table (m).
     pub at: f64,
 }
 
-/// What is told of a guide beside the pointer.
+/// The label of a guide beside the pointer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GuideLabel {
-    /// Where the pointer is.
+    /// Position of the pointer.
     pub at: Pos2,
-    /// The words.
+    /// Text.
     pub words: String,
 }

@@ -1,4 +1,4 @@
-//! Panels filled: lyon turns their rings into triangles.
+//! Fills of panels: lyon triangulates their rings.
 
 use lyon::math::point;
 use lyon::path::Path;
@@ -10,12 +10,12 @@ use toile_geometry::Vec2;
 pub struct Fill {
     /// Corners (m).
     pub points: Vec<[f32; 2]>,
-    /// Three indices a triangle.
+    /// Three indices per triangle.
     pub indices: Vec<u32>,
 }
 
-/// Fills rings by the even-odd rule: holes stay empty, and a ring that crosses itself is filled
-/// as far as that makes sense. Nothing comes of rings that are not finite.
+/// Fills rings by the even-odd rule: holes stay empty, and a ring that crosses itself is filled as far as
+/// that makes sense. Rings with coordinates that are not finite are skipped.
 pub fn fill(rings: &[Vec<Vec2>]) -> Fill {
     let mut path = Path::builder();
     for ring in rings {
@@ -34,7 +34,7 @@ pub fn fill(rings: &[Vec<Vec2>]) -> Fill {
     let mut buffers: VertexBuffers<[f32; 2], u32> = VertexBuffers::new();
     let done = FillTessellator::new().tessellate_path(
         &path.build(),
-        // Tolerance only matters to curves, and the rings are straight already.
+        // The tolerance matters to curves only, and the rings are polylines already.
         &FillOptions::even_odd().with_tolerance(1e-4),
         &mut BuffersBuilder::new(&mut buffers, |vertex: FillVertex<'_>| {
             vertex.position().to_array()

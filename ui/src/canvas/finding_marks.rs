@@ -5,31 +5,31 @@ use crate::theme::{self, Palette};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use toile_pattern::Severity;
 
-/// What is found wrong with a part.
+/// Findings on one part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FindingMark {
     /// The part.
     pub item: Item,
-    /// The end of it, if it is a seam and that is what is wrong: 0 its start, 1 its end.
+    /// End of the seam that the finding is about, if there is one: 0 its start, 1 its end.
     pub end: Option<usize>,
-    /// How bad the worst of it is.
+    /// Highest severity of its findings.
     pub severity: Severity,
-    /// All that was found, a line each.
+    /// All findings, one a line.
     pub words: String,
 }
 
-/// From the part to its sign (pixels).
+/// Offset of the sign from the part (pixels).
 const AWAY: Vec2 = vec2(13.0, -15.0);
 /// Half the side of a sign (pixels).
 const REACH: f32 = 8.0;
 
 impl FindingMark {
-    /// Where the sign of a part that is seen at a place stands.
+    /// Rectangle of the sign for a part at a screen position.
     pub fn place(at: Pos2) -> Rect {
         Rect::from_center_size(at + AWAY, Vec2::splat(2.0 * REACH))
     }
 
-    /// The colour it is drawn in.
+    /// Colour of the sign.
     pub fn colour(severity: Severity, palette: &Palette) -> Color32 {
         match severity {
             Severity::Note => palette.accent,

@@ -1,4 +1,4 @@
-//! All sizes drawn over each other, as drafted.
+//! Outlines of all sizes drawn on top of each other, as drafted.
 
 use crate::theme;
 use egui::Color32;
@@ -12,19 +12,19 @@ pub struct Grading {
     pub sizes: Vec<GradedSize>,
 }
 
-/// The outlines of a size.
+/// Outlines in one size.
 #[derive(Clone, Debug)]
 pub struct GradedSize {
-    /// Which.
+    /// Identity of the size.
     pub id: SizeId,
-    /// Its name.
+    /// Name of the size.
     pub name: String,
     /// Closed outlines and holes of each panel, in its plane (m).
     pub panels: Vec<(PanelId, Vec<Vec<Vec2>>)>,
 }
 
 impl Grading {
-    /// The outlines of a pattern in each of its sizes, from its evaluation in one of them; curves
+    /// Outlines of a pattern in each of its sizes. `evaluation` is that of any size; curves are flattened
     /// to within a tolerance (m).
     pub fn new(
         evaluation: &Evaluation,
@@ -57,7 +57,7 @@ impl Grading {
         }
     }
 
-    /// The colour of a size, by its place in the table: neighbours are unlike.
+    /// Colour of a size by its index in the table: neighbours differ.
     pub fn colour(number: usize) -> Color32 {
         theme::seam(number + 1)
     }

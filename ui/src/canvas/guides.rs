@@ -1,14 +1,14 @@
-//! Guides on the canvas: which is at a place, and the places near one that lie on them.
+//! Guides on the canvas: finds the guide at a place, and snapping places on guides.
 
 use super::placed::{Placed, grid_step, near_curves, on_curve, on_edge, rounded};
 use super::scene::SheetScene;
 use toile_geometry::{Curve, Path, Vec2};
 use toile_pattern::{Guide, GuideRun, SheetId};
 
-/// How near the pointer must be to a guide to take hold of it (pixels).
+/// Distance from a guide within which the pointer can drag it (pixels).
 const REACH: f64 = 6.0;
 
-/// The guide at a place of the table (m), if there is one, and how far it is (m).
+/// The guide nearest to a place of the table (m), if one is in reach, and its distance (m).
 pub fn guide_at<'g>(
     guides: impl IntoIterator<Item = &'g Guide>,
     at: Vec2,
@@ -21,7 +21,7 @@ pub fn guide_at<'g>(
     near.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The guides as a sheet has them whose origin lies at a place of the table (m).
+/// Guides in the coordinates of a sheet whose origin is given in those of the table (m).
 pub fn on_sheet<'g>(guides: impl IntoIterator<Item = &'g Guide>, origin: Vec2) -> Vec<Guide> {
     let moved = guides.into_iter().map(|guide| Guide {
         at: guide.at - origin[guide.runs.axis()],
@@ -30,14 +30,14 @@ pub fn on_sheet<'g>(guides: impl IntoIterator<Item = &'g Guide>, origin: Vec2) -
     moved.collect()
 }
 
-/// The place of a guide nearest to one (m).
+/// The point of a guide nearest to a point (m).
 pub fn nearest(guide: &Guide, to: Vec2) -> Vec2 {
     let mut at = to;
     at[guide.runs.axis()] = guide.at;
     at
 }
 
-/// The guides of a sheet within reach of a place of it (m), the nearest first.
+/// Guides of a sheet within reach of a point of it (m), the nearest first.
 fn near(guides: &[Guide], at: Vec2, reach: f64) -> impl Iterator<Item = &Guide> {
     let away = move |guide: &Guide| (guide.at - at[guide.runs.axis()]).abs();
     let within = guides.iter().filter(|guide| away(guide) <= reach);
@@ -46,7 +46,7 @@ fn near(guides: &[Guide], at: Vec2, reach: f64) -> impl Iterator<Item = &Guide> 
     within.into_iter()
 }
 
-/// Where guides cross each other near a place of a sheet (m).
+/// Intersections of guides near a point of a sheet (m).
 pub(super) fn crossings(
     sheet: SheetId,
     guides: &[Guide],
@@ -64,8 +64,8 @@ pub(super) fn crossings(
     }
 }
 
-/// Where guides cross curves, or edges of the panel that the sheet lies on, near a place of the
-/// sheet (m): the point stays on the curve or edge.
+/// Intersections of guides with curves, or with edges of the panel that the sheet lies on, near a point
+/// of the sheet (m): the new point stays on the curve or edge.
 pub(super) fn on_lines(
     sheet: &SheetScene,
     guides: &[Guide],
@@ -98,7 +98,7 @@ pub(super) fn on_lines(
     }
 }
 
-/// On guides near a place of a sheet (m); along them it is drawn to the grid.
+/// Points on guides near a point of a sheet (m); along the guide they snap to the grid.
 pub(super) fn on_guides(
     sheet: SheetId,
     guides: &[Guide],
@@ -113,7 +113,7 @@ pub(super) fn on_guides(
     }));
 }
 
-/// The stretch of a guide near a place of its sheet (m), a little longer than the reach.
+/// Segment of a guide near a point of its sheet (m), a little longer than the reach.
 fn stretch(guide: &Guide, at: Vec2, reach: f64) -> Path {
     let middle = nearest(guide, at);
     let way = match guide.runs {

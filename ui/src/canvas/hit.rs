@@ -8,39 +8,39 @@ use super::table_layout::TableLayout;
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::{PanelId, PointId, SheetId};
 
-/// How near the pointer must be to a point to take hold of it (pixels).
+/// Distance within which the pointer hits a point (pixels).
 const POINT_REACH: f64 = 9.0;
-/// How near it must be to a line (pixels).
+/// Distance within which the pointer hits a line (pixels).
 const LINE_REACH: f64 = 7.0;
 
-/// A part at a place.
+/// A part near the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The part.
     pub item: Item,
     /// The sheet it is on.
     pub sheet: SheetId,
-    /// The nearest place of it, on its sheet (m).
+    /// Point of the part nearest to the pointer, in coordinates of the sheet (m).
     pub at: Vec2,
-    /// Table place of the origin of the sheet or panel it is seen on (m).
+    /// Origin, on the table, of the sheet or panel that the part is drawn on (m).
     pub origin: Vec2,
-    /// How far it is (m).
+    /// Distance from the pointer (m).
     pub away: f64,
 }
 
-/// A point that is shown, and where it is seen.
+/// A point that is shown, and the place it is drawn at.
 #[derive(Clone, Copy, Debug)]
 pub struct ShownPoint<'s> {
     /// The point.
     pub point: &'s super::scene::PointScene,
-    /// Its sheet.
+    /// Sheet of the point.
     pub sheet: SheetId,
-    /// Table place of the origin it is seen from (m).
+    /// Origin, on the table, of the sheet or panel it is drawn on (m).
     pub origin: Vec2,
 }
 
-/// Points that are shown: corners where an outline has them, the others where nothing is traced yet or
-/// while something of their sheet is selected.
+/// Points that are shown: corners of outlines always; the others if nothing is traced on their sheet yet,
+/// or while a part of the sheet is selected.
 pub fn shown_points<'s>(
     scene: &'s Scene,
     table_layout: &TableLayout,
@@ -79,7 +79,7 @@ pub fn shown_points<'s>(
     shown
 }
 
-/// Sheets that something selected is on.
+/// Sheets with a selected part.
 pub fn open_sheets(scene: &Scene, selection: &Selection) -> Vec<SheetId> {
     let mut sheets: Vec<SheetId> = selection
         .items()
@@ -91,7 +91,7 @@ pub fn open_sheets(scene: &Scene, selection: &Selection) -> Vec<SheetId> {
     sheets
 }
 
-/// The sheet a part is on.
+/// The sheet of a part.
 pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
     match item {
         Item::Point(id) => Some(scene.point(id)?.0.id),
@@ -101,7 +101,7 @@ pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
     }
 }
 
-/// What is at a place of the table (m), seen with so many pixels a metre; the most wanted first.
+/// Parts at a place of the table (m), the most likely first; `scale` is in pixels per metre.
 pub fn hits(
     (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],
@@ -234,7 +234,7 @@ fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &m
     }
 }
 
-/// The place of a polyline nearest to another, and how far it is (m).
+/// The point of a polyline nearest to a point (m), and the distance (m).
 fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
     line.windows(2)
         .map(|side| {
@@ -244,7 +244,7 @@ fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Everything of a panel or sheet that lies inside a rectangle of the table (m).
+/// Parts of panels and sheets that lie wholly inside a rectangle of the table (m).
 pub fn inside_box(
     (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],

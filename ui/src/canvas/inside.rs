@@ -2,7 +2,7 @@
 
 use toile_geometry::{Bounds2, Vec2, point_segment_distance};
 
-/// Places tried in each direction. Finer would move the name by less than its own height.
+/// Number of grid steps in each direction. More would move the name by less than its own height.
 const TRIED: usize = 17;
 
 fn sides(rings: &[Vec<Vec2>]) -> impl Iterator<Item = [Vec2; 2]> {
@@ -12,8 +12,8 @@ fn sides(rings: &[Vec<Vec2>]) -> impl Iterator<Item = [Vec2; 2]> {
     })
 }
 
-/// Whether a point is inside, by the even-odd rule. Points on a side may count either way: they
-/// only matter to where a name is put.
+/// Whether a point is inside rings, by the even-odd rule. Points on a ring may count either way: the
+/// result only affects the place of a name.
 pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     sides(rings).fold(false, |inside, [a, b]| {
         let between = (a.y > point.y) != (b.y > point.y);
@@ -22,12 +22,12 @@ pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     })
 }
 
-/// Of two places with like room the one nearer to the middle is taken: room counts this much more
-/// than distance.
+/// Weight of the room round a place against its distance from the middle: of two places with similar room
+/// the one nearer to the middle is taken.
 const ROOM_OVER_DISTANCE: f64 = 5.0;
 
-/// The place with the most room round it, of a grid over the bounds, rather near their middle; that
-/// middle if none is inside.
+/// The point of a grid over the bounds with the most room round it, with a preference for the middle; the
+/// middle itself if no grid point is inside.
 pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     let size = bounds.max - bounds.min;
     let middle = (bounds.min + bounds.max) * 0.5;
@@ -51,7 +51,8 @@ pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     best.0
 }
 
-/// The middle share of the chord through a point in a direction, if it is inside.
+/// The middle part (a share of the length) of the chord through a point in a direction, if the point is
+/// inside.
 pub fn chord(rings: &[Vec<Vec2>], through: Vec2, direction: Vec2, share: f64) -> Option<[Vec2; 2]> {
     let mut before = f64::NEG_INFINITY;
     let mut after = f64::INFINITY;

@@ -1,4 +1,4 @@
-//! Names of points: beside them on the side where no curve is, each clear of those placed before.
+//! Names of points: placed beside them on the side without curves, and clear of names placed before.
 
 use super::hit::ShownPoint;
 use super::paint::Picture;
@@ -7,7 +7,7 @@ use super::selection::Item;
 use crate::theme;
 use egui::{Pos2, Rect, Vec2, vec2};
 
-/// Sides of a point that its name may stand on, the most usual first.
+/// Sides of a point for its name, the preferred first.
 const SIDES: [Vec2; 8] = [
     vec2(1.0, -1.0),
     vec2(1.0, 1.0),
@@ -18,12 +18,12 @@ const SIDES: [Vec2; 8] = [
     vec2(0.0, -1.0),
     vec2(0.0, 1.0),
 ];
-/// Room between a point and its name (pixels).
+/// Gap between a point and its name (pixels).
 const GAP: f32 = 8.0;
-/// Half the room that the mark of a point takes (pixels).
+/// Half the side of the mark of a point (pixels).
 const MARK: f32 = 5.0;
 
-/// Where a name of a size stands beside a point.
+/// Rectangle of a name beside a point.
 fn beside(at: Pos2, size: Vec2, side: Vec2) -> Rect {
     let away = match side.x * side.y == 0.0 {
         true => side * (GAP + 2.0),
@@ -32,7 +32,7 @@ fn beside(at: Pos2, size: Vec2, side: Vec2) -> Rect {
     Rect::from_center_size(at + away + side * size * 0.5, size)
 }
 
-/// Whether a line comes into a rectangle.
+/// Whether a line segment meets a rectangle.
 fn crosses(rect: Rect, [from, to]: [Pos2; 2]) -> bool {
     let way = to - from;
     let mut stretch = [0.0_f32, 1.0];
@@ -53,15 +53,15 @@ fn crosses(rect: Rect, [from, to]: [Pos2; 2]) -> bool {
     stretch[0] <= stretch[1]
 }
 
-/// What else lies where names are: pieces of other sheets, and lines.
+/// Obstacles for names: pieces of other sheets, and lines.
 #[derive(Clone, Copy, Default)]
 struct Around<'a> {
     others: &'a [Rect],
     lines: &'a [Vec<Pos2>],
 }
 
-/// The place for a name: clear of what is taken; best where it runs into no other piece and no line crosses it;
-/// nothing where all places are taken.
+/// Rectangle for a name that overlaps none of the taken ones; preferably one without other pieces and
+/// lines in it; `None` if all places are taken.
 fn place(at: Pos2, size: Vec2, taken: &[Rect], around: Around<'_>) -> Option<Rect> {
     let is_free = |rect: &Rect| !taken.iter().any(|other| other.intersects(*rect));
     let Around { others, lines } = around;
@@ -77,8 +77,8 @@ fn place(at: Pos2, size: Vec2, taken: &[Rect], around: Around<'_>) -> Option<Rec
 }
 
 impl Picture<'_> {
-    /// Paints the names of points: of what is selected or under the pointer always, of the others on
-    /// open sheets as far as there is room.
+    /// Paints the names of points: of selected or hovered points always, of the other points on open
+    /// sheets as far as there is room.
     pub(super) fn point_names(&self, points: &[ShownPoint<'_>], labels: &mut Vec<Rect>) {
         let view = self.view.expand(20.0);
         let seen = |shown: &ShownPoint<'_>| self.seen(shown.origin, shown.point.at);
@@ -130,7 +130,7 @@ impl Picture<'_> {
         }
     }
 
-    /// The room that panels take which do not lie on a sheet.
+    /// Rectangles of panels that do not lie on a sheet.
     fn others_by(&self, sheet: &SheetScene) -> Vec<Rect> {
         let others = self.scene.panels.iter();
         let others =
@@ -143,7 +143,7 @@ impl Picture<'_> {
             .collect()
     }
 
-    /// The lines of a sheet and of the panels that lie on it.
+    /// Lines of a sheet and of the panels that lie on it.
     fn lines_by(&self, sheet: &SheetScene) -> Vec<Vec<Pos2>> {
         let origin = self.table_layout.sheet(sheet.id);
         let curves = sheet.curves.iter().map(|curve| &curve.line[..]);
@@ -175,7 +175,7 @@ mod tests {
         let size = vec2(40.0, 12.0);
         let usual = place(at, size, &[], Around::default()).unwrap();
         assert!(usual.min.x > at.x && usual.max.y < at.y);
-        // A line that leaves it that way.
+        // A line from the point through the preferred place.
         let line = vec![at, pos2(200.0, 60.0)];
         let lines = [line.clone()];
         let crossed = Around {
@@ -184,7 +184,7 @@ mod tests {
         };
         let other = place(at, size, &[], crossed).unwrap();
         assert!(!crosses(other, [line[0], line[1]]) && other != usual);
-        // Rather over a line of its own piece than into the next piece.
+        // A line of the own piece is the lesser evil than the next piece.
         let next = [Rect::from_min_max(pos2(104.0, 60.0), pos2(300.0, 200.0))];
         let walls = [vec![pos2(90.0, 0.0), pos2(90.0, 200.0)]];
         let between = Around {
@@ -193,7 +193,7 @@ mod tests {
         };
         let own = place(at, size, &[], between).unwrap();
         assert!(!own.intersects(next[0]), "{own:?}");
-        // Names are never placed over each other, whatever lines cross.
+        // Names never overlap, whatever lines cross them.
         let mut taken = Vec::new();
         while let Some(rect) = place(at, size, &taken, crossed) {
             assert!(taken.iter().all(|known: &Rect| !known.intersects(rect)));

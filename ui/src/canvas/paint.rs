@@ -17,66 +17,66 @@ use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stro
 use toile_geometry::Vec2;
 use toile_pattern::{DisplayUnit, SeamId, SheetId};
 
-/// Steps of the lines of the table (m): the finest that are far enough apart are drawn.
+/// Grid steps of the table (m): the finest whose lines are far enough apart is drawn.
 const GRID: [f64; 4] = [0.01, 0.05, 0.1, 0.5];
-/// Fine lines nearer than this are left out (pixels).
+/// Least distance of the fine grid lines (pixels).
 const GRID_LEAST: f64 = 14.0;
-/// How far inside the outline a seam's number stands (pixels).
+/// Distance of the number of a seam from the outline, inward (pixels).
 pub(super) const NUMBER_INSET: f64 = 16.0;
 /// Length of a notch (pixels).
 const NOTCH: f32 = 9.0;
 
-/// How much is seen of what steps of a panel led away from.
+/// Opacity of drawn curves that the steps of a panel have moved away from.
 const FAINT: f32 = 0.55;
 
-/// Sizes of the letters of a panel's name: the usual, and where that has no room (pixels).
+/// Font sizes of a panel's name: the usual one, and one for little room (pixels).
 const CAPTION_SIZES: [f32; 2] = [15.0, 12.0];
-/// How many places are tried for the name of a panel, half its height apart.
+/// Number of places tried for the name of a panel, half its height apart.
 const CAPTION_STEPS: usize = 12;
 
-/// Room beside the longest line of a label (pixels).
+/// Margin beside the longest line of a label (pixels).
 const LABEL_MARGIN: f32 = 24.0;
 
 /// Everything that is painted in one frame.
 pub struct Picture<'a> {
-    /// Where to.
+    /// Painter of the canvas.
     pub painter: Painter,
-    /// The part of the screen.
+    /// Rectangle of the canvas on the screen.
     pub view: Rect,
-    /// How the table is seen.
+    /// Camera of the table.
     pub camera: TableCamera,
-    /// Where sheets and panels lie.
+    /// Positions of sheets and panels.
     pub table_layout: &'a TableLayout,
     /// The pattern.
     pub scene: &'a Scene,
-    /// What is selected.
+    /// Selected parts.
     pub selection: &'a Selection,
-    /// What is under the pointer.
+    /// Part under the pointer.
     pub hover: Option<Item>,
-    /// All sizes over each other, if they are drawn.
+    /// Outlines of all sizes, if they are shown.
     pub grading: Option<&'a Grading>,
-    /// Place that rulers count from (m), and their unit.
+    /// Origin of the rulers on the table (m), and their unit.
     pub rulers: Option<(Vec2, DisplayUnit)>,
     /// Guides.
     pub guides: &'a [DrawnGuide],
-    /// What is told of the one that is dragged.
+    /// Label of the guide that is dragged.
     pub guide_label: Option<&'a GuideLabel>,
-    /// Whether lines to cut along are drawn.
+    /// Whether cut lines are drawn.
     pub allowances: bool,
     /// Seams that a tool is about to make.
     pub fresh: &'a [SeamId],
-    /// Sheets all of whose points are shown.
+    /// Open sheets: all of their points are shown.
     pub open: &'a [SheetId],
     /// Colours.
     pub palette: &'a Palette,
 }
 
-/// Share of the colour of what is selected in that of what is under the pointer.
+/// Share of the selection colour in the colour of a hovered part.
 const HOVERED: f32 = 0.4;
 
 impl Picture<'_> {
-    /// Paints the table, the pattern, and what a tool draws over it; says where names, numbers of seams and tags
-    /// stand: none stands over another.
+    /// Paints the table, the pattern and the overlay of a tool; returns the rectangles of names, seam
+    /// numbers and tags, which do not overlap.
     pub fn paint(&self, overlay: &[Overlay]) -> Vec<Rect> {
         let mut labels: Vec<Rect> = tagged(self.scene, self.open)
             .map(|sheet| {
@@ -118,7 +118,8 @@ impl Picture<'_> {
         for shown in &points {
             self.point(shown);
         }
-        // While its pieces lie against each other it is seen what meets.
+        // Links between seam ends are hidden while the pieces of a seam lie against each other, so that
+        // the fit is visible.
         let is_walked = overlay
             .iter()
             .any(|mark| matches!(mark, Overlay::Ghost(..)));
@@ -146,7 +147,7 @@ impl Picture<'_> {
         self.camera.screen(self.view, TablePoint(at + origin)).0
     }
 
-    /// The view without its rulers, where words are read.
+    /// The view without its rulers, in which text is placed.
     pub(super) fn clear_view(&self) -> Rect {
         let ruler = if self.rulers.is_some() { RULER } else { 0.0 };
         Rect::from_min_max(self.view.min + vec2(ruler, ruler), self.view.max)
@@ -221,7 +222,7 @@ impl Picture<'_> {
         match () {
             () if panel.is_stale => self.palette.panel_stale,
             () if self.selection.contains(Item::Panel(panel.id)) => self.palette.accent_soft,
-            // Under the pointer it is not yet selected.
+            // Hovered, but not selected yet.
             () if self.is_lit(Item::Panel(panel.id)) => {
                 let (plain, soft) = (self.palette.panel, self.palette.accent_soft);
                 plain.lerp_to_gamma(soft, HOVERED)
@@ -230,8 +231,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Curves that no panel follows where it lies, as pencil lines; faint those that steps of its panel
-    /// led away from, while its sheet is open.
+    /// Curves that no panel follows at its place, as pencil lines; while a sheet is open, curves that
+    /// steps of its panel have moved away from are faint.
     fn curves(&self, sheet: &SheetScene) {
         let origin = self.table_layout.sheet(sheet.id);
         let is_open = self.open.contains(&sheet.id);
@@ -358,8 +359,9 @@ impl Picture<'_> {
         }
     }
 
-    /// The panel's name, and under it how it is cut where there is room for both: inside, in a gap of the
-    /// grainline; else the name alone, in smaller letters where they alone fit, under the panel if it has no room inside.
+    /// The panel's name, and below it the cutting instruction if both fit: inside, in a gap of the
+    /// grainline; else only the name, in a smaller font if need be, or under the panel if it does not fit
+    /// inside.
     fn caption(&self, panel: &PanelScene, labels: &mut Vec<Rect>) {
         let origin = self.table_layout.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
@@ -369,7 +371,7 @@ impl Picture<'_> {
         let cut = layout(&panel.cut, 12.0, self.palette.ink_soft);
         let shape = &panel.shape;
         let [low, high] = [shape.drawn_bounds.min, shape.drawn_bounds.max];
-        // A folded panel has room across its fold too.
+        // A folded panel also has room across its fold.
         let across = Vec2::new(
             (shape.bounds.min.x + shape.bounds.max.x) * 0.5,
             shape.middle.y,
@@ -381,7 +383,7 @@ impl Picture<'_> {
         let inset = NUMBER_INSET as f32;
         let fits = |size: egui::Vec2, corners: [Vec2; 2]| {
             let [low, high] = corners.map(|p| self.seen(origin, p));
-            // No seam has its number beside a fold.
+            // A fold has no seam and so no seam number beside it.
             let beside = match panel.fold.is_some() && corners == rooms[0].0 {
                 true => inset,
                 false => 2.0 * inset,
@@ -400,7 +402,7 @@ impl Picture<'_> {
         }
         choices.push((name.size(), vec![name.clone()]));
         choices.push((small.size(), vec![small]));
-        // Rather the name alone than over the fold.
+        // The name alone is better than text over the fold.
         let found = rooms.iter().find_map(|(corners, at)| {
             let mut choices = choices.iter();
             let (size, lines) = choices.find(|(size, _)| fits(*size, *corners))?;
@@ -413,7 +415,7 @@ impl Picture<'_> {
             let middle = Pos2::new((low.x + high.x) * 0.5, below);
             (name.size(), vec![name], middle)
         });
-        // Where another label stands it goes up or down inside, or farther below.
+        // Avoids other labels: moves up or down inside the panel, or farther down below it.
         let steps = (0..CAPTION_STEPS).flat_map(|k| match inside {
             true => [k as f32, -(k as f32)],
             false => [k as f32; 2],
@@ -440,7 +442,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Lines from points to their handles, on sheets that are open.
+    /// Lines from points to their handles, on open sheets.
     fn handles(&self) {
         for sheet in &self.scene.sheets {
             if !sheet.is_bare && !self.open.contains(&sheet.id) {
@@ -542,18 +544,18 @@ impl Picture<'_> {
         }
     }
 
-    /// A small label beside something.
+    /// Paints a small label beside a place.
     pub(super) fn tag(&self, at: Pos2, text: &str) -> Rect {
         self.label(at, text, self.palette.accent)
     }
 
-    /// Paints a label, and says where.
+    /// Paints a label; returns its rectangle.
     pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) -> Rect {
         self.words_on(text, ground_colour, |size, first| {
-            // Its first line is level with the place.
+            // The first line of text is level with the place.
             let corner = at - vec2(0.0, 0.5 * first + 2.0);
             let ground = Rect::from_min_size(corner, size);
-            // At the rim of the view it is moved inward.
+            // At the edge of the view the label is moved inward.
             let view = self.clear_view();
             let low = (view.max - ground.max).min(egui::Vec2::ZERO);
             let ground = ground.translate(low);
@@ -562,15 +564,15 @@ impl Picture<'_> {
         })
     }
 
-    /// Paints words on a ground, and says where: `place` gives the ground from its size and the height of
-    /// the first line.
+    /// Paints text on a background; returns the rectangle of the background. `place` computes that from
+    /// its size and the height of the first line.
     pub(super) fn words_on(
         &self,
         words: &str,
         ground_colour: Color32,
         place: impl FnOnce(egui::Vec2, f32) -> Rect,
     ) -> Rect {
-        // A long formula is broken into lines rather than cut off.
+        // A long formula is wrapped rather than cut off.
         let (font, most) = (theme::font(12.5), self.clear_view().width() - LABEL_MARGIN);
         let ink = self.palette.on_accent;
         let text = self.painter.layout(words.to_owned(), font, ink, most);
@@ -584,7 +586,7 @@ impl Picture<'_> {
     }
 }
 
-/// Whether an operation of the panel is selected that has no line of its own: its fold.
+/// Whether the fold of the panel is selected, an operation that has no line of its own.
 fn panel_fold_is_lit(panel: &PanelScene, selection: &Selection) -> bool {
     selection.items().iter().any(|item| {
         matches!(item, Item::Operation(of, id) if *of == panel.id

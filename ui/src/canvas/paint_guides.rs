@@ -30,7 +30,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Paints what is told of a guide that is dragged.
+    /// Paints the label of a guide that is dragged.
     pub(super) fn guide_label(&self) {
         if let Some(label) = self.guide_label {
             self.tag(label.at + egui::vec2(14.0, 22.0), &label.words);

@@ -1,17 +1,17 @@
-//! Paints the overlay of a tool: a piece as a ghost, lines, marks, and words that keep clear of each other.
+//! Paints the overlay of a tool: a piece as a ghost, lines, marks, and labels that do not overlap.
 
 use super::paint::Picture;
 use crate::tools::{Overlay, Tone};
 use egui::{Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
-/// How dense the cloth of a ghost is, as a factor of its colour.
+/// Opacity of the cloth of a ghost.
 const GHOST: f32 = 0.55;
-/// Where words begin beside their place (pixels): far enough to leave the lines there free.
+/// Offset of a label from its place (pixels): far enough to keep the lines there visible.
 const ABOVE: egui::Vec2 = vec2(30.0, -36.0);
-/// The same of words that are neither good nor bad.
+/// Offset of a label of neutral tone (pixels).
 const BELOW: egui::Vec2 = vec2(30.0, 36.0);
-/// Room between words, and between them and the rim of the view (pixels).
+/// Gap between labels, and between them and the edge of the view (pixels).
 const ROOM: f32 = 3.0;
 
 impl Picture<'_> {
@@ -24,7 +24,7 @@ impl Picture<'_> {
         }
     }
 
-    /// What lies on the table, words apart.
+    /// Paints an overlay mark on the table; labels are painted separately.
     pub(super) fn on_table(&self, mark: &Overlay) {
         let table = Vec2::zeros();
         match mark {
@@ -61,8 +61,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Words beside places of the table. What would cover words that stand already comes below them,
-    /// and all stay within the view.
+    /// Paints labels beside places of the table. One that would cover another is moved below it, and all
+    /// stay within the view.
     pub(super) fn labels(&self, overlay: &[Overlay]) {
         let mut placed: Vec<Rect> = Vec::new();
         for mark in overlay {
@@ -90,8 +90,8 @@ impl Picture<'_> {
     }
 }
 
-/// A place for words of a size at a point or above or below it, within a view, that covers none of
-/// those placed.
+/// A rectangle for text at a point, or above or below it, inside a view, that overlaps none of those
+/// placed.
 fn clear(placed: &[Rect], view: Rect, (at, size): (Pos2, egui::Vec2)) -> Rect {
     let right = (view.right() - size.x).max(view.left());
     let bottom = (view.bottom() - size.y).max(view.top());

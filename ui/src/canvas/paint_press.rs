@@ -1,16 +1,16 @@
-//! Paints which way darts and pleats are pressed.
+//! Paints the pressing directions of darts and pleats.
 
 use super::paint::Picture;
 use super::scene::PanelScene;
 use super::selection::Item;
 use egui::{Shape, Stroke, vec2};
 
-/// Half the length of an arrow, and the length and half the width of its head (pixels).
+/// Half the length of an arrow, and the length and half width of its head (pixels).
 const HALF: f32 = 14.0;
 const HEAD: [f32; 2] = [8.0, 4.0];
 
 impl Picture<'_> {
-    /// Arrows across darts and pleats, to the side where what is folded under lies.
+    /// Arrows across darts and pleats, towards the side on which the folded cloth lies.
     pub(super) fn press_arrows(&self, panel: &PanelScene) {
         let origin = self.table_layout.panel(panel.id);
         for arrow in &panel.pressed {

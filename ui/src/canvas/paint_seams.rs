@@ -1,4 +1,4 @@
-//! Paints seams, and the sizes over each other.
+//! Paints seams, and the outlines of all sizes.
 
 use super::grading::Grading;
 use super::paint::{NUMBER_INSET, Picture};
@@ -10,19 +10,19 @@ use crate::theme;
 use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
-/// How far inside the outline a seam's line runs (pixels).
+/// Distance of the line of a seam from the outline, inward (pixels).
 const SEAM_INSET: f64 = 5.0;
-/// Stretches shorter than this carry no number (pixels).
+/// Shorter stretches carry no number (pixels).
 const NUMBER_LEAST: f64 = 34.0;
-/// Places along a stretch that are tried for its number, the most usual first (share of its length).
+/// Places along a stretch that are tried for its number, the preferred first (share of its length).
 const NUMBER_PLACES: [f64; 7] = [0.5, 0.4, 0.6, 0.28, 0.72, 0.15, 0.85];
-/// Radius of the ground of a number (pixels).
+/// Radius of the background of a number (pixels).
 const NUMBER_RADIUS: f32 = 8.5;
-/// Sides of a seam that differ by more are shown as a warning (m).
+/// Largest difference of length between the sides of a seam that is shown without a warning (m).
 const UNEVEN: f64 = 0.001;
 
 impl Picture<'_> {
-    /// Seams at the selected or pointed edge are drawn stronger.
+    /// Whether a seam is drawn stronger: it, or an edge it is sewn at, is selected or hovered.
     pub(super) fn touched(&self, seam: &SeamDrawing) -> bool {
         self.is_lit(Item::Seam(seam.id))
             || seam.stretches.iter().any(|stretch| {
@@ -49,8 +49,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The number of a seam on both its sides, each in the middle of a stretch or where there is room beside other
-    /// labels.
+    /// The number of a seam on both its sides, each in the middle of a stretch or where it is clear of
+    /// other labels.
     pub(super) fn seam_numbers(&self, seam: &SeamDrawing, labels: &mut Vec<Rect>) {
         for stretch in &seam.stretches {
             let Some(panel) = self.scene.panel_scene(stretch.panel) else {
@@ -85,8 +85,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Lines between the ends that are sewn together, and how much longer one side is: in the
-    /// colour of a warning where that is more than a millimetre.
+    /// Lines between the ends that are sewn together, and the difference in length of the two sides: in
+    /// the warning colour if that is more than a millimetre.
     pub(super) fn seam_links(&self, seam: &SeamDrawing) {
         let [Some(first), Some(second)] = seam.ends else {
             return;
@@ -135,7 +135,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Which colour is which size.
+    /// The legend: colours and names of the sizes.
     pub(super) fn legend(&self, grading: &Grading) {
         let mut at = self.view.min + vec2(30.0, 34.0);
         for (k, size) in grading.sizes.iter().enumerate() {
@@ -154,7 +154,7 @@ impl Picture<'_> {
     }
 }
 
-/// A polyline moved to its left by a distance, corner by corner; ends stay square to it.
+/// Offset of a polyline to its left by a distance, corner by corner; ends stay perpendicular.
 fn beside(line: &[Vec2], distance: f64) -> Vec<Vec2> {
     if line.len() < 2 {
         return Vec::new();

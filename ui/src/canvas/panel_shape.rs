@@ -1,63 +1,64 @@
-//! The shape of a panel as drawn: polylines and fills made once from its stage, in the panel's plane.
+//! The drawn shape of a panel: polylines and fills made once from its stage, in the panel's plane.
 
 use super::fill::{Fill, fill};
 use super::inside::{chord, roomiest};
 use toile_geometry::{Bounds2, Curve, Vec2, ring_area};
 use toile_pattern::{EdgeId, LineId, LineKind, Name, NotchId, OperationId, Role, Stage, StageEdge};
 
-/// Part of the chord through the middle of a panel that the grainline takes.
+/// Share of the chord through the middle of a panel that the grainline takes.
 const GRAINLINE_SHARE: f64 = 0.62;
 
-/// One panel as drawn.
+/// The drawn shape of a panel. Lengths and coordinates in metres.
 #[derive(Clone, Debug)]
 pub struct PanelShape {
-    /// Side of its outline, seen along it, on which the cloth lies: 1 left, -1 right.
+    /// Side of the outline, seen along it, on which the cloth lies: 1 left, -1 right.
     pub cloth_side: f64,
-    /// Least rectangle round the panel, its mirrored half included (m).
+    /// Bounding box of the panel with its mirrored half (m).
     pub bounds: Bounds2,
-    /// Least rectangle round the half that is drawn (m).
+    /// Bounding box of the drafted half (m).
     pub drawn_bounds: Bounds2,
-    /// The half that is drawn, its outline and holes.
+    /// Outline and holes of the drafted half.
     pub rings: Vec<Vec<Vec2>>,
-    /// The same, filled.
+    /// Fill of the drafted half.
     pub fill: Fill,
-    /// The mirrored half of a folded panel, filled.
+    /// Fill of the mirrored half of a folded panel.
     pub mirrored_fill: Fill,
-    /// Edges of outline and holes of the half that is drawn.
+    /// Edges of outline and holes of the drafted half.
     pub edges: Vec<EdgeShape>,
-    /// Outline of the mirrored half.
+    /// Edges of outline and holes of the mirrored half, without legs of darts.
     pub mirrored: Vec<Vec<Vec2>>,
-    /// Other edges that operations made, as where the panel was split, on the half that is drawn.
+    /// Other edges made by operations, as where the panel was split, on the drafted half.
     pub made: Vec<(OperationId, Vec<Vec2>)>,
-    /// Legs of darts, with the operation that made them; of a mirrored half too.
+    /// Legs of darts, with the operation that made them and whether they are on the mirrored half.
     pub darts: Vec<(OperationId, bool, Vec<Vec2>)>,
-    /// Lines that pleats are folded in, or laid to, with the operation that made them.
+    /// Fold and placement lines of pleats, with the operation that made them and whether it is a
+    /// placement line.
     pub creases: Vec<(OperationId, bool, Vec<Vec2>)>,
-    /// Lines inside of the half that is drawn.
+    /// Internal lines of the drafted half.
     pub internal_lines: Vec<(LineId, Vec<Vec2>)>,
-    /// The same of the mirrored half.
+    /// Internal lines of the mirrored half.
     pub mirrored_lines: Vec<(LineId, Vec<Vec2>)>,
-    /// Notches: place on the outline and unit direction inward.
+    /// Notches: point on the outline and unit direction inward.
     pub notches: Vec<(NotchId, Vec2, Vec2)>,
     /// Both ends of the grainline, if there is room for one.
     pub grainline: Option<[Vec2; 2]>,
-    /// Where the name stands: a place with room round it.
+    /// Place of the name, with room round it.
     pub middle: Vec2,
 }
 
-/// One edge as drawn.
+/// The drawn shape of an edge.
 #[derive(Clone, Debug)]
 pub struct EdgeShape {
-    /// Which edge.
+    /// Identity of the edge.
     pub id: EdgeId,
     /// Length without dart mouths (m).
     pub length: f64,
-    /// Polylines in its direction: one, or more where darts interrupt it.
+    /// Polylines along the edge: one, or more where darts interrupt it.
     pub lines: Vec<Vec<Vec2>>,
 }
 
 impl PanelShape {
-    /// Draws a stage, curves to within a tolerance (m).
+    /// The shape of a stage; curves are flattened to within a tolerance (m).
     pub fn new(stage: &Stage, tolerance: f64) -> Self {
         let polyline = |curve: &Curve| curve.flatten(tolerance);
         let rings = || std::iter::once(stage.outline()).chain(stage.holes());
@@ -110,7 +111,7 @@ impl PanelShape {
                 }
                 Name::Drawn(id) => shape.internal_lines.push((id, points.collect())),
                 Name::Made { .. } if line.half != 0 => {}
-                // Where a pleat is folded, and where it is laid to.
+                // Fold line or placement line of a pleat.
                 Name::Made { by, role, .. } => {
                     let is_placement = role == Role::Placement;
                     shape.creases.push((by, is_placement, points.collect()));
@@ -137,7 +138,7 @@ impl PanelShape {
         match self.edges.iter_mut().find(|known| known.id == id) {
             Some(known) => {
                 known.length += length;
-                // A spline is several curves of one edge: they are drawn as one line.
+                // A spline consists of several curves of one edge: they are drawn as one line.
                 match known.lines.last_mut() {
                     Some(last) if last.last() == line.first() => last.extend(&line[1..]),
                     _ => known.lines.push(line),
@@ -151,19 +152,19 @@ impl PanelShape {
         }
     }
 
-    /// Whether a place (m) lies on the half that is drawn.
+    /// Whether a point (m) lies on the drafted half.
     pub fn contains(&self, at: Vec2) -> bool {
         super::inside::contains(&self.rings, at)
     }
 
-    /// The edge with that id.
+    /// The shape of an edge.
     pub fn edge_shape(&self, id: EdgeId) -> Option<&EdgeShape> {
         self.edges.iter().find(|edge| edge.id == id)
     }
 }
 
 impl EdgeShape {
-    /// Its middle, halfway along its longest part.
+    /// The middle of its longest polyline.
     pub fn middle(&self) -> Option<Vec2> {
         self.lines
             .iter()
@@ -178,7 +179,7 @@ fn polyline_length(line: &[Vec2]) -> f64 {
     line.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
 }
 
-/// Place at a share of a polyline's length, and the unit direction there.
+/// The point at a share of a polyline's length, and the unit direction there.
 pub fn along(line: &[Vec2], share: f64) -> Option<(Vec2, Vec2)> {
     let mut left = polyline_length(line) * share;
     for w in line.windows(2) {
@@ -192,7 +193,7 @@ pub fn along(line: &[Vec2], share: f64) -> Option<(Vec2, Vec2)> {
     None
 }
 
-/// The points of one half of a ring, in order from where that half begins.
+/// The points of one half of a ring, in order from the start of that half.
 fn half_ring(ring: &[StageEdge], of_mirrored: bool, tolerance: f64) -> Vec<Vec2> {
     let count = ring.len();
     let reflected = |k: usize| ring[k % count].half != 0;

@@ -5,10 +5,10 @@ use toile_geometry::Vec2;
 use toile_pattern::plan::EdgePart;
 use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 
-/// Steps of the grid (m), and the least enlargement each is used at (pixels per metre).
+/// Grid steps (m), each with the least enlargement it is used at (pixels per metre).
 const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
 
-/// The most that a drag is rounded to (m).
+/// Largest step that a drag is rounded to (m).
 const MAX_ROUNDING: f64 = 0.001;
 
 /// The construction of a point at a place.
@@ -18,14 +18,14 @@ pub enum Spec {
     Point(PointId),
     /// A new point by a rule.
     New(PointRule),
-    /// At a distance (m) and angle (rad) from the place given before.
+    /// At a distance (m) and angle (rad) from the last place.
     FromLast {
         /// The distance (m).
         distance: Number,
         /// The angle (rad), from +x counter-clockwise.
         angle: Number,
     },
-    /// Beside the place given before (m).
+    /// At an offset from the last place (m).
     BesideLast {
         /// To the right (m).
         x: Number,
@@ -34,21 +34,21 @@ pub enum Spec {
     },
 }
 
-/// A place that a point could have.
+/// A candidate place for a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
     /// The sheet.
     pub sheet: SheetId,
-    /// Where on it (m).
+    /// Coordinates on the sheet (m).
     pub at: Vec2,
-    /// How a point there comes about.
+    /// Construction of a point there.
     pub spec: Spec,
-    /// What it is, in words; empty for anywhere.
+    /// Description of the place; empty for a free one.
     pub words: String,
 }
 
 impl Placed {
-    /// A place that means nothing in particular.
+    /// A place without a relation to other parts.
     pub fn free(sheet: SheetId, at: Vec2) -> Self {
         Self {
             sheet,
@@ -58,7 +58,7 @@ impl Placed {
         }
     }
 
-    /// The point that is there.
+    /// The existing point at this place, if it is one.
     pub fn point(&self) -> Option<PointId> {
         match self.spec {
             Spec::Point(id) => Some(id),
@@ -67,14 +67,14 @@ impl Placed {
     }
 }
 
-/// The step of the grid at an enlargement (m).
+/// Grid step at an enlargement (m).
 pub fn grid_step(scale: f64) -> f64 {
     let step = GRID.iter().find(|(_, least)| scale >= *least);
     step.map_or(0.05, |(step, _)| *step)
 }
 
-/// What a drag rounds lengths to where a pixel is so wide (m): the least 1, 2 or 5 times a power of ten of a
-/// unit (m) that is no finer, and no more than a millimetre.
+/// Step that a drag rounds lengths to for a pixel of this width (m): the least of 1, 2 or 5 times a power
+/// of ten of a unit (m) that is not less than a pixel, and at most a millimetre.
 pub fn drag_step(pixel: f64, unit: f64) -> f64 {
     let wanted = pixel.clamp(1e-9, MAX_ROUNDING);
     let power = 10.0_f64.powf((wanted / unit).log10().floor());
@@ -95,7 +95,8 @@ pub fn rounded(value: f64, step: f64) -> f64 {
     ((value / step).round() * step * 1e6).round() / 1e6
 }
 
-/// Curves that come near, the nearest first, with the place on each.
+/// Curves within reach of a point, the nearest first, with the share of the length and the nearest point
+/// on each.
 pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene, f64, Vec2)> {
     let mut near: Vec<(f64, &CurveScene, f64, Vec2)> = sheet
         .curves
@@ -113,7 +114,7 @@ pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene
         .collect()
 }
 
-/// A point on a curve, at a share of its length, which lies there (m).
+/// A place on a curve, at a share of its length, with the coordinates (m).
 pub fn on_curve(
     sheet: SheetId,
     curve: &CurveScene,
@@ -131,7 +132,8 @@ pub fn on_curve(
     }
 }
 
-/// A point on an edge of the panel that a sheet lies on, at a share of it, which lies there (m).
+/// A place on an edge of the panel that a sheet lies on, at a share of the edge, with the coordinates
+/// (m).
 pub fn on_edge(sheet: SheetId, part: &EdgePart, (share, at): (f64, Vec2), words: &str) -> Placed {
     let mark = Mark::Between {
         ends: part.ends,

@@ -1,10 +1,10 @@
-//! The directions a dart or a pleat may be pressed in, by the arrow that shows how it is.
+//! The possible pressing directions of a dart or pleat, derived from the arrow for the present one.
 
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind, PleatKind, PressArrow, Pressed, Side};
 
-/// Where a step is pressed, and the directions it may be pressed in, in the order of its choices: of a dart to the leg
-/// before its point and after it, of a knife pleat left and right of its line.
+/// Place at which a step is pressed, and the possible directions in the order of its choices: for a dart
+/// to the leg before its point and to that after it, for a knife pleat left and right of its line.
 pub fn press_ways(arrows: &[PressArrow], step: &Operation) -> Option<(Vec2, [Vec2; 2])> {
     let is_first = match step.kind {
         OperationKind::Dart { pressed, .. } | OperationKind::Pivot { pressed, .. } => {
@@ -24,7 +24,8 @@ pub fn press_ways(arrows: &[PressArrow], step: &Operation) -> Option<(Vec2, [Vec
     })
 }
 
-/// How far a direction at a place leads to a fold: 1 straight to it, -1 straight away from it. Nothing on the fold.
+/// Cosine between a direction at a place and the way to a fold: 1 straight to it, -1 straight away from
+/// it. `None` on the fold.
 pub fn toward_fold((at, way): (Vec2, Vec2), [from, to]: [Vec2; 2]) -> Option<f64> {
     let along = (to - from).try_normalize(1e-12)?;
     let across = (from - at) - along * (from - at).dot(&along);

@@ -8,11 +8,11 @@ use toile_pattern::DisplayUnit;
 
 /// Width of a ruler (pixels).
 pub const RULER: f32 = 18.0;
-/// Least distance of numbers (pixels).
+/// Least distance between numbers (pixels).
 const NUMBERS: f64 = 56.0;
 
-/// Steps of numbers in a unit: the smallest that is wide enough is taken; each with the number of
-/// parts it is divided into.
+/// Possible steps between numbers in a unit, each with its number of subdivisions; the smallest that
+/// leaves enough distance is taken.
 fn steps(unit: DisplayUnit) -> &'static [(f64, u32)] {
     match unit {
         DisplayUnit::Inch => &[
@@ -47,7 +47,7 @@ fn steps(unit: DisplayUnit) -> &'static [(f64, u32)] {
     }
 }
 
-/// The step of the numbers and the parts it is divided into, at an enlargement (pixels per metre).
+/// The step between numbers and its subdivisions, at an enlargement (pixels per metre).
 pub fn step(unit: DisplayUnit, scale: f64) -> (f64, u32) {
     let all = steps(unit);
     let pixels = scale * unit.metres();
@@ -55,7 +55,7 @@ pub fn step(unit: DisplayUnit, scale: f64) -> (f64, u32) {
     wide.or(all.last()).copied().unwrap_or((1.0, 1))
 }
 
-/// Paints both rulers. Numbers count from a place of the table (m).
+/// Paints both rulers. Zero is at a point of the table (m).
 pub fn paint(
     painter: &Painter,
     (view, camera): (Rect, &TableCamera),
@@ -109,7 +109,7 @@ pub fn paint(
         painter.hline(left.right() - length..=left.right(), y, tick);
         if is_whole {
             let galley = painter.layout_no_wrap(words(n), theme::font(10.0), palette.ink_soft);
-            // Read from below, as on a rule that is laid upright.
+            // Numbers of the left ruler read from bottom to top.
             let corner = pos2(left.left() + 1.0, y - 3.0);
             let turned = egui::epaint::TextShape::new(corner, galley, palette.ink_soft)
                 .with_angle(-std::f32::consts::FRAC_PI_2);

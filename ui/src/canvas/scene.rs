@@ -1,5 +1,5 @@
-//! The scene of a pattern as the canvas draws it. Its parts are cached by the values they were made from: an
-//! edit remakes only those whose value changed.
+//! The scene of a pattern as the canvas draws it. Its parts are cached by the values they were made from:
+//! an edit remakes only those whose value changed.
 
 use super::allowance::CutLines;
 use super::panel_shape::PanelShape;
@@ -15,39 +15,40 @@ use toile_pattern::{
     PanelId, PointId, PressArrow, SeamId, Sheet, SheetId, Stage, press_arrows,
 };
 
-/// Largest distance of a drawn curve from the true one (pixels).
+/// Tolerance of drawn curves (pixels).
 const CURVE_TOLERANCE: f64 = 0.15;
 
-/// How near the end of a line lies to the corner that it is (m).
+/// Largest distance at which the end of a line counts as lying at a corner (m).
 const AT_CORNER: f64 = 1e-6;
 
-/// Everything the canvas draws of a pattern.
+/// Everything that the canvas draws of a pattern.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The sheets, in the pattern's order.
+    /// Sheets, in the pattern's order.
     pub sheets: Vec<SheetScene>,
-    /// The panels, in the pattern's order; those that never could be drawn are left out, and those
-    /// that are split, whose sides are drawn.
+    /// Panels, in the pattern's order, without those that never could be drawn; a panel that is split is
+    /// left out too, and its sides are drawn instead.
     pub panels: Vec<PanelScene>,
-    /// The seams, numbered from 1 in this order.
+    /// Seams, numbered from 1 in this order.
     pub seams: Vec<SeamDrawing>,
-    /// Lines to cut along.
+    /// Cut lines.
     pub cut_lines: CutLines,
     /// The guides.
     pub guides: Vec<Arc<Guide>>,
-    /// The pieces and seams it was made from.
+    /// The pieces and seams that the scene was made from.
     pub draft: Arc<Draft>,
-    /// The finest enlargement it is drawn for: a power of two (pixels per metre).
+    /// Level of detail: exponent of the finest enlargement it is drawn for, a power of two (pixels per
+    /// metre).
     octave: i32,
     lines: HashMap<*const Path, KeptLine>,
     shapes: HashMap<*const Stage, KeptShape>,
-    /// Lines and shapes that were made, ever.
+    /// Number of lines and shapes made so far, for tests of the cache.
     made: u64,
-    /// The seam that is walked; clones of the scene share it.
+    /// Cache of the walked seam; clones of the scene share it.
     walked: Rc<WalkedLast>,
 }
 
-/// A polyline and the path it was made from, which lives as long so that its address is its own.
+/// A polyline, with the path it was made from. The path is kept alive so that its address identifies it.
 #[derive(Clone, Debug)]
 struct KeptLine {
     _path: Arc<Path>,
@@ -63,95 +64,95 @@ struct KeptShape {
 /// A sheet as drawn.
 #[derive(Clone, Debug)]
 pub struct SheetScene {
-    /// Which sheet.
+    /// Identity of the sheet.
     pub id: SheetId,
-    /// Its name.
+    /// Name of the sheet.
     pub name: String,
-    /// Its points that can be drawn.
+    /// Points that can be drawn.
     pub points: Vec<PointScene>,
-    /// Its curves that can be drawn.
+    /// Curves that can be drawn.
     pub curves: Vec<CurveScene>,
-    /// Whether no panel is traced from it.
+    /// Whether no panel is traced from the sheet.
     pub is_bare: bool,
-    /// The panel it lies on.
+    /// The panel that the sheet lies on, if it does.
     pub on: Option<PanelId>,
-    /// The edges of that panel's stage, to be snapped to.
+    /// Edges of the stage of that panel, for snapping.
     pub edges: Vec<EdgePart>,
 }
 
-/// What a point is for.
+/// Role of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointRole {
     /// An end of curves or edges.
     Corner,
-    /// Shapes a curve.
+    /// A handle, which shapes a curve.
     Handle,
-    /// Others are constructed from it.
+    /// A base for the construction of other points.
     Construction,
 }
 
 /// A point as drawn.
 #[derive(Clone, Debug)]
 pub struct PointScene {
-    /// Which point.
+    /// Identity of the point.
     pub id: PointId,
-    /// Its name.
+    /// Name of the point.
     pub name: String,
-    /// Where it is on its sheet (m).
+    /// Coordinates on the sheet (m).
     pub at: Vec2,
-    /// What it is for.
+    /// Role of the point.
     pub role: PointRole,
-    /// Whether it is a corner that no outline has where it lies: steps of its panels moved it.
+    /// Whether no outline has a corner there any more, because steps of its panels moved it.
     pub is_left: bool,
 }
 
 /// A curve as drawn.
 #[derive(Clone, Debug)]
 pub struct CurveScene {
-    /// Which curve.
+    /// Identity of the curve.
     pub id: CurveId,
-    /// Its name.
+    /// Name of the curve.
     pub name: String,
-    /// Its course on its sheet (m).
+    /// Polyline on the sheet (m).
     pub line: Arc<[Vec2]>,
-    /// Its exact course.
+    /// Exact path.
     pub path: Arc<Path>,
-    /// Whether edges of panels follow it.
+    /// Whether edges of panels follow the curve.
     pub is_traced: bool,
-    /// Its handles with the points they belong to.
+    /// Pairs of a point and a handle of it.
     pub handles: Vec<[PointId; 2]>,
 }
 
 /// A panel as drawn.
 #[derive(Clone, Debug)]
 pub struct PanelScene {
-    /// Which panel.
+    /// Identity of the panel.
     pub id: PanelId,
     /// The sheet it is traced from.
     pub sheet: SheetId,
-    /// Its name.
+    /// Name of the panel.
     pub name: String,
-    /// How often it is cut, in words; empty for once.
+    /// Number of times it is cut, in words; empty for once.
     pub cut: String,
-    /// How it is drawn.
+    /// The drawn shape.
     pub shape: Arc<PanelShape>,
-    /// Points its edges end at.
+    /// End points of its edges.
     pub corners: BTreeSet<PointId>,
-    /// Those of them that its steps moved: nothing that is seen ends where they are drawn.
+    /// Corners that its steps moved: the visible outline has no corner at their drafted places.
     pub left: BTreeSet<PointId>,
-    /// The step that laid it on the fold.
+    /// The step that laid the panel on the fold.
     pub fold_step: Option<OperationId>,
     /// Both ends of the fold line.
     pub fold: Option<[Vec2; 2]>,
-    /// Which way its darts and pleats are pressed.
+    /// Pressing directions of its darts and pleats.
     pub pressed: Vec<PressArrow>,
-    /// Whether it cannot be drawn now, and this is how it last was.
+    /// Whether it cannot be drawn now, so that its last valid shape is shown.
     pub is_stale: bool,
 }
 
 impl Scene {
-    /// Follows an evaluated pattern and its draft; curves are fine enough for an enlargement of
-    /// two to the power of `octave` (pixels per metre).
+    /// Updates the scene to an evaluated pattern and its draft; curves are fine enough for an enlargement
+    /// of two to the power of `octave` (pixels per metre).
     pub fn update(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, octave: i32) {
         if octave != self.octave {
             self.octave = octave;
@@ -178,7 +179,7 @@ impl Scene {
             .collect();
         self.guides.clone_from(&pattern.guides);
         self.leave_points();
-        // What is drawn no more is forgotten.
+        // Cached lines and shapes that are no longer drawn are dropped.
         self.lines = lines;
         self.shapes = shapes;
         self.seams = draw_seams(draft, self.tolerance());
@@ -186,7 +187,7 @@ impl Scene {
         self.draft = draft.clone();
     }
 
-    /// Notes the points that no panel has as a corner where they lie.
+    /// Marks the points at whose drafted places no panel has a corner.
     fn leave_points(&mut self) {
         for sheet in &mut self.sheets {
             for point in &mut sheet.points {
@@ -199,7 +200,7 @@ impl Scene {
         }
     }
 
-    /// Leaves out everything but some panels and the sheets they are traced from.
+    /// Removes all but some panels and the sheets they are traced from.
     pub fn isolate(&mut self, panels: &[PanelId]) {
         self.panels.retain(|panel| panels.contains(&panel.id));
         let sheets: Vec<SheetId> = self.panels.iter().map(|panel| panel.sheet).collect();
@@ -209,37 +210,37 @@ impl Scene {
         });
     }
 
-    /// Whether there is nothing to see.
+    /// Whether the scene has nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.panels.is_empty() && self.sheets.iter().all(|sheet| sheet.points.is_empty())
     }
 
-    /// Lines, shapes and seams to walk that were made, ever: panning makes none.
+    /// Number of lines, shapes and walked seams made so far; panning makes none.
     pub fn made(&self) -> u64 {
         self.made + self.walked.made()
     }
 
-    /// A seam, measured and flattened to be walked; nothing if it cannot be walked.
+    /// A seam, measured and flattened for walking; `None` if it cannot be walked.
     pub fn walked(&self, seam: SeamId) -> Option<Arc<WalkedSeam>> {
         self.walked.seam(&self.draft, seam)
     }
 
-    /// The enlargement it is drawn for.
+    /// The level of detail that the scene is drawn for.
     pub fn octave(&self) -> i32 {
         self.octave
     }
 
-    /// The panel with that id.
+    /// The panel with an identity.
     pub fn panel_scene(&self, id: PanelId) -> Option<&PanelScene> {
         self.panels.iter().find(|panel| panel.id == id)
     }
 
-    /// The sheet with that id.
+    /// The sheet with an identity.
     pub fn sheet_scene(&self, id: SheetId) -> Option<&SheetScene> {
         self.sheets.iter().find(|sheet| sheet.id == id)
     }
 
-    /// The sheet a point is on, and the point.
+    /// The sheet of a point, and the point.
     pub fn point(&self, id: PointId) -> Option<(&SheetScene, &PointScene)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| {
@@ -248,7 +249,7 @@ impl Scene {
         })
     }
 
-    /// The sheet a curve is on, and the curve.
+    /// The sheet of a curve, and the curve.
     pub fn curve(&self, id: CurveId) -> Option<(&SheetScene, &CurveScene)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| {
@@ -393,7 +394,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// Least rectangle round a panel and the lines it is cut along (m).
+    /// Bounding box of a panel and its cut lines (m).
     pub fn room_of(&self, panel: &PanelScene) -> Bounds2 {
         let rings = self.cut_lines.of(panel.id).iter();
         let cut = rings.flatten().copied();
@@ -402,14 +403,14 @@ impl Scene {
 }
 
 impl PanelScene {
-    /// Least rectangle round it on its sheet (m).
+    /// Bounding box on its sheet (m).
     pub fn bounds(&self) -> &Bounds2 {
         &self.shape.bounds
     }
 }
 
 impl SheetScene {
-    /// Least rectangle round what is on it (m); nothing if nothing is.
+    /// Bounding box of the points and curves (m); `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds2> {
         let points = self.points.iter().map(|point| point.at);
         let lines = self.curves.iter().flat_map(|curve| curve.line.iter());
@@ -418,7 +419,7 @@ impl SheetScene {
     }
 }
 
-/// Handles of a curve with the points they shape.
+/// Pairs of a point and a handle of it, for a spline.
 fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
     let CurveRule::Spline { handles, knots, .. } = &curve.rule else {
         return Vec::new();
@@ -430,7 +431,7 @@ fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
     ends.into_iter().chain(inner).collect()
 }
 
-/// Points the panel's edges end at; of a side those that lie on it.
+/// End points of the panel's edges; for a side of a split panel, those that lie on it.
 fn corners(panel: &Panel, stage: &Stage) -> BTreeSet<PointId> {
     if panel.sheet().is_some() {
         return panel.edges().flat_map(|edge| edge.ends).collect();
@@ -443,7 +444,7 @@ fn corners(panel: &Panel, stage: &Stage) -> BTreeSet<PointId> {
     starts.collect()
 }
 
-/// Of some corners those that lie where no line of the stage has an end.
+/// The corners at whose drafted places no edge of the stage ends.
 fn left(corners: &BTreeSet<PointId>, stage: &Stage, evaluation: &Evaluation) -> BTreeSet<PointId> {
     let edges = stage.lines.iter().flat_map(|line| &line.edges);
     let ends = edges.flat_map(|edge| [edge.curve.start(), edge.curve.end()]);
@@ -455,7 +456,7 @@ fn left(corners: &BTreeSet<PointId>, stage: &Stage, evaluation: &Evaluation) -> 
     corners.iter().filter(is_left).copied().collect()
 }
 
-/// Both ends of the line a stage is unfolded in: those of the half that is drawn.
+/// Both ends of the fold line of an unfolded stage: the ends of the drafted half.
 pub fn fold_line(stage: &Stage) -> Option<[Vec2; 2]> {
     let ring = stage.outline();
     let count = ring.len();

@@ -6,15 +6,15 @@ use toile_pattern::{Draft, EdgeId, EdgeOrigin, Name, PanelId, SeamId, SeamOrigin
 /// One seam as drawn.
 #[derive(Clone, Debug)]
 pub struct SeamDrawing {
-    /// Which seam.
+    /// Identity of the seam.
     pub id: SeamId,
-    /// Its name.
+    /// Name of the seam.
     pub name: String,
-    /// Number that both sides carry.
+    /// Number shown on both sides.
     pub number: usize,
     /// Length of each side (m).
     pub lengths: [f64; 2],
-    /// Where each side starts and ends, on its panel as drawn; nothing on another copy.
+    /// Start and end of each side, on the panel as drawn; `None` if the side is on another copy.
     pub ends: [Option<[SeamEnd; 2]>; 2],
     /// Stretches on the panels as drawn.
     pub stretches: Vec<SeamStretch>,
@@ -25,18 +25,18 @@ pub struct SeamDrawing {
 pub struct SeamStretch {
     /// The panel.
     pub panel: PanelId,
-    /// The edge, unless it lies on the mirrored half.
+    /// The edge; `None` on the mirrored half.
     pub edge: Option<EdgeId>,
-    /// 0 or 1.
+    /// Side of the seam: 0 or 1.
     pub side: usize,
-    /// Its course, in the direction of the outline.
+    /// Polyline in the direction of the outline (m).
     pub line: Vec<Vec2>,
 }
 
-/// An end of a side: the panel, and the place in its plane (m).
+/// End of a side: the panel, and the point in its plane (m).
 pub type SeamEnd = (PanelId, Vec2);
 
-/// The seams of a draft, curves to within a tolerance (m).
+/// The seams of a draft; curves are flattened to within a tolerance (m).
 pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
     let mut seams: Vec<SeamDrawing> = Vec::new();
     for seam in &draft.seams {
@@ -90,13 +90,13 @@ pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
 }
 
 impl SeamDrawing {
-    /// How much longer the first side is (m).
+    /// Length of the first side minus that of the second (m).
     pub fn difference(&self) -> f64 {
         self.lengths[0] - self.lengths[1]
     }
 }
 
-/// The part of a curve between two shares of its length, always in the curve's own direction.
+/// The part of a curve between two shares of its length, in the curve's own direction.
 fn stretch(curve: &Curve, from: f64, to: f64, tolerance: f64) -> Vec<Vec2> {
     let length = curve.length();
     let at = |share: f64| curve.parameter_at_length(length * share.clamp(0.0, 1.0));

@@ -1,4 +1,4 @@
-//! What is selected or under the pointer. View state: not in the document, not undone.
+//! The selection, and the parts that can be selected. View state: not in the document, not undone.
 
 use toile_pattern::{
     CurveId, EdgeId, GuideId, LineId, LineKind, NotchId, OperationId, PanelId, PartId, Pattern,
@@ -18,7 +18,7 @@ pub enum Item {
     Line(PanelId, LineId),
     /// A notch of a panel.
     Notch(PanelId, NotchId),
-    /// A dart, a fold or another kept step of a panel.
+    /// A dart, a fold or another stored step of a panel.
     Operation(PanelId, OperationId),
     /// A whole panel.
     Panel(PanelId),
@@ -31,7 +31,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// Every part of a pattern: panels and what is of them, seams, sheets and what is on them, guides.
+    /// All parts of a pattern: panels and their parts, seams, sheets and their parts, guides.
     pub fn all(pattern: &Pattern) -> Vec<Self> {
         let mut all = Vec::new();
         for panel in &pattern.panels {
@@ -61,7 +61,7 @@ impl Item {
         all
     }
 
-    /// The part of the document.
+    /// Reference to the part in the document.
     pub fn part(self) -> PartId {
         match self {
             Self::Point(id) => id.into(),
@@ -77,7 +77,7 @@ impl Item {
         }
     }
 
-    /// The panel it is, or is of.
+    /// The panel that it is or belongs to.
     pub fn panel(self) -> Option<PanelId> {
         match self {
             Self::Edge(panel, _)
@@ -91,7 +91,7 @@ impl Item {
         }
     }
 
-    /// What it is, in words; nothing if the pattern does not have it.
+    /// Kind and name of the part, in words; `None` if the pattern does not have it.
     pub fn words(self, pattern: &Pattern) -> Option<String> {
         let panel = |id| pattern.panel(id);
         let mut sheets = pattern.sheets.iter();
@@ -139,19 +139,19 @@ impl Item {
     }
 }
 
-/// What is selected, in the order it was chosen.
+/// The selected parts, in the order they were selected.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     items: Vec<Item>,
 }
 
 impl Selection {
-    /// One part alone.
+    /// A selection of one part.
     pub fn one(item: Item) -> Self {
         Self { items: vec![item] }
     }
 
-    /// The parts.
+    /// All selected parts.
     pub fn items(&self) -> &[Item] {
         &self.items
     }
@@ -166,7 +166,7 @@ impl Selection {
         self.items.contains(&item)
     }
 
-    /// The part, if one alone is selected.
+    /// The part, if exactly one is selected.
     pub fn single(&self) -> Option<Item> {
         match self.items[..] {
             [item] => Some(item),
@@ -174,7 +174,7 @@ impl Selection {
         }
     }
 
-    /// The points.
+    /// The selected points.
     pub fn points(&self) -> Vec<PointId> {
         let points = self.items.iter().filter_map(|item| match item {
             Item::Point(id) => Some(*id),
@@ -183,7 +183,7 @@ impl Selection {
         points.collect()
     }
 
-    /// The panels that are selected whole.
+    /// The panels that are selected as a whole.
     pub fn panels(&self) -> Vec<PanelId> {
         let panels = self.items.iter().filter_map(|item| match item {
             Item::Panel(id) => Some(*id),
@@ -192,7 +192,7 @@ impl Selection {
         panels.collect()
     }
 
-    /// The sheets that are selected whole.
+    /// The sheets that are selected as a whole.
     pub fn sheets(&self) -> Vec<SheetId> {
         let sheets = self.items.iter().filter_map(|item| match item {
             Item::Sheet(id) => Some(*id),
@@ -201,7 +201,7 @@ impl Selection {
         sheets.collect()
     }
 
-    /// Adds a part, or takes it away if it is there.
+    /// Adds a part, or removes it if it is selected.
     pub fn toggle(&mut self, item: Item) {
         match self.items.iter().position(|known| *known == item) {
             Some(k) => {
@@ -211,14 +211,14 @@ impl Selection {
         }
     }
 
-    /// Adds a part if it is not there.
+    /// Adds a part unless it is selected.
     pub fn add(&mut self, item: Item) {
         if !self.contains(item) {
             self.items.push(item);
         }
     }
 
-    /// Leaves out what the pattern does not have.
+    /// Removes parts that the pattern no longer has.
     pub fn follow(&mut self, pattern: &Pattern) {
         self.items.retain(|item| item.words(pattern).is_some());
     }

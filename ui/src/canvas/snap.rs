@@ -1,4 +1,4 @@
-//! Snapping: a place near the pointer that means something, and how a point there is constructed.
+//! Snapping: meaningful places near the pointer, with the construction of a point there.
 
 use super::guides;
 use super::placed::{Placed, Spec, grid_step, near_curves, on_curve, on_edge, rounded};
@@ -6,12 +6,12 @@ use super::scene::{CurveScene, PointRole, Scene, SheetScene};
 use toile_geometry::Vec2;
 use toile_pattern::{Guide, Number, PointId, PointRule, SheetId};
 
-/// How near the pointer must be to a place to be drawn to it (pixels).
+/// Distance within which the pointer snaps to a place (pixels).
 const REACH: f64 = 9.0;
-/// How near it must be to the level of a point (pixels).
+/// Distance within which the pointer snaps to the height or the vertical of a point (pixels).
 const LEVEL_REACH: f64 = 5.0;
-/// Places near one of a sheet (m), the best first; the last is anywhere. Guides lie where the sheet
-/// has them.
+/// Snapping places near a point of a sheet (m), the best first; the last is the point itself. Guides are
+/// in the coordinates of the sheet.
 pub fn snaps(
     (scene, own_guides): (&Scene, &[Guide]),
     sheet: SheetId,
@@ -89,7 +89,7 @@ fn crossings(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) 
     }
 }
 
-/// Whether curves meet at a place where one of them ends, and so a point is there already.
+/// Whether one of two curves ends at their intersection, so that a point exists there already.
 fn is_end(first: &CurveScene, second: &CurveScene, at: Vec2) -> bool {
     [first, second].iter().any(|curve| {
         let ends = [curve.line.first(), curve.line.last()];
@@ -115,7 +115,7 @@ fn on_curves(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) 
     }
 }
 
-/// On edges of the panel that the sheet lies on.
+/// The nearest point on edges of the panel that the sheet lies on.
 fn on_edges(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
     let near = sheet.edges.iter().filter_map(|part| {
         let (point, share) = part.nearest(at)?;
@@ -132,7 +132,7 @@ fn on_edges(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
     }
 }
 
-/// Beside or above a point, a multiple of the grid's step away.
+/// Places level with or straight above a point, at a multiple of the grid step from it.
 fn levels(sheet: &SheetScene, at: Vec2, (reach, step): (f64, f64), found: &mut Vec<Placed>) {
     let points = sheet
         .points

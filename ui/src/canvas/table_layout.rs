@@ -1,42 +1,43 @@
-//! The layout of the table: places of sheets and panels. A sheet lies where the document says; sheets that
-//! all lie at one place, as in files without places, are laid side by side.
+//! The layout of the table: positions of sheets and panels. A sheet lies where the document says; sheets
+//! that all lie at one place, as in files without positions, are laid side by side.
 
 use super::scene::{PanelScene, Scene, SheetScene};
 use std::collections::BTreeMap;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{PanelId, Pattern, SheetId};
 
-/// Room between sheets (m): enough for seam numbers and names beside narrow panels.
+/// Gap between sheets (m): enough for seam numbers and names beside narrow panels.
 const GAP: f64 = 0.06;
-/// Room left between pieces that were pushed apart (m).
+/// Gap between pieces that were pushed apart (m).
 const PUSHED: f64 = 0.03;
-/// Half the width of what is shown of an empty sheet (m).
+/// Half the side of the visible area of an empty sheet (m).
 const ROOM: f64 = 0.3;
-/// Width of the whole over its height that rows are broken for: about that of the view.
+/// Aspect ratio, width over height, that rows are broken for: about that of the view.
 const ASPECT: f64 = 1.15;
 
-/// Table places of the origins of sheets and panels.
+/// Positions of the origins of sheets and panels on the table (m).
 #[derive(Clone, Debug, Default)]
 pub struct TableLayout {
-    /// Sheets that were moved so that none covers another: the place the document gave, and the shift
-    /// from there (m). It stays while a pattern is edited, so that nothing jumps, until the document
-    /// gives another place.
+    /// Sheets that were shifted so that none covers another: the position in the document, and the shift
+    /// from it (m). The shift stays while a pattern is edited, so that nothing jumps, until the document
+    /// gives another position.
     shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
-    /// Where the document had the sheets when it was opened; one it has elsewhere was placed by hand.
+    /// Positions of the sheets when the document was opened (m); a sheet with another position was moved
+    /// by the user.
     opened: BTreeMap<SheetId, [f64; 2]>,
-    /// Sheets whose pieces lay upon each other then: they are meant to.
+    /// Pairs of sheets whose pieces overlapped already when the document was opened: this is intended.
     together: Vec<[SheetId; 2]>,
-    /// How far sheets are pushed so that what became larger covers none of them (m).
+    /// Shifts of sheets away from pieces that have grown (m).
     pushed: BTreeMap<SheetId, Vec2>,
     sheets: BTreeMap<SheetId, Vec2>,
     panels: BTreeMap<PanelId, Vec2>,
 }
 
 impl TableLayout {
-    /// Lays the sheets of a pattern that was just opened.
+    /// Lays out the sheets of a pattern that was just opened.
     pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
         self.shifted.clear();
-        // Sheets on panels lie where these do.
+        // Sheets that lie on panels have the positions of these.
         let mut free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let first = free.clone().next().map(|sheet| sheet.on_table);
         let is_one = free.clone().count() < 2;
@@ -65,9 +66,9 @@ impl TableLayout {
         }
     }
 
-    /// Pushes sheets apart whose pieces came to lie upon each other, to the right or downward, the shorter way:
-    /// after another size or a longer hem. Seen only: the document has them where they were. What was placed by
-    /// hand stays, and what lay together from the start.
+    /// Pushes sheets apart whose pieces have come to overlap, as after a change of size or a longer hem:
+    /// to the right or downward, whichever is shorter. Affects the display only, not the positions in the
+    /// document. Sheets that the user moved stay, and so do those that overlapped from the start.
     pub fn push_apart(&mut self, pattern: &Pattern, scene: &Scene) {
         self.pushed.clear();
         self.follow(pattern);
@@ -76,7 +77,7 @@ impl TableLayout {
             self.opened.get(&id).copied() != place
         };
         let mut rooms = self.rooms(pattern, scene);
-        // From the upper left on, those placed by hand first: they stay.
+        // From the upper left on, but sheets moved by the user first: they stay.
         rooms.sort_by(|(one, a), (other, b)| {
             let rank = |id: SheetId, room: &Bounds2| (!by_hand(id), room.min.x - room.max.y);
             let (one, other) = (rank(*one, a), rank(*other, b));
@@ -89,7 +90,7 @@ impl TableLayout {
                 continue;
             }
             let mut by = Vec2::zeros();
-            // Each push clears one of those before at least.
+            // Each push clears at least one of the earlier ones.
             for _ in 0..rooms.len() {
                 let covers = rooms[..k].iter().find_map(|(other, taken)| {
                     let meant = self.together.contains(&[id, *other])
@@ -111,7 +112,7 @@ impl TableLayout {
         }
     }
 
-    /// The rooms that the pieces of sheets take on the table, cut lines too (m).
+    /// Bounding boxes of the pieces of each sheet on the table, with cut lines (m).
     fn rooms(&self, pattern: &Pattern, scene: &Scene) -> Vec<(SheetId, Bounds2)> {
         let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let rooms = free.filter_map(|sheet| {
@@ -122,7 +123,7 @@ impl TableLayout {
         rooms.collect()
     }
 
-    /// Follows a change of the pattern.
+    /// Updates the layout after a change of the pattern.
     pub fn follow(&mut self, pattern: &Pattern) {
         let sheets = pattern.sheets.iter();
         self.sheets = sheets
@@ -150,14 +151,14 @@ impl TableLayout {
         }
     }
 
-    /// The table place of a sheet's origin (m).
+    /// Position of a sheet's origin on the table (m).
     pub fn sheet(&self, id: SheetId) -> Vec2 {
         self.sheets.get(&id).copied().unwrap_or_default()
     }
 
-    /// Sheets that are laid elsewhere than where the document has them, with the places (m) they are laid at,
-    /// pushes apart from what grew not counted. As soon as the document says where one of several sheets lies it
-    /// has to say it of all.
+    /// Sheets whose position on the table differs from that in the document, with the position (m) on the
+    /// table, not counting pushes. Once the document stores the position of one of several sheets it has
+    /// to store all.
     pub fn laid_apart(&self, pattern: &Pattern) -> Vec<(SheetId, [f64; 2])> {
         let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let laid = |id: SheetId| self.sheet(id) - self.pushed.get(&id).copied().unwrap_or_default();
@@ -166,7 +167,7 @@ impl TableLayout {
         apart.map(|(sheet, place)| (sheet.id, place)).collect()
     }
 
-    /// The table place of a panel's origin (m).
+    /// Position of a panel's origin on the table (m).
     pub fn panel(&self, id: PanelId) -> Vec2 {
         self.panels.get(&id).copied().unwrap_or_default()
     }
@@ -176,14 +177,14 @@ impl TableLayout {
         self.panel(panel.id) != self.sheet(panel.sheet)
     }
 
-    /// Least rectangle round everything on the table (m).
+    /// Bounding box of everything on the table (m).
     pub fn bounds(&self, scene: &Scene) -> Option<Bounds2> {
         let sheets = scene
             .sheets
             .iter()
             .filter(|sheet| sheet.on.is_none())
             .filter_map(|sheet| {
-                // Of several sheets an empty one is seen, with room to draw on.
+                // With several sheets an empty one is shown too, with room to draw on.
                 let room = Vec2::new(ROOM, ROOM);
                 let is_seen = scene.sheets.len() > 1;
                 let room = is_seen.then(|| Bounds2::of([-room, room]));
@@ -203,8 +204,8 @@ fn moved(bounds: &Bounds2, by: Vec2) -> Bounds2 {
     }
 }
 
-/// How far a room has to go to the right or downward, the shorter way, to lie clear of one that stays (m);
-/// nothing where it does.
+/// Shortest shift to the right or downward (m) by which one box must move to clear another that stays;
+/// `None` if they do not overlap.
 fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
     let common = stays.max.inf(&goes.max) - stays.min.sup(&goes.min);
     if common.x <= 1e-9 || common.y <= 1e-9 {
@@ -218,18 +219,18 @@ fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
     })
 }
 
-/// Least rectangle round a sheet and its panels (m).
+/// Bounding box of the panels of a sheet, or of the sheet if it has none (m).
 fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
     let panels = scene.panels.iter().filter(|panel| panel.sheet == sheet.id);
     let drawn = panels
         .map(PanelScene::bounds)
         .copied()
         .reduce(|a, b| a.union(&b));
-    // Construction far outside the panel would push its neighbours away for nothing.
+    // Construction far outside the panel would push its neighbours away needlessly.
     drawn.or_else(|| sheet.bounds())
 }
 
-/// Puts boxes in rows, in order.
+/// Arranges boxes in rows, in order.
 fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
     let sizes: Vec<Vec2> = boxes
         .iter()
@@ -250,7 +251,8 @@ fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
     }
     places
 }
-/// The row width whose rows come nearest to the wanted aspect: every sum of neighbours is tried.
+/// The row width whose rows come nearest to the wanted aspect ratio, of 25 widths from the widest box to
+/// all boxes in one row.
 fn best_width(sizes: &[Vec2]) -> f64 {
     let widest = sizes.iter().map(|s| s.x).fold(0.0, f64::max);
     let total: f64 = sizes.iter().map(|s| s.x).sum();
@@ -261,7 +263,7 @@ fn best_width(sizes: &[Vec2]) -> f64 {
         .unwrap_or(widest)
 }
 
-/// How small the whole is seen in a view of the wanted aspect (m).
+/// Height of the smallest box of the wanted aspect ratio that holds all rows of a given width (m).
 fn misfit(sizes: &[Vec2], width: f64) -> f64 {
     let (mut x, mut row, mut used, mut height) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
     for size in sizes {

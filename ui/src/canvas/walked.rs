@@ -9,30 +9,30 @@ use toile_geometry::{Curve, Vec2};
 use toile_pattern::walk::{Walk, WalkSides, WalkedNotch};
 use toile_pattern::{Draft, DraftSeam, Piece, SeamId, SeamOrigin};
 
-/// Curves are drawn this near to their course (m).
+/// Tolerance of drawn curves (m).
 const FLATNESS: f64 = 1e-4;
 
-/// The geometry of a seam that is walked.
+/// Geometry of a seam that is walked.
 #[derive(Debug)]
 pub struct WalkedSeam {
     /// Both sides, measured.
     sides: WalkSides,
-    /// Where among the seams of the draft it is.
+    /// Index of the seam in the draft.
     at: usize,
-    /// Its pieces, by their index in the draft.
+    /// Pieces of the seam, by their index in the draft.
     pub pieces: BTreeMap<usize, WalkedPiece>,
-    /// The stretches of each side: index of the piece, and the line in its plane (m).
+    /// Stretches of each side: index of the piece, and polyline in its plane (m).
     pub lines: [Vec<(usize, Vec<Vec2>)>; 2],
-    /// Its notches.
+    /// Notches of the seam.
     pub notches: Vec<WalkedNotch>,
 }
 
 /// A piece that is laid along a seam, in its own plane (m).
 #[derive(Debug)]
 pub struct WalkedPiece {
-    /// Its outline and its holes.
+    /// Outline and holes.
     pub rings: Vec<Vec<Vec2>>,
-    /// The area they enclose.
+    /// Fill of the piece.
     pub fill: Fill,
 }
 
@@ -57,7 +57,7 @@ impl WalkedSeam {
         })
     }
 
-    /// The seam and its walk, of the draft it was measured on.
+    /// The seam and its walk; `draft` is the one it was measured on.
     pub fn walk<'d>(&self, draft: &'d Draft) -> Option<(&'d DraftSeam, Walk<'d>)> {
         let seam = draft.seams.get(self.at)?;
         Some((seam, Walk::again(draft, seam, &self.sides)))
@@ -80,10 +80,10 @@ impl WalkedPiece {
     }
 }
 
-/// The seam that was walked last, nothing if it cannot be walked, with the draft it was measured on.
+/// The last seam that was walked, with its draft; the seam is `None` if it cannot be walked.
 type Kept = (Arc<Draft>, SeamId, Option<Arc<WalkedSeam>>);
 
-/// Keeps the seam that was walked last.
+/// Cache of the last seam that was walked.
 #[derive(Debug, Default)]
 pub(super) struct WalkedLast {
     kept: RefCell<Option<Kept>>,
@@ -91,7 +91,7 @@ pub(super) struct WalkedLast {
 }
 
 impl WalkedLast {
-    /// A seam of a draft; nothing if it cannot be walked.
+    /// A seam of a draft; `None` if it cannot be walked.
     pub fn seam(&self, draft: &Arc<Draft>, id: SeamId) -> Option<Arc<WalkedSeam>> {
         let mut kept = self.kept.borrow_mut();
         if let Some((of, known, seam)) = &*kept
@@ -106,7 +106,7 @@ impl WalkedLast {
         seam
     }
 
-    /// How many were measured, ever.
+    /// Number of seams measured so far.
     pub fn made(&self) -> u64 {
         self.made.get()
     }

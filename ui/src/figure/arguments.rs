@@ -1,4 +1,4 @@
-//! What `toile-ui --figure` is asked on the command line.
+//! Command line arguments of `toile-ui --figure`.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -11,21 +11,23 @@ pub struct FigureTask {
     pub figure: Figure,
     /// The patterns it is dressed in, the innermost first.
     pub patterns: Vec<PathBuf>,
-    /// Keys with the frames after each, and the picture to write instead of opening a window.
+    /// Keys, each with the number of frames after it, and the file of the picture that is written instead
+    /// of opening a window.
     pub pictures: Option<(Vec<(RealtimeKey, usize)>, PathBuf)>,
 }
 
-/// Frames after all keys of a list at the most: a quarter of an hour.
+/// Largest total number of frames after the keys: a quarter of an hour.
 const MAX_FRAMES: usize = 54_000;
 
-/// Pictures side by side at the most.
+/// Largest number of pictures side by side.
 const MAX_KEYS: usize = 16;
 
 impl FigureTask {
-    /// Reads `--figure NAME [--keys LIST --png FILE] PATTERN…`; none where no figure is asked for.
+    /// Reads `--figure NAME [--keys LIST --png FILE] PATTERN…`; `None` if `--figure` is not among the
+    /// arguments.
     ///
     /// # Errors
-    /// In words: what is missing or not known, and what to write.
+    /// A message on a missing or unknown argument, with the remedy.
     pub fn read(arguments: impl Iterator<Item = OsString>) -> Result<Option<Self>, String> {
         let arguments: Vec<OsString> = arguments.collect();
         if arguments.iter().all(|argument| argument != "--figure") {
@@ -80,7 +82,8 @@ impl FigureTask {
     }
 }
 
-/// Reads keys, each followed by frames of a sixtieth of a second, as in "up 90 right 60 g 30".
+/// Reads keys, each followed by a number of frames of a sixtieth of a second, as in "up 90 right 60 g
+/// 30".
 fn read_keys(list: &str) -> Result<Vec<(RealtimeKey, usize)>, String> {
     let remedy = "write each key with the frames after it, as in \"up 90 right 60 g 30\"";
     let words: Vec<&str> = list.split_whitespace().collect();

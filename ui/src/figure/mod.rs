@@ -1,4 +1,4 @@
-//! A figure that stands, walks and runs in its clothes, by keys: `toile-ui --figure`.
+//! A figure that stands, walks and runs in its clothes, controlled by keys: `toile-ui --figure`.
 
 mod arguments;
 
@@ -13,7 +13,7 @@ use egui::{Align2, Color32, Key, PointerButton, Pos2, Rect, Sense, Ui};
 use std::time::Instant;
 use toile_session::{Adjustment, RealtimeKey, RealtimeRun};
 
-/// The keyboard's keys for what may be asked.
+/// Keys of the keyboard for the motions of the figure.
 const KEYS: [(Key, RealtimeKey); 4] = [
     (Key::ArrowDown, RealtimeKey::Stand),
     (Key::ArrowUp, RealtimeKey::Walk),
@@ -21,7 +21,8 @@ const KEYS: [(Key, RealtimeKey); 4] = [
     (Key::G, RealtimeKey::Switch),
 ];
 
-/// Weight of the newest frame in the time shown: a mean over about half a second can be read.
+/// Weight of the newest frame in the mean of the computing time: an average over about half a second is
+/// readable.
 const NEWEST: f64 = 0.03;
 
 /// The window of a figure in motion.
@@ -33,13 +34,13 @@ pub struct FigureWindow {
     floor: CornerBuffer,
     lines: CornerBuffer,
     last: Option<Instant>,
-    /// Mean time that clothes take in a frame (s).
+    /// Mean computing time of the clothes per frame (s).
     spent: f64,
     refusal: Option<String>,
 }
 
 impl FigureWindow {
-    /// A window for a dressed figure; without a graphics card it says so in words.
+    /// A window for a dressed figure; without a graphics card it shows a message.
     pub fn new(run: RealtimeRun, state: Option<&RenderState>) -> Self {
         Self {
             run,
@@ -54,7 +55,7 @@ impl FigureWindow {
         }
     }
 
-    /// Takes keys, computes the frame that is due, and draws it.
+    /// Handles keys, computes the next frame, and draws it.
     pub fn show(&mut self, ui: &mut Ui) {
         for (key, asked) in KEYS {
             if ui.input(|input| input.key_pressed(key)) {
@@ -109,7 +110,7 @@ impl FigureWindow {
         );
     }
 
-    /// What is said in the corner.
+    /// Text in the corner.
     fn words(&self) -> String {
         let adjustment = match self.run.adjustment() {
             Adjustment::Gravity => "clothes hang",

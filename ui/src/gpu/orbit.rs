@@ -2,27 +2,27 @@
 
 use toile_geometry::Vec3;
 
-/// Angle of view, top to bottom (rad).
+/// Vertical angle of view (rad).
 const FIELD: f64 = 0.5;
-/// Nearest and farthest surface seen (m).
+/// Distances of the near and the far clipping plane (m).
 const DEPTHS: [f64; 2] = [0.05, 30.0];
 /// Least and greatest distance of the eye (m).
 const DISTANCES: [f64; 2] = [0.3, 12.0];
-/// Steepest look down or up (rad): short of straight, where up would have no direction.
+/// Largest pitch up or down (rad): less than vertical, at which "up" is undefined.
 const STEEPEST: f64 = 1.5;
-/// Turn per logical pixel of a drag (rad).
+/// Rotation per logical pixel of a drag (rad).
 const TURN: f64 = 0.008;
 
-/// Where the eye is: view state, not in the document.
+/// Position of the eye: view state, not in the document.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// What it looks at (m).
+    /// Point that the eye looks at (m).
     pub target: Vec3,
-    /// Direction of the eye from the target, from +z toward +x (rad).
+    /// Azimuth of the eye from the target, from +z toward +x (rad).
     pub yaw: f64,
-    /// Height of the eye over the target's level (rad).
+    /// Elevation of the eye above the level of the target (rad).
     pub pitch: f64,
-    /// Distance of the eye (m).
+    /// Distance from the eye to the target (m).
     pub distance: f64,
 }
 
@@ -38,7 +38,7 @@ impl Default for Orbit {
 }
 
 impl Orbit {
-    /// Where the eye is (m).
+    /// Position of the eye (m).
     pub fn eye(&self) -> Vec3 {
         self.target + self.backward() * self.distance
     }
@@ -55,25 +55,26 @@ impl Orbit {
         [right, self.backward().cross(&right)]
     }
 
-    /// Goes round, by a drag (logical pixels).
+    /// Rotates about the target, by a drag (logical pixels).
     pub fn turn(&mut self, drag: egui::Vec2) {
         self.yaw -= f64::from(drag.x) * TURN;
         self.pitch = (self.pitch + f64::from(drag.y) * TURN).clamp(-STEEPEST, STEEPEST);
     }
 
-    /// Moves along the screen, by a drag in a view of that height (logical pixels).
+    /// Moves parallel to the screen, by a drag in a view of a height (logical pixels).
     pub fn pan(&mut self, drag: egui::Vec2, height: f32) {
         let scale = 2.0 * self.distance * (FIELD / 2.0).tan() / f64::from(height.max(1.0));
         let [right, up] = self.axes();
         self.target += (up * f64::from(drag.y) - right * f64::from(drag.x)) * scale;
     }
 
-    /// Comes nearer by a factor.
+    /// Moves closer by a factor.
     pub fn zoom(&mut self, factor: f64) {
         self.distance = (self.distance / factor).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
-    /// Looks at all of a box (m) from the present direction, in a view of that width over height.
+    /// Shows all of a box (m) from the present direction, in a view of an aspect ratio (width over
+    /// height).
     pub fn fit(&mut self, bounds: [Vec3; 2], aspect: f64) {
         self.target = (bounds[0] + bounds[1]) * 0.5;
         let size = bounds[1] - bounds[0];
@@ -83,7 +84,8 @@ impl Orbit {
             (1.12 * half / (FIELD / 2.0).tan() + depth).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
-    /// Clip from world, column by column, depth 0 to 1, for a view of that width over height.
+    /// Matrix from world to clip space, column-major, depth 0 to 1, for a view of an aspect ratio (width
+    /// over height).
     pub fn clip_from_world(&self, aspect: f64) -> [[f32; 4]; 4] {
         let eye = self.eye();
         let [right, up] = self.axes();

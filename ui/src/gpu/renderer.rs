@@ -1,5 +1,5 @@
-//! Draws the 3D view into a texture of its own, with its own depth, four samples a pixel, and
-//! hands it to egui as an image. So it works in the window, in tests and without a window.
+//! Draws the 3D view into a texture of its own, with its own depth buffer and four samples per pixel, and
+//! passes it to egui as an image. So it works in the window, in tests and without a window.
 
 use super::orbit::Orbit;
 use super::solid::{CORNER_FLOATS, Corner};
@@ -7,14 +7,14 @@ use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use egui::Color32;
 
-/// Samples a pixel: every adapter of WebGPU's baseline has 4.
+/// Samples per pixel: every adapter of WebGPU's baseline supports 4.
 const SAMPLES: u32 = 4;
-/// Bytes of a corner.
+/// Bytes per corner.
 const CORNER_BYTES: u64 = 4 * CORNER_FLOATS as u64;
-/// egui takes images that are encoded as sRGB but not marked so.
+/// egui expects images that are encoded as sRGB in a format that is not marked as sRGB.
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Floats of the view: a matrix and two directions.
+/// Floats of the view uniforms: a matrix and two directions.
 const VIEW_FLOATS: usize = 24;
 
 /// Draws solids into an image.
@@ -85,7 +85,7 @@ impl StageRenderer {
         }
     }
 
-    /// Puts corners where the graphics card can draw them.
+    /// Uploads corners to the graphics card.
     pub fn upload(&self, corners: &[Corner], into: &mut CornerBuffer) {
         let bytes: Vec<u8> = corners
             .iter()
@@ -110,8 +110,8 @@ impl StageRenderer {
         into.buffer = Some(buffer);
     }
 
-    /// Draws triangles and lines before a ground of a colour, as seen by the eye, and returns the
-    /// image, of that size (pixels).
+    /// Draws triangles and lines on a background colour, as seen by the eye; returns the image, with a
+    /// size (pixels).
     pub fn draw(
         &mut self,
         orbit: &Orbit,

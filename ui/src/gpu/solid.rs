@@ -6,30 +6,29 @@ use std::sync::Arc;
 use toile_geometry::{Vec3, triangle_area};
 use toile_session::{Garment, GarmentJob, LiveFrame, RealtimeSurface, Stage};
 
-/// One corner as the graphics card takes it: position (m), normal, colour (linear, 0..=1), and
-/// how it is lit.
+/// A corner in the vertex buffer: position (m), normal, colour (linear, 0..=1), and lighting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position (m).
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Linear colour and [`Finish`] as a number.
+    /// Linear colour, and [`Finish`] as a number.
     pub colour: [f32; 4],
 }
 
-/// How a surface is lit.
+/// Lighting of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
-    /// Its colour as it is.
+    /// Unlit: the plain colour.
     Plain,
-    /// From outside only.
+    /// Lit from outside only.
     Solid,
-    /// From both sides, the wrong side a little darker.
+    /// Lit from both sides; the wrong side is a little darker.
     Cloth,
 }
 
-/// Floats of a corner.
+/// Floats per corner.
 pub const CORNER_FLOATS: usize = 10;
 
 impl Corner {
@@ -42,7 +41,7 @@ impl Corner {
         }
     }
 
-    /// Its numbers in order.
+    /// The numbers in the order of the vertex buffer.
     pub fn floats(&self) -> [f32; CORNER_FLOATS] {
         let (p, n, c) = (self.position, self.normal, self.colour);
         [p[0], p[1], p[2], n[0], n[1], n[2], c[0], c[1], c[2], c[3]]
@@ -62,11 +61,10 @@ fn linear(srgb: f64) -> f32 {
 const LINEN: [f64; 3] = [0.80, 0.765, 0.715];
 /// Radius of the floor (m).
 const FLOOR: f64 = 0.75;
-/// Neighbouring panels of one cloth differ by this much lightness, so that seams are seen.
+/// Lightness factors of neighbouring panels of one cloth, so that seams are visible.
 const PANEL_SHADES: [f64; 3] = [1.0, 0.93, 1.05];
 
-/// The colour of seam lines on cloth of that colour (both linear): darker on light cloth, lighter
-/// on dark.
+/// Colour of seam lines on a cloth (both linear): darker on light cloth, lighter on dark.
 fn seam_ink(cloth: [f32; 3]) -> [f32; 3] {
     match luminance(cloth) > 0.08 {
         true => cloth.map(|c| 0.2 * c),
@@ -79,7 +77,7 @@ fn luminance([red, green, blue]: [f32; 3]) -> f32 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
-/// Unit normals of the vertices, weighted by the triangles' areas.
+/// Unit normals of the vertices, weighted by triangle area.
 fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::zeros(); positions.len()];
     for triangle in triangles {
@@ -95,7 +93,7 @@ fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     normals
 }
 
-/// The mannequin.
+/// Triangles of the mannequin.
 pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     let normals = normals(positions, triangles);
     let colour = LINEN.map(linear);
@@ -110,7 +108,7 @@ pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     corners.collect()
 }
 
-/// A surface of a figure in motion, lit from both sides.
+/// Triangles of a surface of a figure in motion, lit from both sides.
 pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
     let place = |p: &[f32; 3]| Vec3::from(p.map(f64::from));
     let positions: Vec<Vec3> = surface.positions.iter().map(place).collect();
@@ -126,7 +124,7 @@ pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
     corners.collect()
 }
 
-/// A disc that fades into what is behind it.
+/// A disc that fades into the background.
 pub fn floor(palette: &Palette) -> Vec<Corner> {
     let [middle, rim] = [palette.floor, palette.stage].map(|colour| {
         let [red, green, blue, _] = colour.to_array();
@@ -149,32 +147,32 @@ pub fn floor(palette: &Palette) -> Vec<Corner> {
         .collect()
 }
 
-/// What stays the same while a garment is draped.
+/// Appearance of the cloth, which is constant during a drape.
 pub struct ClothLook {
     garment: Arc<Garment>,
-    /// Colour of each triangle, linear.
+    /// Linear colour of each triangle.
     colours: Vec<[f32; 3]>,
-    /// Edges at the rims of panels, by vertices of the job's garment, with their linear colours.
+    /// Boundary edges of panels, by vertices of the job's garment, with their linear colours.
     rims: Vec<([u32; 2], [f32; 3])>,
 }
 
 /// A garment ready to be drawn.
 #[derive(Default)]
 pub struct ClothSolid {
-    /// Three corners a triangle.
+    /// Three corners per triangle.
     pub corners: Vec<Corner>,
-    /// Two corners a line.
+    /// Two corners per line.
     pub lines: Vec<Corner>,
 }
 
-/// Greys of cloth that is out of date, of black and of white cloth, linear: apart from the mannequin
-/// and from every colour of the cloth.
+/// Linear greys of out-of-date cloth, for black and for white cloth: distinct from the mannequin and from
+/// every colour of the cloth.
 const OLD_GREYS: [f32; 2] = [0.18, 0.40];
-/// Grey of its seam lines.
+/// Linear grey of seam lines on out-of-date cloth.
 const OLD_INK: f32 = 0.04;
 
 impl ClothSolid {
-    /// Takes the colour away: what is shown is out of date.
+    /// Turns the cloth grey, because it is out of date.
     pub fn fade(&mut self) {
         let [black, white] = OLD_GREYS;
         for corner in &mut self.corners {
@@ -189,7 +187,7 @@ impl ClothSolid {
 }
 
 impl ClothLook {
-    /// The look of a garment's cloth.
+    /// The appearance of a garment's cloth.
     pub fn new(job: &GarmentJob) -> Self {
         let garment = &job.garment;
         let mut colours = vec![[0.5; 3]; garment.triangles.len()];

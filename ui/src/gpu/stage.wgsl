@@ -1,9 +1,10 @@
-// Lights the mannequin and the cloth. Light from over the viewer's left shoulder, and from sky
-// and floor. Colours are linear inside and leave encoded as sRGB, as egui wants its images.
+// Lights the mannequin and the cloth: a lamp over the viewer's left shoulder, and ambient light from sky
+// and floor. Colours are linear in the computation; the output is encoded as sRGB, as egui expects its
+// images.
 
 struct View {
     clip_from_world: mat4x4<f32>,
-    // Toward the main light, and toward the eye's right and up, in the world.
+    // Directions toward the main light and the fill light, in the world.
     key: vec4<f32>,
     fill: vec4<f32>,
 };
@@ -33,8 +34,9 @@ fn corner(
     return seen(position, normal, colour);
 }
 
-// Rims lie on the cloth: 4 mm nearer to the eye, or the cloth would hide half of them. Depth is
-// 1 - near / w but for a part in a thousand, with near = 0.05 m, so d mm are 0.05 d / w in clip.
+// Boundary edges lie on the cloth: they are drawn 4 mm nearer to the eye, or the cloth would hide half of
+// them. Depth is 1 - near / w except for a part in a thousand, with near = 0.05 m, so d mm are 0.05 d / w
+// in clip space.
 @vertex
 fn rim(
     @location(0) position: vec3<f32>,

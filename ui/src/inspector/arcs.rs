@@ -1,5 +1,5 @@
-//! Arcs in the inspector: shown and typed by the angle they sweep and by their radius. The document keeps the
-//! tangent of a quarter of the angle.
+//! Arcs in the inspector: shown and edited by swept angle and radius. The document stores the tangent of
+//! a quarter of the angle.
 
 use super::mark_words;
 use crate::app::ToileApp;
@@ -11,7 +11,7 @@ use toile_pattern::{
     CurveId, CurveRule, EditError, Evaluation, Formula, Number, PartId, PartReference, Want,
 };
 
-/// The numbers of a part as they are shown: of an arc the angle it sweeps.
+/// The numbers of a part as displayed: for an arc the swept angle.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     let entries = plan::numbers_of(evaluation, part).into_iter();
     let seen = entries.map(|entry| match is_bulge(&entry) {
@@ -26,10 +26,10 @@ pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     seen.collect()
 }
 
-/// A number as the document keeps it at a place.
+/// Converts a displayed number to the one that the document stores.
 ///
 /// # Errors
-/// An arc cannot sweep such an angle.
+/// An arc cannot sweep this angle.
 pub fn kept(
     evaluation: &Evaluation,
     entry: &NumberEntry,
@@ -45,11 +45,11 @@ fn is_bulge(entry: &NumberEntry) -> bool {
     matches!(entry.place.part, PartId::Curve(_)) && entry.place.path == BULGE
 }
 
-/// The path of an arc's number.
+/// Path of the number that an arc stores.
 const BULGE: &str = "bulge";
 
 impl ToileApp {
-    /// The field of an arc's radius; nothing of another curve.
+    /// Field for the radius of an arc; nothing for another curve.
     pub(super) fn radius_field(&mut self, ui: &mut Ui, id: CurveId) {
         let base = self.base.clone();
         let Some(arc) = Arc::new(&base, id) else {
@@ -92,9 +92,9 @@ impl ToileApp {
 /// An arc between two points.
 struct Arc<'e> {
     evaluation: &'e Evaluation,
-    /// The distance of its ends as a formula writes it, and (m).
+    /// Distance between the ends, as a formula and as a value (m).
     chord: (String, f64),
-    /// The angle it sweeps (rad).
+    /// Swept angle (rad).
     swept: f64,
 }
 
@@ -120,7 +120,7 @@ impl<'e> Arc<'e> {
         (0.5 * self.chord.1 / (0.5 * self.swept).sin()).abs()
     }
 
-    /// The angle an arc of a radius sweeps between the same ends, turning the same way.
+    /// Swept angle of an arc with a given radius between the same ends, turning in the same direction.
     fn angle(&self, radius: &Number) -> Result<Number, String> {
         let value = self.evaluation.number(radius, Want::Length);
         let value = value.ok_or("the radius has no value")?;
@@ -141,7 +141,7 @@ impl<'e> Arc<'e> {
         let sign = if is_long && sign == "-" { "- " } else { sign };
         let radius = plan::number_text(self.evaluation, radius, Want::Length);
         let chord = &self.chord.0;
-        // Half the chord over the radius is the sine of half the angle.
+        // Half the chord divided by the radius is the sine of half the angle.
         let text = format!(
             "{whole}{sign}2 * atan2({chord}, sqrt(max(0, 4 * ({radius}) * ({radius}) - {chord} * {chord})))"
         );

@@ -8,11 +8,11 @@ use egui::{Id, Ui};
 use toile_geometry::Vec2;
 use toile_pattern::{GuideId, GuideRun, Number, Want, plan};
 
-/// Places of guides are shown to a nanometre: what is finer comes of adding numbers up (m).
+/// Positions of guides are shown to a nanometre: finer digits come from rounding in sums (1/m).
 const SHOWN: f64 = 1e9;
 
 impl ToileApp {
-    /// The field a guide's place is typed into.
+    /// Field for the position of a guide.
     pub(crate) fn guide_place(&mut self, ui: &mut Ui, id: GuideId) {
         let Some(guide) = self.base.pattern().guide(id).cloned() else {
             return;
@@ -56,7 +56,7 @@ impl ToileApp {
         }
     }
 
-    /// Gives the keys to the field of the selected guide's place.
+    /// Moves the focus to the position field of the selected guide.
     pub(crate) fn ask_guide_place(&self, ui: &Ui) {
         if let Some(Item::Guide(id)) = self.view.selection.single() {
             ui.memory_mut(|memory| memory.request_focus(place_field(id)));
@@ -64,7 +64,7 @@ impl ToileApp {
         }
     }
 
-    /// Shows or hides guides; what is hidden is not selected.
+    /// Shows or hides guides; hidden guides are deselected.
     pub(crate) fn toggle_guides(&mut self) {
         self.panes.guides = !self.panes.guides;
         if !self.panes.guides {
@@ -74,7 +74,7 @@ impl ToileApp {
         }
     }
 
-    /// Moves the guide that alone is selected by a way of the arrow keys (m).
+    /// Moves a guide by the arrow keys; `way` is a vector on the table (m).
     pub(crate) fn nudge_guide(&mut self, id: GuideId, way: Vec2) {
         let Some(guide) = self.base.pattern().guide(id) else {
             return;

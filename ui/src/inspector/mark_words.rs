@@ -1,10 +1,10 @@
-//! Where something is on an edge, in words: so far from a corner, or from the centre.
+//! Places on an edge in words: distances from a corner, or from the centre.
 
 use crate::tools::{corner_words, is_on_fold, number, scaled};
 use toile_pattern::plan::NumberEntry;
 use toile_pattern::{EditError, Evaluation, Mark, Name, Number, Panel, PartId, Pattern, Want};
 
-/// What a number is called beside its field.
+/// Label of a number's field.
 pub fn label(evaluation: &Evaluation, entry: &NumberEntry) -> String {
     let pattern = evaluation.pattern();
     let usual = || entry.label.to_owned();
@@ -34,7 +34,8 @@ pub fn label(evaluation: &Evaluation, entry: &NumberEntry) -> String {
     }
 }
 
-/// A number as it is shown: a distance from the end of an edge without the sign that says that it leads back.
+/// A number as displayed: a distance from the end of an edge is shown without the minus sign that means
+/// against its direction.
 pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
     let leads_back = leads_back(evaluation, &entry);
     let turned = |number: &Number| scaled(evaluation, number, -1.0).ok();
@@ -52,10 +53,10 @@ pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
     }
 }
 
-/// A number as the document keeps it at a place, given as it is shown.
+/// Converts a displayed number to the one that the document stores.
 ///
 /// # Errors
-/// A formula would be too long.
+/// The formula would be too long.
 pub fn kept(
     evaluation: &Evaluation,
     entry: &NumberEntry,
@@ -67,7 +68,7 @@ pub fn kept(
     }
 }
 
-/// Whether a number is a distance along an edge from its end, against it.
+/// Whether a number is a distance along an edge from its end, against its direction.
 fn leads_back(evaluation: &Evaluation, entry: &NumberEntry) -> bool {
     let is_back = |(_, mark): (&Panel, &Mark)| {
         let Mark::Along { distance, .. } = mark else {
@@ -75,13 +76,13 @@ fn leads_back(evaluation: &Evaluation, entry: &NumberEntry) -> bool {
         };
         evaluation
             .number(distance, Want::Length)
-            // Of a distance of nothing the sign tells it, too.
+            // The sign distinguishes -0 too.
             .is_some_and(f64::is_sign_negative)
     };
     mark_at(evaluation.pattern(), entry).is_some_and(is_back)
 }
 
-/// The edge that a mark lies on, counted from one of its corners.
+/// Name of the edge that a mark lies on at a distance from a corner.
 fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<String> {
     let Mark::Along { from, distance } = mark else {
         return None;
@@ -94,7 +95,7 @@ fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<Str
     Some(edge.name.clone())
 }
 
-/// How far along its edge a place is that is given as a part of it.
+/// Distance along the edge, in words, of a place that is stored as a share of it.
 pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> {
     let pattern = evaluation.pattern();
     let (panel, mark) = mark_at(pattern, entry)?;
@@ -121,11 +122,11 @@ pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> 
     ))
 }
 
-/// The mark that a number is of, and its panel: where a notch is, a dart's mouth, a cut or a pleat.
+/// The mark that a number belongs to, and its panel: place of a notch, a dart's mouth, a cut or a pleat.
 fn mark_at<'p>(pattern: &'p Pattern, entry: &'p NumberEntry) -> Option<(&'p Panel, &'p Mark)> {
     let owns = |panel: &Panel| match entry.place.part {
         PartId::Notch(id) => panel.notch(id).is_some(),
-        // What is held, and both ends of a fold, are told by their own labels.
+        // Held points, and both ends of a fold, have labels of their own.
         PartId::Operation(id) if !matches!(entry.label, "held at" | "start" | "end") => {
             panel.step_of(id).is_some()
         }
@@ -135,7 +136,7 @@ fn mark_at<'p>(pattern: &'p Pattern, entry: &'p NumberEntry) -> Option<(&'p Pane
     Some((panel, entry.mark.as_ref()?))
 }
 
-/// From which corner a distance counts.
+/// The corner that a distance counts from, in words.
 fn from(pattern: &Pattern, panel: &Panel, mark: &Mark) -> Option<String> {
     match mark {
         Mark::Along { from, .. } => Some(format!("from {}", corner_words(pattern, panel, *from)?)),

@@ -1,12 +1,13 @@
-//! To which side something is pressed, in words.
+//! Pressing directions in words.
 
 use crate::canvas::press::{press_ways, toward_fold};
 use crate::canvas::scene::PanelScene;
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind};
 
-/// The sides that a step may be pressed to, in the order of its choices: to the centre, which lies on the fold, and to
-/// the side; where that is not known, or it leads along the fold, as they are seen from the right side of the cloth.
+/// The directions that a step may be pressed in, in the order of its choices: to the centre, which lies
+/// on the fold, or to the side; if that is not known, or the direction runs along the fold, as seen from
+/// the right side of the cloth.
 pub fn press_words(panel: Option<&PanelScene>, step: &Operation) -> [&'static str; 2] {
     let found = panel.and_then(|panel| Some((panel, press_ways(&panel.pressed, step)?)));
     match found {

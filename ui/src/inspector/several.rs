@@ -1,4 +1,4 @@
-//! The inspector for several selected parts: numbers they have in common are set for all at once.
+//! The inspector for several selected parts: numbers they have in common are edited together.
 
 use super::arcs::{kept, numbers_of};
 use crate::app::ToileApp;
@@ -22,7 +22,7 @@ impl ToileApp {
         }
     }
 
-    /// Lengths of edges and curves together; distance and direction between two points.
+    /// Total length of edges and curves; distance and direction between two points.
     fn measured_together(&self, items: &[Item]) -> Vec<String> {
         let unit = self.base.pattern().unit;
         let length = |length: f64| number::show(length, Want::Length, unit);
@@ -79,7 +79,7 @@ impl ToileApp {
             let number = entry.number.as_ref()?;
             Some(plan::number_shown(&base, number, want))
         };
-        // Where they differ, nothing is shown.
+        // The field is empty if the values differ.
         let shown = match entries.iter().all(|entry| text(entry) == text(first)) {
             true => text(first).unwrap_or_default(),
             false => String::new(),
@@ -119,7 +119,7 @@ impl ToileApp {
         }
     }
 
-    /// Numbers of the curve an edge follows.
+    /// Fields for the numbers of the curve that an edge follows.
     pub(crate) fn curve_numbers(&mut self, ui: &mut Ui, (panel, edge): (PanelId, EdgeId)) {
         let pattern = self.base.pattern();
         let owner = pattern.owner_of(panel, edge.into());
@@ -139,7 +139,7 @@ impl ToileApp {
     }
 }
 
-/// What several parts are called together.
+/// Common name for several parts.
 fn kind_of(items: &[Item]) -> &'static str {
     let word = |item: &Item| match item {
         Item::Point(_) => "points",

@@ -13,8 +13,7 @@ use toile_pattern::{
 };
 
 impl ToileApp {
-    /// The steps of a panel in the order they are done: a click selects one, and it is done earlier
-    /// or later by a button.
+    /// The steps of a panel in their order: a click selects one, and buttons move it earlier or later.
     pub(crate) fn panel_steps(&mut self, ui: &mut Ui, id: PanelId) {
         let pattern = self.base.pattern().clone();
         let steps = pattern.panel(id).map_or(&[][..], |panel| &panel.operations);
@@ -60,7 +59,7 @@ impl ToileApp {
         }
     }
 
-    /// How a step is done, where that is a choice.
+    /// Choices of a step, if it has any.
     pub(crate) fn step_choices(&mut self, ui: &mut Ui, panel: PanelId, id: OperationId) {
         let pattern = self.base.pattern().clone();
         let Some(owner) = pattern.owner_of(panel, id.into()) else {
@@ -98,7 +97,7 @@ impl ToileApp {
     }
 }
 
-/// What may be chosen of a kind of step; the sides it may be pressed to are told by their words.
+/// Choices for a kind of step; the pressing directions are given in words.
 fn kind_choices(ui: &mut Ui, kind: &mut OperationKind, [first, second]: [&str; 2]) {
     let legs = [(Pressed::Before, first), (Pressed::After, second)];
     match kind {

@@ -7,7 +7,7 @@ use egui::{
 };
 
 impl ToileApp {
-    /// The rest of the strip, by which the tables are dragged beside the pattern or below it.
+    /// The rest of the strip, which the user drags to move the tables beside or below the pattern.
     pub(super) fn tables_handle(&mut self, ui: &mut Ui) {
         let size = vec2(
             ui.available_size_before_wrap().x.max(0.0),
@@ -27,7 +27,8 @@ impl ToileApp {
             return;
         };
         let window = ui.ctx().content_rect();
-        // Right of the line from the middle of the window to its lower right corner they stand beside.
+        // Beside the pattern, if the pointer is right of the line from the middle of the upper edge to
+        // the lower right corner of the window.
         let share = (at - window.min) / window.size();
         let beside = share.x - 0.5 > 0.5 * share.y;
         let target = match beside {

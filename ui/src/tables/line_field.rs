@@ -1,10 +1,10 @@
-//! Fields over a table that hold no value of the document: what is searched for, what is made next.
+//! Fields above a table that hold no value of the document: a search text, or the name of a new row.
 
 use crate::fields::choose_all;
 use egui::{Id, Key, Response, TextEdit, Ui};
 
-/// A field of one line with a hint where it is empty, named by a label. What is typed into one that was just
-/// entered takes the place of what stands there.
+/// A field of one line with a hint while it is empty, named by a label. Text typed into a field that was
+/// just entered replaces the old text.
 pub fn line_field(
     ui: &mut Ui,
     label: Id,
@@ -25,12 +25,12 @@ pub fn line_field(
     response
 }
 
-/// Whether Enter was pressed in it.
+/// Whether Enter was pressed in a field.
 pub fn is_entered(ui: &Ui, response: &Response) -> bool {
     response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }
 
-/// Whether the keys go to such a field that is empty: it has no text to undo.
+/// Whether the focus is on such a field that is empty: it has no text to undo.
 pub fn is_empty_field(context: &egui::Context) -> bool {
     let frame: Option<u64> = context.data(|data| data.get_temp(emptied()));
     frame.is_some_and(|frame| frame + 1 >= context.cumulative_frame_nr())

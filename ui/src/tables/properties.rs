@@ -1,4 +1,4 @@
-//! Name and unit of the pattern, and the sheet that is drawn on.
+//! Name and unit of the pattern, and the current sheet.
 
 use crate::app::ToileApp;
 use crate::app::panes::Tab;
@@ -8,13 +8,13 @@ use egui::{RichText, Ui};
 use toile_pattern::plan;
 
 impl ToileApp {
-    /// Shows them.
+    /// Opens the table of properties.
     pub(crate) fn show_properties(&mut self) {
         self.panes.tables = true;
         self.tables.tab = Tab::Pattern;
     }
 
-    /// Name and unit of the pattern, and the sheet that is drawn on.
+    /// Name and unit of the pattern, and the current sheet.
     pub(super) fn properties_table(&mut self, ui: &mut Ui) {
         use toile_pattern::DisplayUnit::{Centimetre, Inch, Metre, Millimetre};
         let pattern = self.base.pattern().clone();
@@ -50,7 +50,7 @@ impl ToileApp {
         ui.label(RichText::new(words).color(soft));
     }
 
-    /// The name of the sheet that is drawn on: formulas name its points by it.
+    /// Name of the current sheet: formulas use it to name its points.
     fn sheet_name(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
         let drawn_on = self.view.sheet.and_then(|id| pattern.sheet(id));

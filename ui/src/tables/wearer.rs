@@ -1,4 +1,4 @@
-//! The wearer: who tries the garment on, in which size, and all measurements of theirs.
+//! The wearer: body, size and all measurements of the person who tries the garment on.
 
 use super::line_field::line_field;
 use super::named;
@@ -12,42 +12,42 @@ use toile_measure::{CATALOGUE, FURTHER, Measurements, Origin, UnitKind, definiti
 use toile_pattern::{DisplayUnit, Number, Want, plan};
 use toile_session::{BodyChoice, Command, Figure};
 
-/// Width of the choice of a wearer (pixels).
+/// Width of the list of figures (pixels).
 const CHOICE: f32 = 420.0;
-/// Least width of the measurements beside it (pixels).
+/// Least width of the measurements beside the list (pixels).
 const MEASUREMENTS: f32 = 400.0;
-/// The measurement that stays when another one is typed.
+/// The measurement that is kept when another one is typed.
 const HEIGHT: &str = "height";
-/// Width of a measurement's value (pixels).
+/// Width of the value of a measurement (pixels).
 const VALUE: f32 = 96.0;
 
-/// What of the wearer is kept from frame to frame.
+/// State of the wearer table that is kept between frames.
 #[derive(Default)]
 pub struct WearerTable {
-    /// What is searched for.
+    /// Search text.
     search: String,
     /// Every figure with its height and its bust or chest girth (m).
     figures: Vec<(Figure, [f64; 2])>,
     known: Option<Known>,
-    /// The wearer of measurements or of a file that was chosen last: to be chosen again after another.
+    /// The last chosen wearer from measurements or a file, to be chosen again after a figure was tried.
     own: Option<BodyChoice>,
 }
 
-/// The measurements of a wearer, which take longer to predict than a frame to show.
+/// The measurements of a wearer, cached because their prediction takes longer than a frame.
 #[derive(Clone)]
 struct Known {
     /// Revision of the project.
     revision: u64,
-    /// All of them.
+    /// All measurements.
     all: Measurements,
-    /// Those that were asked for.
+    /// The measurements that were given.
     asked: Measurements,
-    /// The average height of the figure (m).
+    /// Average height of the figure (m).
     figure_height: Option<f64>,
 }
 
 impl WearerTable {
-    /// Forgets the wearer of another document.
+    /// Drops the wearer of another document.
     pub fn forget(&mut self) {
         self.own = None;
     }
@@ -62,7 +62,7 @@ struct Row {
     is_asked: bool,
 }
 
-/// A figure in words.
+/// Name of a figure.
 fn figure_words(figure: Figure) -> String {
     match figure {
         Figure::Woman => "Woman".to_owned(),
@@ -77,8 +77,8 @@ fn figure_words(figure: Figure) -> String {
 }
 
 impl ToileApp {
-    /// Who wears it on the left, their measurements on the right; below each other where the table is
-    /// too narrow for that.
+    /// The choice of the wearer on the left, the measurements on the right; below each other if the table
+    /// is too narrow for that.
     pub(super) fn wearer_table(&mut self, ui: &mut Ui) {
         if ui.available_width() < CHOICE + MEASUREMENTS {
             let all = ScrollArea::both()
@@ -113,7 +113,7 @@ impl ToileApp {
         });
     }
 
-    /// The figures that are shipped, and what a file or the pattern says.
+    /// The list of built-in figures, and the wearer from a file or from the pattern.
     fn figure_choice(&mut self, ui: &mut Ui) {
         let body = self.session.project().body.clone();
         let size = self.session.project().size.clone();
@@ -196,7 +196,7 @@ impl ToileApp {
         }
     }
 
-    /// Height and bust or chest girth of a figure; one in a size has the measurements of the size.
+    /// Height and bust or chest girth of a figure, in words; if the garment is worn in a size, that size.
     fn figure_girths(&self, size: Option<&str>, girths: [f64; 2]) -> String {
         if let Some(size) = size {
             return format!("in size {size}");
@@ -213,7 +213,7 @@ impl ToileApp {
         format!("{height} tall, bust or chest {bust}")
     }
 
-    /// The sizes of the pattern, and the wearer's own measurements.
+    /// The choice between the sizes of the pattern and the wearer's own measurements.
     fn worn_size_choice(&mut self, ui: &mut Ui) {
         let project = self.session.project();
         let names: Vec<String> = project
@@ -249,7 +249,7 @@ impl ToileApp {
         }
     }
 
-    /// The search over the measurements, and all of them.
+    /// The search field; returns all measurements.
     fn wearer_search(&mut self, ui: &mut Ui) -> Known {
         ui.horizontal_wrapped(|ui| {
             let label = ui.label("Find measurement").id;
@@ -261,7 +261,7 @@ impl ToileApp {
         self.known_wearer()
     }
 
-    /// The measurements that were found, a row each.
+    /// Rows of the measurements that match the search.
     fn wearer_rows(&mut self, ui: &mut Ui, known: &Known) {
         let rows = found_rows(known, &self.tables.wearer.search);
         if rows.is_empty() {
@@ -287,7 +287,7 @@ impl ToileApp {
             label = label.on_hover_text(format!("{}: {}", row.name, entry.meaning));
         }
         let base = self.base.clone();
-        // What was predicted is told to a tenth of a millimetre.
+        // Predicted lengths are shown to a tenth of a millimetre.
         let shown = match (row.is_asked, row.want) {
             (true, _) => plan::number_shown(&base, &Number::Value(row.value), row.want),
             (false, Want::Length) => {
@@ -331,7 +331,7 @@ impl ToileApp {
         }
     }
 
-    /// The measurements of the present wearer, found anew when the project has changed.
+    /// The measurements of the present wearer, computed anew after a change of the project.
     fn known_wearer(&mut self) -> Known {
         let revision = self.session.revision();
         let known = self.tables.wearer.known.take();
@@ -348,7 +348,7 @@ impl ToileApp {
         self.tables.wearer.known.insert(known).clone()
     }
 
-    /// Takes the wearer of a file: a table of measurements, grown from the present figure, or a
+    /// Takes the wearer from a file: a table of measurements, applied to the present figure, or a
     /// mannequin.
     pub(crate) fn take_wearer(&mut self, path: &Path) {
         let figure = Some(self.session.project().figure());
@@ -359,7 +359,8 @@ impl ToileApp {
     }
 }
 
-/// How a wearer of measurements or of a file is chosen once more. An edited mannequin is in no file.
+/// Command that chooses a wearer from measurements or a file again; `None` for an edited mannequin, which
+/// is in no file.
 fn chosen_again(own: &BodyChoice) -> Option<Command> {
     match own {
         BodyChoice::Measured {
@@ -388,8 +389,8 @@ fn chosen_again(own: &BodyChoice) -> Option<Command> {
     }
 }
 
-/// The table of a wearer with one measurement more, less, or of another value. A wearer of a girth that
-/// is typed is as tall as before, so that it does not move what is measured from the floor up.
+/// The given measurements with one added, changed or removed. If another measurement than the height is
+/// typed, the present height is kept as given, so that measurements from the floor do not change.
 fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Measurements, String> {
     let mut table = known.asked.clone();
     let mut ask = |name: &str, value: f64| {
@@ -408,7 +409,7 @@ fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Mea
         }
         None => {
             table.remove(name);
-            // With the last girth goes the height that stayed beside it.
+            // The height that was kept beside the last other measurement is removed with that.
             let height = known.figure_height.filter(|_| table.len() == 1);
             if let (Some(usual), Some(given)) = (height, table.get(HEIGHT))
                 && (usual - given).abs() < 1e-3
@@ -420,7 +421,7 @@ fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Mea
     Ok(table)
 }
 
-/// The measurements whose name or meaning has every word that is searched for, from the head down.
+/// Measurements whose name or meaning contains every word of the search, from head to foot.
 fn found_rows(known: &Known, search: &str) -> Vec<Row> {
     let catalogue = CATALOGUE.iter().chain(FURTHER).map(|known| known.name);
     let mut names: Vec<&str> = catalogue.filter(|name| known.all.contains(name)).collect();
@@ -475,7 +476,7 @@ mod tests {
         let waist = found_rows(&known, " Waist GIRTH ");
         assert!(waist.iter().any(|row| row.name == "waist" && row.is_asked));
         assert!(waist.len() < whole.len() / 4);
-        // The crown stands in the meaning of the height alone.
+        // The word "crown" is only in the meaning of the height.
         assert_eq!(found_rows(&known, "floor crown")[0].name, "height");
         assert!(found_rows(&known, "elephant").is_empty());
     }

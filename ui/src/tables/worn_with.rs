@@ -1,4 +1,4 @@
-//! What is worn over and under the garment: layers in the order in which they are seen, the outermost first.
+//! Garments worn over and under this one: layers in visible order, the outermost first.
 
 use crate::app::ToileApp;
 use crate::fields::Entered;
@@ -7,23 +7,23 @@ use egui::{Button, Color32, Grid, Id, RichText, Role, ScrollArea, Ui, WidgetInfo
 use std::path::Path;
 use toile_session::{Command, OtherGarment};
 
-/// Width of the number of a layer (pixels).
+/// Width of the field for a layer number (pixels).
 const NUMBER: f32 = 60.0;
-/// Most layers, counted from 0.
+/// Largest layer number.
 const MOST: u16 = 999;
 
-/// One of the garments that are worn.
+/// A garment that is worn.
 struct Worn {
-    /// Which of the others; none is the garment itself.
+    /// Index among the other garments; `None` for the garment of this document.
     other: Option<usize>,
     name: String,
     layer: u16,
-    /// Its file.
+    /// File name.
     file: String,
     is_missing: bool,
 }
 
-/// Where a garment is worn that is added.
+/// Place of an added garment in the order of layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WornWhere {
     /// Outermost.
@@ -64,7 +64,7 @@ impl ToileApp {
         });
     }
 
-    /// Every garment that is worn, the outermost first.
+    /// All garments that are worn, the outermost first.
     fn worn(&self) -> Vec<Worn> {
         let project = self.session.project();
         let mut worn = vec![Worn {
@@ -99,7 +99,7 @@ impl ToileApp {
         let id = Id::unique(("layer", one.other));
         let mut chosen = None;
         ui.horizontal(|ui| {
-            // For those who hear the window: the head of the column says what it is.
+            // For screen readers; sighted users read the head of the column.
             let unseen = RichText::new(format!("Layer of {}", one.name)).size(1.0);
             let label = ui.label(unseen.color(Color32::TRANSPARENT)).id;
             ui.set_width(NUMBER);
@@ -140,7 +140,7 @@ impl ToileApp {
         }
         let (mut layer, mut others) = self.layers();
         match (one.other, chosen) {
-            // Another row may have taken one off in this frame.
+            // Another row may have removed a garment in this frame.
             (Some(k), _) if others.len() <= k => return,
             (Some(k), _) if is_taken_off => {
                 others.remove(k);
@@ -152,7 +152,7 @@ impl ToileApp {
         self.execute(Command::SetLayers { layer, others });
     }
 
-    /// The garment's own layer, and the others.
+    /// The layer of this garment, and the other garments.
     fn layers(&self) -> (u16, Vec<OtherGarment>) {
         let project = self.session.project();
         let others = project.others.iter().map(|worn| OtherGarment {
@@ -162,7 +162,7 @@ impl ToileApp {
         (project.layer, others.collect())
     }
 
-    /// Wears the garment of a pattern's file over all, or under all.
+    /// Adds the garment of a pattern file over all others, or under all.
     pub(crate) fn wear(&mut self, path: &Path, place: WornWhere) {
         let (mut own, mut others) = self.layers();
         let all = || others.iter().map(|other| other.layer).chain([own]);
@@ -170,7 +170,7 @@ impl ToileApp {
             WornWhere::Over => (all().max().unwrap_or_default() + 1).min(MOST),
             WornWhere::Under => match all().min().unwrap_or_default() {
                 0 => {
-                    // Room is made next to the skin.
+                    // Layer 0 is taken: all other garments move one layer out.
                     others
                         .iter_mut()
                         .for_each(|o| o.layer = (o.layer + 1).min(MOST));
@@ -188,7 +188,7 @@ impl ToileApp {
     }
 }
 
-/// The number of a layer that is typed.
+/// Reads a layer number.
 fn layer_number(text: &str) -> Result<u16, String> {
     let number = text.trim().parse().ok().filter(|&layer| layer <= MOST);
     number.ok_or_else(|| format!("a layer is a number from 0 to {MOST}"))

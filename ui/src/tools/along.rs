@@ -1,4 +1,4 @@
-//! Distances along edges, from whichever end is nearer.
+//! Distances along edges, from the nearer end.
 
 use super::Reading;
 use super::refusal::refuse;
@@ -9,11 +9,11 @@ use toile_pattern::{
     PanelId, Pattern, Want,
 };
 
-/// The mark at a distance along an edge of a panel as it is finished, from its corner nearer to a place
-/// of the sheet (m); and where that is (m).
+/// The mark at a distance along a finished edge of a panel, from the corner nearer to a point of the
+/// sheet (m); and its place (m).
 ///
 /// # Errors
-/// The edge is not there or cannot be drawn; it is shorter than that.
+/// The edge does not exist, cannot be drawn, or is shorter than the distance.
 pub(super) fn mark_along(
     reading: &Reading<'_>,
     (panel, edge, near): (PanelId, EdgeId, Vec2),
@@ -38,8 +38,8 @@ pub(super) fn mark_along(
     Ok((mark, edge.place(along).unwrap_or(near)))
 }
 
-/// How far from the first corner of an edge what is put near a place lies (m): in the middle if that is
-/// near, else on a whole millimetre from the nearer corner.
+/// Distance from the first corner of an edge for a mark placed near a point (m): half the length if the
+/// middle is near, else a whole millimetre from the nearer corner.
 pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     let (along, length) = (edge.nearest(near), edge.length);
     if (along - 0.5 * length).abs() < middle(edge) {
@@ -52,7 +52,8 @@ pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     }
 }
 
-/// How far from the nearer end of an edge what is put near a place lies (m), and where that is (m).
+/// Distance from the nearer end of an edge for a mark placed near a point (m), and the place of the mark
+/// (m).
 pub(super) fn told(
     reading: &Reading<'_>,
     (panel, edge, near): (PanelId, EdgeId, Vec2),
@@ -62,13 +63,13 @@ pub(super) fn told(
     Some((along.min(edge.length - along), edge.place(along)?))
 }
 
-/// What lies no farther from the middle of an edge is in the middle (m).
+/// Distance from the middle of an edge within which a mark snaps to the middle (m).
 fn middle(edge: &FinishedEdge) -> f64 {
     0.004_f64.min(0.1 * edge.length)
 }
 
-/// The corner of an edge that is nearer to a place, along the edge: 0 the first, 1 the second. Of one in the
-/// middle it is the first.
+/// The corner of an edge that is nearer to a point, along the edge: 0 the first, 1 the second; the first
+/// for a point in the middle.
 pub(super) fn end_near(edge: &FinishedEdge, near: Vec2) -> usize {
     match edge.nearest(near) > 0.5 * edge.length + middle(edge) {
         true => 1,
@@ -76,12 +77,12 @@ pub(super) fn end_near(edge: &FinishedEdge, near: Vec2) -> usize {
     }
 }
 
-/// The number with its sign changed; a formula stays one.
+/// A number with the opposite sign; a formula stays a formula.
 pub(super) fn negated(number: &Number, reading: &Reading<'_>) -> Result<Number, EditError> {
     scaled(reading.evaluation, number, -1.0)
 }
 
-/// A number so many times; a formula stays one, and what was added to it by hand stays added.
+/// A number times a factor; a formula stays a formula, and a manual adjustment of it stays an adjustment.
 ///
 /// # Errors
 /// The formula would be too long or too deep.
@@ -110,7 +111,7 @@ fn scaled_formula(
     let read = |text: &str| Formula::parse(text, names);
     let parsed = match factor {
         1.0 => Ok(formula.clone()),
-        // The sign that an earlier change put before it is taken away again.
+        // A minus sign that an earlier change put in front is removed again.
         -1.0 => match text.strip_prefix("-(").and_then(|t| t.strip_suffix(')')) {
             Some(inner) => read(inner).or_else(|_| read(&format!("-({text})"))),
             None => read(&format!("-({text})")),
@@ -120,8 +121,7 @@ fn scaled_formula(
     parsed.map_err(|error| refuse(&error.message, &error.hint))
 }
 
-/// The mark at a distance from an end of an edge of a panel as it is finished, into the edge: 0 the first, 1 the
-/// second.
+/// The mark at a distance inward from an end of a finished edge of a panel: 0 the first, 1 the second.
 pub(super) fn mark_from(
     evaluation: &Evaluation,
     edge: &FinishedEdge,
@@ -132,7 +132,8 @@ pub(super) fn mark_from(
     plan::mark_along(evaluation, edge, (end, &distance))
 }
 
-/// What a corner of a panel is called; the end of its fold is its centre. Nothing of one that a step made.
+/// Name of a corner of a panel, or "the centre" for an end of its fold; `None` for a corner made by a
+/// step.
 pub fn corner_words(pattern: &Pattern, panel: &Panel, name: CornerName) -> Option<String> {
     if is_on_fold(panel, name) {
         return Some("the centre".to_owned());
@@ -143,7 +144,7 @@ pub fn corner_words(pattern: &Pattern, panel: &Panel, name: CornerName) -> Optio
     }
 }
 
-/// Whether a corner is an end of the panel's fold, which is its centre.
+/// Whether a corner is an end of the panel's fold, which is the centre of the panel.
 pub fn is_on_fold(panel: &Panel, name: CornerName) -> bool {
     panel.operations.iter().any(|step| match &step.kind {
         OperationKind::Fold { ends, .. } => ends.contains(&Mark::Corner(name)),
@@ -151,7 +152,7 @@ pub fn is_on_fold(panel: &Panel, name: CornerName) -> bool {
     })
 }
 
-/// An end of an edge in words: its corner, and the edge it meets there.
+/// Description of an end of an edge: the corner, and the edge that it meets there.
 pub(super) fn end_words(
     evaluation: &Evaluation,
     edge: (&FinishedEdge, EdgeId),

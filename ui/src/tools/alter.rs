@@ -14,8 +14,8 @@ use toile_pattern::{
     PleatKind, Side, Want,
 };
 
-/// How far the points of both darts are set back where a share of a dart is moved (m): about as far
-/// as a dart ends before the bust point.
+/// Distance by which the points of both darts are set back if only a share of a dart is moved (m): about
+/// the distance between a dart's point and the bust point.
 const SET_BACK: f64 = 0.02;
 
 /// Moves a dart, or a share of it, to another place of the outline.
@@ -56,7 +56,8 @@ pub static PIVOT: SlotTool = SlotTool {
             ));
         }
         let near = super::panel::marked(reading, *panel, (*at, mark))?;
-        // The points of two darts may not meet; how far they are set back is a number of the step.
+        // The points of two darts must not meet; the distance by which they are set back is a number of
+        // the step.
         let moved = reading.evaluation.number(share, Want::Plain);
         let back = match moved.is_some_and(|moved| moved < 1.0) {
             true => SET_BACK,
@@ -167,7 +168,7 @@ pub static BOX_PLEAT: SlotTool = SlotTool {
     plan: |answers, reading| pleat(answers, reading, PleatKind::Box),
 };
 
-/// Folds pleats whose folds meet on the right side.
+/// Folds pleats whose folds meet on the right side (inverted pleats).
 pub static INVERTED_PLEAT: SlotTool = SlotTool {
     command: "Inverted pleat",
     slots: PLEAT_SLOTS,
@@ -278,7 +279,7 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     Ok(plan)
 }
 
-/// From which end of an edge places are counted: that which is nearer to where it was clicked.
+/// Tells the end of an edge that places are measured from: the one nearer to the click.
 fn counted_words(
     evaluation: &Evaluation,
     (panel, edge): (PanelId, EdgeId),
@@ -291,7 +292,7 @@ fn counted_words(
     Some(format!("Places along {name} count from {words}"))
 }
 
-/// A count of pleats.
+/// Number of pleats.
 fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
     let count = evaluation.number(count, Want::Plain);
     let count = count.filter(|count| (1.0..=60.0).contains(count) && count.fract() == 0.0);
@@ -304,8 +305,8 @@ fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
     })
 }
 
-/// Places along an edge of a panel as it is finished: the first, and the others so far from each other, or evenly up
-/// to its end.
+/// Places along a finished edge of a panel: the first given, the others at a spacing, or evenly up to the
+/// end of the edge if the spacing is zero.
 fn spaced(
     evaluation: &Evaluation,
     near: &FinishedEdge,
@@ -345,19 +346,19 @@ fn length_of(evaluation: &Evaluation, number: &Number) -> Result<f64, EditError>
     value.ok_or_else(|| refuse("the distance has no value", "type a length"))
 }
 
-/// Lines from places along one edge of a panel as it is finished, counted from one of its ends, each to the same
-/// share of another.
+/// Cut lines from places along one finished edge of a panel, measured from one of its ends, each to the
+/// same share of another edge.
 fn cuts_at(
     evaluation: &Evaluation,
     ((panel, [_, to]), near, end): ((PanelId, [EdgeId; 2]), &FinishedEdge, usize),
     places: &[Number],
 ) -> Result<Vec<[Mark; 2]>, EditError> {
     let far = plan::finished_edge(evaluation, panel, to)?;
-    // As many digits as are to be read in a formula: edges of equal length differ by rounding.
+    // Rounded to few enough digits for a readable formula: edges of equal length differ by rounding.
     let ratio = (far.length / near.length * 1e10).round() / 1e10;
     let cut = |place: &Number| {
         let across = along::scaled(evaluation, place, ratio)?;
-        // Across a closed line edges run against each other.
+        // On a closed outline two opposite edges run in opposite directions.
         Ok([
             along::mark_from(evaluation, near, (end, place))?,
             along::mark_from(evaluation, &far, (1 - end, &across))?,

@@ -1,4 +1,4 @@
-//! What is given in a slot: by what is typed, else by the pointer.
+//! Answers to slots: from typed text, else from the pointer.
 
 use super::list::{self, Listed};
 use super::refusal::{Unanswered, no_edge};
@@ -11,7 +11,7 @@ use crate::canvas::selection::Item;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveId, EdgeId, Number, PanelId, PointRule, SheetId, Want};
 
-/// What is given now, if the slot can be answered so.
+/// The present answer to the slot, if there is a valid one.
 pub(super) fn answer(
     tool: &SlotTool,
     state: &SlotState,
@@ -21,7 +21,7 @@ pub(super) fn answer(
     let typable = Typable::new(tool, state, reading);
     typable.refuse_untaken(state)?;
     let numbers = match kind {
-        // Several stand in one field.
+        // Several numbers are typed into one field.
         SlotKind::Numbers { .. } => Vec::new(),
         _ => typed_numbers(&typable, state, reading)?,
     };
@@ -97,7 +97,7 @@ pub(super) fn answer(
     }
 }
 
-/// One plain number or several lengths, as they are typed into one field.
+/// Reads one plain number or several lengths from one field.
 fn listed(
     text: &str,
     (label, usual): (&str, f64),
@@ -116,7 +116,7 @@ fn listed(
     }
 }
 
-/// The edge under the pointer, and the place of it there (m).
+/// The edge under the pointer, and the nearest point on it (m).
 fn edge_here(
     sews: bool,
     state: &SlotState,
@@ -132,7 +132,7 @@ fn edge_here(
     found.ok_or_else(|| no_edge(sews, pointer, reading).into())
 }
 
-/// The curve under the pointer, or that of the edge there, with its sheet and the place on it (m).
+/// The curve under the pointer, or that of the edge there, with its sheet and the point on it (m).
 fn curve_here(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -148,7 +148,7 @@ fn curve_here(
     found.ok_or_else(|| "there is no curve here: click on one".into())
 }
 
-/// A place on a line under the pointer, at a distance along it if one is typed.
+/// A point on a line of a panel under the pointer, at a typed distance if there is one.
 fn on_line(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -175,7 +175,7 @@ fn on_line(
     Ok(Answer::OnLine(panel, hit.item, at, Some(mark)))
 }
 
-/// The numbers that are typed, a field each.
+/// The typed numbers, one per field.
 fn typed_numbers(
     typable: &Typable,
     state: &SlotState,
@@ -195,7 +195,7 @@ fn typed_numbers(
     read.collect()
 }
 
-/// The place that is given now: where the pointer is, or where typed numbers say.
+/// The present place: from typed numbers, else from the pointer.
 fn placed(
     way: Option<Way>,
     numbers: &[Option<Number>],
@@ -222,7 +222,7 @@ fn placed(
     };
     let sheet = last.map(|last| last.sheet);
     let sheet = sheet.or(pointer.map(|pointer| pointer.sheet));
-    // Numbers alone say where, though the pointer is elsewhere, as in the field of a name.
+    // Typed numbers suffice for a place, even if the pointer is elsewhere, as in the field of a name.
     let sheet = sheet.or(reading.sheet).ok_or("point at a sheet first")?;
     let (at, spec) = match way {
         Some(Way::FromLast | Way::Radius) => typed.after_last(),
@@ -239,7 +239,7 @@ fn placed(
     })
 }
 
-/// Numbers typed for a place; what is not typed the pointer says.
+/// Numbers typed for a place; the pointer provides those that are not typed.
 struct TypedPlace<'a> {
     numbers: [Option<Number>; 2],
     origin: Vec2,
@@ -284,8 +284,8 @@ impl TypedPlace<'_> {
         Ok((at, Spec::FromLast { distance, angle }))
     }
 
-    /// Beside the place before. A rectangle grows to the side the pointer is on; from a corner that was
-    /// typed, to the right and upward.
+    /// A place at an offset from the last one. A rectangle grows toward the pointer; from a corner that
+    /// was typed, to the right and upward.
     fn beside(&self, to_pointer: bool) -> Result<(Vec2, Spec), Unanswered> {
         let way = self.way();
         let pixel = self.pointer.map_or(0.0, |pointer| pointer.pixel);

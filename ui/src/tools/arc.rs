@@ -1,5 +1,5 @@
-//! Tools that draw arcs: through a place, about a centre, and on from the end of a curve. An arc keeps what
-//! it was drawn by: formulas, and the points it goes through.
+//! Tools that draw arcs: through a place, about a centre, and tangent to the end of a curve. An arc keeps
+//! its construction: formulas, and the points it goes through.
 
 use super::Pointer;
 use super::composed::{formula, point, written};
@@ -44,8 +44,8 @@ pub static ARC: SlotTool = SlotTool {
     },
 };
 
-/// The arc between two points through a place: through a point that is there or was typed it leads whatever
-/// moves.
+/// An arc between two points through a place. If the place is an existing or typed point, the arc follows
+/// that point when things move.
 ///
 /// # Errors
 /// The point cannot be made.
@@ -66,11 +66,12 @@ pub(super) fn through(
     let place = |id| evaluation.point(id);
     let apart = |id| Some((place(id)? - place(by)?).norm() > 1e-9);
     if ends.iter().any(|end| apart(*end) != Some(true)) {
-        // What is wrong is said there.
+        // The check of the arc reports the error.
         return Ok(CurveShape::ArcThrough(placed.at));
     }
     let [start, end, by] = [ends[0], ends[1], by].map(|id| point(evaluation, id));
-    // The chords to a place of an arc turn there by half the swept angle.
+    // By the inscribed angle theorem, the chords at a point of an arc differ in direction by half the
+    // swept angle.
     let angle = format!("2 * (angle({by}, {end}) - angle({start}, {by}))");
     let angle = formula(evaluation, &angle)?;
     Ok(CurveShape::Rule(CurveRule::Arc {
@@ -78,7 +79,8 @@ pub(super) fn through(
     }))
 }
 
-/// The bulge of an arc of an angle that is known but for full turns.
+/// The bulge of an arc whose swept angle is known up to multiples of two full turns, which do not change
+/// it.
 fn swept(planning: &Planning, angle: &Number) -> Result<Number, EditError> {
     let text = plan::number_text(planning.evaluation(), angle, Want::Angle);
     formula(planning.evaluation(), &format!("tan(({text}) / 4)"))
@@ -134,16 +136,16 @@ pub static CENTRE_ARC: SlotTool = SlotTool {
             spec: Spec::Point(centre),
             ..given[0].clone()
         };
-        // The next arc has the same centre.
+        // The next arc reuses the centre.
         done.again = vec![Answer::Place(again)];
         Ok(done)
     },
 };
 
-/// A point as far from a centre as another, turned on about it by an angle.
+/// A point at the distance of another from a centre, rotated about the centre by an angle.
 ///
 /// # Errors
-/// It cannot be made.
+/// The point cannot be made.
 pub(super) fn about(
     planning: &mut Planning,
     [centre, start]: [PointId; 2],
@@ -165,7 +167,7 @@ pub(super) fn about(
     planning.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
 }
 
-/// How far round a centre the pointer is from where an arc starts, in whole degrees (rad).
+/// Angle about the centre from the start of an arc to the pointer, in whole degrees (rad).
 fn round(answers: &[Answer], pointer: &Pointer) -> f64 {
     let given = places(answers);
     let [centre, start, ..] = given[..] else {
@@ -180,14 +182,14 @@ fn round(answers: &[Answer], pointer: &Pointer) -> f64 {
     let step = step.to_radians();
     let angle = ((turned(pointer.at) - turned(start.at)) / step).round() * step;
     let angle = angle - TAU * (angle / TAU).round();
-    // Where it starts the pointer says nothing yet.
+    // At the start of the arc the pointer gives no angle yet.
     match angle.abs() < 0.5 * step {
         true => PI / 2.0,
         false => angle,
     }
 }
 
-/// An arc that goes on smoothly from the end of a curve.
+/// An arc that continues the end of a curve smoothly.
 pub static TANGENT_ARC: SlotTool = SlotTool {
     command: "Tangent arc",
     slots: &[

@@ -1,4 +1,4 @@
-//! Tools that draw points and curves on a sheet, and whole figures.
+//! Tools that draw points, curves and whole shapes on a sheet.
 
 use super::composed::{formula, point, written};
 use super::planning::{Planning, places, put_rule, rule_at};
@@ -27,7 +27,7 @@ pub static POINT: SlotTool = SlotTool {
     },
 };
 
-/// A point at a distance and an angle from another; it follows the other.
+/// A point at a distance and an angle from another, which it follows.
 pub static POINT_FROM: SlotTool = SlotTool {
     command: "Point from",
     slots: &[
@@ -43,7 +43,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
     plan: |answers, reading| {
         let given = places(answers);
         let (from, to) = (given[0], given[1]);
-        // A place that means nothing in particular is kept beside the other point too.
+        // A free place is also stored relative to the other point.
         let way = to.at - from.at;
         let beside = Placed {
             spec: Spec::BesideLast {
@@ -62,7 +62,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
     },
 };
 
-/// The last of some points under the name that was typed for it.
+/// The plan for the last of some points, with the name that was typed for it.
 fn drawn(
     mut planning: Planning,
     points: Vec<PointId>,
@@ -75,7 +75,7 @@ fn drawn(
     Ok(planning.done("Draw point", made.map(Item::Point)))
 }
 
-/// The name that was typed for what is drawn.
+/// The typed name of the drawn part.
 pub(super) fn name(answers: &[Answer]) -> Option<&str> {
     match answers.last()? {
         Answer::Named(_, name) | Answer::Places(_, _, name) | Answer::Inside(_, _, name) => {
@@ -85,7 +85,7 @@ pub(super) fn name(answers: &[Answer]) -> Option<&str> {
     }
 }
 
-/// A straight line; the next begins where it ends.
+/// A straight line; the next one begins at its end.
 pub static LINE: SlotTool = SlotTool {
     command: "Line",
     slots: &[
@@ -138,7 +138,7 @@ pub static POLYGON: SlotTool = SlotTool {
         let lines = if *closes { count } else { count - 1 };
         for k in 0..lines {
             let ends = [points[k], points[(k + 1) % count]];
-            // The name is that of the panel, of one line, or with a number of each of several.
+            // The name goes to the panel or to a single line; several lines get it with a number each.
             let name = match name(answers) {
                 Some(name) if !closes && lines == 1 => Some(name.to_owned()),
                 Some(name) if !closes => Some(format!("{name} {}", k + 1)),
@@ -179,7 +179,7 @@ pub static SPLINE: SlotTool = SlotTool {
         let mut planning = Planning::new(reading);
         let given = places(answers);
         let (first, last) = (given[0], given[given.len() - 1]);
-        // The place before the last may be a point the curve goes through, which is not there yet.
+        // The place before the last may be a point of the curve, which does not exist yet.
         let free = Placed::free(last.sheet, last.at);
         let is_relative = matches!(last.spec, Spec::FromLast { .. } | Spec::BesideLast { .. });
         let end = match is_relative {
@@ -200,8 +200,8 @@ pub static SPLINE: SlotTool = SlotTool {
     },
 };
 
-/// Gives the points a spline goes through the constructions of their places, the first after another point;
-/// and the last of them, or that point.
+/// Gives the knots of a spline the constructions of their places, the first relative to another point;
+/// returns the last knot, or that point if there are no knots.
 fn keep_places(
     planning: &mut Planning,
     curve: CurveId,
@@ -220,8 +220,8 @@ fn keep_places(
     Ok(before)
 }
 
-/// A spline through places: each handle lies along the chord of the places beside its own, a third
-/// of the way to its neighbour (Catmull and Rom 1974); at both ends toward the neighbour's handle.
+/// A spline through places: each inner handle is parallel to the chord between the neighbouring places, a
+/// third of the way to its neighbour (Catmull and Rom 1974); at both ends toward the neighbour's handle.
 fn smooth(places: &[Vec2]) -> CurveShape {
     let count = places.len();
     let tangent = |k: usize| (places[k + 1] - places[k - 1]) * 0.5;
@@ -248,7 +248,7 @@ fn smooth(places: &[Vec2]) -> CurveShape {
     }
 }
 
-/// A rectangle with its panel.
+/// A rectangle, with its panel.
 pub static RECTANGLE: SlotTool = SlotTool {
     command: "Rectangle",
     slots: &[
@@ -292,7 +292,7 @@ pub static RECTANGLE: SlotTool = SlotTool {
     },
 };
 
-/// A panel round a place.
+/// A panel from the closed lines round a place.
 pub static TRACE: SlotTool = SlotTool {
     command: "Trace",
     slots: &[Slot {
@@ -409,7 +409,7 @@ pub static MIRROR: SlotTool = SlotTool {
     },
 };
 
-/// A point constructed from three.
+/// A point constructed from three others.
 fn constructed(
     answers: &[Answer],
     reading: &Reading<'_>,

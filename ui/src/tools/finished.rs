@@ -1,13 +1,13 @@
-//! The finished length of an edge that a dart is taken out of, in words.
+//! The finished length of an edge with a dart, in words.
 
 use super::number;
 use toile_pattern::plan;
 use toile_pattern::{Evaluation, OperationId, OperationKind, PanelId, Want};
 
-/// Lengths that differ by less are told as one (m).
+/// Lengths that differ by less are shown as one (m).
 const SAME: f64 = 5e-5;
 
-/// How long the edge of a dart is once its darts are closed, and what truing made of it.
+/// Length of the edge of a dart with all its darts closed, before and after truing, in words.
 pub fn finished_words(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -29,7 +29,8 @@ pub fn finished_words(
                 }
             )
         });
-    // The mouth was narrowed to keep the length; what it were untrued with such a mouth says nothing.
+    // The mouth was narrowed to keep the length; the length before truing with this mouth is of no
+    // interest.
     if keeps {
         let [length, mouth] = [found.length, found.mouth].map(length);
         return Some(format!(

@@ -1,12 +1,12 @@
-//! Several numbers typed into one field: places in centimetres, formulas too.
+//! Several numbers typed into one field: places in the unit of the document, formulas too.
 
 use super::number;
 use toile_pattern::{Evaluation, Number, Want, is_unit};
 
-/// Signs that a number goes on after or before, so that a space beside them divides nothing.
+/// Operators: a space beside one does not separate two numbers.
 const GOES_ON: [char; 5] = ['+', '-', '*', '/', '^'];
 
-/// What was typed where one plain number or several lengths may be.
+/// Content of a field for one plain number or several lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Listed {
     /// One plain number.
@@ -15,10 +15,10 @@ pub(super) enum Listed {
     Lengths(Vec<Number>),
 }
 
-/// One plain number, or lengths: of one, it has a unit.
+/// Reads one plain number, or lengths; a single length needs a unit.
 ///
 /// # Errors
-/// What is wrong with which, and what to do.
+/// Which number is wrong, the reason, and the remedy.
 pub(super) fn parse(text: &str, evaluation: &Evaluation) -> Result<Listed, String> {
     let parts = parts(text);
     if let [one] = &parts[..] {
@@ -47,8 +47,8 @@ fn ordinal(number: usize) -> String {
     format!("{number}{end}")
 }
 
-/// The numbers of a list. Spaces divide it, semicolons, and commas before a space or where there is no space at all;
-/// other commas are decimal.
+/// The numbers of a list. Separators are spaces, semicolons, and commas before a space or if there are no
+/// spaces at all; other commas are decimal.
 fn parts(text: &str) -> Vec<String> {
     let text = text.trim().trim_start_matches('=').trim();
     let is_close = !text.contains(char::is_whitespace) && !text.contains(';');
@@ -96,7 +96,7 @@ fn parts(text: &str) -> Vec<String> {
     parts
 }
 
-/// Whether a word belongs to the number before it.
+/// Whether a word continues the number before it.
 fn goes_on(before: &str, word: &str) -> bool {
     before.ends_with(GOES_ON) || word.starts_with(GOES_ON) || is_unit(word)
 }

@@ -1,5 +1,5 @@
-//! Tools: small state machines from what is done at the canvas to edits. They know the document's
-//! reading side and edits, never the toolkit of the window.
+//! Tools: small state machines that turn canvas events into edits. They read the document and produce
+//! edits, and are independent of the GUI toolkit.
 
 mod along;
 pub mod alter;
@@ -43,37 +43,36 @@ use slots::{SlotState, SlotTool};
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeId, Edit, Evaluation, PanelId, SheetId};
 
-/// Where the pointer is and what is there.
+/// Position of the pointer, and the parts there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pointer {
-    /// Its place on the table (m).
+    /// Position on the table (m).
     pub table: Vec2,
-    /// The sheet that is drawn on there.
+    /// The sheet that a tool draws on there.
     pub sheet: SheetId,
-    /// Its place on that sheet (m).
+    /// Position on that sheet (m).
     pub at: Vec2,
     /// Parts there, the likeliest first.
     pub hits: Vec<Hit>,
-    /// Places a point could have there, the best first; never empty.
+    /// Candidate places for a point there, the best first; never empty.
     pub snaps: Vec<Placed>,
     /// Width of a pixel (m).
     pub pixel: f64,
-    /// Keys that are held.
+    /// Modifier keys that are held.
     pub modifiers: ToolModifiers,
 }
 
 /// Modifier keys that change the behaviour of a tool while they are held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ToolModifiers {
-    /// Keeps level, upright or at 15 degrees; adds to the selection.
+    /// Shift: restricts to horizontal, vertical or steps of 15 degrees; adds to the selection.
     pub shift: bool,
-    /// Turns snapping off.
+    /// Ctrl (Cmd): turns snapping off.
     pub command: bool,
 }
 
 impl Pointer {
-    /// The best place, or any other that was asked for by its number; anywhere while snapping is
-    /// off.
+    /// The snapping place with a number, counted from the best; the exact position while snapping is off.
     pub fn placed(&self, number: usize) -> Placed {
         match self.modifiers.command {
             true => Placed::free(self.sheet, self.at),
@@ -81,22 +80,22 @@ impl Pointer {
         }
     }
 
-    /// The most wanted part there.
+    /// The likeliest part there.
     pub fn hit(&self) -> Option<Hit> {
         self.hits.first().copied()
     }
 }
 
-/// Something that is done at the canvas.
+/// An event on the canvas.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// The pointer is somewhere, no button held.
+    /// The pointer has moved, with no button held.
     Hover(Pointer),
     /// The pointer has left.
     Leave,
-    /// The button is pressed and moved: where it was pressed, and where it is.
+    /// The pointer moves with the button held: where it was pressed, and where it is now.
     Drag(Pointer, Pointer),
-    /// It is let go of after a drag.
+    /// The button is released after a drag.
     Drop,
     /// A click.
     Click(Pointer),
@@ -104,24 +103,24 @@ pub enum Event {
     DoubleClick(Pointer),
     /// Typed text.
     Text(String),
-    /// The last typed character is taken back.
+    /// Backspace: deletes the last typed character.
     Backspace,
-    /// What stands is taken.
+    /// Enter: accepts the present answer.
     Enter,
-    /// One step back.
+    /// Escape: one step back.
     Escape,
-    /// The next number, the next snap, or the other side.
+    /// Tab: the next field, the next snapping place, or the other side.
     Tab,
-    /// On or back along what the tool walks.
+    /// Moves along the seam that is walked.
     Go(LineStep),
 }
 
-/// A step along a line, by a key.
+/// A key press that moves along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineStep {
     /// A step back.
     Back,
-    /// A step on.
+    /// A step forward.
     On,
     /// To the start.
     ToStart,
@@ -129,24 +128,24 @@ pub enum LineStep {
     ToEnd,
 }
 
-/// What a tool sees of the pattern.
+/// A tool's read access to the pattern.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Every value, as before the gesture.
+    /// The evaluated pattern without the gesture that is being previewed.
     pub evaluation: &'a Evaluation,
-    /// How it is seen.
+    /// The scene.
     pub scene: &'a Scene,
-    /// Where it lies on the table.
+    /// Positions of sheets and panels on the table.
     pub table_layout: &'a TableLayout,
-    /// What is selected.
+    /// Selected parts.
     pub selection: &'a Selection,
-    /// The sheet that is drawn on where the pointer does not say which.
+    /// The current sheet, for input without a pointer position.
     pub sheet: Option<SheetId>,
-    /// What lies inside a rectangle of the table (m).
+    /// Finds the parts inside a rectangle of the table (m).
     pub inside: &'a dyn Fn([Vec2; 2]) -> Vec<Item>,
 }
 
-/// Something drawn over the pattern by a tool.
+/// A mark drawn over the pattern by a tool.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Overlay {
     /// A line on a sheet.
@@ -155,44 +154,44 @@ pub enum Overlay {
     Dot(SheetId, Vec2),
     /// An edge of a panel.
     Edge(PanelId, EdgeId),
-    /// Words beside a place on a sheet.
+    /// Text beside a place on a sheet.
     Words(SheetId, Vec2, String),
-    /// What is wrong with what is typed, over a place on a sheet.
+    /// Error in the typed text, above a place on a sheet.
     Fault(SheetId, Vec2, String),
     /// A rectangle of the table.
     Box([Vec2; 2]),
-    /// A piece that is laid on the table while a tool is in hand: its rings (m), and what they enclose.
+    /// A piece that is laid on the table while a tool is in hand: its rings (m), and its fill.
     Ghost(Vec<Vec<Vec2>>, Fill),
     /// A line on the table.
     Stroke(Vec<Vec2>, Tone),
     /// A mark on a line of the table.
     Pip(Vec2, Tone),
-    /// Where two pieces touch, on the table.
+    /// Point on the table where two pieces touch.
     Touch(Vec2),
-    /// Words beside a place of the table.
+    /// Text beside a place on the table.
     Label(Vec2, String, Tone),
 }
 
-/// How something that is told is to be taken. It is told in words too.
+/// Kind of a message or mark; it is expressed in words too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// Neither good nor bad.
     Plain,
     /// As it should be.
     Good,
-    /// To be looked at.
+    /// Needs attention.
     Warning,
     /// Wrong.
     Fault,
 }
 
-/// A change of the preview: edits that are shown but not yet made.
+/// A change of the preview: edits that are shown but not made yet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum PreviewChange {
-    /// As before.
+    /// The preview stays as it is.
     #[default]
     Same,
-    /// The document as it is.
+    /// No preview: the document as it is.
     Nothing,
     /// The document with these edits.
     Edits(Vec<Edit>),
@@ -201,19 +200,19 @@ pub enum PreviewChange {
 /// The outcome of an event.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// What is shown.
+    /// Change of the preview.
     pub shown: PreviewChange,
     /// Edits to make as one step of the history, and its name.
     pub commit: Option<(Vec<Edit>, String)>,
-    /// What is shown is made a step of the history of this name.
+    /// Name under which the previewed edits are made as one step of the history.
     pub commit_shown: Option<String>,
-    /// What is selected from now on.
+    /// New selection.
     pub select: Option<Selection>,
-    /// Why something was not done.
+    /// Reason why something was refused.
     pub refusal: Option<String>,
-    /// The tool came a step on or back: what was refused before is of no matter any more.
+    /// Whether the tool made a step forward or back: an earlier refusal is obsolete then.
     pub gets_on: bool,
-    /// The tool is put down.
+    /// Whether the tool is put down.
     pub done: bool,
 }
 
@@ -222,20 +221,20 @@ pub struct Outcome {
 pub enum Tool {
     /// Selects, moves, divides.
     Select,
-    /// Is given one thing after another, then does its work.
+    /// Collects answers to slots in order, then makes its plan.
     Slots(&'static SlotTool),
     /// Walks the selected seam.
     Walk,
 }
 
-/// How far a tool has come.
+/// State of a tool.
 #[derive(Clone, Debug, PartialEq)]
 pub enum State {
-    /// Of [`Tool::Select`].
+    /// State of [`Tool::Select`].
     Select(SelectState),
-    /// Of [`Tool::Slots`].
+    /// State of [`Tool::Slots`].
     Slots(Box<SlotState>),
-    /// Of [`Tool::Walk`].
+    /// State of [`Tool::Walk`].
     Walk(WalkState),
 }
 
@@ -246,7 +245,7 @@ impl Default for State {
 }
 
 impl Tool {
-    /// The state it begins with.
+    /// The initial state.
     pub fn begin(self) -> State {
         match self {
             Self::Select => State::default(),
@@ -255,7 +254,7 @@ impl Tool {
         }
     }
 
-    /// The state after an event, and what comes of it.
+    /// The state after an event, and the outcome.
     pub fn step(self, state: &State, event: &Event, reading: &Reading<'_>) -> (State, Outcome) {
         match (self, state) {
             (Self::Select, State::Select(state)) => {
@@ -270,12 +269,12 @@ impl Tool {
                 let (state, outcome) = walk::step(state, event, reading);
                 (State::Walk(state), outcome)
             }
-            // A state of another tool: begin anew.
+            // The state belongs to another tool: starts anew.
             _ => self.step(&self.begin(), event, reading),
         }
     }
 
-    /// What is drawn over the pattern.
+    /// Marks that the tool draws over the pattern.
     pub fn overlay(self, state: &State, reading: &Reading<'_>) -> Vec<Overlay> {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::overlay(state, reading),
@@ -285,7 +284,7 @@ impl Tool {
         }
     }
 
-    /// What a click does now, and which keys change it.
+    /// Hint on the effect of a click, and on the keys that change it.
     pub fn hint(self, state: &State, reading: &Reading<'_>) -> String {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::hint(state, reading),
@@ -295,7 +294,7 @@ impl Tool {
         }
     }
 
-    /// Whether it has begun, so that Escape goes a step back and does not put it down.
+    /// Whether it is in progress, so that Escape goes one step back instead of putting it down.
     pub fn is_under_way(self, state: &State) -> bool {
         match state {
             State::Select(state) => *state != SelectState::default(),
@@ -304,13 +303,13 @@ impl Tool {
         }
     }
 
-    /// Whether numbers, Tab and its other keys go to it.
+    /// Whether it handles digits, Tab and further keys.
     pub fn takes_keys(self) -> bool {
         !matches!(self, Self::Select)
     }
 }
 
-/// A part that a click chooses: with Shift it is added or taken away.
+/// The selection after a click on a part; with `adds` (Shift) the part is added or removed.
 fn chosen(selection: &Selection, item: Option<Item>, adds: bool) -> Selection {
     match (item, adds) {
         (Some(item), true) => {

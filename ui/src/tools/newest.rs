@@ -1,4 +1,4 @@
-//! What a tool made last: until another is begun its handles and its name may be typed.
+//! The part that a tool made last: until the next is begun its handles and its name can be typed.
 
 use super::planning::Planning;
 use super::{Reading, number};
@@ -6,16 +6,16 @@ use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{CurveRule, Edit, EditError};
 
-/// A number of a handle.
+/// A number of a spline's handle.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Handle {
-    /// What it is called: `x at A`.
+    /// Label, as `x at A`.
     pub label: String,
     /// The number.
     pub entry: NumberEntry,
 }
 
-/// The numbers of the handles of a spline, those of its ends first; none of anything else.
+/// The numbers of a spline's handles, those at its ends first; empty for any other part.
 pub(super) fn handles(item: Item, reading: &Reading<'_>) -> Vec<Handle> {
     let Item::Curve(id) = item else {
         return Vec::new();
@@ -46,7 +46,7 @@ pub(super) fn handles(item: Item, reading: &Reading<'_>) -> Vec<Handle> {
     found
 }
 
-/// The name of what was made last; nothing of what has none.
+/// Name of the part made last; `None` if it has no name.
 pub(super) fn name(item: Item, reading: &Reading<'_>) -> Option<String> {
     item.words(reading.evaluation.pattern())
 }
@@ -54,7 +54,7 @@ pub(super) fn name(item: Item, reading: &Reading<'_>) -> Option<String> {
 /// The edits that set the handles whose text is not empty.
 ///
 /// # Errors
-/// The number of the field at fault, and what is wrong with it.
+/// The index of the field with the error, and the error.
 pub(super) fn set_handles(
     handles: &[Handle],
     text: impl Fn(usize) -> String,
@@ -77,10 +77,10 @@ pub(super) fn set_handles(
     Ok(planning.edits())
 }
 
-/// The edits that give what was made last a name.
+/// The edits that rename the part made last.
 ///
 /// # Errors
-/// The name is taken or can be none.
+/// The name is taken or not allowed.
 pub(super) fn rename(
     item: Item,
     name: &str,

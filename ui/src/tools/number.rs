@@ -1,16 +1,16 @@
-//! Numbers as they are typed and shown: lengths in the document's unit, angles in degrees.
+//! Typed and displayed numbers: lengths in the document's unit, angles in degrees.
 
 use toile_pattern::{DisplayUnit, Evaluation, Number, Want, plan};
 
-/// A number from what was typed: a bare number is in the document's unit or in degrees, a decimal
-/// comma is as good as a point, and a formula may begin with `=`.
+/// Parses a typed number: a bare number is in the document's unit or in degrees, a decimal comma equals a
+/// point, and a formula may begin with `=`.
 ///
 /// # Errors
-/// What is wrong with the formula, and what to do.
+/// The error in the formula, and the remedy.
 pub fn parse(text: &str, want: Want, evaluation: &Evaluation) -> Result<Number, String> {
     let text = text.trim().trim_start_matches('=').trim();
     let plain = match text.matches(',').count() {
-        // A comma between digits of a text without parentheses separates nothing.
+        // Without parentheses there are no arguments that the comma could separate.
         1 if !text.contains('(') => text.replace(',', "."),
         _ => text.to_owned(),
     };
@@ -24,7 +24,7 @@ pub fn begins_typing(c: char) -> bool {
     c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '+' | '(')
 }
 
-/// A value in words.
+/// A value with its unit.
 pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
     match want {
         Want::Length => {
@@ -40,7 +40,7 @@ pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
     }
 }
 
-/// A number with at most so many digits after the point.
+/// A number with at most `digits` digits after the point.
 fn trimmed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = match text.contains('.') {

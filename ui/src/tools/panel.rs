@@ -1,4 +1,4 @@
-//! Tools that work on panels: darts, folds, notches, points on edges, lines inside.
+//! Tools that work on panels: darts, folds, notches, points on edges, internal lines.
 
 use super::planning::{Planning, panel_under, places, put_rule};
 use super::refusal::refuse;
@@ -81,7 +81,7 @@ pub static DART: SlotTool = SlotTool {
     },
 };
 
-/// Whether a dart of a plan is pressed away from the fold of its panel, which is its centre.
+/// Whether the dart of a plan is pressed away from the fold of its panel, which is the centre.
 fn leads_from_fold(reading: &Reading<'_>, plan: &super::slots::Plan) -> bool {
     let toward = || {
         let Some(Item::Operation(id, dart)) = plan.select.single() else {
@@ -101,7 +101,7 @@ fn leads_from_fold(reading: &Reading<'_>, plan: &super::slots::Plan) -> bool {
     toward().is_some_and(|toward| toward < -0.5)
 }
 
-/// A dart inside a panel, pointed at both ends.
+/// A dart inside a panel, pointed at both ends (fisheye dart).
 pub static FISHEYE: SlotTool = SlotTool {
     command: "Fisheye dart",
     slots: &[
@@ -140,7 +140,7 @@ pub static FISHEYE: SlotTool = SlotTool {
     },
 };
 
-/// How far the pointer is from the mouth of a dart (m).
+/// Distance from the pointer to the mouth of a dart (m).
 fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
     let mouth = answers.iter().find_map(|answer| match answer {
         Answer::OnLine(_, _, at, _) => Some(*at),
@@ -150,7 +150,7 @@ fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
     crate::canvas::placed::rounded(away, 0.001).max(0.001)
 }
 
-/// A panel that is half of what is cut: a straight edge lies on the fold.
+/// Folds a panel: the drafted panel is half of the cut one, and a straight edge lies on the fold.
 pub static FOLD: SlotTool = SlotTool {
     command: "Fold",
     slots: &[Slot {
@@ -192,7 +192,7 @@ pub static NOTCH: SlotTool = SlotTool {
     },
 };
 
-/// An edge bent to an arc; its ends stay.
+/// Bends an edge to an arc; its ends stay.
 pub static BEND: SlotTool = SlotTool {
     command: "Bend edge",
     slots: &[
@@ -238,7 +238,7 @@ fn bend(planning: &mut Planning, id: CurveId, through: &Placed) -> Result<(), Ed
     planning.run(|evaluation| Ok((plan::bend_curve(evaluation, id, through.at)?, ())))
 }
 
-/// A corner on an edge.
+/// A new corner on an edge.
 pub static DIVIDE: SlotTool = SlotTool {
     command: "Divide edge",
     slots: &[Slot {
@@ -271,8 +271,8 @@ pub static DIVIDE: SlotTool = SlotTool {
     },
 };
 
-/// A distance along an edge as one along its curve: where the edge is the whole of it and nothing is let
-/// into it, the distance stays what was typed.
+/// Converts a distance along an edge to one along its curve, so that the typed distance is kept: possible
+/// if the edge covers the whole curve and no operation inserts anything; else `None`.
 fn along_curve(
     reading: &Reading<'_>,
     (panel, edge): (PanelId, EdgeId),
@@ -353,7 +353,7 @@ pub static INNER_LINE: SlotTool = SlotTool {
     },
 };
 
-/// A sheet on a panel as it is finished, to draw on.
+/// A sheet on the finished panel, to draw on.
 pub static DRAW_ON: SlotTool = SlotTool {
     command: "Draw on panel",
     slots: &[Slot {
@@ -373,7 +373,7 @@ pub static DRAW_ON: SlotTool = SlotTool {
     },
 };
 
-/// A curve that is drawn becomes a line of the panel it lies on.
+/// Makes a drawn curve an internal line of the panel that it lies on.
 pub static INSERT_LINE: SlotTool = SlotTool {
     command: "Insert line",
     slots: &[Slot {
@@ -394,7 +394,7 @@ pub static INSERT_LINE: SlotTool = SlotTool {
     },
 };
 
-/// The direction of the warp.
+/// Sets the direction of the warp.
 pub static GRAIN: SlotTool = SlotTool {
     command: "Grain",
     slots: &[
@@ -478,8 +478,8 @@ pub static NOTCH_ROW: SlotTool = SlotTool {
     },
 };
 
-/// Points inside a panel, and the sheet they are put on: that of the panel, or, of a side or where the
-/// panel was altered, one that lies on the panel as it is finished.
+/// Points inside a panel, and their sheet: that of the panel, or, for a side of a split panel or an
+/// altered panel, a sheet that lies on the finished panel.
 fn points_inside(
     planning: &mut Planning,
     reading: &Reading<'_>,
@@ -514,8 +514,8 @@ fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, Ed
     found.ok_or_else(|| refuse("the panel is not there", "click another"))
 }
 
-/// The mark of a panel's line nearest to a place: the one that was typed, else on a whole millimetre of its
-/// edge as it is finished or in the middle if that is near.
+/// The mark of a panel's line nearest to a point: the typed mark, else one at a whole millimetre of the
+/// finished edge, or in the middle if that is near.
 pub(super) fn marked(
     reading: &Reading<'_>,
     panel: PanelId,
@@ -530,7 +530,7 @@ pub(super) fn marked(
         && let Ok(edge) = plan::finished_edge(reading.evaluation, panel, edge)
     {
         let along = super::along::tidy(&edge, at);
-        // Not into what an operation let into the edge.
+        // Not on a part of the edge that an operation inserted.
         if let Some((_, tidy)) = edge.share(along).filter(|(name, _)| *name == near.edge) {
             *share = Number::Value(short(tidy));
             near.at = edge.place(along).unwrap_or(near.at);
@@ -539,7 +539,7 @@ pub(super) fn marked(
     Ok(near)
 }
 
-/// A share without the digits that only rounding gives it.
+/// A share without the last digits, if they come from rounding only.
 fn short(share: f64) -> f64 {
     let short = (share * 1e9).round() / 1e9;
     match (short - share).abs() < 1e-12 {
@@ -548,7 +548,7 @@ fn short(share: f64) -> f64 {
     }
 }
 
-/// An operation put on a panel.
+/// The plan that adds an operation to a panel.
 fn operation(
     reading: &Reading<'_>,
     panel: PanelId,

@@ -1,4 +1,4 @@
-//! Tools that move, turn, mirror and scale what is selected, and one that measures.
+//! Tools that move, turn, mirror and scale the selection, and one that measures.
 
 use super::planning::places;
 use super::refusal::refuse;
@@ -8,7 +8,7 @@ use toile_geometry::Vec2;
 use toile_pattern::plan::{self, Affine};
 use toile_pattern::{EditError, PartId, Want};
 
-/// Moves what is selected from one place to another.
+/// Moves the selection from one place to another.
 pub static MOVE: SlotTool = SlotTool {
     command: "Move",
     slots: &[
@@ -28,7 +28,7 @@ pub static MOVE: SlotTool = SlotTool {
     },
 };
 
-/// Turns what is selected about a place.
+/// Rotates the selection about a place.
 pub static TURN: SlotTool = SlotTool {
     command: "Turn",
     slots: &[
@@ -55,7 +55,7 @@ pub static TURN: SlotTool = SlotTool {
     },
 };
 
-/// Mirrors what is selected in the line through two places.
+/// Mirrors the selection in the line through two places.
 pub static MIRROR_PARTS: SlotTool = SlotTool {
     command: "Mirror",
     slots: &[
@@ -81,7 +81,7 @@ pub static MIRROR_PARTS: SlotTool = SlotTool {
     },
 };
 
-/// Scales what is selected about a place.
+/// Scales the selection about a place.
 pub static SCALE: SlotTool = SlotTool {
     command: "Scale",
     slots: &[
@@ -114,7 +114,7 @@ pub static SCALE: SlotTool = SlotTool {
     },
 };
 
-/// Tells the distance and direction from one place to another. Nothing is changed.
+/// Shows the distance and direction from one place to another. Changes nothing.
 pub static MEASURE: SlotTool = SlotTool {
     command: "Measure",
     slots: &[
@@ -148,7 +148,8 @@ pub static MEASURE: SlotTool = SlotTool {
     },
 };
 
-/// Direction from the place that was given to the pointer, in whole degrees (rad).
+/// Direction from the given place to the pointer, in whole degrees, with Shift in steps of 15 degrees
+/// (rad).
 fn direction(answers: &[Answer], pointer: &Pointer) -> f64 {
     let about = places(answers).first().map_or_else(Vec2::zeros, |p| p.at);
     let way = pointer.at - about;
@@ -170,7 +171,7 @@ fn value(
     value.ok_or_else(|| refuse("the formula has no value", "mend it, or type a number"))
 }
 
-/// What is selected, mapped.
+/// The plan that transforms the selection by a map.
 fn transformed(reading: &Reading<'_>, map: &Affine, label: &str) -> Result<Plan, EditError> {
     let parts: Vec<PartId> = reading
         .selection

@@ -1,4 +1,4 @@
-//! Several planners one after another, each seeing what those before it did.
+//! Several planners in a row, each of which sees the edits of those before.
 
 use super::Reading;
 use super::refusal::refuse;
@@ -12,7 +12,7 @@ use toile_pattern::{
     Edit, EditError, Entity, Evaluation, PanelId, Point, PointId, PointRule, SheetId, plan,
 };
 
-/// Edits in the making.
+/// Edits that are being collected.
 #[derive(Clone)]
 pub struct Planning {
     evaluation: Evaluation,
@@ -20,12 +20,12 @@ pub struct Planning {
 }
 
 impl Planning {
-    /// None yet.
+    /// No edits yet.
     pub fn new(reading: &Reading<'_>) -> Self {
         Self::of(reading.evaluation)
     }
 
-    /// None yet, of a pattern as evaluated.
+    /// No edits yet, on an evaluated pattern.
     pub fn of(evaluation: &Evaluation) -> Self {
         Self {
             evaluation: evaluation.clone(),
@@ -33,17 +33,17 @@ impl Planning {
         }
     }
 
-    /// The pattern with the edits made so far.
+    /// The evaluated pattern with the edits made so far.
     pub fn evaluation(&self) -> &Evaluation {
         &self.evaluation
     }
 
-    /// The edits that were made.
+    /// The edits made so far.
     pub fn edits(self) -> Vec<Edit> {
         self.edits
     }
 
-    /// Makes the edits of a planner.
+    /// Runs a planner, and makes its edits.
     ///
     /// # Errors
     /// The planner refuses, or its edits cannot be made.
@@ -56,10 +56,10 @@ impl Planning {
         Ok(found)
     }
 
-    /// Makes edits.
+    /// Applies edits to the pattern, and collects them.
     ///
     /// # Errors
-    /// They cannot be made.
+    /// The edits cannot be made.
     pub fn make(&mut self, edits: Vec<Edit>) -> Result<(), EditError> {
         let mut pattern = self.evaluation.pattern().clone();
         pattern.apply(&edits)?;
@@ -69,8 +69,7 @@ impl Planning {
         Ok(())
     }
 
-    /// The point at a place: the one that is there, else a new one. `before` is the point at the
-    /// place given before.
+    /// The point at a place: the existing one, else a new one. `before` is the point at the last place.
     ///
     /// # Errors
     /// The point cannot be made.
@@ -86,7 +85,7 @@ impl Planning {
         self.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
     }
 
-    /// The points at places, each after the one before.
+    /// The points at places, each relative to the one before.
     ///
     /// # Errors
     /// A point cannot be made, or the places are on several sheets.
@@ -100,7 +99,7 @@ impl Planning {
         Ok(points)
     }
 
-    /// The plan of a tool.
+    /// The plan of a tool, from these edits.
     pub fn done(self, label: &str, select: impl IntoIterator<Item = Item>) -> Plan {
         Plan {
             edits: self.edits,
@@ -112,8 +111,8 @@ impl Planning {
     }
 }
 
-/// The rule of a point of its own at a place; at a point that is there it lies on that. `before` is the
-/// point at the place given before.
+/// Rule for a separate point at a place; at an existing point it has a zero offset from that. `before` is
+/// the point at the last place.
 pub(super) fn rule_at(placed: &Placed, before: Option<PointId>) -> PointRule {
     match (&placed.spec, before) {
         (Spec::Point(base), _) => PointRule::Offset {
@@ -136,10 +135,10 @@ pub(super) fn rule_at(placed: &Placed, before: Option<PointId>) -> PointRule {
     }
 }
 
-/// Gives a point another rule.
+/// Changes the rule of a point.
 ///
 /// # Errors
-/// The point is not there, or cannot be placed so.
+/// The point does not exist, or the rule is not possible.
 pub(super) fn put_rule(
     planning: &mut Planning,
     id: PointId,
@@ -155,7 +154,7 @@ pub(super) fn put_rule(
     planning.make(vec![edit])
 }
 
-/// Refuses what is drawn across two sheets.
+/// Refuses a drawing across two sheets.
 fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
     if one == other {
         return Ok(());
@@ -166,7 +165,7 @@ fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
     ))
 }
 
-/// The places that were given, in order.
+/// The places among the answers, in order.
 pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     let mut found = Vec::new();
     for answer in answers {
@@ -181,7 +180,7 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     found
 }
 
-/// The panel that a place (m) of a sheet lies on: the one the sheet lies on, else one traced from it.
+/// The panel under a point (m) of a sheet: the one that the sheet lies on, else one traced from it.
 ///
 /// # Errors
 /// No panel lies there.

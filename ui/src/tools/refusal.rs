@@ -4,12 +4,12 @@ use super::{Pointer, Reading};
 use crate::canvas::selection::Item;
 use toile_pattern::EditError;
 
-/// Why a slot of a tool cannot be answered.
+/// Reason why a slot of a tool has no valid answer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unanswered {
-    /// The field at fault, if it is one that is typed.
+    /// The field with the error, if it was typed.
     pub field: Option<usize>,
-    /// What is wrong, and what to do.
+    /// The error, and the remedy.
     pub words: String,
 }
 
@@ -22,7 +22,7 @@ impl<W: Into<String>> From<W> for Unanswered {
     }
 }
 
-/// A refusal with what is wrong and what to do.
+/// An error with a message and a remedy.
 pub(super) fn refuse(message: &str, hint: &str) -> EditError {
     EditError::Impossible {
         message: message.into(),
@@ -30,8 +30,8 @@ pub(super) fn refuse(message: &str, hint: &str) -> EditError {
     }
 }
 
-/// Where an edge is asked for, to be sewn or for something else, and there is none: a line inside a panel
-/// is told by its name.
+/// Message if an edge is asked for, for sewing or else, and there is none under the pointer; a line
+/// inside a panel is named in it.
 pub(super) fn no_edge(sews: bool, at: Option<&Pointer>, reading: &Reading<'_>) -> String {
     let mut items = at.iter().flat_map(|at| &at.hits).map(|hit| hit.item);
     let line = items.find(|item| matches!(item, Item::Line(..)));

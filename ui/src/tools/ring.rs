@@ -1,4 +1,4 @@
-//! A tool that draws circles, rings and parts of them as panels: circular skirts, flounces, collars.
+//! A tool that draws circles, rings and sectors as panels: circular skirts, flounces, collars.
 
 use super::Reading;
 use super::arc::about;
@@ -13,7 +13,7 @@ use toile_pattern::{
     plan::{self, Chain, CurveShape, NewPanel},
 };
 
-/// A circle, a ring or a part of one, with its panel.
+/// A circle, a ring or a sector of one, with its panel.
 pub static RING: SlotTool = SlotTool {
     command: "Circle",
     slots: &[
@@ -113,7 +113,7 @@ fn is_possible([inner, length, angle]: [f64; 3]) -> Result<(), EditError> {
 /// A sheet, and the centre on it.
 type Centre = (SheetId, PointId);
 
-/// A point to the right of the centre, as far as a radius.
+/// A point to the right of the centre, at the distance of a radius.
 fn beside(
     planning: &mut Planning,
     (sheet, middle): Centre,
@@ -127,7 +127,7 @@ fn beside(
     planning.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
 }
 
-/// A curve under a name if that is free, else called after its ends.
+/// A curve with a name if that is free, else named after its ends.
 fn curve(
     planning: &mut Planning,
     (sheet, name): (SheetId, &str),
@@ -142,7 +142,8 @@ fn curve(
     })
 }
 
-/// Part of a ring, from straight ahead of the centre to the right; without an inner radius from the centre.
+/// Sector of a ring, from straight ahead of the centre to the right; without an inner radius it starts at
+/// the centre.
 fn sector(
     planning: &mut Planning,
     centre: Centre,
@@ -192,7 +193,7 @@ fn negated(planning: &Planning, number: &Number) -> Result<Number, EditError> {
     }
 }
 
-/// A circle, with a hole if it has an inner radius; each line of two half circles.
+/// A circle, with a hole if there is an inner radius; each line consists of two half circles.
 fn disc(
     planning: &mut Planning,
     centre: Centre,

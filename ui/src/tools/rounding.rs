@@ -1,13 +1,13 @@
-//! Where a dragged point comes to, so that the numbers that place it are round: coordinates, distances and
-//! angles, and what is added to formulas.
+//! Places of dragged points for which the numbers that define them are round: coordinates, distances and
+//! angles, and the adjustments of formulas.
 
 use crate::canvas::placed::drag_step;
 use crate::tools::{Pointer, Reading};
 use toile_geometry::Vec2;
 use toile_pattern::{Evaluation, Number, PointId, PointRule, Want};
 
-/// The place nearest to one that a point is dragged to (m) at which its numbers are round; that place where
-/// rounding is held off, or where the point is not placed by numbers of its sheet.
+/// The place nearest to a drag target (m) at which the point's numbers are round; the target itself while
+/// rounding is turned off, or if no numbers of its sheet define the point.
 pub(super) fn rounded_place(
     point: PointId,
     to: Vec2,
@@ -74,7 +74,8 @@ pub(super) fn rounded_place(
     }
 }
 
-/// What of a number a drag leaves as it is: a formula, what is added to it is rounded.
+/// Part of a number that a drag does not round: the value of its formula; only the adjustment added to it
+/// is rounded.
 fn kept(number: &Number, evaluation: &Evaluation) -> f64 {
     let formula = match number {
         Number::Formula(formula) | Number::Adjusted { formula, .. } => formula.clone(),
@@ -84,10 +85,10 @@ fn kept(number: &Number, evaluation: &Evaluation) -> f64 {
     value.unwrap_or(0.0)
 }
 
-/// What an angle is rounded to so far from its centre that a place moves no more than by a step (m); a degree
-/// at most (rad).
+/// Rounding step of an angle (rad) for a point at a distance from the centre: moves the point by at most
+/// a step (m), and is at most a degree.
 fn angle_step(step: f64, far: f64) -> f64 {
     let degrees = (step / far).to_degrees().min(1.0);
-    // The steps of lengths, a degree for a millimetre.
+    // The same steps as for lengths, with a degree in place of a millimetre.
     (drag_step(degrees * 0.001, 0.001) * 1000.0).to_radians()
 }

@@ -1,4 +1,4 @@
-//! Tools that sew: chain to chain, and notches that meet.
+//! Tools that sew: chains of edges, and matched notches.
 
 use super::Reading;
 use super::planning::Planning;
@@ -40,7 +40,7 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
         });
         edges.collect::<Vec<_>>()
     });
-    // An edge that is sewn to itself is sewn to its other copy: a centre back seam.
+    // An edge that is sewn to itself is sewn to the other copy: a centre back seam.
     if first == second {
         second = twins(pattern, &second).ok_or_else(|| {
             refuse(
@@ -49,8 +49,8 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
             )
         })?;
     }
-    // Hems meet hems and right sides lie together: where both panels are drawn with the seam on the same
-    // side, the other half or copy of the second is what lies against the first.
+    // Hems must meet hems, and right sides lie together: if both panels are drawn with the seam on the
+    // same side, the mirrored half or copy of the second lies against the first.
     let mut trial = Planning::new(reading);
     let seam = trial.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?;
     let sewn = trial.evaluation();
@@ -64,7 +64,7 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
     let mut seams = Vec::new();
     seams.push(planning.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?);
     if let (Some(a), Some(b)) = (twins(pattern, &first), twins(pattern, &second)) {
-        // Of a seam across the middle the other side is the same seam.
+        // A seam across the middle is its own mirror image.
         let is_same = a
             .iter()
             .all(|edge| second.contains(edge) || first.contains(edge));
@@ -85,7 +85,7 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
     })
 }
 
-/// What the seams do with the sides of the cloth that was not so before.
+/// First new finding on the sides of the cloth that the seams cause, in words.
 fn told(reading: &Reading<'_>, planning: &Planning) -> Option<String> {
     let known = reading.evaluation.check_sides();
     let found = planning.evaluation().check_sides();
@@ -93,13 +93,13 @@ fn told(reading: &Reading<'_>, planning: &Planning) -> Option<String> {
     new.map(|found| found.message)
 }
 
-/// The same chain on the other side of the wearer, if all of it has one.
+/// The chain mirrored to the other side of the wearer, if all of its edges have a twin.
 fn twins(pattern: &Pattern, chain: &[SewnEdge]) -> Option<Vec<SewnEdge>> {
     let twins = chain.iter().map(|edge| plan::twin(pattern, *edge));
     twins.collect()
 }
 
-/// Puts a notch on an edge and one where it meets it on every seam there.
+/// Puts a notch on an edge, and its match on every seam there.
 pub static MATCHED_NOTCH: SlotTool = SlotTool {
     command: "Matched notches",
     slots: &[Slot {
@@ -110,7 +110,7 @@ pub static MATCHED_NOTCH: SlotTool = SlotTool {
         let Some(Answer::OnLine(panel, _, at, typed)) = answers.first() else {
             return Err(refuse("nothing was given", "click a sewn edge"));
         };
-        // A typed distance leads to one place, of which every side has its share.
+        // A typed distance gives one place, which every side stores as a share.
         let near = match typed {
             Some(_) => plan::nearest_mark(reading.evaluation, *panel, *at)?,
             None => super::panel::marked(reading, *panel, (*at, &None))?,

@@ -11,33 +11,34 @@ use toile_geometry::Vec2;
 use toile_pattern::plan::{self, FormulaChange};
 use toile_pattern::{Edit, EditError, Entity, Evaluation, Panel, PanelId, PointId, SheetId};
 
-/// Sine of the angle up to which two handles lie on one line.
+/// Sine of the largest angle at which two handles count as collinear.
 const SMOOTH: f64 = 1e-3;
-/// How far a point may be from where it was moved to when another is moved after it (m).
+/// Largest distance of a point from its goal, after another point was moved, that counts as zero (m).
 const IN_PLACE: f64 = 1e-9;
 
-/// What is going on.
+/// State of the selection tool.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum SelectState {
-    /// Nothing.
+    /// No gesture.
     #[default]
     Idle,
-    /// Something is dragged, and what becomes of the formulas that place it.
+    /// Parts are dragged, with a rule for the formulas that define them.
     Dragging(Dragged, FormulaChange),
-    /// A box is drawn from a place of the table to another (m).
+    /// A box is drawn between two points of the table (m); the flag says whether it adds to the
+    /// selection.
     Boxing([Vec2; 2], bool),
 }
 
-/// What is dragged.
+/// The dragged parts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dragged {
-    /// Points, and the one in hand.
+    /// Points, and the one under the pointer.
     Points(Vec<PointId>, PointId),
     /// Panels on the table.
     Panels(Vec<PanelId>),
-    /// Sheets on the table, with what lies on them.
+    /// Sheets on the table, with everything on them.
     Sheets(Vec<SheetId>),
-    /// Something that is not moved by dragging, and why.
+    /// A part that cannot be dragged, and why.
     Fixed(String),
 }
 
@@ -85,10 +86,10 @@ fn nothing_shown() -> Outcome {
     }
 }
 
-/// Repeated clicks at one place go through what lies there.
+/// Part to select by a click; repeated clicks at one place cycle through the parts there.
 fn clicked(pointer: &Pointer, selection: &Selection) -> Option<Item> {
     let current = selection.single();
-    // Clicks on a guide that is selected do not go on to the panel under it.
+    // Clicks on a selected guide do not go on to the panel under it.
     if matches!(current, Some(Item::Guide(_))) {
         return pointer.hits.first().map(|hit| hit.item);
     }
@@ -150,8 +151,8 @@ fn drag(
     (SelectState::Dragging(dragged, change), outcome)
 }
 
-/// What a drag from a part moves: all of the selection if the part is in it, else the part, which
-/// is then selected.
+/// The parts that a drag moves: the whole selection if it contains the part, else that part, which is
+/// then selected.
 fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
     let is_selected = reading.selection.contains(hit.item);
     let select = (!is_selected).then(|| Selection::one(hit.item));
@@ -217,7 +218,8 @@ fn moved(
                     false => goal - now,
                 };
             }
-            // The others move all the same; the one in hand says why it does not.
+            // Points that cannot move are skipped; but if the dragged one cannot, the drag fails with the
+            // reason.
             if let Some(now) = reading.evaluation.point(*held).filter(|_| points.len() > 1) {
                 plan::move_point(reading.evaluation, *held, now + way)?;
             }
@@ -259,16 +261,16 @@ fn moved(
     }
 }
 
-/// The edits that move the point in hand by a choice of what becomes of its formulas, and then the handle
-/// that turns along by the same choice. Where that would lead the first away again, as with a variable
-/// that places both, or cannot be, something is added to the numbers of the second.
+/// The edits that move the dragged point by a rule for its formulas, and then the opposite handle by the
+/// same rule. If that would move the first point away again, as with a variable that defines both, or
+/// fails, the numbers of the second are adjusted instead.
 fn moved_by(
     reading: &Reading<'_>,
     goals: &[(PointId, Vec2)],
     change: FormulaChange,
 ) -> Result<Vec<Edit>, EditError> {
     let mut planning = Planning::new(reading);
-    // Where the points before came to: one on a line may not reach its goal.
+    // Places that the points reached: a point on a line may miss its goal.
     let mut reached: Vec<(PointId, Vec2)> = Vec::new();
     for &(point, to) in goals {
         let by = |change| {
@@ -288,7 +290,7 @@ fn moved_by(
             };
             if made.is_err() || !reached.iter().all(is_there) {
                 planning = before.clone();
-                // One that cannot turn along stays, as in a drag without a choice.
+                // A handle that cannot follow stays, as in a drag without such a rule.
                 if planning.run(by(FormulaChange::Adjust)).is_err() {
                     planning = before;
                 }
@@ -299,10 +301,11 @@ fn moved_by(
     Ok(planning.edits())
 }
 
-/// The edits that move sheets by a way (m) on the table; the others stay where they are seen.
+/// The edits that move sheets by a vector (m) on the table; the other sheets stay where they are
+/// displayed.
 ///
 /// # Errors
-/// A sheet is not there, or lies on a panel.
+/// A sheet does not exist, or lies on a panel.
 pub fn move_sheets(
     evaluation: &Evaluation,
     table_layout: &TableLayout,
@@ -316,8 +319,8 @@ pub fn move_sheets(
     plan::move_sheets(evaluation, &places)
 }
 
-/// The handle opposite to one that is moved to a place (m), where both lie on one line through their
-/// point: it turns along, so that the curve stays smooth there, and keeps its length. With its place.
+/// The handle opposite to one that is moved to a place (m), if both are collinear with their point, with
+/// its new place: it rotates so that the curve stays smooth there, and keeps its length.
 fn turned_along(handle: PointId, to: Vec2, reading: &Reading<'_>) -> Option<(PointId, Vec2)> {
     let (sheet, _) = reading.scene.point(handle)?;
     let pairs = || sheet.curves.iter().flat_map(|curve| &curve.handles);
@@ -370,7 +373,7 @@ fn dropped(state: &SelectState, reading: &Reading<'_>) -> (SelectState, Outcome)
     (SelectState::Idle, outcome)
 }
 
-/// A way on the table in round numbers, unless that is held off.
+/// A vector on the table in round numbers, unless rounding is turned off.
 fn whole(way: Vec2, pointer: &Pointer, reading: &Reading<'_>) -> Vec2 {
     let step = drag_step(pointer.pixel, reading.evaluation.pattern().unit.metres());
     match pointer.modifiers.command {
@@ -379,7 +382,7 @@ fn whole(way: Vec2, pointer: &Pointer, reading: &Reading<'_>) -> Vec2 {
     }
 }
 
-/// The way across or up only, whichever is longer.
+/// The horizontal or vertical component of a vector, whichever is longer.
 fn straight(way: Vec2) -> Vec2 {
     match way.x.abs() >= way.y.abs() {
         true => Vec2::new(way.x, 0.0),
@@ -397,8 +400,8 @@ pub(super) fn overlay(state: &SelectState, reading: &Reading<'_>) -> Vec<Overlay
     }
 }
 
-/// What becomes of the formulas that place a point, beside it; nothing where none does and nothing
-/// else was chosen.
+/// Text beside a point on the rule for the formulas that define it; `None` if there is no formula and the
+/// rule is the default.
 fn formula_words(point: PointId, change: FormulaChange, reading: &Reading<'_>) -> Option<Overlay> {
     let numbers = plan::numbers_of(reading.evaluation, point.into());
     let mut numbers = numbers.iter().filter_map(|entry| entry.number.as_ref());

@@ -1,4 +1,4 @@
-//! The overlay and the hints of a tool of slots.
+//! Overlay marks and hints of a slot tool.
 
 use super::answering::answer;
 use super::slots::{Answer, ChainEdge, Fields, SlotKind, SlotState, SlotTool, slot};
@@ -9,7 +9,7 @@ use crate::canvas::selection::Item;
 use toile_geometry::Vec2;
 use toile_pattern::{Number, SheetId, Want};
 
-/// Bytes of a line at the pointer.
+/// Longest line of text at the pointer (bytes).
 const LINE: usize = 44;
 
 pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
@@ -17,7 +17,7 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     let typable = Typable::new(tool, state, reading);
     let typed = typed_words(&typable, state);
     if !typable.handles.is_empty() {
-        // What they come to is seen on the curve.
+        // The curve itself shows the effect of typed handle numbers.
         if let Some(pointer) = state.pointer.as_ref().filter(|_| !typed.is_empty()) {
             marks.push(Overlay::Words(pointer.sheet, pointer.at, typed));
         }
@@ -36,7 +36,7 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     marks
 }
 
-/// What was given so far.
+/// Marks of the answers given so far.
 fn given(state: &SlotState) -> Vec<Overlay> {
     let mut marks = Vec::new();
     for answer in &state.answers {
@@ -60,15 +60,15 @@ fn given(state: &SlotState) -> Vec<Overlay> {
     marks
 }
 
-/// Words at a place. While something is typed they stay at the pointer, wherever what is typed leads, and begin
-/// with its fields: no field goes elsewhere while it is typed into.
+/// Text at a place. While something is typed the text stays at the pointer, wherever the typed place is,
+/// and begins with the fields: so that fields do not move while they are edited.
 fn words_at(state: &SlotState, (sheet, at): (SheetId, Vec2), told: &str, typed: &str) -> Overlay {
     let pointer = state.pointer.as_ref().filter(|_| state.is_typing());
     let (sheet, at) = pointer.map_or((sheet, at), |pointer| (pointer.sheet, pointer.at));
     Overlay::Words(sheet, at, joined(&[typed, told]))
 }
 
-/// What would be given now, and what is typed for it.
+/// Marks of the present answer, and the text typed for it.
 fn told(
     tool: &SlotTool,
     state: &SlotState,
@@ -139,13 +139,13 @@ fn told(
     marks
 }
 
-/// What ought to be known of what would be done now, in lines.
+/// Notes on the effect of the present answer, in lines.
 fn told_words(state: &SlotState) -> String {
     let told = state.told.as_ref();
     told.map_or_else(String::new, |told| in_lines(told))
 }
 
-/// A number as it would be; the label of one that is typed stands before that.
+/// The value of a number; the label is omitted if the field of the typed number shows it.
 fn number_words(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -158,7 +158,7 @@ fn number_words(
     format!("{sign} {value}")
 }
 
-/// A place as it would be, and what is typed for it.
+/// The place of the present answer, and the text typed for it.
 fn placed_words(
     kind: SlotKind,
     state: &SlotState,
@@ -190,7 +190,7 @@ fn placed_words(
     marks
 }
 
-/// Texts that are not empty, in lines.
+/// Texts that are not empty, one per line.
 fn joined(lines: &[&str]) -> String {
     let lines = lines.iter().filter(|line| !line.is_empty());
     lines.copied().collect::<Vec<_>>().join("\n")
@@ -200,7 +200,7 @@ fn edge((panel, edge): &ChainEdge) -> Overlay {
     Overlay::Edge(*panel, *edge)
 }
 
-/// A sentence in lines short enough to stand at the pointer.
+/// A sentence broken into lines short enough for the pointer.
 fn in_lines(words: &str) -> String {
     let mut lines = vec![String::new()];
     for word in words.split(' ') {
@@ -216,8 +216,8 @@ fn in_lines(words: &str) -> String {
     lines.join("\n")
 }
 
-/// What is typed, a line each, the one in hand with a bar, one at fault with its sign; and the signs of what
-/// may be typed instead.
+/// The typed fields, one per line, with a cursor in the present one and a sign at one with an error; and
+/// the signs for other ways to type the answer.
 fn typed_words(typable: &Typable, state: &SlotState) -> String {
     if !state.is_typing() {
         return String::new();
@@ -249,7 +249,7 @@ fn typed_words(typable: &Typable, state: &SlotState) -> String {
     lines.join("\n")
 }
 
-/// The signs of the other ways to say a place, and what they ask for.
+/// The signs for other ways to type a place, with the numbers each takes.
 fn other_ways(typable: &Typable, way: usize) -> Option<String> {
     let others = typable.ways.iter().enumerate().filter(|(k, _)| *k != way);
     let words = others.filter_map(|(_, way)| Some(format!("{} {}", way.sign()?, way.words())));
@@ -268,11 +268,11 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) ->
     }
 }
 
-/// What is asked for now.
+/// Request for the present slot.
 fn asked(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
     let typable = Typable::new(tool, state, reading);
     if state.is_typing() {
-        // The pointer may be elsewhere.
+        // The pointer and the fields beside it may be elsewhere.
         let typed = typed_words(&typable, state).replace('\n', ", ");
         return format!("{typed}; Tab goes on, Enter takes it, Esc takes it back");
     }
@@ -306,13 +306,13 @@ fn asked(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
     )
 }
 
-/// Which numbers may be typed, and what else says where a place is.
+/// Hint on the numbers that can be typed, and on other ways to type a place.
 fn numbers_hint(hint: &str, typable: &Typable) -> String {
     let fields = typable.fields.iter().take(typable.numbers());
     let labels: Vec<&str> = fields.map(|field| &*field.label).collect();
     match typable.ways.first() {
         None => String::new(),
-        // Some numbers are shown at the pointer; the others are only typed.
+        // Some numbers follow the pointer; the others can only be typed.
         Some(Way::Number(..)) if hint.starts_with("Type") => "; Enter takes it".to_owned(),
         Some(Way::Number(..)) => ", or type it; Enter takes it".to_owned(),
         Some(Way::Distance) => "; or type its distance from the nearer corner, Enter".to_owned(),

@@ -1,5 +1,5 @@
-//! How a tool of slots goes on: hovering, typing, what is taken, steps back. Whatever is typed comes to the
-//! document, or stays where it is typed with what is wrong with it.
+//! Transitions of a slot tool: hovering, typing, accepting answers, steps back. Typed text is either
+//! applied to the document, or stays in its field with the error.
 
 use super::answering::answer;
 use super::newest;
@@ -9,7 +9,7 @@ use super::typing::{Typable, is_named};
 use super::{Event, Outcome, PreviewChange, Reading};
 use crate::canvas::placed::Placed;
 
-/// How near the first of several places a click closes them (pixels).
+/// Distance from the first of several places within which a click closes the shape (pixels).
 const CLOSES: f64 = 9.0;
 
 pub(super) fn step(
@@ -65,7 +65,7 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// A step back; says whether there was one.
+/// Goes one step back; returns whether there was one.
 fn back(state: &mut SlotState) -> bool {
     let goes = if state.is_typing() {
         state.clear_typed();
@@ -90,7 +90,7 @@ fn refused(state: &mut SlotState, unanswered: Unanswered) -> Outcome {
     }
 }
 
-/// A click: it begins another where what is typed is not meant for what was made last.
+/// Handles a click, which begins the next part unless the typed text is meant for the part made last.
 fn clicked(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>) -> Outcome {
     let typable = Typable::new(tool, state, reading);
     let is_named = is_named(slot(tool, state).kind);
@@ -108,7 +108,7 @@ fn clicked(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>
         );
     }
     if !typable.handles.is_empty() {
-        // The name is that of the next.
+        // The typed name is for the next part.
         state.named = typable.typed_name(state).to_owned();
         state.made = None;
         state.clear_typed();
@@ -116,7 +116,7 @@ fn clicked(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>
     accept(tool, state, reading, false)
 }
 
-/// Enter: what is typed is taken, by what was made last if it is meant for that.
+/// Handles Enter: accepts the typed text, for the part made last if it is meant for that.
 fn entered(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>) -> Outcome {
     let typable = Typable::new(tool, state, reading);
     let Some(newest) = state.newest() else {
@@ -178,7 +178,7 @@ fn committed(edits: Vec<toile_pattern::Edit>, label: &str) -> Outcome {
     }
 }
 
-/// Takes what is given now, and does the work when that was the last.
+/// Accepts the present answer, and makes the plan if it was the last.
 fn accept(
     tool: &'static SlotTool,
     state: &mut SlotState,
@@ -214,7 +214,7 @@ fn accept(
             }
         }
         Err(error) => {
-            // What was given last is asked for again, and stands there as it was typed.
+            // The last slot is asked for again, with its typed text.
             *state = before;
             let unanswered = named(tool, state, reading, error.to_string().into());
             refused(state, unanswered)
@@ -222,7 +222,7 @@ fn accept(
     }
 }
 
-/// What is wrong, with the field that is typed named.
+/// The error, with the name of the field if it was typed.
 fn named(
     tool: &SlotTool,
     state: &SlotState,
@@ -245,7 +245,7 @@ fn named(
     }
 }
 
-/// Takes the answer to a slot of one thing; says whether there is nothing to add to it.
+/// Accepts the answer to a slot for one thing; returns whether nothing is left to add to it.
 fn accept_answer(
     tool: &SlotTool,
     state: &mut SlotState,
@@ -267,7 +267,7 @@ fn accept_answer(
     }
 }
 
-/// Takes one of several places, or ends them; says whether they are ended.
+/// Accepts one of several places, or the end of them; returns whether they have ended.
 fn accept_place(
     tool: &SlotTool,
     state: &mut SlotState,
@@ -275,7 +275,7 @@ fn accept_place(
     by_key: bool,
 ) -> Result<bool, Unanswered> {
     let typable = Typable::new(tool, state, reading);
-    // A name alone is no place: Enter after it ends them.
+    // A name alone is no place: Enter after it ends the places.
     let ends = by_key && state.typed.is_blank(typable.numbers());
     let named = match typable.typed_name(state) {
         "" => state.named.clone(),
@@ -299,7 +299,7 @@ fn accept_place(
         return Ok(false);
     }
     if state.places.len() < 2 {
-        // A name that was typed is kept for what comes of the places that are still to be given.
+        // A typed name is kept while further places are given.
         if state.is_typing() && !named.is_empty() {
             state.clear_typed();
             state.named = named;
@@ -313,11 +313,12 @@ fn accept_place(
     Ok(true)
 }
 
-/// Whether a place joins the first of several; the first fields, so many, are those of its numbers.
+/// Whether a place closes the shape at the first of several places; `numbers` is the count of number
+/// fields.
 fn closes(state: &SlotState, given: &Placed, numbers: usize) -> bool {
     let pointer = state.pointer.as_ref();
     let near = pointer.map_or(0.0, |pointer| CLOSES * pointer.pixel);
-    // Numbers say exactly where; a name says nothing of it.
+    // Typed numbers are exact; a typed name is irrelevant here.
     let near = match state.typed.is_blank(numbers) {
         true => near,
         false => 1e-9,
@@ -326,7 +327,7 @@ fn closes(state: &SlotState, given: &Placed, numbers: usize) -> bool {
     first.is_some_and(|first| state.places.len() > 2 && (given.at - first.at).norm() <= near)
 }
 
-/// What the tool would do if it were given this now.
+/// The plan with the present answer, for the preview.
 fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Plan> {
     let typable = Typable::new(tool, state, reading);
     if !typable.handles.is_empty() && !state.typed.is_blank(typable.numbers()) {
@@ -340,7 +341,7 @@ fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Pl
         });
     }
     let kind = slot(tool, state).kind;
-    // Numbers are seen from the first on, those after it as they are at first.
+    // A number is previewed from the first one on, with defaults for the numbers after it.
     let rest = tool.slots.iter().skip(state.answers.len() + 1);
     let rest = rest.map(usual).collect::<Option<Vec<Answer>>>()?;
     let is_number = matches!(kind, SlotKind::Number { .. } | SlotKind::Numbers { .. });

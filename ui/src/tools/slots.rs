@@ -1,5 +1,5 @@
-//! Tools that are given one thing after another: a list of slots and a planner. What is typed for a slot
-//! stands in `typing`, what is given there in `answering`, and how a tool goes on in `slot_steps`.
+//! Slot tools: tools that collect answers to a list of slots, then make a plan. Typed text is handled in
+//! `typing`, answers in `answering`, transitions in `slot_steps`.
 
 use super::{Pointer, Reading};
 use crate::canvas::placed::Placed;
@@ -9,184 +9,185 @@ use toile_pattern::{
     CurveId, EdgeId, Edit, EditError, Mark, Number, OperationId, PanelId, SheetId, Want,
 };
 
-/// A tool of slots.
+/// A slot tool.
 #[derive(Debug)]
 pub struct SlotTool {
-    /// The name of the command that takes it in hand.
+    /// Name of the command that takes it in hand.
     pub command: &'static str,
-    /// What it is given, in order.
+    /// Slots, in order.
     pub slots: &'static [Slot],
-    /// From what it was given to edits.
+    /// Planner from the answers to edits.
     pub plan: fn(&[Answer], &Reading<'_>) -> Result<Plan, EditError>,
 }
 
-/// One thing a tool is given.
+/// A slot: one input of a tool.
 #[derive(Debug)]
 pub struct Slot {
-    /// What to do to give it.
+    /// Instruction to the user.
     pub hint: &'static str,
-    /// What it is.
+    /// Kind of the answer.
     pub kind: SlotKind,
 }
 
-/// What a slot takes.
+/// Kind of answer that a slot takes.
 #[derive(Clone, Copy, Debug)]
 pub enum SlotKind {
     /// A place of a sheet, with numbers that may be typed for it.
     Place(Fields),
-    /// A place that ends what is drawn, which may be typed a name after the numbers.
+    /// The last place of a shape; a name can be typed after the numbers.
     Named(Fields),
-    /// Several places, and a name for what runs through them; Enter or a click on the first ends them.
+    /// Several places, and a name for the shape through them; Enter or a click on the first ends them.
     Places,
-    /// A place on an outline, hole or inner line of a panel; a distance along an edge from its nearer
-    /// corner may be typed.
+    /// A place on an outline, hole or internal line of a panel; a distance along an edge from its nearer
+    /// corner can be typed.
     OnLine,
     /// An edge of a panel.
     Edge,
-    /// Edges one after another: Shift-clicks add, a click ends them.
+    /// A chain of edges: Shift-clicks add, a click ends it.
     Chain,
-    /// A dart or another kept step of a panel.
+    /// A dart or another stored step of a panel.
     Operation,
     /// A curve of a sheet.
     Curve,
-    /// An end of a curve of a sheet: that which is nearer to the click.
+    /// An end of a curve of a sheet: the one nearer to the click.
     End,
     /// A panel.
     Panel,
-    /// A place inside something, which need not be drawn to anything, and a name for it.
+    /// A place inside closed lines or a panel, without snapping, and a name for the result.
     Inside,
-    /// A plain number; or several lengths, which answer what is asked after it too.
+    /// A plain number; or several lengths, which also replace the answers to all later slots.
     Numbers {
-        /// What it is called.
+        /// Label of the field.
         label: &'static str,
-        /// The plain number as long as nothing is typed.
+        /// Default of the plain number.
         usual: f64,
     },
     /// A number: typed, or given by the pointer.
     Number {
-        /// What it is called.
+        /// Label of the field.
         label: &'static str,
-        /// What it measures.
+        /// Kind of quantity.
         want: Want,
-        /// What it is as long as nothing is typed, if the pointer does not say (m), (rad).
+        /// Default, if the pointer gives no number (m, rad or 1).
         usual: f64,
-        /// What the pointer says, from what was given before (m), (rad).
+        /// The number that the pointer gives, from the answers so far (m, rad or 1).
         live: Option<fn(&[Answer], &Pointer) -> f64>,
     },
 }
 
-/// Which numbers are typed first for a place that follows another; the others may be typed too, and for
-/// the first place of a tool coordinates.
+/// Number fields shown first for a place that follows another; the other kinds can be chosen by a sign.
+/// The first place of a tool takes coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fields {
-    /// Length and angle from the place before.
+    /// Distance and angle from the last place.
     Usual,
-    /// Radius and angle from the place before, which is a centre.
+    /// Radius and angle from the last place, which is a centre.
     Radius,
-    /// Width and height from the place before.
+    /// Width and height from the last place.
     Size,
-    /// Radius and angle of an arc that goes on smoothly from the end of a curve.
+    /// Radius and angle of an arc that continues the end of a curve smoothly.
     Turn,
 }
 
 /// An edge of a chain, with its panel.
 pub type ChainEdge = (PanelId, EdgeId);
 
-/// What was given.
+/// An answer to a slot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     /// A place.
     Place(Placed),
-    /// The place that ends what is drawn, and the name of it if one was typed.
+    /// The last place of a shape, and its name if one was typed.
     Named(Placed, Option<String>),
-    /// Places, whether the last joins the first, and the name if one was typed.
+    /// Places, whether the shape is closed, and its name if one was typed.
     Places(Vec<Placed>, bool, Option<String>),
-    /// A place of a panel's line, on its sheet (m); and the mark there if a distance was typed.
+    /// A place on a line of a panel, in coordinates of its sheet (m); and its mark if a distance was
+    /// typed.
     OnLine(PanelId, Item, Vec2, Option<Mark>),
-    /// An edge, and the place it was taken at (m).
+    /// An edge, and the point at which it was clicked (m).
     Edge(PanelId, EdgeId, Vec2),
-    /// Edges one after another.
+    /// A chain of edges.
     Chain(Vec<ChainEdge>),
-    /// A kept step of a panel.
+    /// A stored step of a panel.
     Operation(PanelId, OperationId),
-    /// A curve, and the place it was taken at (m).
+    /// A curve, and the point at which it was clicked (m).
     Curve(SheetId, CurveId, Vec2),
-    /// The point at an end of a curve; and which end: 0 the start, 1 the end.
+    /// The end point of a curve; and the end: 0 the start, 1 the end.
     End(Placed, CurveId, usize),
     /// A panel.
     Panel(PanelId),
     /// Several lengths (m).
     Numbers(Vec<Number>),
-    /// A place inside something of a sheet (m), and the name if one was typed.
+    /// A place on a sheet inside closed lines or a panel (m), and the name if one was typed.
     Inside(SheetId, Vec2, Option<String>),
     /// A number.
     Number(Number),
 }
 
-/// What a tool does when it has been given everything.
+/// Result of a tool once all slots are answered.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The edits.
     pub edits: Vec<Edit>,
-    /// The step's name in the history.
+    /// Name of the step in the history.
     pub label: String,
-    /// What is selected then.
+    /// New selection.
     pub select: Selection,
-    /// What the tool has been given already when it begins again.
+    /// Answers that the tool starts with when it begins again.
     pub again: Vec<Answer>,
-    /// What ought to be known of it before it is done.
+    /// Note that the user should read before the plan is made.
     pub told: Option<String>,
 }
 
-/// How far a tool has come.
+/// State of a slot tool.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlotState {
     pub(super) answers: Vec<Answer>,
-    /// Places of a slot that takes several.
+    /// Places so far, of a slot that takes several.
     pub(super) places: Vec<Placed>,
-    /// Edges of a chain that more are added to.
+    /// Edges so far, of a chain.
     pub(super) chain: Vec<ChainEdge>,
-    /// What is typed, a text a field.
+    /// Typed texts, one per field.
     pub(super) typed: Typed,
-    /// The name that was typed before the last of several places.
+    /// Name that was typed before the last of several places.
     pub(super) named: String,
-    /// What the tool made last: what is typed before another is begun may belong to it.
+    /// The part made last: text typed before the next is begun may belong to it.
     pub(super) made: Option<Item>,
-    /// Whether its handles are as they should be: what is typed next is the next.
+    /// Whether its handles are accepted: text typed next belongs to the next part.
     pub(super) settled: bool,
     /// Whether the last place was given by the pointer, not by numbers.
     pub(super) pointed: bool,
-    /// The snap that is taken, counted from the best.
+    /// Index of the chosen snapping place, counted from the best.
     pub(super) snap: usize,
     pub(super) pointer: Option<Pointer>,
-    /// Why what was asked last was not done.
+    /// Reason why the last input was refused.
     pub(super) refusal: Option<String>,
-    /// What ought to be known of what would be done now.
+    /// Note on the effect of the present answer.
     pub(super) told: Option<String>,
 }
 
-/// What is being typed.
+/// Text that is being typed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Typed {
-    /// Texts by field; none yet for fields behind the last.
+    /// Texts by field; shorter than the list of fields if the last ones are untouched.
     texts: Vec<String>,
-    /// Which of the ways to say a place is typed.
+    /// Index of the way in which the answer is typed.
     pub way: usize,
-    /// Which field is typed.
+    /// Index of the present field.
     pub field: usize,
-    /// Whether the name was begun by its sign.
+    /// Whether a name was begun by its sign.
     pub naming: bool,
-    /// The field that is at fault.
+    /// The field with an error.
     pub fault: Option<usize>,
 }
 
 impl Typed {
-    /// What is typed into a field.
+    /// The text typed into a field.
     pub fn text(&self, field: usize) -> &str {
         self.texts.get(field).map_or("", String::as_str)
     }
 
-    /// The same to be changed.
+    /// The text typed into a field, for changes.
     pub fn text_mut(&mut self, field: usize) -> &mut String {
         let count = self.texts.len().max(field + 1);
         self.texts.resize(count, String::new());
@@ -198,24 +199,24 @@ impl Typed {
         !self.naming && self.way == 0 && self.is_blank(self.texts.len())
     }
 
-    /// Whether nothing stands in so many first fields.
+    /// Whether the first fields, up to a count, are empty.
     pub fn is_blank(&self, count: usize) -> bool {
         self.texts.iter().take(count).all(String::is_empty)
     }
 }
 
 impl SlotState {
-    /// Whether nothing was given or typed yet.
+    /// Whether nothing was answered or typed yet.
     pub fn is_empty(&self) -> bool {
         self.is_unbegun() && !self.is_typing()
     }
 
-    /// Whether nothing was given yet.
+    /// Whether nothing was answered yet.
     pub(super) fn is_unbegun(&self) -> bool {
         self.answers.is_empty() && self.places.is_empty() && self.chain.is_empty()
     }
 
-    /// What the tool made last, until another is begun.
+    /// The part made last, until the next is begun.
     pub(super) fn newest(&self) -> Option<Item> {
         self.made.filter(|_| self.is_unbegun())
     }
@@ -225,17 +226,17 @@ impl SlotState {
         !self.typed.is_empty()
     }
 
-    /// The sheet of the place given last.
+    /// The sheet of the last place.
     pub fn sheet(&self) -> Option<SheetId> {
         self.last_place().map(|placed| placed.sheet)
     }
 
-    /// What was given so far.
+    /// Answers so far.
     pub fn given(&self) -> &[Answer] {
         &self.answers
     }
 
-    /// The place given last (m).
+    /// The last place.
     pub(super) fn last_place(&self) -> Option<&Placed> {
         let given = self.answers.iter().rev().find_map(|answer| match answer {
             Answer::Place(placed) | Answer::End(placed, ..) => Some(placed),
@@ -250,19 +251,19 @@ impl SlotState {
     }
 }
 
-/// The slot that is asked for now.
+/// The present slot.
 pub(super) fn slot<'t>(tool: &'t SlotTool, state: &SlotState) -> &'t Slot {
     let last = tool.slots.len() - 1;
     &tool.slots[state.answers.len().min(last)]
 }
 
-/// Whether answers are all that a tool needs.
+/// Whether the answers are all that a tool needs.
 pub(super) fn is_complete(tool: &SlotTool, answers: &[Answer]) -> bool {
     let ends = matches!(answers.last(), Some(Answer::Numbers(_)));
     ends || answers.len() >= tool.slots.len()
 }
 
-/// The answer of a number as long as nothing is typed and nothing is pointed at.
+/// The default answer of a number slot.
 pub(super) fn usual(slot: &Slot) -> Option<Answer> {
     match slot.kind {
         SlotKind::Number { usual, .. } | SlotKind::Numbers { usual, .. } => {

@@ -1,5 +1,5 @@
-//! Arcs that go on smoothly from the end of a curve: which way it leads on there, kept as a formula where the
-//! curve is a line, an arc or a spline, so that the arc stays smooth whatever moves.
+//! Arcs that continue the end of a curve smoothly. The direction at the end is stored as a formula if the
+//! curve is a line, an arc or a spline, so that the arc stays smooth when things move.
 
 use super::Reading;
 use super::composed::{formula, point, written};
@@ -12,7 +12,7 @@ use toile_pattern::{
     plan,
 };
 
-/// The curve an edge of a panel follows, with its sheet and the place on it (m).
+/// The curve that an edge of a panel follows, with its sheet and the nearest point on it (m).
 pub(super) fn curve_of(
     reading: &Reading<'_>,
     (panel, edge, at): (PanelId, EdgeId, Vec2),
@@ -23,7 +23,7 @@ pub(super) fn curve_of(
     Some((sheet.id, curve, at))
 }
 
-/// The end of a curve that is nearer to a place (m).
+/// The end of a curve nearer to a point (m).
 ///
 /// # Errors
 /// The curve cannot be drawn.
@@ -48,10 +48,10 @@ pub(super) fn end_near(
     Ok(Answer::End(placed, curve, end))
 }
 
-/// The direction in which a curve leads on beyond one of its ends (rad).
+/// Direction of the tangent that leaves a curve at one of its ends (rad).
 ///
 /// # Errors
-/// The curve is not there or has no direction.
+/// The curve does not exist or has no direction there.
 pub(super) fn leaving(
     evaluation: &Evaluation,
     curve: CurveId,
@@ -71,7 +71,7 @@ pub(super) fn leaving(
         CurveRule::Arc { bulge } => {
             let swept = plan::angle_of(evaluation, bulge);
             let swept = written(evaluation, &swept, Want::Angle);
-            // Backwards it turns the other way.
+            // Reversed, the arc turns in the opposite direction.
             let sign = if end == 1 { '+' } else { '-' };
             Some(format!("{} {sign} {swept} / 2", chord()))
         }
@@ -99,8 +99,8 @@ pub(super) fn leaving(
     }
 }
 
-/// Where an arc of a typed radius and angle ends that goes on smoothly from the end of a curve, and how it is
-/// constructed from there.
+/// End point of an arc with typed radius and angle that continues the end of a curve smoothly, with its
+/// construction.
 ///
 /// # Errors
 /// A number is missing or has no value.
@@ -120,7 +120,7 @@ pub(super) fn turned_place(
     let angle = angle.ok_or_else(|| missing(1))?;
     let evaluation = reading.evaluation;
     let leaving = leaving(evaluation, *curve, *end).map_err(|error| error.to_string())?;
-    // The chord of an arc turns by half its angle.
+    // The direction of the chord differs from the tangent by half the angle of the arc.
     let [leaving, turn] = [&leaving, &angle].map(|n| written(evaluation, n, Want::Angle));
     let direction = format!("{leaving} + {turn} / 2");
     let wide = written(evaluation, &radius, Want::Length);

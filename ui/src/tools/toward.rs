@@ -5,12 +5,12 @@ use crate::canvas::placed::{Placed, Spec, rounded};
 use toile_geometry::Vec2;
 use toile_pattern::{Number, Want};
 
-/// Steps of an angle while Shift is held (degrees).
+/// Angular step while Shift is held (degrees).
 const TURN: f64 = 15.0;
-/// How far the pointer lies beyond a place to mean its other side (pixels).
+/// Distance of the pointer beyond the last place from which on it means the other side (pixels).
 const BEYOND: f64 = 12.0;
 
-/// The place at the pointer's distance from the last, in a direction of whole steps.
+/// The place at the pointer's distance from the last place, with the direction rounded to whole steps.
 pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     let way = free.at - last.at;
     let step = TURN.to_radians();
@@ -32,8 +32,8 @@ pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     }
 }
 
-/// A typed width or height toward the side the pointer lies on, that far from the last place (m), with the
-/// size of a pixel there (m). One that is typed with its sign stays.
+/// Gives a typed width or height the sign of the pointer's side, by the offset of the pointer from the
+/// last place (m) and the size of a pixel (m). A number typed with a sign is kept.
 pub(super) fn to_side(
     number: Number,
     way: f64,

@@ -1,5 +1,5 @@
-//! What may be typed while a tool of slots is in hand, and where it goes: numbers for the slot that is asked
-//! for, in one of several ways for a place, and a name; or numbers and a name of what was made last.
+//! Typed input of a slot tool: numbers for the present slot, for a place in one of several ways, and a
+//! name; or numbers and a name for the part made last.
 
 use super::Reading;
 use super::newest::{self, Handle};
@@ -7,36 +7,36 @@ use super::refusal::Unanswered;
 use super::slots::{Fields, SlotKind, SlotState, SlotTool, slot};
 use toile_pattern::Want;
 
-/// The field of a name.
+/// Label of the name field.
 pub(super) const NAME: &str = "name";
-/// The field of what is typed where something is pointed at.
+/// Label of the field for text typed where a click is expected.
 const NUMBER: &str = "number";
-/// What begins a name where nothing else is typed: names stand in it in formulas too.
+/// Sign that begins a name if no other text was typed; formulas quote names with it too.
 pub const NAME_SIGN: char = '\'';
-/// Signs that choose another way to say a place, as in other programs that draw.
+/// Signs that choose another way to type a place, as in other CAD programs.
 pub const WAY_SIGNS: [char; 3] = [BESIDE_SIGN, COORDINATES_SIGN, ANGLE_SIGN];
 const BESIDE_SIGN: char = '@';
 const COORDINATES_SIGN: char = '#';
 const ANGLE_SIGN: char = '<';
 
-/// A way to say a slot's answer by numbers.
+/// A way to type the answer to a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     /// Coordinates on the sheet.
     Coordinates,
-    /// Length and angle from the place before.
+    /// Distance and angle from the last place.
     FromLast,
-    /// The same, the place before being a centre.
+    /// Radius and angle from the last place, which is a centre.
     Radius,
-    /// To the right and upward from the place before.
+    /// Offset to the right and upward from the last place.
     Beside,
-    /// Width and height from the place before.
+    /// Width and height from the last place.
     Size,
-    /// Radius and angle of an arc that goes on smoothly from the place before.
+    /// Radius and angle of an arc that continues the curve at the last place smoothly.
     Turn,
     /// Distance along an edge from its nearer corner.
     Distance,
-    /// A number, called so, of that kind.
+    /// A number with a label and a kind.
     Number(&'static str, Want),
 }
 
@@ -55,7 +55,7 @@ impl Way {
         }
     }
 
-    /// The sign that chooses it.
+    /// The sign that chooses this way.
     pub fn sign(self) -> Option<char> {
         match self {
             Self::Coordinates => Some(COORDINATES_SIGN),
@@ -65,14 +65,14 @@ impl Way {
         }
     }
 
-    /// Its fields in words.
+    /// Labels of its fields.
     pub fn words(self) -> String {
         let labels: Vec<&str> = self.fields().into_iter().map(|(label, _)| label).collect();
         labels.join(", ")
     }
 }
 
-/// The ways to say what a slot is given, that which needs no sign first.
+/// Ways to type the answer to a slot; the first needs no sign.
 pub(super) fn ways(kind: SlotKind, state: &SlotState) -> Vec<Way> {
     let place = |fields: Fields| match (state.last_place(), fields) {
         (None, _) => vec![Way::Coordinates],
@@ -97,12 +97,12 @@ pub(super) fn ways(kind: SlotKind, state: &SlotState) -> Vec<Way> {
     }
 }
 
-/// The way that is typed.
+/// The chosen way.
 pub(super) fn way(kind: SlotKind, state: &SlotState) -> Option<Way> {
     ways(kind, state).get(state.typed.way).copied()
 }
 
-/// Whether what is given in a slot may have a name.
+/// Whether the result of a slot can have a name.
 pub(super) fn is_named(kind: SlotKind) -> bool {
     matches!(
         kind,
@@ -110,31 +110,31 @@ pub(super) fn is_named(kind: SlotKind) -> bool {
     )
 }
 
-/// One field that may be typed into.
+/// A field for typed text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
     pub label: String,
     pub want: Want,
 }
 
-/// What may be typed now.
+/// Fields for typed text in the present state.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Typable {
-    /// Its fields, that of the name last. What is typed where nothing is taken stands there all the same,
-    /// so that it goes nowhere else.
+    /// Fields, the one for the name last. They exist even if no text is accepted, so that typed text goes
+    /// nowhere else.
     pub fields: Vec<Field>,
-    /// Whether numbers are taken.
+    /// Whether numbers are accepted.
     pub takes_numbers: bool,
-    /// Whether a name is taken.
+    /// Whether a name is accepted.
     pub takes_name: bool,
-    /// The numbers of what was made last, where the first fields are theirs.
+    /// Handle numbers of the part made last, if the first fields are for these.
     pub handles: Vec<Handle>,
-    /// Ways to say the place that is asked for.
+    /// Ways to type the requested place.
     pub ways: Vec<Way>,
 }
 
 impl Typable {
-    /// What may be typed now.
+    /// The fields for the present state.
     pub fn new(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Self {
         let kind = slot(tool, state).kind;
         let newest = state.newest();
@@ -171,20 +171,20 @@ impl Typable {
         }
     }
 
-    /// How many of the fields are numbers; the field of the name is the next.
+    /// Count of the number fields; the field for the name comes after them.
     pub fn numbers(&self) -> usize {
         self.fields.len() - 1
     }
 
-    /// The name that is typed.
+    /// The typed name.
     pub fn typed_name<'s>(&self, state: &'s SlotState) -> &'s str {
         state.typed.text(self.numbers()).trim()
     }
 
-    /// Refuses what is typed where it is not taken.
+    /// Refuses typed text that is not accepted here.
     ///
     /// # Errors
-    /// A number or a name stands where none is taken.
+    /// A number or a name was typed where none is accepted.
     pub fn refuse_untaken(&self, state: &SlotState) -> Result<(), Unanswered> {
         let name = self.numbers();
         if !self.takes_numbers && !state.typed.is_blank(name) {
@@ -202,11 +202,11 @@ impl Typable {
         Ok(())
     }
 
-    /// Takes typed text into its field. The sign of names begins a name, other signs choose another way to
-    /// say a place; within a formula they are signs like others.
+    /// Adds typed text to its field. The sign of names begins a name, other signs choose another way to
+    /// type a place; inside a formula they are ordinary characters.
     ///
     /// # Errors
-    /// Nothing is taken here, or something else is typed already; what is typed stands there all the same.
+    /// No text is accepted here, or another kind of text has been begun; the text is kept all the same.
     pub fn take(&self, state: &mut SlotState, text: &str) -> Result<(), Unanswered> {
         let name = self.numbers();
         for c in text.chars() {
@@ -238,7 +238,7 @@ impl Typable {
         self.refuse_untaken(state)
     }
 
-    /// Whether the sign of angles goes on to the angle of the way that is typed.
+    /// Whether the sign of angles moves on to the angle field of the present way.
     fn goes_to_angle(&self, way: usize) -> bool {
         let now = self.ways.get(way);
         now.is_some_and(|way| matches!(way, Way::FromLast | Way::Radius | Way::Turn))
@@ -268,7 +268,7 @@ impl Typable {
         Ok(())
     }
 
-    /// Takes the last typed character back.
+    /// Deletes the last typed character.
     pub fn take_back(&self, state: &mut SlotState) {
         let typed = &mut state.typed;
         typed.fault = None;
@@ -285,7 +285,7 @@ impl Typable {
         }
     }
 
-    /// Goes on to the next field.
+    /// Moves on to the next field.
     pub fn next(&self, state: &mut SlotState) {
         let count = self.numbers() + usize::from(self.takes_name);
         state.typed.field = (state.typed.field + 1) % count.max(1);

@@ -1,5 +1,5 @@
-//! Walks a seam: the pieces of one side laid on those of the other, moved along the seam line by
-//! pointer, keys or a typed distance. It changes no document.
+//! Walks a seam: the pieces of one side are laid on those of the other, and moved along the seam line by
+//! pointer, keys or a typed distance. Changes no document.
 
 use super::number;
 use super::{Event, LineStep, Outcome, Overlay, Pointer, Reading, Tone};
@@ -16,18 +16,18 @@ use toile_pattern::{
     SeamId, Want,
 };
 
-/// How far an arrow key goes (m).
+/// Distance of a step by an arrow key (m).
 const STEP: f64 = 0.01;
-/// How near the pointer must come to the seam line to lead the walk (pixels).
+/// Distance from the seam line within which the pointer moves the walk (pixels).
 const REACH: f64 = 60.0;
-/// Length of the lines that show how edges go on across the seam (m).
+/// Length of the tangents drawn where edges cross the seam (m).
 const LEAVING: f64 = 0.03;
 /// Length of a notch (m).
 const NOTCH: f64 = 0.006;
-/// The contact is at an end of the seam from here on (m).
+/// Distance from an end of the seam within which the contact counts as at the end (m).
 const AT_END: f64 = 1e-3;
 
-/// How far the walk has come.
+/// State of a walk.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WalkState {
     /// Arc length of the first side where the pieces touch (m).
@@ -43,20 +43,20 @@ impl WalkState {
     }
 }
 
-/// The seam that is walked, as it is seen on the table.
+/// The walked seam, as displayed on the table.
 struct Seen<'r> {
     pattern: &'r Pattern,
     draft: &'r Draft,
     seam: &'r DraftSeam,
     walk: Walk<'r>,
-    /// What is drawn of it.
+    /// Cached geometry to draw.
     kept: Arc<WalkedSeam>,
-    /// How much longer one side may be (m).
+    /// Ease: intended difference in length between the sides (m).
     ease: f64,
     reading: &'r Reading<'r>,
 }
 
-/// The first seam that is selected.
+/// The first selected seam.
 pub fn selected(reading: &Reading<'_>) -> Option<SeamId> {
     let mut items = reading.selection.items().iter();
     items.find_map(|item| match item {
@@ -83,8 +83,8 @@ impl<'r> Seen<'r> {
         })
     }
 
-    /// From the plane of a piece to the table. The other piece of a pair is seen as the panel is
-    /// drawn, of which it is the mirror image.
+    /// Map from the plane of a piece to the table. The second piece of a mirrored pair is reflected, so
+    /// that it appears like the drawn panel.
     fn on_table(&self, piece: &Piece) -> Affine {
         let moved = Affine::translation(self.reading.table_layout.panel(piece.id.panel));
         let panel = self.pattern.panel(piece.id.panel);
@@ -99,14 +99,14 @@ impl<'r> Seen<'r> {
         self.draft.pieces.get(contact.pieces[side])
     }
 
-    /// Places where the pieces touch, from those of the piece that stays to the table; and from those
-    /// of the piece that is laid against it.
+    /// Maps to the table from the plane of the piece that stays, and from that of the piece that is laid
+    /// against it.
     fn maps(&self, contact: &Contact, fixed: FixedSide) -> Option<[Affine; 2]> {
         let base = self.on_table(self.piece(contact, fixed.sides()[0])?);
         Some([base, base.after(&contact.laid)])
     }
 
-    /// The arc length of the first side that a pointer leads to, and how far it is from there (m).
+    /// Arc length of the first side nearest to the pointer, and the distance between them (m).
     fn led(&self, at: &Pointer, fixed: FixedSide) -> Option<(f64, f64)> {
         let side = fixed.sides()[0];
         let mut best: Option<(f64, f64)> = None;
@@ -130,8 +130,8 @@ impl<'r> Seen<'r> {
     }
 }
 
-/// The least rectangle of the table round the piece that stays and the other where it lies at both
-/// ends of the selected seam (m).
+/// Bounding box on the table of the piece that stays and of the other piece at both ends of the selected
+/// seam (m).
 pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     let seen = Seen::new(reading)?;
     let sides = state.fixed.sides();
@@ -148,7 +148,7 @@ pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     Some(Bounds2::of(places))
 }
 
-/// The distance that is walked to: what is typed, if it can be read, else where the walk has come.
+/// Distance walked so far, or the typed one if it is valid.
 fn along(state: &WalkState, reading: &Reading<'_>) -> Result<f64, String> {
     if !state.is_typing() {
         return Ok(state.along);
@@ -238,8 +238,7 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// The seams under the pointer, the nearest edge first: of each edge the seam whose stretch of it is
-/// nearest.
+/// Seams under the pointer, the nearest edge first: for each edge the seam with the nearest stretch.
 fn seams_at(pointer: &Pointer, reading: &Reading<'_>) -> Vec<SeamId> {
     let edges = pointer.hits.iter().filter_map(|hit| match hit.item {
         Item::Edge(panel, edge) => seam_of((panel, edge), hit.at, reading),
@@ -248,7 +247,7 @@ fn seams_at(pointer: &Pointer, reading: &Reading<'_>) -> Vec<SeamId> {
     edges.collect()
 }
 
-/// The seam that joins an edge at a place of its panel (m).
+/// The seam of an edge at a point of its panel (m).
 fn seam_of((panel, edge): (PanelId, EdgeId), at: Vec2, reading: &Reading<'_>) -> Option<SeamId> {
     let seams = reading.scene.seams.iter();
     let stretches = seams.flat_map(|seam| seam.stretches.iter().map(move |own| (seam.id, own)));
@@ -293,7 +292,7 @@ pub(super) fn overlay(state: &WalkState, reading: &Reading<'_>) -> Vec<Overlay> 
     marks
 }
 
-/// The pieces' places on the seam, and how much farther one has gone.
+/// Distances of both pieces along the seam, and their difference, in words.
 fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
     let unit = seen.pattern.unit;
     let length = |length: f64| number::show(length, Want::Length, unit);
@@ -319,7 +318,7 @@ fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
     )
 }
 
-/// The piece that is laid against the one that stays.
+/// Marks of the piece that is laid against the one that stays.
 fn ghost(
     seen: &Seen<'_>,
     (contact, fixed): (&Contact, FixedSide),
@@ -357,13 +356,13 @@ fn ghost(
     }
 }
 
-/// A corner of a filled region, laid elsewhere.
+/// A corner of a fill, mapped.
 fn mapped(laid: &Affine, at: [f32; 2]) -> [f32; 2] {
     let at = laid.apply(Vec2::from(at.map(f64::from)));
     [at.x as f32, at.y as f32]
 }
 
-/// The colour of a line by its smoothness.
+/// Tone for the smoothness of a line across a seam.
 fn joint_tone(joint: &Joint) -> Tone {
     match joint.smoothness() {
         Smoothness::Smooth => Tone::Good,
@@ -372,7 +371,7 @@ fn joint_tone(joint: &Joint) -> Tone {
     }
 }
 
-/// How a line goes on across a seam, in words.
+/// Description of the angle at which a line crosses a seam.
 fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
     let degrees = joint.kink.to_degrees();
     let turn = format!("{:.1}\u{b0}", degrees.abs());
@@ -389,7 +388,7 @@ fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
     format!("{line} across {seam}: {how}{step}")
 }
 
-/// The lines that cross a seam at its ends, in words.
+/// Descriptions of the lines that cross a seam at its ends.
 pub fn crossing_lines(
     (evaluation, scene): (&Evaluation, &Scene),
     seam: SeamId,
@@ -407,8 +406,7 @@ pub fn crossing_lines(
     told.collect()
 }
 
-/// Words at the end of the seam; and where the pieces touch there, the directions in which the edges
-/// leave it.
+/// Text at the end of the seam; and if the pieces touch there, the tangents of the edges that leave it.
 fn mark_joint(
     seen: &Seen<'_>,
     joint: &Joint,
@@ -437,7 +435,7 @@ fn mark_joint(
     marks.push(Overlay::Label(corner, words, tone));
 }
 
-/// Where notches of the piece that stays lie; those that do not meet their partner are told.
+/// Marks of the notches of the piece that stays, with a note at those that do not meet their partner.
 fn mark_notches(
     seen: &Seen<'_>,
     (contact, fixed): (&Contact, FixedSide),
@@ -458,7 +456,7 @@ fn mark_notches(
         let name = notch_name(seen, notch);
         let (tone, words) = match notch.partner {
             Some(_) if notch.meets() => (Tone::Good, String::new()),
-            // Of a pair of notches that is apart it is told once, at the one of the first side.
+            // The note on a pair of notches that do not meet stands at the one of the first side only.
             Some(_) if notch.side == 1 && notch.partner_piece == Some(contact.pieces[0]) => {
                 (Tone::Warning, String::new())
             }

@@ -1,4 +1,4 @@
-//! The 3D view: mannequin and garment, seen by an eye that goes round them.
+//! The 3D view: mannequin and garment, seen by an orbiting camera.
 
 use crate::gpu::orbit::Orbit;
 use crate::gpu::solid::{ClothLook, ClothSolid, Corner, floor, mannequin};
@@ -13,7 +13,7 @@ use toile_session::{GarmentJob, LiveFrame};
 /// The 3D view and its state.
 #[derive(Default)]
 pub struct GarmentView {
-    /// Where the eye is.
+    /// Position of the eye.
     pub orbit: Orbit,
     renderer: Option<StageRenderer>,
     body: Vec<Corner>,
@@ -23,7 +23,7 @@ pub struct GarmentView {
     look: Option<(Arc<GarmentJob>, ClothLook)>,
     frame: Option<LiveFrame>,
     is_old: bool,
-    /// Whether the mannequin is left out.
+    /// Whether the mannequin is hidden.
     pub hides_body: bool,
     cloth: ClothSolid,
     cloth_buffer: CornerBuffer,
@@ -31,19 +31,19 @@ pub struct GarmentView {
     vertices: usize,
     stale: Stale,
     wants_fit: bool,
-    /// Size of the view that the mannequin was fitted into, until it is panned or zoomed.
+    /// Size of the view for which the mannequin was fitted, until the user pans or zooms.
     fitted: Option<egui::Vec2>,
     drawn: Option<Drawn>,
 }
 
-/// What the graphics card does not have yet.
+/// Buffers that must be uploaded to the graphics card anew.
 #[derive(Clone, Copy, Default)]
 struct Stale {
     body: bool,
     cloth: bool,
 }
 
-/// The picture drawn last, and what it was drawn for.
+/// The last picture, and the state it shows.
 #[derive(Clone, Copy, PartialEq)]
 struct Drawn {
     orbit: Orbit,
@@ -54,7 +54,7 @@ struct Drawn {
 }
 
 impl GarmentView {
-    /// A view drawn by the window's graphics card; without one it says so in words.
+    /// A view drawn by the window's graphics card; without one it shows a message.
     pub fn new(state: Option<&RenderState>) -> Self {
         Self {
             renderer: state.map(StageRenderer::new),
@@ -62,7 +62,7 @@ impl GarmentView {
         }
     }
 
-    /// Shows another mannequin.
+    /// Sets the mannequin.
     pub fn set_body(&mut self, skin: &TriangleMesh) {
         self.body = mannequin(&skin.positions, &skin.triangles);
         let first = self.body_bounds.is_none();
@@ -71,7 +71,7 @@ impl GarmentView {
         self.wants_fit |= first;
     }
 
-    /// Shows a garment at one moment.
+    /// Sets the garment at one moment.
     pub fn set_frame(&mut self, frame: LiveFrame) {
         let known = self.look.take();
         let known = known.filter(|(job, _)| Arc::ptr_eq(job, &frame.job));
@@ -81,7 +81,7 @@ impl GarmentView {
         self.make_cloth();
     }
 
-    /// Shows the garment grey while it is that of an earlier pattern.
+    /// Shows the garment grey while it belongs to an earlier pattern.
     pub fn set_out_of_date(&mut self, is_old: bool) {
         if self.is_old != is_old {
             self.is_old = is_old;
@@ -104,7 +104,7 @@ impl GarmentView {
         }
     }
 
-    /// Shows no garment.
+    /// Removes the garment.
     pub fn clear_garment(&mut self) {
         self.look = None;
         self.frame = None;
@@ -113,7 +113,7 @@ impl GarmentView {
         self.stale.cloth = true;
     }
 
-    /// Vertices of the garment that is shown.
+    /// Number of vertices of the displayed garment.
     pub fn vertices(&self) -> usize {
         self.vertices
     }
@@ -123,27 +123,27 @@ impl GarmentView {
         !self.body.is_empty()
     }
 
-    /// The garment whose cloth is shown.
+    /// The displayed garment.
     pub fn garment(&self) -> Option<&Arc<GarmentJob>> {
         self.frame.as_ref().map(|frame| &frame.job)
     }
 
-    /// The least and the largest coordinates of the mannequin that is seen (m).
+    /// Bounding box of the mannequin (m), if it is visible.
     pub fn seen_body(&self) -> Option<[Vec3; 2]> {
         self.body_bounds.filter(|_| !self.hides_body)
     }
 
-    /// Looks from a side, level: 0 in front, positive toward the wearer's left (rad).
+    /// Sets a level direction of view: 0 in front, positive toward the wearer's left (rad).
     pub fn look_from(&mut self, yaw: f64) {
         self.orbit.yaw = yaw;
         self.orbit.pitch = 0.05;
         self.wants_fit = true;
     }
 
-    /// Draws the view and takes what is done in it.
+    /// Draws the view and handles its input.
     pub fn show(&mut self, ui: &mut Ui, empty: &str) {
         let view = ui.available_rect_before_wrap();
-        // The rims of the parts beside it stay free to be taken hold of.
+        // The borders between the parts of the window can still be dragged.
         let inner = view.shrink(theme::GRAB);
         let response = ui.interact(
             inner,
@@ -243,7 +243,7 @@ impl GarmentView {
                     renderer.upload(&floor(palette), &mut self.floor_buffer);
                 }
                 self.stale = Stale::default();
-                // Nobody stands on the floor before there is a mannequin.
+                // The floor is hidden until there is a mannequin.
                 let floor = (!self.body.is_empty()).then_some(&self.floor_buffer);
                 let body = (!self.hides_body).then_some(&self.body_buffer);
                 let solids = body.into_iter().chain([&self.cloth_buffer]);

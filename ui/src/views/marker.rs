@@ -1,5 +1,5 @@
-//! The marker view: pieces on their fabric, seen from above. It changes no document: it says what
-//! is done in it.
+//! The marker view: pieces on their fabric, seen from above. It does not change the document: it returns
+//! the actions of the user.
 
 use super::marker_piece::{PieceName, PieceScene};
 use crate::canvas::camera::{ScreenPoint, TableCamera, TablePoint};
@@ -12,41 +12,43 @@ use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{MarkerId, OrderedPiece};
 use toile_session::{DocumentMarker, MarkerState, Pose};
 
-/// Room between pieces that wait beside the fabric (m).
+/// Gap between waiting pieces beside the fabric (m).
 const GAP: f64 = 0.03;
-/// How near to another a piece is let go to come to lie against it (pixels), and the least and most of it (m).
+/// Distance within which a dropped piece is moved against its neighbour (pixels), with its least and
+/// largest value (m).
 const REACH: f64 = 10.0;
 const REACHES: [f64; 2] = [0.003, 0.02];
 /// Quarter of a turn (rad).
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
-/// What becomes of pieces that are let go.
+/// Placement of pieces that are dropped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LetGoAs {
-    /// They lie where they are.
+    /// They stay where they are dropped.
     Left,
-    /// They come to lie against what is nearer than that (m), and go back from where they lie over another.
+    /// They are moved against a neighbour within this distance (m), and return to their old place if they
+    /// overlap another.
     Butted(f64),
 }
 
-/// Something that is done to a marker.
+/// An action of the user on a marker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkerAction {
-    /// Pieces are dragged: how far from where they were (m).
+    /// Pieces are dragged by a vector from their old place (m).
     Drag(Vec<OrderedPiece>, Vec2),
-    /// The drag is over: how far the pieces were moved (m), and whether they lie as they are let go.
+    /// The drag ends: its vector (m), and the placement of the pieces.
     Drop(Vec<OrderedPiece>, Vec2, LetGoAs),
-    /// The drag is left.
+    /// The drag is cancelled.
     Leave,
-    /// A piece that waits is laid at a place (m).
+    /// A waiting piece is laid at a place (m).
     Lay(OrderedPiece, Vec2, LetGoAs),
-    /// The selected pieces are turned together about a place by an angle (m, rad).
+    /// The selected pieces are rotated together about a point by an angle (m, rad).
     Turn(Vec2, f64),
-    /// They are turned over about a line along the warp (m).
+    /// The selected pieces are mirrored in a line along the warp, given by its coordinate across (m).
     Flip(f64),
-    /// They are locked, or unlocked.
+    /// The selected pieces are locked, or unlocked.
     Lock,
-    /// They are taken off the fabric.
+    /// The selected pieces are taken off the fabric.
     TakeOff,
 }
 
@@ -54,17 +56,17 @@ pub enum MarkerAction {
 pub struct MarkerView {
     /// The marker on show.
     pub chosen: Option<MarkerId>,
-    /// Pieces that are selected.
+    /// Selected pieces.
     pub selection: Vec<OrderedPiece>,
-    /// The roll on show, from 0.
+    /// Index of the roll on show.
     pub roll: usize,
-    /// Names of all its rolls; none where it has none.
+    /// Names of all rolls; empty if there are none.
     pub rolls: Vec<String>,
-    /// Whether the fields of its laying and its rules are shown.
+    /// Whether the fields for the laying and the rules are shown.
     pub shows_laying: bool,
-    /// What keeps it from being cut as it lies.
+    /// Result of the marker, with everything that prevents cutting.
     pub state: MarkerState,
-    /// Why there is nothing to see, and whether that is a fault.
+    /// Reason why the view is empty, and whether that is an error.
     pub nothing: Option<(String, bool)>,
     pub(super) camera: TableCamera,
     pub(super) pieces: Vec<PieceScene>,
@@ -74,7 +76,7 @@ pub struct MarkerView {
     pub(super) drag: Option<(Vec2, Vec<OrderedPiece>)>,
     wants_fit: bool,
     wants_all_seen: bool,
-    /// The size of the view and the camera when all of it was shown last.
+    /// Size of the view and camera when the whole marker was last fitted.
     fitted: Option<(egui::Vec2, TableCamera)>,
     pub(super) seen: Rect,
     pub(super) names: Vec<PieceName>,
@@ -106,37 +108,37 @@ impl Default for MarkerView {
 }
 
 impl MarkerView {
-    /// The focus of the canvas.
+    /// Id of the canvas, for the focus.
     pub fn id() -> Id {
         Id::unique("marker canvas")
     }
 
-    /// Shows all of it when it is next drawn.
+    /// Shows the whole marker when it is next drawn.
     pub fn fit(&mut self) {
         self.wants_fit = true;
     }
 
-    /// Shows all of it when it is next drawn, if some of it lies beyond what is seen.
+    /// Shows the whole marker when it is next drawn, if a part of it is out of view.
     pub fn keep_in_view(&mut self) {
         self.wants_all_seen = true;
     }
 
-    /// Where names stand on the screen that are written beside their pieces or in place of their letters.
+    /// Names on the screen that are written beside pieces, or in place of the pieces' own text.
     pub fn names(&self) -> &[PieceName] {
         &self.names
     }
 
-    /// The fabric as it lies (m).
+    /// Rectangle of the fabric as it is laid (m).
     pub fn cloth(&self) -> Bounds2 {
         self.cloth
     }
 
-    /// Where the fabric is seen on the screen, as it was drawn last.
+    /// Rectangle of the fabric on the screen when it was last drawn.
     pub fn seen_cloth(&self) -> Rect {
         self.seen
     }
 
-    /// Nothing is to be seen: there is nothing yet, or it cannot be shown.
+    /// Empties the view, with a message or an error.
     pub fn clear(&mut self, why: Result<&str, String>) {
         self.pieces.clear();
         self.nothing = Some(match why {
@@ -146,7 +148,7 @@ impl MarkerView {
         self.state = MarkerState::default();
     }
 
-    /// Follows a marker as it lies now. Pieces that lie as before are not drawn anew.
+    /// Updates the view to the present marker. Pieces that did not move are not drawn anew.
     pub fn follow(&mut self, laid: &DocumentMarker) {
         self.nothing = None;
         self.roll = laid.roll();
@@ -173,7 +175,7 @@ impl MarkerView {
                     piece.cut.drawing(place, words)
                 })
             });
-            // The same place may hold another shape: its outline tells.
+            // A piece with the same id and pose may have another shape: compares the outline.
             let outline = piece.cut.polygon();
             let first = outline.outer.first().map(|at| piece.pose.apply(*at));
             let drawn = scene
@@ -189,7 +191,8 @@ impl MarkerView {
             scene.locked = piece.locked;
             self.pieces.push(scene);
         }
-        // What waits lies beyond the end of the fabric, in columns as high as it is wide.
+        // Waiting pieces are placed beyond the end of the fabric, in columns as high as the fabric is
+        // wide.
         let mut pen = Vec2::new(length + 3.0 * GAP, strip.width);
         let mut widest: f64 = 0.0;
         for piece in laid.waiting() {
@@ -221,7 +224,7 @@ impl MarkerView {
         self.selection.retain(known);
     }
 
-    /// Draws the view, and tells what is done in it.
+    /// Draws the view, and returns the actions of the user.
     pub fn show(&mut self, ui: &mut Ui) -> Vec<MarkerAction> {
         let view = ui.available_rect_before_wrap();
         let response = ui.interact(view, Self::id(), Sense::click_and_drag());
@@ -246,7 +249,8 @@ impl MarkerView {
         let all = pieces.fold(self.cloth, |all, bounds| all.union(&bounds));
         let is_seen = |at: Vec2| view.contains(self.screen(view, at));
         let hides = self.wants_all_seen && !(is_seen(all.min) && is_seen(all.max));
-        // A view of another size shows all of it again where nobody has moved it since.
+        // If the size of the view changes, the whole marker is fitted again, unless the user has panned
+        // or zoomed since.
         let fitted = self.fitted.filter(|(_, camera)| *camera == self.camera);
         let is_resized = fitted.is_some_and(|(size, _)| size != view.size());
         if self.wants_fit || hides || is_resized {
@@ -273,7 +277,7 @@ impl MarkerView {
         }
     }
 
-    /// The topmost piece at a place (m).
+    /// The topmost piece at a point (m).
     fn at(&self, place: Vec2) -> Option<&PieceScene> {
         self.pieces.iter().rev().find(|scene| {
             let polygon = scene.drawing.fill.as_ref();
@@ -303,7 +307,7 @@ impl MarkerView {
         if response.clicked() || response.drag_started() {
             response.request_focus();
         }
-        // Escape ends the drag too: what it showed is left, not taken.
+        // Escape cancels the drag.
         if self.drag.is_some() && ui.input(|input| input.key_pressed(Key::Escape)) {
             self.drag = None;
             actions.push(MarkerAction::Leave);
@@ -324,7 +328,7 @@ impl MarkerView {
             }
             let released = response.drag_stopped();
             match pieces.iter().copied().find(waits) {
-                // A piece that waits is laid where it is let go.
+                // A waiting piece is laid where it is dropped.
                 Some(piece) if released => {
                     let found = self.pieces.iter().find(|scene| scene.piece == piece);
                     if let Some(scene) = found {
@@ -364,8 +368,8 @@ impl MarkerView {
         actions
     }
 
-    /// What is near on the screen is near, but not more than a few millimetres where pieces are seen small; with
-    /// Alt pieces lie as they are let go.
+    /// Pieces that are close on the screen are moved together, within 3 to 20 mm on the fabric; with Alt
+    /// pieces stay as they are dropped.
     fn let_go_as(&self, ui: &Ui) -> LetGoAs {
         match ui.input(|input| input.modifiers.alt) {
             true => LetGoAs::Left,
@@ -373,7 +377,7 @@ impl MarkerView {
         }
     }
 
-    /// The middle of what is selected (m).
+    /// Middle of the selected pieces (m).
     fn middle(&self) -> Option<Vec2> {
         let selected = self
             .pieces
@@ -385,12 +389,12 @@ impl MarkerView {
         all.map(|bounds| bounds.centre())
     }
 
-    /// Turns what is selected by quarters.
+    /// Rotates the selected pieces by quarter turns.
     pub fn turn(&self, quarters: f64) -> Option<MarkerAction> {
         Some(MarkerAction::Turn(self.middle()?, quarters * QUARTER))
     }
 
-    /// Turns what is selected over.
+    /// Turns the selected pieces over.
     pub fn flip(&self) -> Option<MarkerAction> {
         Some(MarkerAction::Flip(self.middle()?.y))
     }

@@ -1,4 +1,5 @@
-//! The names of pieces on a marker: their own letters, larger ones in their place, or led outside by a line.
+//! Names of pieces on a marker: their own text, larger text in its place, or a label outside with a
+//! leader line.
 
 use super::marker::MarkerView;
 use super::marker_piece::{PieceName, PieceScene};
@@ -9,22 +10,22 @@ use egui::{Painter, Pos2, Rect, Stroke, Ui, Vec2 as Way, vec2};
 use toile_cut::Words;
 use toile_geometry::Vec2;
 
-/// Smaller letters are not read (pixels).
+/// Least readable height of letters (pixels).
 const MIN_LETTER_HEIGHT: f32 = 7.0;
-/// Sizes of the letters that stand in for them, the first that the piece has room for (pixels).
+/// Font sizes of replacement names, the first that fits the piece is taken (pixels).
 const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
-/// Pieces smaller than that have no name (pixels).
+/// Least size of pieces with a name (pixels).
 const MIN_PIECE_SIZE: f64 = 12.0;
-/// Most names that are led outside.
+/// Largest number of names with a leader line.
 const MAX_LEADERS: usize = 100;
-/// How far outside they stand (pixels), and in how many directions a place is looked for.
+/// Distances of outside names from their piece (pixels), and number of directions that are tried.
 const DISTANCES: [f32; 6] = [10.0, 20.0, 34.0, 50.0, 70.0, 95.0];
 const DIRECTIONS: usize = 16;
-/// White round a name that is led outside (pixels).
+/// White margin round an outside name (pixels).
 const MARGIN: f32 = 2.0;
 
 impl MarkerView {
-    /// Where names stand that are written instead of a piece's own letters, none over another.
+    /// Names that are written instead of a piece's own text; they do not overlap.
     pub(super) fn placed_names(&self, ui: &Ui, view: Rect) -> Vec<PieceName> {
         let painter = ui.painter_at(view);
         let palette = Palette::of(ui.ctx());
@@ -90,7 +91,7 @@ impl MarkerView {
         names
     }
 
-    /// Whether all corners of a place on the screen are in a piece.
+    /// Whether all corners of a rectangle on the screen are inside a piece.
     fn holds(&self, scene: &PieceScene, (rect, view): (Rect, Rect)) -> bool {
         let corners = [
             rect.left_top(),
@@ -106,7 +107,7 @@ impl MarkerView {
         corners.iter().all(is_in)
     }
 
-    /// The box of a piece on the screen, if it is seen and not too small to be named.
+    /// Bounding box of a piece on the screen, if it is visible and large enough for a name.
     fn seen_bounds(&self, scene: &PieceScene, view: Rect) -> Option<Rect> {
         let bounds = scene.bounds()?;
         let seen = [bounds.min, bounds.max].map(|at| self.screen(view, at));
@@ -115,7 +116,7 @@ impl MarkerView {
         (is_large && view.contains(seen.center())).then_some(seen)
     }
 
-    /// A place of a piece that a line can point to.
+    /// A point inside a piece for the end of a leader line.
     fn inner_place(&self, scene: &PieceScene, view: Rect) -> Pos2 {
         let middle = scene.middle();
         let polygon = scene.drawing.fill.as_ref();
@@ -131,7 +132,7 @@ impl MarkerView {
         self.screen(view, inside)
     }
 
-    /// Words of a piece in their own letters, if those can be read.
+    /// The own text of a piece, if it is readable at this enlargement.
     pub(super) fn own_words(
         &self,
         painter: &Painter,
@@ -144,7 +145,7 @@ impl MarkerView {
         }
         let font = theme::font(size.min(22.0));
         let galley = painter.layout_no_wrap(words.text.clone(), font, palette.ink);
-        // Seen on the screen y points down: the words are turned the other way.
+        // Y points down on the screen, so the angle is reversed.
         let turn = -words.angle as f32;
         let half = vec2(galley.size().x * 0.5, galley.size().y);
         let corner = at - egui::emath::Rot2::from_angle(turn) * half;
@@ -166,7 +167,8 @@ impl MarkerView {
     }
 }
 
-/// A place beside a piece for a name of a size, over no other name and as few pieces as may be.
+/// A rectangle beside a piece for a name, clear of other names and with as few pieces under it as
+/// possible.
 fn place_outside(
     (around, size): (Rect, Way),
     view: Rect,

@@ -1,4 +1,4 @@
-//! Draws the marker view: fabric, pieces, what overlaps.
+//! Draws the marker view: fabric, pieces, overlaps.
 
 use super::marker::MarkerView;
 use super::marker_piece::PieceScene;
@@ -53,7 +53,7 @@ impl MarkerView {
             self.paint_piece(&painter, (view, palette), scene, shift);
         }
         self.paint_names(&painter, palette);
-        // What would be cut twice.
+        // Overlaps of pieces.
         for part in self
             .state
             .overlaps

@@ -7,40 +7,40 @@ use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::OrderedPiece;
 use toile_session::Pose;
 
-/// A name that stands in for a piece's own letters.
+/// A name that is written instead of a piece's own text.
 #[derive(Clone, Debug)]
 pub struct PieceName {
-    /// What it says.
+    /// Text.
     pub name: String,
-    /// Where it stands on the screen.
+    /// Rectangle on the screen.
     pub rect: Rect,
-    /// The place in the piece that it is led to, if it stands outside.
+    /// End of the leader line in the piece, if the name is outside.
     pub led_to: Option<Pos2>,
-    /// Height of its letters (pixels).
+    /// Height of the letters (pixels).
     pub letters: f32,
 }
 
 /// A piece as drawn.
 #[derive(Clone, Debug)]
 pub struct PieceScene {
-    /// Which it is.
+    /// Identity of the piece.
     pub piece: OrderedPiece,
     /// Name to write on it.
     pub name: String,
-    /// Its lines, area and words on the marker.
+    /// Lines, area and text on the marker.
     pub drawing: Drawing,
-    /// The same area, filled.
+    /// Fill of the area.
     pub fill: Fill,
-    /// How it lies.
+    /// Position, grain and turn on the fabric.
     pub pose: Pose,
-    /// Whether it stays where it is.
+    /// Whether it is locked in its place.
     pub locked: bool,
-    /// Whether it is not laid yet.
+    /// Whether it waits to be laid.
     pub waits: bool,
 }
 
 impl PieceScene {
-    /// A piece in a pose, drawn by its cut piece.
+    /// A piece in a pose; `draw` draws it from its cut piece.
     pub fn new(
         piece: OrderedPiece,
         name: &str,
@@ -61,20 +61,20 @@ impl PieceScene {
         }
     }
 
-    /// Least rectangle round it on the marker (m).
+    /// Bounding box on the marker (m).
     pub fn bounds(&self) -> Option<Bounds2> {
         let polygon = self.drawing.fill.as_ref()?;
         Some(polygon.bounds())
     }
 
-    /// Where its name stands (m).
+    /// Place of the name (m).
     pub fn middle(&self) -> Vec2 {
         let words = self.drawing.words.first().map(|words| words.at);
         let bounds = self.bounds().map(|bounds| bounds.centre());
         words.or(bounds).unwrap_or_else(Vec2::zeros)
     }
 
-    /// A number by which pieces of one size look alike.
+    /// A number that is equal for pieces of one size, to colour them alike.
     pub fn group(&self) -> u8 {
         self.piece.size.map_or(0, |id| (id.0 % 7) as u8)
     }

@@ -1,5 +1,5 @@
-//! The pattern view: pans and zooms, turns the pointer and keys into events of the tool in hand.
-//! It changes no document: it says what came of the events.
+//! The pattern view: pans and zooms, and turns pointer and keys into events for the tool in hand. It does
+//! not change the document: it returns the outcomes of the events.
 
 mod guides;
 mod input;
@@ -24,84 +24,84 @@ use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
 
-/// Enlargement by one press of a zoom key.
+/// Zoom factor of one press of a zoom key.
 pub const ZOOM_STEP: f64 = 1.25;
-/// Parts up to this many are named for assistive technology; of more only those of the sheets that
-/// something selected is on.
+/// Largest number of parts that are all named for assistive technology; of more only those on sheets with
+/// a selected part.
 const MAX_NAMED: usize = 600;
-/// Width that the inspector takes over the table (pixels).
+/// Width of the canvas that the inspector covers (pixels).
 pub const INSPECTOR_ROOM: f32 = 300.0;
-/// Half the width of the named node of a part (pixels).
+/// Half the side of a part's node for assistive technology (pixels).
 const NAMED_REACH: f32 = 5.0;
 
 /// The pattern view and its state.
 pub struct PatternView {
-    /// How the table is seen.
+    /// Camera of the table.
     pub camera: TableCamera,
-    /// Where sheets and panels lie.
+    /// Positions of sheets and panels.
     pub table_layout: TableLayout,
-    /// What is drawn.
+    /// Scene that is drawn.
     pub scene: Scene,
-    /// The same as before the gesture that is shown: what the pointer finds must not move away
-    /// under it.
+    /// Scene without the gesture that is being previewed: hit tests use it, so that parts do not move
+    /// away from the pointer.
     base: Scene,
-    /// Where sheets and panels lay then.
+    /// Positions of sheets and panels without the gesture.
     base_table_layout: TableLayout,
-    /// Where names, numbers of seams and tags were drawn.
+    /// Rectangles of names, seam numbers and tags, as drawn.
     labels: Vec<Rect>,
-    /// What is found wrong, at its parts.
+    /// Findings, at the parts they are about.
     pub finding_marks: Vec<FindingMark>,
-    /// What is selected.
+    /// Selected parts.
     pub selection: Selection,
-    /// What is under the pointer.
+    /// Part under the pointer.
     pub hover: Option<Hit>,
-    /// Everything under the pointer, the most wanted first.
+    /// All parts under the pointer, the likeliest first.
     pub under: Vec<Item>,
-    /// Panels that alone are shown; none for all.
+    /// Isolated panels; empty to show all.
     pub isolated: Vec<PanelId>,
-    /// Whether lines to cut along are drawn.
+    /// Whether cut lines are drawn.
     pub allowances: bool,
     /// Whether rulers are drawn.
     pub rulers: bool,
-    /// Whether guides are seen.
+    /// Whether guides are visible.
     pub guides: bool,
     /// The guide that is dragged.
     guide: Option<guides::GuideDrag>,
-    /// Whether the place of the selected guide is to be typed.
+    /// Whether the position field of the selected guide is to get the focus.
     pub asks_guide_place: bool,
-    /// All sizes over each other, while they are drawn.
+    /// Outlines of all sizes, while they are shown.
     pub grading: Option<Grading>,
-    /// Whether the click that goes on was taken by a number that is typed elsewhere.
+    /// Whether a number field elsewhere uses the present click.
     pub click_is_taken: bool,
-    /// Whether a dialog or a menu lies over it, which all keys go to.
+    /// Whether a dialog or menu covers the view and gets all keys.
     pub is_covered: bool,
     /// The tool in hand.
     pub tool: Tool,
-    /// How far it has come.
+    /// State of the tool.
     pub state: State,
-    /// Where the pointer is: the sheet that is drawn on there, and the place on it (m).
+    /// Position of the pointer: the sheet to draw on there, and the coordinates on it (m).
     pub pointer: Option<(SheetId, Vec2)>,
-    /// The sheet that is drawn on.
+    /// The current sheet.
     pub sheet: Option<SheetId>,
-    /// What a menu may be opened on, unless a tool is at work.
+    /// Response of the canvas for a context menu; `None` while a tool is in progress.
     pub canvas: Option<Response>,
     pressed: Option<Pointer>,
-    /// Where the pointer was told to be last, and what was held.
+    /// Pointer position and modifier keys of the last hover event.
     told: Option<(Pos2, ToolModifiers)>,
-    /// Whether keys went to another widget in the last frame.
+    /// Whether another widget had the focus in the last frame.
     was_typed_into: bool,
     wants_fit: bool,
-    /// What is to be seen.
+    /// Part or area to scroll to.
     revealed: Option<revealed::Revealed>,
-    /// Size of the view that everything was fitted into, until it is panned or zoomed.
+    /// Size of the view for which everything was fitted, until the user pans or zooms.
     fitted: Option<egui::Vec2>,
-    /// The seam that room was made for when its walk began.
+    /// The walked seam for which the table was moved.
     walked: Option<SeamId>,
-    /// How the table was seen before a walk moved it.
+    /// Camera before a walk moved the table.
     before_walk: Option<TableCamera>,
 }
 
-/// The part of the view that stays free beside the inspector, where there is room for both.
+/// The part of the view beside the inspector, if there is room for both.
 fn free_room(view: Rect) -> Rect {
     let taken = INSPECTOR_ROOM * f32::from(u8::from(view.width() > 2.0 * INSPECTOR_ROOM));
     Rect::from_min_max(view.min, Pos2::new(view.max.x - taken, view.max.y))
@@ -147,7 +147,7 @@ impl Default for PatternView {
 }
 
 impl PatternView {
-    /// The focus of the canvas: keys typed there go to the tool.
+    /// Id of the canvas: while it has the focus, keys go to the tool.
     pub fn id() -> Id {
         Id::unique("pattern canvas")
     }
@@ -160,7 +160,7 @@ impl PatternView {
         self.isolated.clear();
         self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
         self.take(Tool::Select);
-        // On an empty table there is nothing to fit: it is seen as at first.
+        // An empty table has nothing to fit: the camera is reset.
         match self.table_layout.bounds(&self.scene) {
             Some(_) => self.fit(),
             None => {
@@ -177,7 +177,7 @@ impl PatternView {
         self.state = tool.begin();
         self.pressed = None;
         self.guide = None;
-        // A pointer that rests on the canvas is told to the new tool.
+        // The new tool gets a hover event for a pointer that rests on the canvas.
         self.told = None;
     }
 
@@ -186,7 +186,7 @@ impl PatternView {
         self.wants_fit = true;
     }
 
-    /// Enlarges about the middle of the view.
+    /// Zooms about the middle of the view.
     pub fn zoom(&mut self, factor: f64) {
         self.fitted = None;
         let middle = ScreenPoint(Pos2::ZERO);
@@ -194,13 +194,14 @@ impl PatternView {
         self.camera.zoom(view, middle, factor);
     }
 
-    /// Shows everything as large as it is, on a screen of so many pixels a metre.
+    /// Shows everything at true size, on a screen with `scale` pixels per metre.
     pub fn true_size(&mut self, scale: f64) {
         self.fitted = None;
         self.camera.scale = scale;
     }
 
-    /// Follows a change of the pattern or of the enlargement; `previews` while it is a gesture's.
+    /// Updates the view after a change of the pattern or of the enlargement; `previews` during the
+    /// preview of a gesture.
     pub fn follow(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, previews: bool) {
         let pattern = evaluation.pattern();
         self.scene.update(evaluation, draft, self.camera.octave());
@@ -220,7 +221,7 @@ impl PatternView {
         }
     }
 
-    /// Selects parts, and draws on the sheet they are on from now on.
+    /// Selects parts, and makes their sheet the current one.
     pub fn select(&mut self, selection: Selection) {
         let open = open_sheets(&self.scene, &selection);
         if let [.., last] = open[..] {
@@ -229,8 +230,8 @@ impl PatternView {
         self.selection = selection;
     }
 
-    /// Sheets whose points are seen: those of what is selected, and the one that is drawn on while a
-    /// tool is in hand.
+    /// Open sheets, whose points are all shown: those with selected parts, and with a tool in hand the
+    /// current one.
     fn open(&self) -> Vec<SheetId> {
         let mut open = open_sheets(&self.scene, &self.selection);
         let drawn = self.sheet.filter(|sheet| !open.contains(sheet));
@@ -240,7 +241,7 @@ impl PatternView {
         open
     }
 
-    /// Whether a gesture of the tool is under way.
+    /// Whether a gesture of the tool is in progress.
     pub fn is_busy(&self) -> bool {
         self.guide.is_some() || self.tool.is_under_way(&self.state)
     }
@@ -263,7 +264,7 @@ impl PatternView {
         outcome
     }
 
-    /// What the tool in hand sees while it is only told of: nothing is chosen by a box.
+    /// Read access for hints and overlays of the tool: selecting by a box finds nothing.
     fn reading<'a>(&'a self, evaluation: &'a Evaluation) -> Reading<'a> {
         Reading {
             evaluation,
@@ -275,18 +276,18 @@ impl PatternView {
         }
     }
 
-    /// What a click does now.
+    /// Hint on the effect of a click.
     pub fn hint(&self, evaluation: &Evaluation) -> String {
         let hint = || self.tool.hint(&self.state, &self.reading(evaluation));
         self.guide_hint().unwrap_or_else(hint)
     }
 
-    /// What the tool in hand draws over the pattern.
+    /// Marks that the tool in hand draws over the pattern.
     pub fn overlay(&self, evaluation: &Evaluation) -> Vec<Overlay> {
         self.tool.overlay(&self.state, &self.reading(evaluation))
     }
 
-    /// Least rectangle round everything that is shown, the other sizes too (m).
+    /// Bounding box of everything that is shown, with the outlines of other sizes (m).
     fn bounds(&self) -> Option<Bounds2> {
         let drawn = self.table_layout.bounds(&self.scene);
         let sizes = self.grading.iter().flat_map(|grading| &grading.sizes);
@@ -298,11 +299,11 @@ impl PatternView {
         drawn.into_iter().chain(graded).reduce(|a, b| a.union(&b))
     }
 
-    /// Draws the view, and tells what came of what is done in it. The evaluation is that before the
-    /// gesture that is shown.
+    /// Draws the view, and returns the outcomes of its input. `evaluation` is the one without the gesture
+    /// that is being previewed.
     pub fn show(&mut self, ui: &mut Ui, evaluation: &Evaluation) -> Vec<Outcome> {
         let view = ui.available_rect_before_wrap();
-        // The rims of the parts beside it stay free to be taken hold of.
+        // The borders between the parts of the window can still be dragged.
         let inner = view.shrink(GRAB);
         let response = ui.interact(inner, Self::id(), Sense::click_and_drag());
         ui.advance_cursor_after_rect(view);
@@ -380,7 +381,7 @@ impl PatternView {
         self.pointer(self.camera.table(view, ScreenPoint(at)).0, modifiers)
     }
 
-    /// What a pointer at a place of the table (m) finds there.
+    /// The pointer's findings at a place of the table (m): sheet, parts and snapping places.
     pub fn pointer(&self, table: Vec2, modifiers: ToolModifiers) -> Pointer {
         let open = self.open();
         let mut found = hits(
@@ -394,7 +395,7 @@ impl PatternView {
             State::Slots(state) => state.sheet(),
             State::Select(_) | State::Walk(_) => None,
         };
-        // While a sheet on a panel is drawn on, what is under the pointer there is drawn over.
+        // While the current sheet lies on a panel, the pointer over that panel draws on it.
         let is_on = |id: &SheetId| {
             let on = self.base.sheet_scene(*id).and_then(|sheet| sheet.on);
             on.is_some() && found.iter().any(|hit| hit.item.panel() == on)
@@ -461,25 +462,25 @@ impl PatternView {
         self.labels = picture.paint(&overlay);
     }
 
-    /// The table place of the origin of the sheet that is drawn on (m).
+    /// Position of the origin of the current sheet on the table (m).
     pub fn sheet_origin(&self) -> Vec2 {
         self.sheet
             .map_or_else(Vec2::zeros, |sheet| self.table_layout.sheet(sheet))
     }
 
-    /// Where names of panels and points, numbers of seams, tags and signs of findings were drawn last.
+    /// Rectangles of names of panels and points, seam numbers, tags and signs of findings, as last drawn.
     pub fn labels(&self) -> &[Rect] {
         &self.labels
     }
 
-    /// Where a place of a sheet is seen.
+    /// Screen position of a point of a sheet.
     pub fn screen(&self, view: Rect, origin: Vec2, at: Vec2) -> Pos2 {
         let table = crate::canvas::camera::TablePoint(at + origin);
         self.camera.screen(view, table).0
     }
 
-    /// Points, edges, notches, darts, curves and panels that are shown, and where on the table (m).
-    /// A point that is seen twice is there twice.
+    /// Visible points, edges, notches, darts, curves and panels, with their places on the table (m). A
+    /// point that is drawn twice is listed twice.
     pub fn parts(&self) -> Vec<(SheetId, Item, Vec2)> {
         let open = self.open();
         let mut parts = Vec::new();
@@ -506,7 +507,7 @@ impl PatternView {
                 }
             }
             for (id, mirrored, line) in &panel.shape.darts {
-                // On its first leg: at the mouth the edge is as near.
+                // On the first leg, a quarter along it: at the mouth the edge would be as near.
                 if let Some((at, _)) = crate::canvas::along(line, 0.25).filter(|_| !mirrored) {
                     part(Item::Operation(panel.id, *id), at);
                 }
@@ -532,7 +533,8 @@ impl PatternView {
         parts
     }
 
-    /// Whether something that is selected is seen in a part of the screen, with the table seen in `view`.
+    /// Whether a selected part is visible in a rectangle of the screen; `view` is the rectangle of the
+    /// table.
     pub fn selection_is_in(&self, view: Rect, place: Rect) -> bool {
         let parts = self.parts();
         let mut selected = parts
@@ -541,8 +543,8 @@ impl PatternView {
         selected.any(|(.., at)| place.contains(self.screen(view, Vec2::zeros(), *at)))
     }
 
-    /// Names points, edges and panels for assistive technology, and tells which was chosen there.
-    /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
+    /// Names points, edges and panels for assistive technology; returns the part that was chosen there.
+    /// The nodes take no clicks: these go to the view below, like all others.
     fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
         let open = self.open();
         let mut parts = self.parts();
@@ -553,7 +555,7 @@ impl PatternView {
         let mut named = std::collections::BTreeSet::new();
         for (_, item, at) in parts {
             let at = self.screen(view, Vec2::zeros(), at);
-            // A point that is seen twice is named once.
+            // A point that is drawn twice is named once.
             if !view.contains(at) || !named.insert(item) {
                 continue;
             }

@@ -20,29 +20,29 @@ use toile_pattern::{
 /// A guide that is dragged.
 #[derive(Clone, Debug)]
 pub(super) struct GuideDrag {
-    /// Which; nothing for a new one.
+    /// Identity of the guide; `None` for a new one.
     id: Option<GuideId>,
     runs: GuideRun,
-    /// Where the pointer is.
+    /// Position of the pointer.
     pointer: Pos2,
-    /// Where the guide lies on the table (m), and what is there; nothing over the ruler.
+    /// Coordinate of the guide on the table (m), and the part it snaps to; `None` over the ruler.
     place: Option<(f64, String)>,
 }
 
 impl PatternView {
-    /// The guides that are seen.
+    /// Visible guides.
     fn seen_guides(&self) -> impl Iterator<Item = &Guide> {
         let guides = self.base.guides.iter().filter(|_| self.guides);
         guides.map(|guide| &**guide)
     }
 
-    /// The guides that are seen, as a sheet has them.
+    /// Visible guides in the coordinates of a sheet.
     pub(super) fn guides_on(&self, sheet: SheetId) -> Vec<Guide> {
         crate::canvas::guides::on_sheet(self.seen_guides(), self.table_layout.sheet(sheet))
     }
 
-    /// Adds the guide at a place of the table (m) to what was found there: behind points and lines,
-    /// before panels. Tools that draw have no use for it.
+    /// Inserts the guide at a place of the table (m) into the parts found there: after points and lines,
+    /// before panels. Drawing tools do not select guides.
     pub(super) fn add_guide_hit(&self, found: &mut Vec<Hit>, table: Vec2) {
         if !matches!(self.tool, Tool::Select) {
             return;
@@ -65,7 +65,7 @@ impl PatternView {
         found.insert(behind, hit);
     }
 
-    /// Guides that are seen, each where the middle of the view is on it, by name.
+    /// Visible guides, each with its point nearest to the middle of the view.
     pub(super) fn guide_parts(&self) -> Vec<(SheetId, Item, Vec2)> {
         let sheet = self.sheet.unwrap_or(SheetId(0));
         let parts = self.seen_guides().map(|guide| {
@@ -75,13 +75,13 @@ impl PatternView {
         parts.collect()
     }
 
-    /// The cursor over a guide.
+    /// The mouse cursor over a guide.
     pub(super) fn guide_cursor(&self, id: GuideId) -> CursorIcon {
         let guide = self.seen_guides().find(|guide| guide.id == id);
         guide.map_or(CursorIcon::Default, |guide| cursor(guide.runs))
     }
 
-    /// What a drop of the guide in hand does.
+    /// Hint on the effect of dropping the dragged guide.
     pub(super) fn guide_hint(&self) -> Option<String> {
         self.guide.as_ref().map(|_| {
             "Drop it back on the ruler to remove it; Ctrl lets it lie anywhere; Esc leaves it"
@@ -89,8 +89,8 @@ impl PatternView {
         })
     }
 
-    /// Follows the pointer while a guide is dragged out of a ruler or moved, and says what came of
-    /// it. `canvas` is what the view takes elsewhere.
+    /// Handles a drag of a guide out of a ruler or to another place; returns the outcome. `canvas` is the
+    /// response of the rest of the view.
     pub(super) fn drag_guide(
         &mut self,
         ui: &Ui,
@@ -108,7 +108,7 @@ impl PatternView {
             self.begin_at_guide(view, from);
         }
         if self.guide.is_some() {
-            // Delete means the guide from then on.
+            // The Delete key applies to the guide from then on.
             canvas.request_focus();
         }
         if canvas.double_clicked()
@@ -154,13 +154,13 @@ impl PatternView {
         Some(self.dropped(&drag, evaluation))
     }
 
-    /// The strip of a ruler, and a new guide in hand if it is dragged from there.
+    /// The strip of a ruler; starts to drag a new guide if the drag begins there.
     fn begin_at_ruler(&mut self, ui: &Ui, view: Rect, runs: GuideRun) {
         if !self.rulers {
             return;
         }
         let inner = view.shrink(GRAB);
-        // In the corner it would not be clear which of them is meant.
+        // The corner is left out, because it belongs to both rulers.
         let (strip, name) = match runs {
             GuideRun::Horizontal => (
                 Rect::from_min_max(
@@ -195,7 +195,7 @@ impl PatternView {
         }
     }
 
-    /// The guide in hand if it is dragged from one that nothing else lies on.
+    /// Starts to drag a guide, if the drag begins on one with nothing else on it.
     fn begin_at_guide(&mut self, view: Rect, from: Pos2) {
         if let Some(guide) = self.guide_under(view, from) {
             self.guide = Some(GuideDrag {
@@ -207,7 +207,7 @@ impl PatternView {
         }
     }
 
-    /// The guide that a click there would mean.
+    /// The guide that a click at a place selects.
     fn guide_under(&self, view: Rect, at: Pos2) -> Option<Guide> {
         match self
             .pointer_at(view, at, ToolModifiers::default())
@@ -219,8 +219,8 @@ impl PatternView {
         }
     }
 
-    /// Where a guide comes to lie on the table by a pointer (m), and at what: at a point, a crossing
-    /// or the middle of a curve near it, else on the grid; nothing over its ruler.
+    /// Coordinate of a dragged guide on the table (m), and the part it snaps to: a point, an intersection
+    /// or the middle of a curve near it, else the grid; `None` over its ruler.
     fn guide_place(
         &self,
         view: Rect,
@@ -261,7 +261,7 @@ impl PatternView {
         Some((origin + rounded(table[axis] - origin, step), String::new()))
     }
 
-    /// What a drop of a guide comes to.
+    /// Outcome of dropping a guide.
     fn dropped(&mut self, drag: &GuideDrag, evaluation: &Evaluation) -> Outcome {
         let place = drag.place.as_ref().map(|(at, _)| *at);
         let old = drag.id.and_then(|id| evaluation.pattern().guide(id));
@@ -276,7 +276,7 @@ impl PatternView {
                 moved.map(|edits| (edits, "Move guide", id))
             }
             (None, Some(at)) => {
-                // What is dragged out is seen.
+                // Guides become visible when one is dragged out of a ruler.
                 self.guides = true;
                 let added = plan::add_guide(evaluation, drag.runs, at);
                 added.map(|(edits, id)| (edits, "Add guide", id))
@@ -292,7 +292,7 @@ impl PatternView {
         match planned {
             Ok((edits, label, id)) => Outcome {
                 commit: Some((edits, label.into())),
-                // A tool in hand keeps what is selected.
+                // With a tool in hand the selection is kept.
                 select: (place.is_some() && matches!(self.tool, Tool::Select))
                     .then(|| Selection::one(Item::Guide(id))),
                 ..Outcome::default()
@@ -304,14 +304,14 @@ impl PatternView {
         }
     }
 
-    /// The edits that have the document say where sheets are seen: a guide lies beside them, so they
-    /// must be seen there when it is opened again.
+    /// The edits that store the displayed positions of sheets in the document: guides relate to them, so
+    /// they must be the same when the document is opened again.
     fn kept_places(&self, evaluation: &Evaluation) -> Result<Vec<Edit>, EditError> {
         let apart = self.table_layout.laid_apart(evaluation.pattern());
         plan::move_sheets(evaluation, &apart)
     }
 
-    /// Guides as they are drawn: the one in hand where it would be dropped.
+    /// Guides as drawn, with the dragged one at the place where it would be dropped.
     pub(super) fn drawn_guides(&self) -> Vec<DrawnGuide> {
         let held = self.guide.as_ref();
         let is_held = |guide: &&Guide| held.is_some_and(|drag| drag.id == Some(guide.id));
@@ -329,7 +329,7 @@ impl PatternView {
         drawn
     }
 
-    /// What is told of the guide in hand: where it lies, as the rulers count, and at what.
+    /// Label of the dragged guide: its position as counted on the rulers, and the part it snaps to.
     pub(super) fn guide_label(&self, evaluation: &Evaluation) -> Option<GuideLabel> {
         let drag = self.guide.as_ref()?;
         let words = match &drag.place {
@@ -351,7 +351,7 @@ impl PatternView {
     }
 }
 
-/// Whether a place means one place, and not anywhere along a line.
+/// Whether a construction gives one definite point, rather than any point along a line.
 fn is_a_place(spec: &Spec) -> bool {
     match spec {
         Spec::Point(_) | Spec::New(PointRule::CurveCrossing { .. }) => true,

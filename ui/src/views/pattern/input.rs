@@ -9,7 +9,7 @@ use crate::tools::{Event, LineStep, Tool, ToolModifiers};
 use egui::{CursorIcon, EventFilter, Key, PointerButton, Response, Ui};
 
 impl PatternView {
-    /// Panning and zooming; says whether the primary button pans too.
+    /// Handles panning and zooming; returns whether the primary button pans too.
     pub(super) fn navigate(&mut self, ui: &Ui, response: &Response) -> bool {
         let with_space = response.contains_pointer()
             && !self.is_typed_into(ui)
@@ -34,13 +34,13 @@ impl PatternView {
         with_space
     }
 
-    /// Whether keys go to another widget.
+    /// Whether another widget has the focus.
     fn is_typed_into(&self, ui: &Ui) -> bool {
         let focused = ui.memory(|memory| memory.focused());
         focused.is_some_and(|id| id != Self::id())
     }
 
-    /// What was done since the last frame.
+    /// Input events since the last frame.
     pub(super) fn events(&mut self, ui: &Ui, response: &Response, panning: bool) -> Vec<Event> {
         let mut events = Vec::new();
         let modifiers = ui.input(|input| ToolModifiers {
@@ -100,7 +100,7 @@ impl PatternView {
                 false => Event::Click(pointer),
             });
         }
-        // Escape ends the drag too: what it showed is left, not taken.
+        // Escape cancels the drag.
         if self.pressed.is_some() && ui.input(|input| input.key_pressed(Key::Escape)) {
             self.pressed = None;
         }
@@ -118,7 +118,7 @@ impl PatternView {
     }
 
     fn keys(&mut self, ui: &Ui, response: &Response) -> Vec<Event> {
-        // A key that ends the typing into a field is no key of the tool.
+        // A key that ends typing into a field is not passed to the tool.
         let typed_now = self.is_typed_into(ui);
         let typed_before = std::mem::replace(&mut self.was_typed_into, typed_now);
         if typed_before {
@@ -131,7 +131,7 @@ impl PatternView {
         if takes_tab {
             response.request_focus();
         }
-        // Keys of the canvas must not move the focus of the window.
+        // Keys for the canvas must not move the focus of the window.
         let filter = EventFilter {
             tab: takes_tab,
             escape: true,
@@ -139,12 +139,13 @@ impl PatternView {
             vertical_arrows: true,
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
-        // Several characters may come in one frame: after the first the others are typed too.
+        // Several characters may come in one frame: the first begins the typing, and the others continue
+        // it.
         let mut typing = self.is_typing();
         let mut events = Vec::new();
         let mut chosen = false;
         ui.input_mut(|input| {
-            // Keys that are no command: what they type is typed.
+            // Keys without a command type text.
             let free: Vec<Key> = input.events.iter().filter_map(pressed).collect();
             input.events.retain(|event| {
                 let taken = match event {
@@ -175,21 +176,21 @@ impl PatternView {
             });
         });
         if chosen {
-            // What is dragged is shown by the new choice, though the pointer rests.
+            // Updates the preview of the drag to the new choice, even though the pointer rests.
             self.told = None;
             ui.ctx().request_repaint();
         }
         events
     }
 
-    /// Whether a text begins something that is typed while a tool is in hand.
+    /// Whether a text begins typed input while a tool is in hand.
     fn begins(&self, text: &str, free: &[Key]) -> bool {
         let has_slots = matches!(self.tool, Tool::Slots(_));
         let is_sign = text.starts_with(NAME_SIGN) || text.starts_with(WAY_SIGNS);
         text.starts_with(begins_typing) || has_slots && (is_sign || is_words(text, free))
     }
 
-    /// The pointer's shape, by what a press would do.
+    /// Sets the mouse cursor by the effect of a press.
     pub(super) fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
         if !inside || self.guide.is_some() {
             return;
@@ -206,7 +207,7 @@ impl PatternView {
     }
 }
 
-/// The key that an event presses.
+/// The key that an event presses, if any.
 fn pressed(event: &egui::Event) -> Option<Key> {
     match event {
         egui::Event::Key {
@@ -216,14 +217,15 @@ fn pressed(event: &egui::Event) -> Option<Key> {
     }
 }
 
-/// Whether a text is no key of a command: several characters at once, or the letter of a key that is none.
+/// Whether a text is not the key of a command: several characters at once, or the letter of a key without
+/// a command.
 fn is_words(text: &str, free: &[Key]) -> bool {
     let is_free =
         |text: &str| Key::from_name(&text.to_uppercase()).is_some_and(|key| free.contains(&key));
     !text.trim().is_empty() && (text.chars().count() > 1 || is_free(text))
 }
 
-/// Where a key leads along a seam that is walked.
+/// Direction of a key along a walked seam.
 fn going(key: Key) -> Option<LineStep> {
     Some(match key {
         Key::ArrowLeft | Key::ArrowDown => LineStep::Back,

@@ -1,4 +1,4 @@
-//! Signs of findings over the table: told where the pointer rests, and a click selects the part.
+//! Signs of findings over the table: the text appears on hovering, and a click selects the part.
 
 use super::PatternView;
 use crate::canvas::finding_marks::FindingMark;
@@ -9,7 +9,8 @@ use toile_geometry::Vec2 as Place;
 use toile_pattern::{PanelId, SeamId};
 
 impl PatternView {
-    /// Draws them; says which part was clicked at its sign. While a tool is under way they are drawn alone.
+    /// Draws the signs; returns the part whose sign was clicked. While a tool is in progress they are not
+    /// clickable.
     pub(super) fn show_finding_marks(&mut self, ui: &Ui, view: Rect) -> Option<Item> {
         let palette = Palette::of(ui.ctx());
         let (painter, parts) = (ui.painter_at(view), self.parts());
@@ -25,7 +26,7 @@ impl PatternView {
                 continue;
             };
             let mut place = FindingMark::place(self.screen(view, Place::zeros(), at));
-            // Beside other labels, and signs of the same place beside each other.
+            // Moved right to be clear of other labels and of other signs at the same place.
             while let Some(other) = taken.iter().find(|other| other.intersects(place)) {
                 place = place.translate(Vec2::new(other.right() - place.left() + 1.0, 0.0));
             }
@@ -48,7 +49,8 @@ impl PatternView {
         chosen
     }
 
-    /// Where an end of a seam is on the table, or its first stretch: on the first of its panels that is seen (m).
+    /// Place on the table of an end of a seam, or of its first stretch (m): on the first of its panels
+    /// that is visible.
     fn seam_place(&self, id: SeamId, end: Option<usize>) -> Option<Place> {
         let seam = self.scene.seams.iter().find(|seam| seam.id == id)?;
         let is_seen = |panel: PanelId| self.scene.panel_scene(panel).is_some();

@@ -1,4 +1,4 @@
-//! Scrolls the view to a part that was asked for.
+//! Scrolls the view to a requested part.
 
 use super::PatternView;
 use crate::canvas::selection::Item;
@@ -10,22 +10,22 @@ use toile_geometry::{Bounds2, Vec2};
 pub(super) enum Revealed {
     /// A part.
     Part(Item),
-    /// All of a rectangle of the table (m).
+    /// A whole rectangle of the table (m).
     Room(Bounds2),
 }
 
 impl PatternView {
-    /// Shows a part in the middle of the view when it is next drawn, unless it is seen already.
+    /// Centres the view on a part when it is next drawn, unless the part is visible already.
     pub fn reveal(&mut self, item: Item) {
         self.revealed = Some(Revealed::Part(item));
     }
 
-    /// Shows all of a rectangle of the table (m) when the view is next drawn.
+    /// Shows a whole rectangle of the table (m) when the view is next drawn.
     pub fn reveal_room(&mut self, bounds: Bounds2) {
         self.revealed = Some(Revealed::Room(bounds));
     }
 
-    /// Moves the table so that what was asked for is seen.
+    /// Moves the table so that the requested part is visible.
     pub(super) fn follow_revealed(&mut self, view: Rect) {
         let camera = self.camera;
         match self.revealed.take() {

@@ -1,4 +1,4 @@
-//! How the table is moved while a seam is walked, and back when the walk is over.
+//! Moves the table while a seam is walked, and back at the end of the walk.
 
 use super::PatternView;
 use crate::tools::{Overlay, State, walk};
@@ -7,8 +7,8 @@ use toile_geometry::Vec2;
 use toile_pattern::Evaluation;
 
 impl PatternView {
-    /// When a walk begins, the table is moved away so far that both pieces are seen wherever it leads.
-    /// While it goes on the table stays.
+    /// At the start of a walk moves the table so that both pieces are visible at every position of the
+    /// walk. The table then stays.
     pub(super) fn make_room(&mut self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
         let State::Walk(state) = &self.state else {
             self.walked = None;
@@ -35,13 +35,13 @@ impl PatternView {
         let scale = self.camera.scale;
         self.before_walk.get_or_insert(self.camera);
         self.camera.fit(view, &room);
-        // What is seen small enough is moved alone.
+        // Zooms out only if necessary.
         self.camera.scale = self.camera.scale.min(scale);
         self.fitted = None;
         ui.ctx().request_repaint();
     }
 
-    /// Where the pieces of a seam touch comes into the middle of the view if a key led out of it.
+    /// Centres the view on the contact of the pieces, if a key moved it out of view.
     pub(super) fn follow_walk(&mut self, view: Rect, evaluation: &Evaluation) {
         let marks = self.overlay(evaluation);
         let touch = marks.iter().find_map(|mark| match mark {
