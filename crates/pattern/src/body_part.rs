@@ -36,7 +36,7 @@ pub enum BodyPart {
     RightLeg,
 }
 
-/// The side of the body part a piece faces.
+/// The side of the body part that a panel faces.
 #[derive(
     Clone,
     Copy,
@@ -53,18 +53,18 @@ pub enum BodyPart {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Facing {
-    /// In front of it (+z).
+    /// In front of the body part (+z).
     #[default]
     Front,
-    /// Behind it (-z).
+    /// Behind the body part (-z).
     Back,
-    /// On the wearer's left of it (+x; above an arm).
+    /// On the wearer's left of the body part (+x; above an arm).
     Left,
-    /// On the wearer's right of it (-x; below an arm).
+    /// On the wearer's right of the body part (-x; below an arm).
     Right,
-    /// All round it, closed by a seam with itself at the back (or under the arm, inside the leg).
+    /// All round the body part, closed by a seam with itself at the back (or under the arm, inside the leg).
     Around,
-    /// Over the top of it: laid on horizontally, as a poncho is.
+    /// Over the top of the body part: laid on horizontally, as a poncho is.
     Over,
 }
 

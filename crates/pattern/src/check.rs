@@ -13,15 +13,15 @@ use toile_geometry::{Rings, Vec2};
 const GAP: f64 = 1e-6;
 /// An edge shorter than this has no length (m).
 const SHORTEST: f64 = 1e-6;
-/// How closely curves are followed (m).
+/// Greatest distance of a polyline from the curve that it stands for (m).
 const FLATNESS: f64 = 5e-5;
 /// Sides of a seam may differ by this without ease (m): less than a stitch.
 pub const SEAM_TOLERANCE: f64 = 5e-4;
-/// An internal line may leave its panel by this (m).
+/// Distance by which an internal line may leave its panel (m).
 const LINE_TOLERANCE: f64 = 1e-5;
-/// Crossings of one piece that are reported.
+/// Most crossings that are reported of one piece.
 const CROSSINGS: usize = 5;
-/// Points of one internal line that are looked at.
+/// Number of points at which one internal line is checked.
 const LINE_SAMPLES: usize = 500;
 
 impl Pattern {
@@ -51,8 +51,8 @@ impl Evaluation {
         diagnostics
     }
 
-    /// What the seams do with the sides of the cloth: where the draft takes other copies than are
-    /// written, and which pieces show their wrong side all the same.
+    /// Results of the seams' choice between the sides of the cloth: seams for which the draft takes another
+    /// copy than is written, and pieces that show their wrong side all the same.
     pub fn check_sides(&self) -> Vec<Diagnostic> {
         let drafting = self.drafting();
         let mut found = drafting.diagnostics;
@@ -62,7 +62,7 @@ impl Evaluation {
     }
 }
 
-/// Says that pleats are not pressed when they are draped, but for those that take in nothing.
+/// Reports each pleat that takes in cloth: pleats are not folded and pressed when the garment is draped.
 fn note_pleats(panel: &Panel, idle: &[OperationId], diagnostics: &mut Vec<Diagnostic>) {
     for operation in &panel.operations {
         let is_pleat = matches!(operation.kind, OperationKind::Pleat { .. });
@@ -81,8 +81,8 @@ fn note_pleats(panel: &Panel, idle: &[OperationId], diagnostics: &mut Vec<Diagno
     }
 }
 
-/// Everything that keeps a draft from being cut and sewn, lengths of seams apart: a draft does not
-/// know their ease.
+/// Everything that keeps a draft from being cut and sewn, except differing lengths of seam sides: a draft
+/// does not know the ease of its seams.
 pub fn check_draft(draft: &Draft) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     check_pieces(draft, None, &mut diagnostics);
@@ -118,7 +118,7 @@ fn check_pieces(draft: &Draft, pattern: Option<&Pattern>, diagnostics: &mut Vec<
     }
 }
 
-/// Length of a span (m); nothing if it is not there.
+/// Length of a span (m); none if its piece or edge is missing.
 fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
     let piece = draft.pieces.get(span.piece)?;
     let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
@@ -126,7 +126,7 @@ fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
     Some(edge.curve.length() * (span.to - span.from).abs())
 }
 
-/// Length of both sides (m); nothing if a span is not there.
+/// Lengths of both sides of a seam (m); none if a span is missing.
 fn side_lengths(draft: &Draft, seam: &DraftSeam) -> Option<[f64; 2]> {
     let length = |side: &[DraftSpan]| side.iter().map(|s| span_length(draft, s)).sum();
     let first: Option<f64> = length(&seam.sides[0]);
@@ -256,7 +256,7 @@ impl PieceCheck<'_> {
         }
     }
 
-    /// An edge in words.
+    /// Description of an edge for messages: its name, or the operation that made it.
     fn edge_words(&self, edge: &PieceEdge) -> String {
         let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
         let words = match edge.origin.name {
@@ -425,7 +425,7 @@ impl PieceCheck<'_> {
         }
     }
 
-    /// The place of a hole of the piece.
+    /// The diagnostic place of a hole of the piece.
     fn hole_place(&self, hole: &[PieceEdge]) -> Place {
         let id = self.piece.id.panel;
         let edge = match hole.first().map(|edge| edge.origin.name) {
@@ -476,7 +476,7 @@ impl PieceCheck<'_> {
     }
 }
 
-/// Loops as points, each with the index of its edge through all loops.
+/// Loops as polylines: each point with the index of its edge, counted through all loops.
 fn flattened(loops: &[&[PieceEdge]]) -> Vec<Vec<(Vec2, usize)>> {
     let mut edge = 0;
     let mut result = Vec::with_capacity(loops.len());

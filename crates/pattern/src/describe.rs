@@ -1,9 +1,9 @@
-//! Names of places in words, and the places of parts.
+//! Descriptions of diagnostic places in words, and the places of parts.
 
 use crate::{EdgeName, Name, Panel, PanelId, PartId, Pattern, Place};
 
 impl Pattern {
-    /// A place in words, with the names of the parts.
+    /// Description of a place, with the names of the parts.
     pub fn describe(&self, place: &Place) -> String {
         let panel = |id: PanelId| match self.panel(id) {
             Some(panel) => format!("panel {:?}", panel.name),
@@ -77,7 +77,7 @@ impl Pattern {
         }
     }
 
-    /// The name of an edge of a panel, or of the operation that made it; nothing if it is not there.
+    /// The name of an edge of a panel, or of the operation that made it; none if the panel has no such edge.
     pub fn edge_name(&self, panel: PanelId, name: EdgeName) -> Option<&str> {
         let lineage = self.lineage(self.panel(panel)?);
         match name {

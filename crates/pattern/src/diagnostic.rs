@@ -6,7 +6,7 @@ use crate::{
 };
 use std::fmt;
 
-/// How bad it is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing.
@@ -17,14 +17,14 @@ pub enum Severity {
     Error,
 }
 
-/// What kind of fault it is.
+/// Kind of fault that a diagnostic reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Code {
     /// A formula has no value.
     Formula,
-    /// Formulas or points need each other.
+    /// Formulas or points depend on each other in a circle.
     Cycle,
-    /// A spline cannot be drawn to the length it is to have.
+    /// A spline cannot be drawn to the length that is set for it.
     OutOfReach,
     /// A measurement was not given and is taken from the pattern's base size.
     BorrowedMeasurement,
@@ -62,9 +62,9 @@ pub enum Code {
     NotTrued,
     /// An edge that runs on across a dart, a pleat or a seam has a kink there.
     Kink,
-    /// A dart cannot be pivoted so.
+    /// A dart cannot be pivoted as asked.
     BadPivot,
-    /// A panel cannot be cut so.
+    /// A panel cannot be cut along this curve or line.
     BadCut,
     /// A notch lies beyond its edge.
     NotchOffEdge,
@@ -116,7 +116,7 @@ pub enum Code {
     NoEffect,
 }
 
-/// Where it is.
+/// The part of the pattern or the place in its file that a diagnostic is about.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
     /// The pattern as a whole.
@@ -151,7 +151,7 @@ pub enum Place {
     Marker(MarkerId),
     /// A guide.
     Guide(GuideId),
-    /// A place in the file it was read from.
+    /// A place in the file that the pattern was read from.
     File {
         /// Path of names and indices from the root, such as `panels.front.points`.
         path: String,
@@ -162,23 +162,23 @@ pub enum Place {
     },
 }
 
-/// One finding.
+/// One fault or remark that a check reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity of the fault.
     pub severity: Severity,
-    /// What kind of fault it is.
+    /// Kind of fault.
     pub code: Code,
-    /// Where it is.
+    /// The part that is at fault.
     pub place: Place,
-    /// What is wrong, with the names of the parts.
+    /// Description of the fault, with the names of the parts.
     pub message: String,
-    /// What to do about it.
+    /// Advice on how to remedy the fault.
     pub hint: String,
 }
 
 impl Diagnostic {
-    /// A finding of any severity.
+    /// A diagnostic of any severity.
     pub fn new(
         severity: Severity,
         code: Code,

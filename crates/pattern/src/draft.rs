@@ -7,24 +7,24 @@ use crate::{
 };
 use toile_geometry::{Curve, Rigid, Vec2, Vec3};
 
-/// A pattern resolved: pieces of cloth to cut, and how they are sewn.
+/// A resolved pattern: pieces of cloth to cut, and the seams between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Draft {
     /// Name of the pattern.
     pub name: String,
-    /// Every piece that is cut: folded panels unfolded, one entry per copy.
+    /// Every piece that is cut: folded panels unfolded, one entry for each copy.
     pub pieces: Vec<Piece>,
     /// Every seam between pieces, darts' seams included.
     pub seams: Vec<DraftSeam>,
-    /// Fabrics the pieces name.
+    /// Fabrics that the pieces are cut from.
     pub fabrics: Vec<Fabric>,
 }
 
-/// One piece of cloth: a copy of a panel. Copy 0 is the panel as drawn; of a mirrored pair the
-/// odd copies are reflected.
+/// Identifier of one piece of cloth: a copy of a panel. Copy 0 is the panel as drawn; the odd copies of a
+/// mirrored pair are reflected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PieceId {
-    /// The panel it was cut from.
+    /// The panel that the piece is a copy of.
     pub panel: PanelId,
     /// Number of the copy, from 0.
     pub copy: u32,
@@ -33,7 +33,7 @@ pub struct PieceId {
 /// One flat piece of cloth as it is cut and sewn, without seam allowance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Which panel and copy this is.
+    /// Panel and copy of the piece.
     pub id: PieceId,
     /// Name to show, unique in the draft.
     pub name: String,
@@ -42,21 +42,21 @@ pub struct Piece {
     pub outline: Vec<PieceEdge>,
     /// Closed holes, wound against the outline.
     pub holes: Vec<Vec<PieceEdge>>,
-    /// Lines drawn on the piece that the mesh follows.
+    /// Lines drawn on the piece, which the mesh follows.
     pub internal_lines: Vec<PieceLine>,
     /// Marks on the outline.
     pub notches: Vec<PieceNotch>,
-    /// Darts taken out of it, diamonds too.
+    /// Darts taken out of the piece, darts inside it too.
     pub darts: Vec<StageDart>,
-    /// Which way its darts and pleats are pressed.
+    /// Arrows of the directions in which its darts and pleats are pressed.
     pub pressed: Vec<PressArrow>,
-    /// Fold lines it was unfolded in: a point on each (m) and its direction.
+    /// Fold lines along which the piece was unfolded: a point on each (m) and its direction.
     pub folds: Vec<[Vec2; 2]>,
     /// Direction of the warp in the piece's plane (rad), from +x counter-clockwise.
     pub grain: f64,
     /// Index into [`Draft::fabrics`].
     pub fabric: usize,
-    /// Where on the body the piece belongs.
+    /// Place of the piece on the body.
     pub worn: Worn,
     /// Whether the piece is part of the garment (sewn to something, or the only panel), or only
     /// cut (an extra copy, a facing that no seam names).
@@ -66,9 +66,9 @@ pub struct Piece {
 /// The origin of an edge of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeOrigin {
-    /// The edge of the panel, or what an operation made.
+    /// The edge of the panel, or the edge that an operation made.
     pub name: EdgeName,
-    /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
+    /// Half of a folded panel: 0 as drawn; each fold has one bit, set for the half beyond that fold.
     pub half: u8,
 }
 
@@ -81,8 +81,8 @@ impl EdgeOrigin {
         }
     }
 
-    /// The dart it is a leg of, and which: 0 before the apex along the outline and 1 after it;
-    /// round a diamond 0 to 3.
+    /// The dart that this edge is a leg of, and the number of the leg: 0 before the apex along the outline
+    /// and 1 after it; round a dart inside the panel 0 to 3.
     pub fn leg(&self) -> Option<(OperationId, u16)> {
         match self.name {
             Name::Made {
@@ -98,24 +98,24 @@ impl EdgeOrigin {
 /// One edge of a piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceEdge {
-    /// Where it came from.
+    /// Origin of the edge.
     pub origin: EdgeOrigin,
-    /// Its curve, in the direction of the outline (m).
+    /// The curve of the edge, in the direction of the outline (m).
     pub curve: Curve,
-    /// Width of cloth left outside it for the seam (m).
+    /// Width of the seam allowance outside the edge (m).
     pub seam_allowance: f64,
-    /// How the cut line turns the corner at its start.
+    /// Shape of the cut line at the corner at the start of the edge.
     pub corner: EdgeCorner,
-    /// Whether it runs against the edge as drawn, as on a mirror image: the corner at its start is
-    /// then that at the end of the edge as drawn.
+    /// Whether the edge runs against the edge as drawn, as on a mirror image: the corner at its start is then
+    /// the corner at the end of the edge as drawn.
     pub reversed: bool,
 }
 
 /// A line inside a piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceLine {
-    /// Which internal line of the panel it is, or what an operation made: where a pleat is folded
-    /// and laid to.
+    /// The internal line of the panel, or a line that an operation made: a fold of a pleat or the line that
+    /// it is laid to.
     pub name: LineName,
     /// Joined curves (m).
     pub curves: Vec<Curve>,
@@ -124,13 +124,13 @@ pub struct PieceLine {
 /// A notch on a piece's outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PieceNotch {
-    /// Which notch of the panel it is.
+    /// The notch of the panel.
     pub id: NotchId,
     /// The edge it is on.
     pub edge: EdgeOrigin,
-    /// How it is cut.
+    /// Shape of the notch.
     pub kind: NotchKind,
-    /// Where on the outline (m).
+    /// Position on the outline (m).
     pub point: Vec2,
     /// Unit direction into the piece.
     pub inward: Vec2,
@@ -143,9 +143,9 @@ pub struct DraftSpan {
     pub piece: usize,
     /// Index of the edge: outline edges first, then each hole's edges in order.
     pub edge: usize,
-    /// Arc-length fraction where the span starts.
+    /// Arc-length fraction at which the span starts.
     pub from: f64,
-    /// Arc-length fraction where it ends.
+    /// Arc-length fraction at which the span ends.
     pub to: f64,
 }
 
@@ -177,32 +177,32 @@ pub enum SeamOrigin {
         dart: OperationId,
         /// The copy of the panel.
         copy: u32,
-        /// Which half of a folded panel.
+        /// Half of a folded panel.
         half: u8,
     },
 }
 
-/// Where a piece goes before it is sewn.
+/// Place of a piece on the body before it is sewn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Worn {
     /// Wrapped round a body part by the program.
     Wrapped {
         /// The body part.
         part: BodyPart,
-        /// Which side of it.
+        /// The side of the body part.
         facing: Facing,
-        /// Height of the piece's reference point above the floor (m) (along the limb from its
-        /// root for arms: distance from the shoulder point); nothing lets the program choose.
+        /// Height of the piece's reference point above the floor (m), for an arm its distance along the arm
+        /// from the shoulder point; none lets the program choose.
         level: Option<f64>,
     },
-    /// Placed in space as given: world from piece.
+    /// Placed in space at a given position: world from piece.
     Placed(Rigid),
-    /// Nothing is known: the program decides from the seams.
+    /// No place is given: the program decides from the seams.
     Automatic,
 }
 
 impl Worn {
-    /// The place of a mirror image: the other side of the body.
+    /// The place of the mirror image: on the other side of the body.
     #[must_use]
     pub(crate) fn mirror_image(self) -> Self {
         match self {
@@ -244,28 +244,28 @@ impl Worn {
     }
 }
 
-/// Whether left and right of that part are the wearer's own. Of an arm they are above and below.
+/// Whether left and right of this body part are the wearer's own. On an arm they are above and below.
 fn is_middle(part: BodyPart) -> bool {
     !matches!(part, BodyPart::LeftArm | BodyPart::RightArm)
 }
 
-/// Which way a dart or a pleat is pressed: an arrow in the plane of its panel.
+/// Direction in which a dart or a pleat is pressed: an arrow in the plane of its panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressArrow {
-    /// What is pressed.
+    /// The dart or pleat.
     pub by: OperationId,
-    /// Which half of a folded panel it is on.
+    /// Half of a folded panel that the arrow is on.
     pub half: u8,
-    /// Where its middle is (m).
+    /// Position of the middle of the arrow (m).
     pub at: Vec2,
-    /// Its direction, a unit.
+    /// Direction of the arrow, a unit vector.
     pub way: Vec2,
-    /// How wide what is folded under lies there (m).
+    /// Width of the cloth that is folded under (m).
     pub width: f64,
 }
 
 impl PressArrow {
-    /// The mirror image in the y axis: of the other piece of a pair.
+    /// The mirror image in the y axis, for the other piece of a pair.
     #[must_use]
     pub fn mirror_image(self) -> Self {
         let flip = |v: Vec2| Vec2::new(-v.x, v.y);

@@ -16,16 +16,17 @@ use toile_geometry::{Rigid, Vec3};
 /// Most pieces a draft may have.
 const MAX_PIECES: usize = 2000;
 
-/// A draft with what only its checks need.
+/// A draft together with data that only its checks need.
 pub(crate) struct Drafting {
     pub draft: Draft,
     pub diagnostics: Vec<Diagnostic>,
-    /// How much longer one side of each draft seam may be (m).
+    /// Greatest difference in length between the sides of each draft seam (m).
     pub eases: Vec<f64>,
 }
 
 impl Pattern {
-    /// The draft for a size or a table of measurements, and everything that kept parts out of it.
+    /// The draft for a size or a table of measurements, and a diagnostic for each part that is kept out
+    /// of it.
     ///
     /// Measurements that are not given are taken from the base size, with a note. Panels that
     /// cannot be drawn and seams that cannot be walked are left out, with an error each.
@@ -35,7 +36,7 @@ impl Pattern {
 }
 
 impl Evaluation {
-    /// The draft of the pattern as it was last evaluated, and everything that kept parts out of it.
+    /// The draft of the pattern as last evaluated, and a diagnostic for each part that is kept out of it.
     pub fn draft(&self) -> (Draft, Vec<Diagnostic>) {
         let drafting = self.drafting();
         (drafting.draft, drafting.diagnostics)
@@ -66,7 +67,8 @@ impl Evaluation {
     }
 }
 
-/// A stretch of an origin on a piece: index of the piece's edge and the shares it covers.
+/// A stretch of a named edge on a piece: index of the piece's edge, and the shares of the named edge that
+/// it covers.
 #[derive(Clone, Copy)]
 struct Track {
     edge: usize,
@@ -79,7 +81,7 @@ type Tracks = BTreeMap<EdgeOrigin, Vec<Track>>;
 struct Drafter<'a> {
     evaluation: &'a Evaluation,
     drafting: Drafting,
-    /// Of each piece of cloth: its index in the draft, and where every named edge went.
+    /// Index of each piece in the draft, with the stretches of its named edges.
     tracks: BTreeMap<PieceId, (usize, Tracks)>,
 }
 
@@ -90,7 +92,7 @@ impl Drafter<'_> {
     }
 
     fn panel(&mut self, panel: &Panel) {
-        // Its sides are cut in its place.
+        // The sides of the panel are cut in its place.
         if panel.is_split() {
             return;
         }
@@ -276,7 +278,7 @@ impl Drafter<'_> {
         self.drafting.draft.seams = seams;
     }
 
-    /// Seams of the document, on the copies and halves by which pieces show their right sides.
+    /// Seams of the document, on the copies and halves with which the pieces show their right sides.
     fn seams(&mut self) {
         let evaluation = self.evaluation;
         let seams = evaluation.pattern().seams.iter();
@@ -350,7 +352,8 @@ impl Drafter<'_> {
         parts.collect()
     }
 
-    /// What may be laid in the place of what a span is on: all of the span is there too.
+    /// The copy or half that may be taken instead of the one that a span is on; none unless all of the span
+    /// is there too.
     fn twin(&self, span: &SpanValue) -> Option<Twin> {
         let panel = self.evaluation.pattern().panel(span.panel)?;
         let twin = match folds(panel) {
@@ -363,7 +366,7 @@ impl Drafter<'_> {
         (self.spans(&there).len() == count).then_some(twin)
     }
 
-    /// Says which seams take another copy or half than is written, a line a panel.
+    /// Reports the seams that take another copy or half than is written, with one note for each panel.
     fn tell_exchanges(
         &mut self,
         (walked, spans): (&[(&Seam, &SeamValue)], &[SeamSpan<'_>]),
@@ -388,7 +391,7 @@ impl Drafter<'_> {
         }
     }
 
-    /// A piece is sewn if a seam names it, or if it is all there is.
+    /// Marks the pieces that seams sew; without any, the first piece if all are copies of one panel.
     fn mark_sewn(&mut self) {
         let draft = &mut self.drafting.draft;
         for seam in &draft.seams {
@@ -413,10 +416,11 @@ fn piece_id(span: &SpanValue) -> PieceId {
     }
 }
 
-/// A made edge as a closing walks it: its role and index, and whether against its direction.
+/// An edge made by an operation, as its closing seam walks it: role, index, and whether against
+/// its direction.
 type Walked = (Role, u16, bool);
 
-/// Both sides of the seam by which an operation closes what it made.
+/// Both sides of the seam with which an operation closes the edges that it made; none if it makes no seam.
 fn closing(kind: &OperationKind) -> Option<[Vec<Walked>; 2]> {
     let leg = |index: u16, reverse: bool| (Role::Leg, index, reverse);
     match kind {
@@ -435,7 +439,7 @@ fn closing(kind: &OperationKind) -> Option<[Vec<Walked>; 2]> {
     }
 }
 
-/// How many folds a panel is unfolded in.
+/// Number of folds along which a panel is unfolded, at most 7.
 fn folds(panel: &Panel) -> u32 {
     let folds = panel
         .operations
@@ -481,7 +485,7 @@ fn spans_on<'t>(
     parts.into_iter().map(|(_, span)| span).collect()
 }
 
-/// A share of an edge; one that differs from an end by rounding alone is that end.
+/// A share of an edge, moved to 0 or 1 if it differs from that by rounding alone.
 fn whole_at_ends(share: f64) -> f64 {
     match share {
         _ if share < 1e-12 => 0.0,

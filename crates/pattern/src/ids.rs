@@ -1,13 +1,13 @@
-//! Typed ids of the document's parts. One counter gives all of them, and none twice, so that
-//! seams, formulas, selections and journals keep meaning the same thing.
+//! Typed ids of the document's parts. One counter gives all of them, each number once, so that seams,
+//! formulas, selections and journals keep referring to the same parts.
 
 use serde::{Deserialize, Serialize};
 
 /// An id of a part of any kind.
 pub trait AnyId {
-    /// The part.
+    /// The part that the id belongs to.
     fn part(&self) -> PartId;
-    /// Makes it the id with another number.
+    /// Replaces the number of the id.
     fn set_number(&mut self, number: u32);
 }
 
@@ -49,7 +49,7 @@ macro_rules! ids {
                 }
             }
 
-            /// Of a part of another kind the part itself comes back.
+            /// Returns the part itself as the error if it is of another kind.
             impl TryFrom<PartId> for $name {
                 type Error = PartId;
 
@@ -76,7 +76,7 @@ macro_rules! ids {
         }
 
         impl PartId {
-            /// Its number, unique among parts of all kinds.
+            /// Number of the id, unique among parts of all kinds.
             pub fn number(self) -> u32 {
                 match self {
                     $(Self::$variant(id) => id.0),*
@@ -115,7 +115,7 @@ ids! {
     EdgeId Edge "edge",
     /// A notch.
     NotchId Notch "notch",
-    /// A kept step of a panel: a dart, a fold.
+    /// An operation of a panel: a dart, a fold.
     OperationId Operation "operation",
     /// A seam.
     SeamId Seam "seam",
@@ -125,7 +125,7 @@ ids! {
     GuideId Guide "guide",
 }
 
-/// Gives ids. It only counts up.
+/// The source of new ids. The counter never goes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Ids {
@@ -134,18 +134,18 @@ pub struct Ids {
 }
 
 impl Ids {
-    /// A fresh id of the kind that is asked for.
+    /// A new id of the requested kind.
     pub fn take<T: From<FreshId>>(&mut self) -> T {
         let number = self.next;
         self.next = self.next.saturating_add(1);
         FreshId(number).into()
     }
 
-    /// Makes sure that a number is never given again.
+    /// Makes sure that a number is never used for a new id.
     pub fn reserve(&mut self, number: u32) {
         self.next = self.next.max(number.saturating_add(1));
     }
 }
 
-/// A number that was just given, on its way to becoming an id.
+/// A number just taken, before it becomes an id.
 pub struct FreshId(u32);

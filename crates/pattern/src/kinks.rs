@@ -1,4 +1,4 @@
-//! Kinks: where an edge runs on across a dart, a pleat or a seam and turns there.
+//! Kinks: corners at which an edge that runs on across a dart, a pleat or a seam changes its direction.
 
 use crate::evaluate::Evaluation;
 use crate::stage::{CORNER, KINK};
@@ -9,11 +9,11 @@ use crate::{
 };
 use toile_geometry::{Curve, Vec2};
 
-/// Places nearer than this are one (m).
+/// Positions closer than this count as the same (m).
 const SAME: f64 = 1e-7;
 
 impl Evaluation {
-    /// Notes of the kinks that are not meant, each once for all copies and halves of a panel.
+    /// A diagnostic for each kink that is not marked as intended, once for all copies and halves of a panel.
     pub(crate) fn kinks(&self, draft: &Draft) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         for seam in &draft.seams {
@@ -66,7 +66,7 @@ impl Evaluation {
         }
     }
 
-    /// A kink across what an operation made, between edges of these names.
+    /// The diagnostic for a kink across a dart, pleat or other operation, between edges with these names.
     fn across_step(
         &self,
         (piece, step): (&Piece, OperationId),
@@ -99,7 +99,7 @@ impl Evaluation {
         ))
     }
 
-    /// Kinks across pleats of a piece: folded, the edges beside an underlay meet.
+    /// Diagnostics for kinks across the pleats of a piece: after folding, the edges beside an underlay meet.
     fn across_pleats(&self, piece: &Piece) -> Vec<Diagnostic> {
         let is_under = |edge: &PieceEdge| {
             edge.origin.half == 0 && edge.origin.name.role() == Some(Role::Underlay)

@@ -1,19 +1,20 @@
-//! Places on a line of a panel that survive edits: at its corners and notches, and along it from these.
+//! Marks: positions on a line of a panel that survive edits, given by its corners and notches, and by
+//! distances from these.
 
 use crate::{CornerName, Name, Number, PointId};
 use serde::{Deserialize, Serialize};
 use strum::EnumIter;
 
-/// A place on a line of a panel.
+/// A mark: a position on a line of a panel.
 #[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum Mark {
-    /// Where a notch of the panel is.
+    /// The position of a notch of the panel.
     Notch(crate::NotchId),
-    /// At a distance from a corner along the line, against it if negative (m).
+    /// At a distance from a corner along the line, against its direction if negative (m).
     Along {
         /// The corner.
         from: CornerName,
-        /// How far (m).
+        /// Distance from the corner (m).
         distance: Number,
     },
     /// A share of the way along the line from a corner to one that follows.
@@ -34,12 +35,12 @@ impl Default for Mark {
 }
 
 impl Mark {
-    /// At a drawn point.
+    /// The mark at a drawn point.
     pub fn corner(point: PointId) -> Self {
         Self::Corner(Name::Drawn(point))
     }
 
-    /// A share of the way between two drawn points.
+    /// The mark at a share of the way between two drawn points.
     pub fn between(ends: [PointId; 2], share: impl Into<Number>) -> Self {
         Self::Between {
             ends: ends.map(Name::Drawn),
@@ -47,7 +48,7 @@ impl Mark {
         }
     }
 
-    /// The corners it is placed by.
+    /// The corners by which the mark is placed.
     pub fn corners(&self) -> Vec<CornerName> {
         match self {
             Self::Corner(corner) | Self::Along { from: corner, .. } => vec![*corner],
@@ -56,7 +57,7 @@ impl Mark {
         }
     }
 
-    /// Its number, if it has one.
+    /// The distance or share of the mark; none for a corner and a notch.
     pub fn number(&self) -> Option<&Number> {
         match self {
             Self::Along { distance, .. } => Some(distance),

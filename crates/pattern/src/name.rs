@@ -1,10 +1,10 @@
-//! Names of corners and lines that survive edits: by the part that was drawn, or by the operation that made them.
+//! Names of corners and lines that survive edits: by the drawn part, or by the operation that made them.
 
 use crate::{CurveId, EdgeId, LineId, OperationId, PanelId, PartId, PointId};
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
 
-/// A corner, edge or line of a panel.
+/// Name of a corner, edge or line of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Name<Id> {
@@ -14,9 +14,9 @@ pub enum Name<Id> {
     Made {
         /// The operation.
         by: OperationId,
-        /// What it is in that operation.
+        /// Role of the part in that operation.
         role: Role,
-        /// Which of several, from 0 in the order of the outline.
+        /// Number among several of the same role, from 0 in the order of the outline.
         index: u16,
     },
 }
@@ -28,7 +28,7 @@ impl<Id: Default> Default for Name<Id> {
 }
 
 impl<Id> Name<Id> {
-    /// The operation that made it; nothing if it was drawn.
+    /// The operation that made the part; none if it was drawn.
     pub fn maker(&self) -> Option<OperationId> {
         match self {
             Self::Drawn(_) => None,
@@ -36,7 +36,7 @@ impl<Id> Name<Id> {
         }
     }
 
-    /// What it is in the operation that made it; nothing if it was drawn.
+    /// Role in the operation that made the part; none if it was drawn.
     pub fn role(&self) -> Option<Role> {
         match self {
             Self::Drawn(_) => None,
@@ -45,14 +45,14 @@ impl<Id> Name<Id> {
     }
 }
 
-/// A corner of a panel.
+/// Name of a corner of a panel.
 pub type CornerName = Name<PointId>;
-/// An edge of a panel.
+/// Name of an edge of a panel.
 pub type EdgeName = Name<EdgeId>;
-/// A line of a panel.
+/// Name of a line of a panel.
 pub type LineName = Name<LineId>;
 
-/// What a made corner, edge or line is in its operation.
+/// Role of a made corner, edge or line in its operation.
 #[derive(
     Clone,
     Copy,
@@ -82,29 +82,29 @@ pub enum Role {
     Mouth,
     /// The hole of a diamond dart.
     Diamond,
-    /// What bridges an opening of a spread panel: that of cut n is 2n where the cut starts and
-    /// 2n + 1 where it ends. Opening k has the corners 2k and 2k + 1.
+    /// Edges that bridge the openings of a spread panel: cut n has opening 2n at its start and 2n + 1 at its
+    /// end. Opening k has the corners 2k and 2k + 1.
     Opening,
-    /// Where a panel was split: corners 0 and 1 at the start and the end of the cut, which is edge
-    /// 0 of one side and, the other way, edge 1 of the other.
+    /// The cut of a split panel: corners 0 and 1 at its start and end; the cut is edge 0 of one side and, in
+    /// the other direction, edge 1 of the other.
     Split,
-    /// The underlay of a pleat where its line starts or ends: of pleat n edges 8n to 8n + 3 from
-    /// one part to the other where it starts, 8n + 4 to 8n + 7 where it ends, and likewise corners
-    /// 10n to 10n + 4 and 10n + 5 to 10n + 9.
+    /// Edges and corners of the underlay of a pleat at the ends of its line: pleat n has edges 8n to 8n + 3
+    /// at the start of its line, from one part to the other, and 8n + 4 to 8n + 7 at the end, and corners 10n
+    /// to 10n + 4 at the start and 10n + 5 to 10n + 9 at the end.
     Underlay,
-    /// A line a pleat is folded in: of pleat n lines 5n to 5n + 4 from one part to the other.
+    /// A line along which a pleat is folded: pleat n has lines 5n to 5n + 4 from one part to the other.
     Crease,
-    /// A line that a fold of a pleat is laid to, numbered as creases are.
+    /// A line to which a fold of a pleat is laid, numbered as creases are.
     Placement,
 }
 
 impl Role {
-    /// What it is called.
+    /// Word of the role in files and formulas.
     pub fn word(self) -> &'static str {
         self.into()
     }
 
-    /// The role that is called so.
+    /// The role with this word.
     pub fn of_word(word: &str) -> Option<Self> {
         word.parse().ok()
     }
@@ -121,17 +121,17 @@ pub enum PartReference {
     Stretch {
         /// The panel.
         panel: PanelId,
-        /// Its corners.
+        /// Corners at the ends of the stretch.
         ends: [CornerName; 2],
     },
     /// A seam.
     Seam(crate::SeamId),
-    /// A text that names nothing.
+    /// A text that names no part of the document.
     Unknown(Box<str>),
 }
 
 impl PartReference {
-    /// The part itself; of a stretch its panel and what its corners are named by.
+    /// The part itself; for a stretch its panel and the parts by which its corners are named.
     pub fn parts(&self) -> Vec<PartId> {
         match self {
             Self::Point(id) => vec![(*id).into()],

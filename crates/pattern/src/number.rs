@@ -1,25 +1,26 @@
-//! Numbers of the document: a value, a formula, a formula with something added, a value a size.
+//! Numbers of the document: a value, a formula, a formula with an adjustment, or a number with own values for
+//! some sizes.
 
 use crate::SizeId;
 use crate::formula::Formula;
 use serde::{Deserialize, Serialize};
 
-/// A number of the document. What it measures is decided by where it stands: lengths are metres,
-/// angles radians, shares plain.
+/// A number of the document. The field that holds it decides its quantity: lengths are in metres, angles in
+/// radians, shares are plain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Number {
     /// A value (m), (rad) or plain.
     Value(f64),
     /// A formula.
     Formula(Formula),
-    /// A formula with something added by hand (m), (rad) or plain.
+    /// A formula with an adjustment added by hand (m), (rad) or plain.
     Adjusted {
         /// The formula.
         formula: Formula,
-        /// What is added to it.
+        /// The adjustment added to the formula.
         by: f64,
     },
-    /// A value of its own in some sizes.
+    /// A number with own values for some sizes.
     PerSize {
         /// The number in all other sizes.
         usual: Box<Number>,
@@ -32,7 +33,7 @@ impl Number {
     /// Zero.
     pub const ZERO: Self = Self::Value(0.0);
 
-    /// The value, if it is the same whatever is measured (m), (rad) or plain.
+    /// The value, if it does not depend on measurements (m), (rad) or plain.
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Value(value) => Some(*value),
@@ -40,7 +41,7 @@ impl Number {
         }
     }
 
-    /// The formula in it, if there is one.
+    /// The formula in the number, if there is one.
     pub fn as_formula(&self) -> Option<&Formula> {
         match self {
             Self::Value(_) => None,
@@ -49,7 +50,7 @@ impl Number {
         }
     }
 
-    /// Whether every value written in it is finite.
+    /// Whether every value written in the number is finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Value(value) => value.is_finite(),

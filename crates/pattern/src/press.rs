@@ -1,17 +1,17 @@
-//! Which way darts and pleats are pressed: where the cloth that is folded under lies. The window and paper show it by
-//! the same arrows.
+//! Directions in which darts and pleats are pressed, given by the side on which the folded cloth lies. The
+//! window and printed patterns show them by the same arrows.
 
 use crate::{
     Name, Operation, OperationKind, Panel, Pattern, PleatKind, PressArrow, Pressed, Role, Stage,
     StageLine,
 };
 
-/// How far along a dart or a pleat from the edge its arrow stands (share of it).
+/// Distance of an arrow from the edge, as a share of the length of the dart or pleat (1).
 const IN: f64 = 0.3;
-/// Lines that a fold and two of it make.
+/// Number of lines that a pleat makes: folds and the lines that they are laid to.
 const LINES: u16 = 5;
 
-/// The arrows of what a panel has been given by its steps.
+/// The arrows of the darts and pleats of a panel.
 pub fn press_arrows(stage: &Stage, pattern: &Pattern, panel: &Panel) -> Vec<PressArrow> {
     let mut arrows = Vec::new();
     for dart in &stage.darts {
@@ -23,7 +23,7 @@ pub fn press_arrows(stage: &Stage, pattern: &Pattern, panel: &Panel) -> Vec<Pres
         };
         let step = pattern.operation_of(panel, dart.by);
         let [open, close] = dart.mouth;
-        // On a mirror image the outline comes to the leg after the point first.
+        // On a mirror image the outline meets the leg after the apex first.
         let is_mirrored = dart.half.count_ones() % 2 == 1;
         let across = match (dart.pressed == Pressed::Before) != is_mirrored {
             true => open - close,
@@ -55,7 +55,7 @@ pub fn press_arrows(stage: &Stage, pattern: &Pattern, panel: &Panel) -> Vec<Pres
     arrows
 }
 
-/// The arrows of one pleat: one a fold, in the middle of what lies under.
+/// The arrows of one pleat: one for each fold, in the middle of the underlay.
 fn pleat_arrows(
     stage: &Stage,
     (step, placement, number): (&Operation, &StageLine, u16),
@@ -72,7 +72,7 @@ fn pleat_arrows(
     let Some(middle) = at(placement) else {
         return;
     };
-    // Creases beside the placement, where the cloth under a fold turns back.
+    // The inner creases beside the placement line, at which the cloth under a fold turns back.
     let turns = stage.lines.iter().filter_map(|line| match line.name {
         Name::Made {
             by,
@@ -88,8 +88,8 @@ fn pleat_arrows(
         Name::Drawn(_) | Name::Made { .. } => None,
     });
     for turn in turns {
-        // From where the fold is laid to, outward, lies what is under the part beside it; under a box
-        // it is inward.
+        // The underlay extends outward from the placement line, under the part beside it; under a box pleat
+        // it extends inward.
         let across = match kind {
             PleatKind::Knife | PleatKind::Inverted => turn - middle,
             PleatKind::Box => middle - turn,

@@ -1,16 +1,16 @@
-//! Which sizes of a pattern are printed, laid or checked.
+//! Selection of the sizes of a pattern that are printed, laid or checked.
 
 use crate::Pattern;
 
 /// The sizes that are printed, laid or checked.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SizeSelection {
-    /// The pattern as it is drafted: its base size, if it has a table of sizes.
+    /// The pattern as drafted: in its base size, if it has a table of sizes.
     #[default]
     Base,
-    /// Sizes of the pattern, each with how many garments of it.
+    /// Sizes of the pattern, each with its number of garments.
     Named(Vec<(String, u32)>),
-    /// Every size, a garment of each.
+    /// Every size, one garment of each.
     All,
 }
 
@@ -20,9 +20,9 @@ impl SizeSelection {
         Self::Named(vec![(name.into(), 1)])
     }
 
-    /// The sizes of a pattern that are meant, each with how many garments of it; no name is the
-    /// pattern as drafted. Names are looked up where the sizes are drafted.
-    /// Nothing for all sizes of a pattern that has no table of sizes.
+    /// The selected sizes of a pattern, each with its number of garments; a size without a name is the
+    /// pattern as drafted. Names are looked up later, when the sizes are drafted. None if all sizes are
+    /// selected of a pattern that has no table of sizes.
     pub fn of(&self, pattern: &Pattern) -> Option<Vec<(Option<String>, u32)>> {
         match self {
             Self::Base => Some(vec![(None, 1)]),

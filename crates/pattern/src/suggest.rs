@@ -1,9 +1,9 @@
-//! The nearest known name to one that is not known.
+//! Suggests the known name nearest to an unknown one.
 
-/// Longest name that is compared (characters).
+/// Longest beginning of a name that is compared (characters).
 const COMPARED: usize = 40;
 
-/// The known name nearest to `name`, if it is near enough to be meant.
+/// The known name nearest to `name`, if it is near enough for a suggestion.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: Vec<char> = name.chars().take(COMPARED).collect();
     known
@@ -14,7 +14,7 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&
         .map(|(_, candidate)| candidate)
 }
 
-/// Edit distance (Levenshtein 1966), capitals counted as small letters.
+/// Edit distance (Levenshtein 1966); upper and lower case count as the same.
 fn distance(wanted: &[char], candidate: &str) -> usize {
     let mut row: Vec<usize> = (0..=wanted.len()).collect();
     for (k, c) in candidate.chars().take(COMPARED).enumerate() {

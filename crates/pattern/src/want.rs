@@ -1,6 +1,6 @@
-//! What a number must be where it stands.
+//! Quantities that a number may be required to have.
 
-/// The kind of value that a number must have.
+/// The quantity that a number must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {
     /// A length (m).
@@ -9,6 +9,6 @@ pub enum Want {
     Plain,
     /// An angle (rad): computed as a plain number, typed and shown in degrees.
     Angle,
-    /// Anything, as a variable is: a bare value is a plain number.
+    /// Any quantity, as for a variable: a number without unit is plain.
     Any,
 }

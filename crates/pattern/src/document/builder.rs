@@ -7,18 +7,18 @@ use super::{
 use crate::{CurveId, EdgeId, FabricId, Ids, LineId, Mark, Name, PanelId, PointId, SheetId};
 use std::sync::Arc;
 
-/// A sheet and its panel while they are built.
+/// A sheet and the panel traced from it, while both are built.
 #[derive(Debug)]
 pub struct PanelBuilder<'i> {
     ids: &'i mut Ids,
-    /// The sheet.
+    /// The sheet as built so far.
     pub sheet: Sheet,
-    /// The panel.
+    /// The panel as built so far.
     pub panel: Panel,
 }
 
 impl<'i> PanelBuilder<'i> {
-    /// An empty sheet and panel of one name.
+    /// An empty sheet and an empty panel, both with the given name.
     pub fn new(ids: &'i mut Ids, name: &str, fabric: FabricId) -> Self {
         let sheet = Sheet {
             id: ids.take::<SheetId>(),
@@ -40,7 +40,7 @@ impl<'i> PanelBuilder<'i> {
         id
     }
 
-    /// Adds a curve to the sheet, and gives an edge that follows all of it.
+    /// Adds a curve to the sheet and returns an edge that follows the whole curve.
     pub fn edge(&mut self, name: impl Into<String>, ends: [PointId; 2], rule: CurveRule) -> Edge {
         let name = name.into();
         let curve: CurveId = self.ids.take();
@@ -60,7 +60,7 @@ impl<'i> PanelBuilder<'i> {
         }
     }
 
-    /// Adds a line of edges to the panel.
+    /// Adds a line with these edges to the panel.
     pub fn line(&mut self, name: impl Into<String>, kind: LineKind, edges: Vec<Edge>) -> LineId {
         let id: LineId = self.ids.take();
         self.panel.lines.push(Line {
@@ -78,7 +78,7 @@ impl<'i> PanelBuilder<'i> {
         self.ids.take()
     }
 
-    /// The sheet and the panel.
+    /// The finished sheet and panel.
     pub fn done(self) -> (Arc<Sheet>, Arc<Panel>) {
         (Arc::new(self.sheet), Arc::new(self.panel))
     }
@@ -96,7 +96,7 @@ impl CurveRule {
 }
 
 impl Panel {
-    /// The whole of an edge on copy 0, in its own direction.
+    /// The span of a whole edge on copy 0, in the direction of the edge; none if the panel has no such edge.
     pub fn span(&self, edge: EdgeId) -> Option<Span> {
         let line = self.line_of(edge)?;
         let ends = self.edge(edge)?.ends;

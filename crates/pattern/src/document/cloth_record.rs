@@ -1,11 +1,11 @@
-//! The cloth of a marker as journals write it: with its fabric, defaults written out. What is given and is as by
-//! default is named, so that it stays given.
+//! The cloth of a marker as journals write it: with its fabric and with defaults written out. Settings that
+//! are given but equal to their default are listed by name, so that they stay given.
 
 use super::{ClothSettings, Flaw, NapRule, Print, Roll, Spread};
 use crate::FabricId;
 use serde::{Deserialize, Serialize};
 
-/// The fabric of a marker, and how it is laid.
+/// The fabric of a marker and its cloth settings, as one record of a journal.
 #[derive(Serialize, Deserialize)]
 pub(super) struct ClothRecord {
     fabric: FabricId,
@@ -26,13 +26,13 @@ pub(super) struct ClothRecord {
     flaws: Vec<Flaw>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     rolls: Option<Vec<Roll>>,
-    /// Fields that are given though they are as by default.
+    /// Names of the settings that are given although they equal their default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     given: Vec<String>,
 }
 
-/// What is written of a field that may be left open: itself or the default; and that it is given where that does not
-/// show.
+/// Names of the settings that must be listed as given, collected while the record is written: a setting that
+/// is left open is written as its default, and one that is given and equal to its default is listed.
 struct Written(Vec<String>);
 
 impl Written {
@@ -45,7 +45,8 @@ impl Written {
 }
 
 impl ClothRecord {
-    /// The fabric of a marker, whether all pieces lie on it, and how it is laid.
+    /// The record of a marker's fabric, of whether all pieces lie on it whatever the garment is cut from, and
+    /// of its settings.
     pub(super) fn new(fabric: FabricId, keeps_fabric: bool, cloth: ClothSettings) -> Self {
         let usual = usual(cloth.spread.unwrap_or_default());
         let mut written = Written(Vec::new());
@@ -86,12 +87,12 @@ impl ClothRecord {
         }
     }
 
-    /// The fabric of a marker, and whether all pieces lie on it.
+    /// The fabric of the marker, and whether all pieces lie on it.
     pub(super) const fn fabric(&self) -> (FabricId, bool) {
         (self.fabric, self.keeps_fabric)
     }
 
-    /// How it is laid.
+    /// The cloth settings that this record stands for.
     pub(super) fn settings(self) -> ClothSettings {
         let usual = usual(self.spread);
         let given =
@@ -116,7 +117,7 @@ impl ClothRecord {
     }
 }
 
-/// What journals write where nothing is given: the defaults of fabric spread so.
+/// The values that journals write for settings that are not given: the defaults for this way of spreading.
 fn usual(spread: Spread) -> ClothRecord {
     ClothRecord {
         fabric: FabricId::default(),

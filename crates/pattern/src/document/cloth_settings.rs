@@ -1,17 +1,17 @@
-//! How fabric is laid to be cut: the same settings on the command line, in a file of settings and in a marker of the
-//! document. What one leaves open is that of the next below it.
+//! Cloth settings: how fabric is laid to be cut, alike on the command line, in a settings file and in a
+//! marker of the document. A setting that is left open is taken from the next lower level.
 
 use crate::fields::{Choice, FieldFault, group, key};
 use crate::{Fabric, fields};
 use serde::{Deserialize, Serialize};
 use strum::{VariantArray, VariantNames};
 
-/// Unusable edge at either side of fabric where nothing else is said (m).
+/// Default width of the unusable edge at either side of the fabric (m).
 pub const DEFAULT_SELVEDGE: f64 = 0.010;
-/// Room for the blade between two pieces where nothing else is said (m).
+/// Default room for the blade between two pieces (m).
 pub const DEFAULT_GAP: f64 = 0.002;
 
-/// Which way pieces may point along the warp.
+/// Rule for the directions in which pieces may point along the warp (nap).
 #[derive(
     Clone,
     Copy,
@@ -28,16 +28,16 @@ pub const DEFAULT_GAP: f64 = 0.002;
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
 pub enum NapRule {
-    /// Each either way.
+    /// Each piece may point either way.
     #[default]
     None,
-    /// All one way.
+    /// All pieces point the same way.
     OneWay,
-    /// All pieces of a garment one way.
+    /// All pieces of one garment point the same way.
     PerGarment,
 }
 
-/// How fabric is spread on the table.
+/// Way of spreading fabric on the table.
 #[derive(
     Clone,
     Copy,
@@ -61,7 +61,7 @@ pub enum Spread {
     Folded,
     /// A tube laid flat: a fold at both sides.
     Tubular,
-    /// Open, every second ply turned over: what is cut comes in pairs.
+    /// Open, every second ply turned over: pieces come in mirrored pairs.
     FaceToFace,
 }
 
@@ -69,10 +69,10 @@ impl Choice for NapRule {}
 impl Choice for Spread {}
 
 impl Spread {
-    /// The numbers of plies that are right.
+    /// Advice on the numbers of plies that are allowed.
     pub const PLIES: &'static str = "give 1 or more, face to face an even number";
 
-    /// Layers cut at once where nothing is said.
+    /// Default number of plies for this way of spreading.
     pub fn usual_plies(self) -> u32 {
         match self {
             Self::FaceToFace => 2,
@@ -80,18 +80,18 @@ impl Spread {
         }
     }
 
-    /// Whether fabric can be spread so in so many plies.
+    /// Whether fabric can be spread this way in that many plies.
     pub fn allows(self, plies: u32) -> bool {
         plies > 0 && (self != Self::FaceToFace || plies.is_multiple_of(2))
     }
 }
 
-/// A print that repeats.
+/// A repeating print.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Print {
-    /// Length of a repeat along the warp and across (m); 0 where it does not repeat.
+    /// Length of the repeat along the warp and across (m); 0 where the print does not repeat.
     pub repeat: [f64; 2],
-    /// A point where lines of the print cross (m).
+    /// A point at which lines of the print cross (m).
     pub origin: [f64; 2],
 }
 
@@ -111,14 +111,14 @@ fields!(Print, |self, v| {
     });
 });
 
-/// A flaw: a rectangle of the fabric laid open.
+/// A flaw: a rectangle of the fabric as laid open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flaw {
-    /// Its corner nearest to the start: along the warp and across (m).
+    /// Corner of the flaw nearest to the start of the fabric: along the warp and across (m).
     pub at: [f64; 2],
-    /// Its length and width (m).
+    /// Length and width of the flaw (m).
     pub size: [f64; 2],
-    /// Distance pieces keep from it (m).
+    /// Distance that pieces keep from the flaw (m).
     pub clearance: f64,
 }
 
@@ -144,22 +144,22 @@ fields!(Flaw, |self, v| {
     );
 });
 
-/// A roll of fabric. What it leaves open is that of the fabric.
+/// A roll of fabric. Fields that are left open are taken from the fabric.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Roll {
-    /// Name for messages and files; without one it is numbered.
+    /// Name for messages and files; a roll without a name is numbered.
     pub name: Option<String>,
-    /// Full width (m).
+    /// Full width of the roll (m).
     pub width: Option<f64>,
-    /// Length, all plies together (m); without one as long as it takes.
+    /// Length of the roll, all plies together (m); without one the roll is as long as needed.
     pub length: Option<f64>,
-    /// Price of a metre of length.
+    /// Price of a metre of the roll's length.
     pub price_per_metre: Option<f64>,
-    /// Its flaws, none where the list is empty.
+    /// Flaws of the roll; an empty list says that the roll has none.
     pub flaws: Option<Vec<Flaw>>,
 }
 
-/// A field that may be left out: whether it is there, then the field.
+/// Visits a field that may be left out: first whether it is there, then its value.
 macro_rules! given {
     ($v:ident, $field:ident) => {
         given!($v, $field, key(stringify!($field)))
@@ -172,7 +172,7 @@ macro_rules! given {
     };
 }
 
-/// The same of a list, which may be there and empty.
+/// Visits a list that may be left out, or be there and empty.
 macro_rules! given_list {
     ($v:ident, $field:ident) => {
         $v.optional(stringify!($field), $field);
@@ -197,36 +197,37 @@ fields!(Roll, |self, v| {
     given_list!(v, flaws);
 });
 
-/// How fabric is laid to be cut. What is not given is that of what lies below: other settings, the fabric, the default.
+/// Settings of how fabric is laid to be cut. A setting that is not given is taken from the next lower level:
+/// other settings, the fabric, the default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClothSettings {
-    /// Full width laid open, of a tube its girth (m).
+    /// Full width of the fabric laid open, of a tube its girth (m).
     pub width: Option<f64>,
-    /// Length at hand, all plies together (m); by default as much as it takes.
+    /// Length of fabric at hand, all plies together (m); by default as much as needed.
     pub length: Option<f64>,
-    /// Unusable edge at either side (m).
+    /// Width of the unusable edge at either side (m).
     pub selvedge: Option<f64>,
-    /// Fabric left free at either end (m).
+    /// Length of fabric left free at either end (m).
     pub end_margin: Option<f64>,
     /// Least distance between two pieces (m).
     pub gap: Option<f64>,
-    /// Which way pieces may point.
+    /// Directions in which pieces may point along the warp.
     pub nap: Option<NapRule>,
-    /// How far the grain of a piece may lie off the warp (rad).
+    /// Greatest angle between the grain of a piece and the warp (rad).
     pub tilt: Option<f64>,
-    /// How it is spread.
+    /// Way of spreading the fabric.
     pub spread: Option<Spread>,
-    /// Layers cut at once; a fold does not count.
+    /// Number of plies cut at once; the second layer of a fold does not count.
     pub plies: Option<u32>,
-    /// Price of a metre of length.
+    /// Price of a metre of the fabric's length.
     pub price_per_metre: Option<f64>,
-    /// Currency of the price, as in EUR.
+    /// Currency of the price, such as EUR.
     pub currency: Option<String>,
-    /// Print that repeats.
+    /// Repeating print of the fabric.
     pub print: Option<Print>,
-    /// Flaws no piece may lie on; none where the list is empty.
+    /// Flaws that no piece may lie on; an empty list says that there are none.
     pub flaws: Option<Vec<Flaw>>,
-    /// Rolls at hand, filled in this order. Without any, as much as it takes.
+    /// Rolls at hand, filled in this order. Without any there is as much fabric as needed.
     pub rolls: Option<Vec<Roll>>,
 }
 
@@ -266,41 +267,41 @@ fields!(ClothSettings, |self, v| {
     given_list!(v, rolls);
 });
 
-/// How fabric is laid, every setting resolved.
+/// Settings of how fabric is laid, with every default filled in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaidCloth {
-    /// Full width laid open (m).
+    /// Full width of the fabric laid open (m).
     pub width: f64,
-    /// Length at hand, all plies together (m); nothing means as much as it takes.
+    /// Length of fabric at hand, all plies together (m); none means as much as needed.
     pub length: Option<f64>,
-    /// Unusable edge at either side (m).
+    /// Width of the unusable edge at either side (m).
     pub selvedge: f64,
-    /// Fabric left free at either end (m).
+    /// Length of fabric left free at either end (m).
     pub end_margin: f64,
     /// Least distance between two pieces (m).
     pub gap: f64,
-    /// Which way pieces may point.
+    /// Directions in which pieces may point along the warp.
     pub nap: NapRule,
-    /// How far the grain of a piece may lie off the warp (rad).
+    /// Greatest angle between the grain of a piece and the warp (rad).
     pub tilt: f64,
-    /// How it is spread.
+    /// Way of spreading the fabric.
     pub spread: Spread,
-    /// Layers cut at once.
+    /// Number of plies cut at once.
     pub plies: u32,
-    /// Price of a metre of length.
+    /// Price of a metre of the fabric's length.
     pub price_per_metre: Option<f64>,
     /// Currency of the price.
     pub currency: String,
-    /// Print that repeats.
+    /// Repeating print of the fabric.
     pub print: Option<Print>,
-    /// Flaws no piece may lie on.
+    /// Flaws that no piece may lie on.
     pub flaws: Vec<Flaw>,
-    /// Rolls at hand; none where there is as much as it takes.
+    /// Rolls at hand; an empty list means as much fabric as needed.
     pub rolls: Vec<Roll>,
 }
 
 impl ClothSettings {
-    /// These settings over others: what they leave open is that of those below.
+    /// These settings completed by others: settings left open here are taken from those below.
     #[must_use]
     pub fn over(self, below: &Self) -> Self {
         let Self {
@@ -337,8 +338,8 @@ impl ClothSettings {
         }
     }
 
-    /// How a fabric is laid by them, its own figures and the defaults where they say nothing. Nothing where neither they
-    /// nor the fabric say how wide it is.
+    /// The settings for laying a fabric: settings left open are taken from the fabric itself, else from the
+    /// defaults. None if neither the settings nor the fabric give a width.
     pub fn resolved(&self, own: Option<&Fabric>) -> Option<LaidCloth> {
         let spread = self.spread.unwrap_or_default();
         let own_nap = match own.is_some_and(|fabric| fabric.nap) {
@@ -363,7 +364,7 @@ impl ClothSettings {
         })
     }
 
-    /// The first setting that no fabric can be laid by.
+    /// The first setting with which no fabric can be laid.
     pub fn fault(&self) -> Option<FieldFault> {
         let sound = |value: f64| value.is_finite() && value >= 0.0;
         let numbers = [

@@ -1,4 +1,4 @@
-//! Corners of edges: how their cut line turns, and how far it may reach.
+//! Corners of edges: how the cut line turns at a corner of the seam line, and how far it may reach there.
 
 use crate::fields;
 use crate::fields::{Choice, ITSELF, Told, group, key};
@@ -7,15 +7,15 @@ use strum::{EnumIter, VariantArray, VariantNames};
 
 impl Choice for Corner {}
 
-/// What is asked of a corner.
+/// Settings of a corner at the start of an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "WrittenCorner")]
 pub struct EdgeCorner {
-    /// How the cut line turns it.
+    /// Shape of the cut line at the corner.
     pub kind: Corner,
-    /// How far the cut line may reach there.
+    /// Limit of the cut line's distance from the corner.
     pub limit: MitreLimit,
-    /// Whether a kink of the line that goes on there across a seam is meant.
+    /// Whether a kink at this corner is intended, where the line runs on into another panel across a seam.
     pub meant: bool,
 }
 
@@ -31,7 +31,7 @@ fields!(EdgeCorner, |self, v| {
     v.value(key("meant").left_out_if(!*meant), meant);
 });
 
-/// A corner as a journal has it: of earlier versions its kind alone, or nothing.
+/// A corner as a journal writes it: earlier versions wrote its kind alone, or nothing.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum WrittenCorner {
@@ -55,13 +55,13 @@ impl From<WrittenCorner> for EdgeCorner {
     }
 }
 
-/// How far from a corner its cut line may reach.
+/// Limit of the distance of the cut line from its corner.
 #[derive(Clone, Copy, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MitreLimit {
-    /// So many times the wider of both allowances; beyond, it is cut off.
+    /// This many times the wider of the two allowances; a longer mitre is cut off.
     Widths(f64),
-    /// As far as both lines run.
+    /// No limit: both lines run on until they meet.
     None,
 }
 
@@ -80,9 +80,9 @@ fields!(
 );
 
 impl MitreLimit {
-    /// What is asked where nothing is: mitres down to 47 degrees are whole.
+    /// Default limit (1): mitres of corners down to 47 degrees stay whole.
     pub const USUAL: f64 = 2.5;
-    /// The least and the most that may be asked.
+    /// Least and greatest limit that may be set (1).
     pub const RANGE: [f64; 2] = [1.0, 100.0];
 }
 
@@ -92,7 +92,7 @@ impl Default for MitreLimit {
     }
 }
 
-/// How a cut line turns a corner.
+/// Shape of the cut line at a corner.
 #[derive(
     Clone,
     Copy,
@@ -109,12 +109,12 @@ impl Default for MitreLimit {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Corner {
-    /// Both lines run on until they meet.
+    /// Both cut lines run on until they meet.
     #[default]
     Mitre,
-    /// Cut off straight.
+    /// The mitre is cut off straight.
     Bevel,
-    /// Square to the edge after the corner.
+    /// The cut line turns square to the edge after the corner.
     Square,
     /// The seam lines run on into the allowances.
     Extended,

@@ -10,11 +10,11 @@ use strum::EnumIter;
 /// A line across the whole table, level or upright.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Guide {
-    /// Its id.
+    /// Identifier of the guide.
     pub id: GuideId,
-    /// Which way it runs.
+    /// Direction of the guide.
     pub runs: GuideRun,
-    /// Where it lies on the table (m): its height if horizontal, else how far to the right.
+    /// Place of the guide on the table (m): its height if horizontal, else its distance to the right.
     pub at: f64,
 }
 
@@ -25,7 +25,7 @@ fields!(Guide, |self, v| {
     v.value(key(runs.key()).length(), at);
 });
 
-/// Which way a guide runs.
+/// Direction of a guide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, EnumIter, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GuideRun {
@@ -36,7 +36,7 @@ pub enum GuideRun {
     Vertical,
 }
 
-// The field that says where the guide lies tells which way it runs: it is the guide's own.
+// The field for the place, `x` or `y`, also tells the direction: it belongs to the guide alone.
 fields!(
     GuideRun,
     |self, _v| {},
@@ -48,7 +48,7 @@ fields!(
 );
 
 impl GuideRun {
-    /// The field of files that says where such a guide lies.
+    /// The field of files for the place of such a guide.
     fn key(self) -> &'static str {
         match self {
             Self::Horizontal => "y",
@@ -56,7 +56,7 @@ impl GuideRun {
         }
     }
 
-    /// Which coordinate all places of such a guide share: 1 (y) if horizontal, 0 (x) if vertical.
+    /// The coordinate that all points of such a guide share: 1 (y) if horizontal, 0 (x) if vertical.
     pub fn axis(self) -> usize {
         match self {
             Self::Horizontal => 1,
@@ -64,7 +64,7 @@ impl GuideRun {
         }
     }
 
-    /// Its name.
+    /// Name of the direction for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::Horizontal => "horizontal guide",
@@ -79,7 +79,7 @@ impl Pattern {
         self.guides.iter().find(|guide| guide.id == id)
     }
 
-    /// What a guide is called: which way it runs, and its number among those that run so.
+    /// Name of a guide for messages: its direction, and its number among the guides of that direction.
     pub fn guide_words(&self, id: GuideId) -> Option<String> {
         let runs = self.guide(id)?.runs;
         let mut alike = self.guides.iter().filter(|guide| guide.runs == runs);

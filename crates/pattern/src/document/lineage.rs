@@ -1,4 +1,4 @@
-//! The stages of a panel, including those of the panel it was split from.
+//! The stages of a panel, including the stages of the panel it was split from.
 
 use super::{OperationKind, Panel, Pattern, Source};
 use crate::{Mark, Notch, NotchId, Operation, OperationId, PanelId, PartId, SheetId};
@@ -7,19 +7,20 @@ use std::sync::Arc;
 /// The stages that lead to a panel, in the order they are made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StageLineage {
-    /// Each with the operation that makes it.
+    /// Each stage as its panel, the operation after which it stands (none: as drawn), and the operation that
+    /// makes it.
     stages: Vec<(PanelId, Option<OperationId>, Option<OperationId>)>,
-    /// Which of them is the panel before its own operations.
+    /// Index of the stage that is the panel before its own operations.
     pub base: usize,
 }
 
 impl StageLineage {
-    /// Panel and operation of a stage.
+    /// Panel of a stage, and the operation after which it stands.
     pub fn stage(&self, step: usize) -> Option<(PanelId, Option<OperationId>)> {
         self.stages.get(step).map(|stage| (stage.0, stage.1))
     }
 
-    /// The step an operation makes.
+    /// Index of the stage that an operation makes.
     pub fn step_of(&self, operation: OperationId) -> Option<usize> {
         self.stages
             .iter()
@@ -28,13 +29,13 @@ impl StageLineage {
 }
 
 impl Pattern {
-    /// The panel, the one it is a side of, and so on.
+    /// The panel, the panel that it is a side of, and so on up to the panel that is drawn.
     pub fn lineage<'p>(&'p self, panel: &'p Panel) -> Vec<&'p Panel> {
         let mut found = vec![panel];
         let mut at = panel;
         while let Source::Side { of, .. } = at.source {
             match self.panel(of) {
-                // A panel that is its own side is told as a cycle.
+                // A panel that is its own side is reported elsewhere, as a cycle.
                 Some(parent) if !found.iter().any(|known| known.id == parent.id) => {
                     found.push(parent);
                     at = parent;
@@ -45,20 +46,20 @@ impl Pattern {
         found
     }
 
-    /// The sheet a panel is drawn on: that of the panel it is a side of.
+    /// The sheet a panel is drawn on; for a side of a split panel the sheet of the panel that is split.
     pub fn sheet_of(&self, panel: &Panel) -> Option<SheetId> {
         self.lineage(panel).last().and_then(|root| root.sheet())
     }
 
-    /// A notch of a panel or of one it is a side of.
+    /// A notch of a panel or of a panel that it is a side of.
     pub fn notch_of<'p>(&'p self, panel: &'p Panel, id: NotchId) -> Option<&'p Notch> {
         self.lineage(panel)
             .into_iter()
             .find_map(|own| own.notch(id))
     }
 
-    /// The panel that an edge, line, notch or operation belongs to: the panel itself, or one it is a
-    /// side of; nothing if it is of none of them.
+    /// The panel that an edge, line, notch or operation belongs to: the panel itself, or one that it is a
+    /// side of; none if the part is in none of them.
     pub fn owner_of(&self, panel: PanelId, part: PartId) -> Option<&Panel> {
         let has = |own: &Panel| match part {
             PartId::Edge(id) => own.edge(id).is_some(),
@@ -80,14 +81,14 @@ impl Pattern {
         lineage.into_iter().find(|own| has(own))
     }
 
-    /// Whether other panels, its sides, are cut in place of a panel.
+    /// Whether a panel is split and its sides are cut in its place.
     pub fn is_replaced(&self, panel: &Panel) -> bool {
         let is_side =
             |other: &Arc<Panel>| matches!(other.source, Source::Side { of, .. } if of == panel.id);
         panel.is_split() && self.panels.iter().any(is_side)
     }
 
-    /// An operation of a panel or of one it is a side of.
+    /// An operation of a panel or of a panel that it is a side of.
     pub fn operation_of<'p>(
         &'p self,
         panel: &'p Panel,
@@ -123,8 +124,8 @@ impl Pattern {
         found
     }
 
-    /// Which step of a panel's history is the first that has every corner a mark is placed by;
-    /// nothing if no operation makes one of them.
+    /// Index of the first stage of a panel that has every corner by which a mark is placed; none if one of
+    /// these corners is made by an operation that does not lead to the panel.
     pub(crate) fn first_step(
         &self,
         panel: &Panel,
@@ -143,7 +144,7 @@ impl Pattern {
 }
 
 impl Panel {
-    /// Whether operations moved parts of it from where they were drawn.
+    /// Whether operations moved parts of the panel from where they were drawn.
     pub fn is_altered(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);
         let moves = |kind: &OperationKind| {
@@ -157,7 +158,7 @@ impl Panel {
         kinds.any(moves)
     }
 
-    /// Whether it is split into other panels, which are cut in its place.
+    /// Whether the panel is split into other panels, which are cut in its place.
     pub fn is_split(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);
         kinds.any(|kind| matches!(kind, OperationKind::Split { .. }))

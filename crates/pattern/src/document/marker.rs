@@ -1,4 +1,4 @@
-//! Markers: which pieces of which sizes lie where on a fabric, to be cut together.
+//! Markers: layouts of pieces of one or more sizes on a fabric, to be cut together.
 //!
 //! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
 
@@ -10,30 +10,30 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Most garments of a size on a marker.
+/// Greatest number of garments of one size on a marker.
 pub const MAX_GARMENTS: u32 = 2_000;
 
-/// Pieces of one fabric, laid to be cut together.
+/// A marker: pieces of one fabric, laid to be cut together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "MarkerRecord", into = "MarkerRecord")]
 pub struct Marker {
-    /// Its id.
+    /// Identifier of the marker.
     pub id: MarkerId,
     /// Name to show, unique among markers.
     pub name: String,
-    /// The fabric; the pieces cut from it are laid.
+    /// The fabric whose pieces are laid.
     pub fabric: FabricId,
-    /// Whether they lie on it whatever the garment is cut from.
+    /// Whether the pieces lie on this fabric even if the garment is cut from another.
     pub keeps_fabric: bool,
-    /// How it is laid.
+    /// Settings of how the fabric is laid.
     pub cloth: ClothSettings,
     /// Rules for single pieces.
     pub rules: Vec<PieceRule>,
     /// Sets of marks that lie on the same place of the print.
     pub matched: Vec<MatchedMarks>,
-    /// How many garments of which sizes are cut.
+    /// Number of garments of each size.
     pub order: Vec<OrderedSize>,
-    /// The placements. Pieces of the order that are not here wait to be laid.
+    /// Placements of pieces. Pieces of the order without a placement wait to be laid.
     pub placements: Vec<PiecePlacement>,
 }
 
@@ -64,7 +64,7 @@ fields!(
     fault: |self| Self::fault(self)
 );
 
-/// A marker in a journal.
+/// A marker as a journal writes it.
 #[derive(Serialize, Deserialize)]
 struct MarkerRecord {
     id: MarkerId,
@@ -109,21 +109,21 @@ impl From<MarkerRecord> for Marker {
     }
 }
 
-/// What a whole garment is cut from, where that is chosen.
+/// The fabric chosen for the whole garment, if one is chosen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GarmentCloth {
-    /// The fabric that takes the place of every panel's.
+    /// The fabric that replaces the fabric of every panel.
     pub fabric: Option<Arc<Fabric>>,
-    /// Width of the roll (m); nothing means the fabric's own.
+    /// Width of the roll (m); none means the width of the fabric.
     pub width: Option<f64>,
 }
 
-/// Garments of one size, or of the wearer.
+/// The number of garments of one size, or for the wearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct OrderedSize {
-    /// The size; nothing is the wearer's: as the pattern is drafted for the garment.
+    /// The size; none stands for the wearer: the pattern as drafted for the garment.
     pub size: Option<SizeId>,
-    /// How many garments, 1 to [`MAX_GARMENTS`].
+    /// Number of garments, 1 to [`MAX_GARMENTS`].
     pub quantity: u32,
 }
 
@@ -145,18 +145,18 @@ fields!(OrderedSize, |self, v| {
     v.value(key("quantity").may_lack(), quantity);
 });
 
-/// One piece that an order cuts.
+/// One piece that an order cuts: a copy of a panel for one garment.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub struct OrderedPiece {
-    /// The panel it is cut from.
+    /// The panel that the piece is a copy of.
     pub panel: PanelId,
-    /// Number of the copy, from 0; of a mirrored pair the odd ones are mirror images.
+    /// Number of the copy, from 0; the odd copies of a mirrored pair are mirror images.
     pub copy: u32,
-    /// The size; nothing is the wearer's.
+    /// The size; none stands for the wearer.
     pub size: Option<SizeId>,
-    /// The garment, from 0 within its size.
+    /// Number of the garment within its size, from 0.
     pub garment: u32,
 }
 
@@ -176,26 +176,26 @@ fields!(OrderedPiece, |self, v| {
     v.value(key("garment").left_out_if(*garment == 0), garment);
 });
 
-/// Where a piece lies: its grain turned to +x, then turned over (y changes sign) if it is flipped,
-/// then turned, then moved.
+/// Position of a piece on the fabric: its grain is turned to +x, then the piece is turned over if it is
+/// flipped (y changes sign), then turned, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PiecePlacement {
     /// The piece.
     pub piece: OrderedPiece,
-    /// Where the origin of its panel comes to lie (m).
+    /// Position of the origin of its panel on the fabric (m).
     pub at: [f64; 2],
-    /// Angle from the warp to its grain, counter-clockwise (rad).
+    /// Angle from the warp to the grain of the piece, counter-clockwise (rad).
     pub turn: f64,
-    /// Whether it lies face down.
+    /// Whether the piece lies face down.
     pub flipped: bool,
-    /// Whether it stays where it is while others are laid.
+    /// Whether the piece stays in place while others are laid.
     pub locked: bool,
-    /// The roll it lies on, from 0.
+    /// Number of the roll that the piece lies on, from 0.
     #[serde(default, skip_serializing_if = "is_first")]
     pub roll: u16,
 }
 
-/// Whether it is the first roll, which is not written.
+/// Whether this is the first roll, which is not written.
 fn is_first(roll: &u16) -> bool {
     *roll == 0
 }
@@ -220,38 +220,39 @@ fields!(PiecePlacement, |self, v| {
     v.value(key("roll").left_out_if(*roll == 0), roll);
 });
 
-/// What a marker keeps though the garment is cut otherwise.
+/// A property that a marker keeps of its own although the garment is cut from something else.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkerKeeps {
-    /// Its fabric.
+    /// The fabric.
     Fabric {
-        /// Its name.
+        /// Name of the marker's own fabric.
         own: String,
-        /// Name of what the garment is cut from.
+        /// Name of the fabric that the garment is cut from.
         garments: String,
     },
-    /// Its width.
+    /// The width.
     Width {
-        /// Its own (m).
+        /// The marker's own width (m).
         own: f64,
-        /// That of what the garment is cut from (m).
+        /// Width of the fabric that the garment is cut from (m).
         garments: f64,
     },
 }
 
 impl Marker {
-    /// Where a piece lies, if it is laid.
+    /// Placement of a piece, if it is laid.
     pub fn placement(&self, piece: OrderedPiece) -> Option<&PiecePlacement> {
         self.placements.iter().find(|known| known.piece == piece)
     }
 
-    /// How many garments of a size are cut.
+    /// Number of garments of a size.
     pub fn quantity(&self, size: Option<SizeId>) -> u32 {
         let own = self.order.iter().filter(|ordered| ordered.size == size);
         own.map(|ordered| ordered.quantity).sum()
     }
 
-    /// What is asked of a copy of a panel: what its own rule leaves open is that of its panel's, then of all.
+    /// The rule for a copy of a panel: what the copy's own rule leaves open is taken from the rule for its
+    /// panel, then from the rule for all pieces.
     pub fn rule_for(&self, panel: PanelId, copy: u32) -> PieceRule {
         let pieces = [
             RuledPieces::Copy(panel, copy),
@@ -269,7 +270,7 @@ impl Marker {
         })
     }
 
-    /// The first thing that no marker may have.
+    /// The first setting, rule, order or placement that no marker may have.
     pub fn fault(&self) -> Option<FieldFault> {
         self.cloth
             .fault()
@@ -363,8 +364,8 @@ impl Pattern {
         self.markers.iter().find(|marker| marker.name == name)
     }
 
-    /// The fabric that a marker's pieces lie on, as wide as it is there: what the garment is cut from, unless the
-    /// marker keeps its own. Nothing where its own is gone.
+    /// The fabric that a marker's pieces lie on, with its width there: the fabric that the garment is cut
+    /// from, unless the marker keeps its own. None if the marker's own fabric is gone.
     pub fn marker_fabric(&self, marker: &Marker, garment: &GarmentCloth) -> Option<Fabric> {
         let own = self.fabric(marker.fabric)?;
         let (fabric, roll) = match (marker.keeps_fabric, &garment.fabric) {
@@ -378,7 +379,7 @@ impl Pattern {
         })
     }
 
-    /// What of a marker does not follow what the garment is cut from, in words.
+    /// The property of a marker, if any, that differs from the fabric that the garment is cut from.
     pub fn marker_keeps(&self, marker: &Marker, garment: &GarmentCloth) -> Option<MarkerKeeps> {
         let own = self.fabric(marker.fabric)?;
         let follows = Marker {
@@ -404,8 +405,8 @@ impl Pattern {
         })
     }
 
-    /// Every piece that a marker's order cuts from its fabric: by size, garment, panel and copy.
-    /// Where the fabric lies double some of them are cut with another and not laid.
+    /// Every piece that a marker's order cuts from its fabric, by size, garment, panel and copy. On fabric
+    /// that lies double some of them are cut together with another piece and are not laid themselves.
     pub fn ordered_pieces<'a>(
         &'a self,
         marker: &'a Marker,
@@ -428,7 +429,8 @@ impl Pattern {
         })
     }
 
-    /// A piece of an order in words: panel, and of copy, size and garment what tells it from others.
+    /// Description of a piece of an order: its panel, and as much of copy, size and garment as tells it from
+    /// the others.
     pub fn piece_words(&self, piece: OrderedPiece) -> String {
         let panel = self.panel(piece.panel);
         let name = panel.map_or_else(|| piece.panel.to_string(), |p| format!("{:?}", p.name));
@@ -454,8 +456,8 @@ impl Pattern {
     }
 }
 
-/// The copies of a panel that are cut from a marker's fabric. Those that are cut from it besides, as interfacing is, are
-/// counted on from the copies of the panel itself.
+/// The copies of a panel that are cut from a marker's fabric. Copies that are cut from it in addition, such
+/// as interfacing, are numbered on from the copies of the panel itself.
 fn copies_on<'a>(marker: &'a Marker, panel: &'a Panel) -> impl Iterator<Item = u32> + 'a {
     let own = move |copy: &u32| {
         let rule = marker.rule_for(panel.id, *copy);

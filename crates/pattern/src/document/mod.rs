@@ -1,4 +1,4 @@
-//! The document: what is edited, saved and undone.
+//! The document: the pattern that is edited, saved and undone.
 
 mod builder;
 mod cloth_record;
@@ -49,20 +49,20 @@ pub const NAME_LENGTH: usize = 80;
 
 /// A pattern. Cloning is cheap: parts are shared until they are edited.
 ///
-/// Fields are public, so a pattern may be inconsistent; drafting and `check` then say where.
+/// Fields are public, so a pattern may be inconsistent; drafting and `check` then report the faults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pattern {
     /// Name to show.
     pub name: String,
-    /// Unit its author thinks in; values in memory are metres all the same.
+    /// Unit in which lengths are shown and written; values in memory are metres all the same.
     pub unit: DisplayUnit,
     /// Named tables of measurements, in the order they are offered.
     pub sizes: Vec<Arc<Size>>,
-    /// The size used when none is asked for; else the first.
+    /// The size used when none is asked for; without it the first size is used.
     pub base_size: Option<SizeId>,
     /// Named numbers for formulas.
     pub variables: Vec<Arc<Variable>>,
-    /// The fabrics panels name.
+    /// The fabrics that panels are cut from.
     pub fabrics: Vec<Arc<Fabric>>,
     /// Drafting planes with points and curves.
     pub sheets: Vec<Arc<Sheet>>,
@@ -70,13 +70,13 @@ pub struct Pattern {
     pub panels: Vec<Arc<Panel>>,
     /// The seams.
     pub seams: Vec<Arc<Seam>>,
-    /// The markers.
+    /// Markers: pieces laid on fabric to be cut together.
     #[serde(default)]
     pub markers: Vec<Arc<Marker>>,
     /// Lines across the table to draw against.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub guides: Vec<Arc<Guide>>,
-    /// Gives the ids of new parts.
+    /// Source of the ids of new parts.
     pub ids: Ids,
 }
 
@@ -96,7 +96,7 @@ fields!(Pattern, |self, v| {
         ids: Ids { next: next_id },
     } = self;
     v.value(key("name"), name);
-    // Before the first length, which is in it.
+    // The unit precedes the first length, which is read in it.
     v.value(key("unit").may_lack(), unit);
     v.optional("base_size", base_size);
     if let Some(base_size) = base_size {
@@ -149,11 +149,11 @@ impl Choice for DisplayUnit {}
 /// A named table of measurements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Size {
-    /// Its id.
+    /// Identifier of the size.
     pub id: SizeId,
     /// Name, such as `M` or `42`.
     pub name: String,
-    /// Its measurements.
+    /// Measurements of the size.
     pub measurements: Measurements,
 }
 
@@ -172,11 +172,11 @@ fields!(Size, |self, v| {
 /// with a unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
-    /// Its id.
+    /// Identifier of the variable.
     pub id: VariableId,
     /// Name in formulas.
     pub name: String,
-    /// What it stands for.
+    /// Value of the variable: a number or a formula.
     pub number: Number,
 }
 
@@ -196,7 +196,7 @@ impl Pattern {
         }
     }
 
-    /// A pattern to begin drafting with: one empty sheet, and poplin to cut from.
+    /// A pattern to start drafting with: one empty sheet, and poplin as its fabric.
     pub fn blank(name: impl Into<String>) -> Self {
         let mut pattern = Self::new(name);
         let sheet = Sheet {
@@ -210,7 +210,7 @@ impl Pattern {
         pattern
     }
 
-    /// Whether another pattern is the same, whatever ids each would give next.
+    /// Whether another pattern has the same content, whatever ids each would give next.
     pub fn says_the_same(&self, other: &Self) -> bool {
         let counted_alike = Self {
             ids: other.ids,
@@ -224,13 +224,13 @@ impl Pattern {
         self.sheets.iter().find(|sheet| sheet.id == id)
     }
 
-    /// The sheet a point is on, and the point.
+    /// A point, and the sheet it is on.
     pub fn point(&self, id: PointId) -> Option<(&Arc<Sheet>, &Arc<Point>)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| Some((sheet, sheet.point(id)?)))
     }
 
-    /// The sheet a curve is on, and the curve.
+    /// A curve, and the sheet it is on.
     pub fn curve(&self, id: CurveId) -> Option<(&Arc<Sheet>, &Arc<Curve>)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| Some((sheet, sheet.curve(id)?)))
@@ -271,7 +271,7 @@ impl Pattern {
         self.size_named(name).map(|size| &size.measurements)
     }
 
-    /// The base size: the one chosen, else the first.
+    /// The base size: the chosen one, else the first.
     pub fn base(&self) -> Option<&Arc<Size>> {
         let chosen = self
             .sizes

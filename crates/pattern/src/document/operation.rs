@@ -5,16 +5,16 @@ use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId, fiel
 use serde::{Deserialize, Serialize};
 use strum::{EnumIter, IntoStaticStr, VariantArray, VariantNames};
 
-/// A kept step of a panel.
+/// One operation of a panel, as the document stores it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Operation {
-    /// Its id.
+    /// Identifier of the operation.
     pub id: OperationId,
     /// Name to show.
     pub name: String,
-    /// Its kind.
+    /// Kind of operation, with its settings.
     pub kind: OperationKind,
-    /// Whether a kink of the edge that runs on across what it makes is meant.
+    /// Whether a kink is intended in the edge that runs on across the dart, pleat or split.
     #[serde(default)]
     pub meant: bool,
 }
@@ -38,103 +38,104 @@ fields!(Operation, |self, v| {
 )]
 #[strum(serialize_all = "snake_case")]
 pub enum OperationKind {
-    /// A dart taken out of a line, which is drawn with the dart's mouth in it.
+    /// A dart taken out of a line. The drawn line includes the mouth of the dart.
     Dart {
-        /// The line.
+        /// The line that the dart opens in.
         line: LineName,
-        /// Where the middle of the mouth is.
+        /// Position of the middle of the mouth.
         mouth: Mark,
         /// Width of the mouth along the line (m).
         intake: Number,
-        /// Where it ends.
+        /// The end of the dart inside the panel.
         apex: Apex,
-        /// The leg it is pressed towards once it is sewn.
+        /// The leg towards which the dart is pressed once it is sewn.
         pressed: Pressed,
-        /// Whether it is trued: the edge redrawn so that it runs on smoothly across the mouth once
-        /// the dart is closed, its legs equally long.
+        /// Whether the dart is trued: the edge is redrawn so that it runs on smoothly across the mouth of the
+        /// closed dart, and the legs become equally long.
         #[serde(default)]
         trued: bool,
-        /// Whether, trued, it takes just its width from the finished edge: the mouth is narrower by
-        /// what truing takes besides.
+        /// Whether a trued dart shortens the finished edge by its intake alone: the mouth is made narrower by
+        /// the length that truing takes in addition.
         #[serde(default)]
         keeps_length: bool,
     },
     /// A dart inside the panel, pointed at both ends.
     Diamond {
-        /// Its two ends.
+        /// Both ends of the dart.
         ends: [PointId; 2],
-        /// Plain share of the way where it is widest.
+        /// Plain share of the way between the ends at which the dart is widest.
         widest: Number,
-        /// Width there (m).
+        /// Width of the dart there (m).
         intake: Number,
     },
-    /// The other half: a straight stretch lies on the fold of the cloth, and the piece is the
-    /// panel and its mirror image, unfolded.
+    /// The mirror half of the panel: a straight stretch lies on the fold of the cloth, and the piece is the
+    /// panel together with its mirror image, unfolded.
     Fold {
-        /// The line.
+        /// The line with the stretch.
         line: LineName,
         /// Both ends of the stretch, in the order of the line.
         ends: [Mark; 2],
     },
-    /// A dart that takes in less, and another that takes in the rest elsewhere: the panel is cut
-    /// from the new mouth to where the dart pivots, and one part is turned about that.
+    /// A dart made smaller and a second dart that takes in the rest at another place: the panel is cut from
+    /// the new mouth to the pivot point of the dart, and one part is turned about that point.
     Pivot {
-        /// The dart: a dart or a pivot before this operation.
+        /// The dart that is made smaller: a dart or a pivot before this operation.
         dart: OperationId,
-        /// The line.
+        /// The line that the new mouth opens in.
         line: LineName,
-        /// Where the new mouth opens.
+        /// Position of the new mouth.
         mouth: Mark,
-        /// Plain share of the dart's angle that is moved there, from 0 to 1.
+        /// Plain share of the dart's angle that is moved to the new dart, from 0 to 1.
         share: Number,
-        /// How far both darts then end before the place they pivot about (m).
+        /// Distance from the pivot point at which both darts then end (m).
         back: Number,
-        /// Which part is turned.
+        /// The part of the panel that is turned.
         turned: Turned,
-        /// The leg the new dart is pressed towards.
+        /// The leg towards which the new dart is pressed.
         pressed: Pressed,
     },
-    /// The panel cut apart along straight cuts and spread: the openings are cloth.
+    /// The panel cut along straight cuts and spread: the openings are filled with cloth.
     Spread {
-        /// The line.
+        /// The line that is cut.
         line: LineName,
-        /// A place on it that stays where it is, and all that hangs together with it.
+        /// A place on the line that stays fixed, with the part of the panel that is connected to it.
         held: Mark,
-        /// Where it is cut.
+        /// The cuts along which the panel is opened.
         cuts: Vec<SpreadCut>,
-        /// How the line goes across an opening.
+        /// Shape of the line across an opening.
         bridge: Bridge,
     },
-    /// The panel cut in two along a curve: it is not cut itself then, the panels that are its
-    /// sides are.
+    /// The panel cut in two along a curve: the panel itself is then not cut from cloth, but the two panels
+    /// that are its sides.
     Split {
-        /// The line.
+        /// The line that the cut starts and ends on.
         line: LineName,
-        /// The curve, from the line to the line.
+        /// The curve of the cut, from the line to the line.
         curve: CurveId,
     },
-    /// Lines of the panel that were drawn on a sheet which lies on the stage before this: holes and
+    /// Lines of the panel that are drawn on a sheet which lies on the stage before this operation: holes and
     /// internal lines that name this operation.
     Insert {
-        /// The sheet.
+        /// The sheet with the lines.
         sheet: SheetId,
     },
-    /// Pleats: the panel is cut along straight lines and cloth is put between that folds under it.
+    /// Pleats: the panel is cut along straight lines, and cloth is inserted there that folds under it.
     Pleat {
-        /// The line.
+        /// The line that is cut.
         line: LineName,
-        /// A place on it that stays where it is, and all that hangs together with it.
+        /// A place on the line that stays fixed, with the part of the panel that is connected to it.
         held: Mark,
-        /// Where it is folded.
+        /// The lines along which the panel is pleated.
         pleats: Vec<PleatLine>,
-        /// How deep a fold goes under (m): a knife pleat takes twice that of cloth, others four
-        /// times.
+        /// Depth of a fold under the cloth (m): a knife pleat takes twice that length of cloth, other pleats
+        /// four times.
         depth: Number,
-        /// How it is folded.
+        /// Kind of pleat.
         kind: PleatKind,
-        /// The side of its line that a knife pleat is pressed to: its underlay lies under that.
+        /// The side of its line to which a knife pleat is pressed: its underlay lies under that side.
         pressed: Side,
-        /// Whether it is trued: what lies under is cut along the edge that it lies on when it is
+        /// Whether the pleat is trued: the underlay is cut along the edge that it lies on when folded, else
+        /// straight across.
         /// folded, else straight across.
         #[serde(default = "is_trued")]
         trued: bool,
@@ -217,12 +218,12 @@ fields!(
     },
 );
 
-/// Pleats of journals that do not say it are trued.
+/// Pleats of journals that lack this field are trued.
 fn is_trued() -> bool {
     true
 }
 
-/// Which part of a panel a pivot turns.
+/// The part of a panel that a pivot turns.
 #[derive(
     Clone,
     Copy,
@@ -249,11 +250,11 @@ pub enum Turned {
 /// A cut along which a panel is spread.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpreadCut {
-    /// Its number in the operation, by which what it makes is named: no two have the same.
+    /// Number of the cut, unique in the operation; edges and corners that it makes are named by it.
     pub number: u16,
-    /// Where it starts and ends, both on the line.
+    /// Start and end of the cut, both on the line.
     pub ends: [Mark; 2],
-    /// How far it opens at its start and its end (m): where that is nothing it is a hinge.
+    /// Opening of the cut at its start and at its end (m); an end with opening 0 is a hinge.
     pub openings: [Number; 2],
 }
 
@@ -275,9 +276,9 @@ fields!(SpreadCut, |self, v| {
 /// A line along which a panel is pleated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PleatLine {
-    /// Its number in the operation, by which what it makes is named: no two have the same.
+    /// Number of the pleat, unique in the operation; edges and corners that it makes are named by it.
     pub number: u16,
-    /// Where it starts and ends, both on the line.
+    /// Start and end of the pleat, both on the line.
     pub ends: [Mark; 2],
 }
 
@@ -292,12 +293,12 @@ fields!(PleatLine, |self, v| {
 });
 
 impl PleatLine {
-    /// The largest number a pleat may have: the corners of its underlay are counted from ten times
-    /// it.
+    /// The largest number a pleat may have: the corners of its underlay are numbered from ten times
+    /// this number.
     pub const LARGEST: u16 = u16::MAX / 10 - 1;
 }
 
-/// How a pleat is folded.
+/// Kind of pleat: the number and the direction of its folds.
 #[derive(
     Clone,
     Copy,
@@ -324,12 +325,12 @@ pub enum PleatKind {
 }
 
 impl SpreadCut {
-    /// The largest number a cut may have: the corners at its openings are counted from four times
-    /// it.
+    /// The largest number a cut may have: the corners at its openings are numbered from four times
+    /// this number.
     pub const LARGEST: u16 = u16::MAX / 4;
 }
 
-/// How an outline goes across an opening.
+/// Shape of an outline across an opening.
 #[derive(
     Clone,
     Copy,
@@ -349,7 +350,7 @@ pub enum Bridge {
     /// Straight.
     #[default]
     Straight,
-    /// In a curve that goes on from both sides.
+    /// A curve that continues the line on both sides.
     Smooth,
 }
 
@@ -373,11 +374,11 @@ pub enum Side {
     /// Left of the curve.
     #[default]
     Left,
-    /// Right of it.
+    /// Right of the curve.
     Right,
 }
 
-/// The leg a dart is pressed towards once it is sewn.
+/// The leg towards which a dart is pressed once it is sewn.
 #[derive(
     Clone,
     Copy,
@@ -397,12 +398,12 @@ pub enum Pressed {
     /// The leg before the apex along the outline as drawn.
     #[default]
     Before,
-    /// The leg after it.
+    /// The leg after the apex.
     After,
 }
 
 impl Pressed {
-    /// The leg's number among those the dart makes.
+    /// Number of the leg among the legs that the dart makes.
     pub fn leg(self) -> u16 {
         match self {
             Self::Before => 0,
@@ -411,12 +412,12 @@ impl Pressed {
     }
 }
 
-/// Where a dart ends.
+/// The end of a dart inside the panel.
 #[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum Apex {
     /// At a point of the panel's sheet.
     Point(PointId),
-    /// So far from the middle of the mouth, square to it (m).
+    /// At this distance from the middle of the mouth, square to it (m).
     Depth(Number),
 }
 
@@ -447,7 +448,7 @@ impl Choice for Side {}
 impl Choice for Pressed {}
 
 impl OperationKind {
-    /// The line it is done on; nothing if it is inside.
+    /// The line that the operation cuts or folds; none for an operation inside the panel.
     pub fn line(&self) -> Option<LineName> {
         match self {
             Self::Dart { line, .. }
@@ -468,7 +469,7 @@ impl OperationKind {
         Some(ends)
     }
 
-    /// The sheet whose lines it brings in.
+    /// The sheet whose lines the operation inserts.
     pub fn sheet(&self) -> Option<SheetId> {
         let Self::Insert { sheet } = self else {
             return None;
@@ -478,17 +479,17 @@ impl OperationKind {
 }
 
 impl OperationKind {
-    /// The field of files that holds it.
+    /// The field of files that holds this kind of operation.
     fn key(&self) -> &'static str {
         self.into()
     }
 
-    /// Whether it redraws an edge across darts that are trued: a dart, or the pivot of one.
+    /// Whether the operation may redraw an edge across trued darts: a trued dart, or the pivot of a dart.
     pub fn may_true(&self) -> bool {
         matches!(self, Self::Dart { trued: true, .. } | Self::Pivot { .. })
     }
 
-    /// What it is called.
+    /// Name of the kind of operation for messages.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Dart { .. } | Self::Diamond { .. } => "dart",

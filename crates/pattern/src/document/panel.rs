@@ -13,30 +13,30 @@ use strum::{EnumIter, IntoEnumIterator, VariantArray, VariantNames};
 /// One flat piece of the pattern.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
-    /// Its id.
+    /// Identifier of the panel.
     pub id: PanelId,
     /// Name to show and for formulas, unique in the pattern.
     pub name: String,
-    /// Where its shape comes from.
+    /// Origin of the panel's shape.
     pub source: Source,
-    /// Its outline, holes and internal lines. The outline runs counter-clockwise seen from the
-    /// right side of the cloth, holes against it.
+    /// Outline, holes and internal lines. Seen from the right side of the cloth the outline runs
+    /// counter-clockwise, holes clockwise.
     pub lines: Vec<Line>,
-    /// Its notches.
+    /// Notches of the panel.
     pub notches: Vec<Notch>,
-    /// Its operations, in order.
+    /// Operations that alter the panel, in order.
     pub operations: Vec<Arc<Operation>>,
     /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: Number,
-    /// Width of cloth outside edges that have no allowance of their own (m).
+    /// Seam allowance of edges that have none of their own (m).
     pub allowance: Number,
-    /// How often it is cut.
+    /// Number of pieces cut, and whether in mirrored pairs.
     pub cut: Cut,
-    /// The fabric it is cut from.
+    /// The fabric that the panel is cut from.
     pub fabric: FabricId,
-    /// Where on the body it belongs.
+    /// Place of the panel on the body.
     pub worn: WornRule,
-    /// How far it was moved on the table from where its sheet has it (m), if it was.
+    /// Displacement on the table from the place where its sheet has the panel (m), if it was moved.
     pub on_table: Option<[f64; 2]>,
 }
 
@@ -92,18 +92,18 @@ fields!(Panel, |self, v| {
     v.each(group("operations"), operations);
 });
 
-/// Where the shape of a panel comes from.
+/// Origin of the shape of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumIter, Serialize, Deserialize)]
 pub enum Source {
-    /// Its lines follow curves of a sheet.
+    /// The lines of the panel follow curves of a sheet.
     Traced(SheetId),
-    /// It is a side of another panel, and follows that.
+    /// The panel is one side of another panel, which is split, and follows it.
     Side {
-        /// The panel.
+        /// The panel that is split.
         of: PanelId,
         /// The operation that splits it.
         split: OperationId,
-        /// Which side.
+        /// The side of the split.
         side: Side,
     },
 }
@@ -142,15 +142,15 @@ fields!(
 /// A closed or open line of a panel.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// Its id.
+    /// Identifier of the line.
     pub id: LineId,
     /// Name to show, unique among the panel's lines.
     pub name: String,
-    /// Its kind.
+    /// Kind of line.
     pub kind: LineKind,
-    /// The operation that inserts it; nothing for a line of the panel as drawn.
+    /// The operation that inserts the line; none for a line of the panel as drawn.
     pub by: Option<OperationId>,
-    /// Its edges, in order.
+    /// Edges of the line, in order.
     pub edges: Vec<Edge>,
 }
 
@@ -201,17 +201,17 @@ pub enum LineKind {
 /// A stretch of a curve, from a point on it to another.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
-    /// Its id.
+    /// Identifier of the edge.
     pub id: EdgeId,
     /// Name for seams and formulas, unique in the panel.
     pub name: String,
-    /// The curve it follows.
+    /// The curve that the edge follows.
     pub curve: CurveId,
-    /// Where it starts and ends: points on the curve. It may run against the curve.
+    /// Start and end of the edge: points on the curve. The edge may run against the curve.
     pub ends: [PointId; 2],
-    /// Width of cloth outside it (m); nothing means the panel's.
+    /// Seam allowance of the edge (m); none means the allowance of the panel.
     pub allowance: Option<Number>,
-    /// The corner at its start.
+    /// The corner at the start of the edge.
     pub corner: EdgeCorner,
 }
 
@@ -236,15 +236,15 @@ fields!(Edge, |self, v| {
 /// A notch of a panel.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Notch {
-    /// Its id.
+    /// Identifier of the notch.
     pub id: NotchId,
     /// Name to show.
     pub name: String,
     /// The line it is on.
     pub line: LineId,
-    /// Where on it.
+    /// Position of the notch on the line.
     pub at: Mark,
-    /// How it is cut or drawn.
+    /// Shape of the notch.
     pub kind: NotchKind,
 }
 
@@ -293,7 +293,7 @@ pub enum NotchKind {
     Check,
 }
 
-/// How often a panel is cut.
+/// Number of pieces cut from a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Cut {
     /// Number of pieces, copies 0 to `quantity - 1`.
@@ -311,7 +311,7 @@ impl Default for Cut {
     }
 }
 
-/// One for each form in which it is written: a number, `"pair"`, both fields.
+/// One value for each form in which it is written: a number, `"pair"`, both fields.
 impl IntoEnumIterator for Cut {
     type Iterator = std::array::IntoIter<Self, 3>;
 
@@ -345,24 +345,24 @@ fields!(
 impl Choice for LineKind {}
 impl Choice for NotchKind {}
 
-/// Where a panel goes before it is sewn.
+/// Place of a panel on the body before it is sewn.
 #[derive(Clone, Debug, PartialEq, Default, EnumIter, Serialize, Deserialize)]
 pub enum WornRule {
-    /// Nothing is known: the program decides from the seams.
+    /// No place is given: the program decides from the seams.
     #[default]
     Automatic,
     /// Wrapped round a body part. Mirrored copies go to the other side of the body.
     Wrapped {
         /// The body part.
         part: BodyPart,
-        /// Which side of it.
+        /// The side of the body part.
         facing: Facing,
         /// Height above the floor, or distance along an arm from the shoulder (m).
         level: Option<Number>,
     },
     /// Placed in space: world from panel. Mirrored copies go to the mirror place at -x.
     Placed {
-        /// Where the panel's origin goes (m).
+        /// Position of the panel's origin in space (m).
         translation: [f64; 3],
         /// Unit quaternion x, y, z, w.
         rotation: [f64; 4],
@@ -407,13 +407,13 @@ impl Panel {
         self.notches.iter().find(|notch| notch.id == id)
     }
 
-    /// How many operations are done after one of them.
+    /// The number of an operation, counted from 1 in the order in which the operations are done.
     pub fn step_of(&self, operation: OperationId) -> Option<usize> {
         let mut operations = self.operations.iter();
         operations.position(|o| o.id == operation).map(|k| k + 1)
     }
 
-    /// An empty panel of that fabric, traced from that sheet.
+    /// An empty panel of this fabric, traced from this sheet.
     pub fn new(id: PanelId, name: impl Into<String>, sheet: SheetId, fabric: FabricId) -> Self {
         Self {
             id,
@@ -431,7 +431,7 @@ impl Panel {
         }
     }
 
-    /// The sheet its lines are traced from; nothing if it is a side of another panel.
+    /// The sheet that the panel is traced from; none if it is a side of another panel.
     pub fn sheet(&self) -> Option<SheetId> {
         match self.source {
             Source::Traced(sheet) => Some(sheet),
@@ -473,13 +473,13 @@ impl Panel {
 }
 
 impl Line {
-    /// Whether it is closed.
+    /// Whether the line is closed.
     pub fn is_closed(&self) -> bool {
         self.kind != LineKind::Internal
     }
 
-    /// Its edges from a corner to one that follows it, all of them where both are the same corner
-    /// of a closed line; nothing if either is not a corner of the line in that order.
+    /// Edges of the line from one corner to a later one, all edges if both are the same corner of a closed
+    /// line; none if either is not a corner of the line in this order.
     pub fn stretch(&self, [from, to]: [PointId; 2]) -> Option<Vec<&Edge>> {
         let first = self.edges.iter().position(|edge| edge.ends[0] == from)?;
         let count = self.edges.len();

@@ -5,33 +5,33 @@ use crate::{FabricId, NotchId, PanelId, fields};
 use serde::{Deserialize, Serialize};
 use strum::EnumIter;
 
-/// What is asked of a piece beside the settings of its fabric. What is not given is that of a rule for more pieces, else
-/// the default.
+/// Rule for laying a piece, in addition to the settings of its fabric. Fields that are not given are taken
+/// from a rule for more pieces, else from the default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LayingRule {
-    /// Free fabric it needs to any other (m).
+    /// Least distance of the piece from any other (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
-    /// Extra fabric cut all round it, to be cut to shape later (m).
+    /// Extra fabric cut all round the piece, to be cut to shape later (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<f64>,
-    /// How far its grain may lie off the warp (rad).
+    /// Greatest angle between the grain of the piece and the warp (rad).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt: Option<f64>,
-    /// Angles its grain may have to the warp (rad).
+    /// Allowed angles from the warp to the grain of the piece (rad).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turns: Option<Vec<Turn>>,
-    /// Whether it may be turned over.
+    /// Whether the piece may be turned over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turn_over: Option<bool>,
-    /// Where the fabric is folded and the panel too: whether half of it lies on the fold.
+    /// Whether half of the piece lies on the fold, if both the fabric and the panel are folded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on_fold: Option<bool>,
-    /// Whether it may hide flaws.
+    /// Whether the piece may hide flaws.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over_flaws: Option<bool>,
-    /// Whether its hem and middle lie on the print.
+    /// Whether the hem and the middle of the piece are aligned with the print.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on_print: Option<bool>,
 }
@@ -68,7 +68,7 @@ fields!(LayingRule, |self, v| {
 });
 
 impl LayingRule {
-    /// This rule over one for more pieces: what it leaves open is that of the other.
+    /// This rule completed by a rule for more pieces: fields left open here are taken from the rule below.
     #[must_use]
     pub fn over(self, below: &Self) -> Self {
         let Self {
@@ -93,7 +93,7 @@ impl LayingRule {
         }
     }
 
-    /// What no piece can be laid by: what is wrong, and what to do.
+    /// The first field with which no piece can be laid: the fault, and the advice.
     pub fn fault(&self) -> Option<(String, &'static str)> {
         let lengths = [
             ("gap", self.gap),
@@ -122,7 +122,7 @@ impl LayingRule {
     }
 }
 
-/// Which pieces a rule is for.
+/// The pieces that a rule is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumIter, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RuledPieces {
@@ -157,15 +157,15 @@ fields!(
 /// A rule of a marker for some of its pieces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PieceRule {
-    /// The pieces.
+    /// The pieces that the rule is for.
     pub pieces: RuledPieces,
-    /// What is asked of them.
+    /// Rule for laying the pieces.
     #[serde(flatten)]
     pub rule: LayingRule,
-    /// The fabric they are cut from instead of their panel's.
+    /// The fabric that the pieces are cut from instead of the fabric of their panel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fabric: Option<FabricId>,
-    /// Further fabrics they are cut from too.
+    /// Further fabrics that the pieces are cut from in addition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub also: Option<Vec<FurtherFabric>>,
 }
@@ -186,12 +186,12 @@ fields!(PieceRule, |self, v| {
     given_list!(v, also);
 });
 
-/// A fabric that pieces are cut from too.
+/// A further fabric that pieces are cut from in addition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FurtherFabric {
     /// The fabric.
     pub fabric: FabricId,
-    /// How often each garment's piece is cut from it.
+    /// Number of copies cut from it for each garment's piece.
     pub quantity: u32,
 }
 
@@ -201,12 +201,12 @@ fields!(FurtherFabric, |self, v| {
     v.value(key("quantity"), quantity);
 });
 
-/// A notch that lies on the same place of the print as others.
+/// A notch that lies on the same place of the print as other notches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MarkRef {
     /// The panel.
     pub panel: PanelId,
-    /// Its notch.
+    /// The notch of the panel.
     pub notch: NotchId,
 }
 

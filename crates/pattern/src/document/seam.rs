@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 /// Two chains of spans that are sewn together, start to start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seam {
-    /// Its id.
+    /// Identifier of the seam.
     pub id: SeamId,
     /// Name to show.
     pub name: String,
-    /// Both chains, each in walking order.
+    /// Spans of both sides, each in walking order.
     pub sides: [Vec<Span>; 2],
-    /// How much longer one side may be than the other (m).
+    /// Length by which one side may exceed the other (m).
     pub ease: Number,
-    /// Whether the longer side is gathered to fit the shorter, whatever its length.
+    /// Whether the longer side is gathered to fit the shorter, however long it is.
     pub gathered: bool,
-    /// Whether right sides lie together while it is sewn: the usual seam.
+    /// Whether the right sides lie together during sewing: the usual seam.
     pub right_sides_together: bool,
-    /// Whether more than two plies may meet here.
+    /// Whether more than two plies may meet at this seam.
     pub multi_ply: bool,
 }
 
@@ -79,17 +79,17 @@ impl Seam {
 pub struct Span {
     /// The panel.
     pub panel: PanelId,
-    /// Its copy, from 0.
+    /// Number of the copy, from 0.
     pub copy: u32,
-    /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
+    /// Half of a folded panel: 0 as drawn; each fold has one bit, set for the half beyond that fold.
     pub half: u8,
-    /// The line.
+    /// The line that the stretch is on.
     pub line: LineName,
-    /// Where it starts.
+    /// Start of the span.
     pub from: Mark,
-    /// Where it ends.
+    /// End of the span.
     pub to: Mark,
-    /// Whether it walks against the line.
+    /// Whether the span is walked against the line.
     pub backwards: bool,
 }
 

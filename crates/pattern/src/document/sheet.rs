@@ -9,17 +9,18 @@ use strum::EnumIter;
 /// A drafting plane.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sheet {
-    /// Its id.
+    /// Identifier of the sheet.
     pub id: SheetId,
     /// Name to show and for formulas.
     pub name: String,
-    /// The panel stage it lies on: after that operation, or as drawn. Nothing is a free sheet.
+    /// The panel stage that the sheet lies on: the panel after that operation, or as drawn. None for a
+    /// free sheet.
     pub on: Option<(PanelId, Option<OperationId>)>,
-    /// Where its origin lies on the table (m).
+    /// Position of the sheet's origin on the table (m).
     pub on_table: [f64; 2],
-    /// Its points: corners, handles, construction points.
+    /// Points of the sheet: corners, handles, construction points.
     pub points: Vec<Arc<Point>>,
-    /// Its curves.
+    /// Curves of the sheet.
     pub curves: Vec<Arc<Curve>>,
 }
 
@@ -80,11 +81,11 @@ impl Sheet {
 /// A point of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// Its id.
+    /// Identifier of the point.
     pub id: PointId,
     /// Name for formulas, unique in the sheet.
     pub name: String,
-    /// Where it is.
+    /// Rule that gives the position of the point.
     pub rule: PointRule,
 }
 
@@ -95,47 +96,47 @@ fields!(Point, |self, v| {
     v.flat(rule);
 });
 
-/// Where a point is: its coordinates, or how it is constructed from other parts of its sheet.
+/// Rule for the position of a point: its coordinates, or its construction from other parts of its sheet.
 #[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum PointRule {
     /// At coordinates of the sheet.
     At {
-        /// To the right (m).
+        /// Distance to the right of the origin (m).
         x: Number,
-        /// Upward (m).
+        /// Distance above the origin (m).
         y: Number,
     },
-    /// Where two curves cross.
+    /// The crossing of two curves.
     CurveCrossing {
         /// The curves.
         curves: [CurveId; 2],
-        /// Which of several crossings, from 0 along the first curve.
+        /// Number of the crossing, from 0 along the first curve.
         index: u16,
     },
-    /// Where the line through two points crosses a curve.
+    /// The crossing of a curve with the line through two points.
     LineCrossing {
         /// The line.
         line: [PointId; 2],
         /// The curve.
         curve: CurveId,
-        /// Which of several crossings, from 0 along the curve.
+        /// Number of the crossing, from 0 along the curve.
         index: u16,
     },
     /// On a curve, at a distance from its start, or from its end if negative.
     AlongCurve {
         /// The curve.
         curve: CurveId,
-        /// How far (m).
+        /// Arc length from that end (m).
         distance: Number,
     },
     /// On a curve, at a share of its arc length.
     OnCurve {
         /// The curve.
         curve: CurveId,
-        /// Plain share of its arc length.
+        /// Plain share of the curve's arc length.
         share: Number,
     },
-    /// Where the lines through two pairs of points meet.
+    /// The point in which the lines through two pairs of points meet.
     Crossing {
         /// The first line.
         first: [PointId; 2],
@@ -144,14 +145,14 @@ pub enum PointRule {
     },
     /// The foot of the perpendicular from a point on the line through two others.
     Foot {
-        /// The point.
+        /// The point whose foot is taken.
         base: PointId,
         /// The line.
         line: [PointId; 2],
     },
     /// The mirror image of a point in the line through two others.
     Mirrored {
-        /// The point.
+        /// The point that is mirrored.
         base: PointId,
         /// The mirror.
         line: [PointId; 2],
@@ -160,16 +161,16 @@ pub enum PointRule {
     Mark {
         /// The line.
         line: LineName,
-        /// Where on it.
+        /// Position on the line.
         at: Mark,
     },
     /// Beside another point.
     Offset {
         /// The other point.
         base: PointId,
-        /// To the right of it (m).
+        /// Distance to the right of the other point (m).
         x: Number,
-        /// Above it (m).
+        /// Distance above the other point (m).
         y: Number,
     },
     /// At a distance from another point.
@@ -178,16 +179,16 @@ pub enum PointRule {
         base: PointId,
         /// Direction (rad), from +x counter-clockwise.
         angle: Number,
-        /// How far (m).
+        /// Distance from the other point (m).
         distance: Number,
     },
     /// On the line through two points, at a distance from the first.
     Toward {
-        /// Where to start.
+        /// Start of the line.
         base: PointId,
-        /// Where to go.
+        /// Point that gives the direction of the line.
         tip: PointId,
-        /// How far (m).
+        /// Distance from the start (m).
         distance: Number,
     },
     /// In the frame of two points: `base + along (tip - base) + aside (tip - base turned left)`.
@@ -196,9 +197,9 @@ pub enum PointRule {
         base: PointId,
         /// End of its unit axis.
         tip: PointId,
-        /// Plain share of the way.
+        /// Plain share of the way from base to tip.
         along: Number,
-        /// Plain share of the same length to the left of the way.
+        /// Plain share of the same length, to the left of the way.
         aside: Number,
     },
 }
@@ -317,7 +318,7 @@ fields!(
     },
 );
 
-/// Which of several crossings.
+/// Field for the number of one of several crossings.
 const INDEX: ValueField = key("index")
     .may_lack()
     .beyond("there are not that many crossings", "write 0 or more");
@@ -335,13 +336,13 @@ impl PointRule {
 /// A curve of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Its id.
+    /// Identifier of the curve.
     pub id: CurveId,
     /// Name for formulas, unique among the curves of its sheet.
     pub name: String,
-    /// Where it starts and ends.
+    /// Start and end of the curve.
     pub ends: [PointId; 2],
-    /// How it runs between them.
+    /// Shape of the curve between its ends.
     pub rule: CurveRule,
 }
 
@@ -359,7 +360,7 @@ fields!(Curve, |self, v| {
     v.flat(rule);
 });
 
-/// How a curve runs between its ends.
+/// Rule for the shape of a curve between its ends.
 #[derive(Clone, Debug, PartialEq, Default, EnumIter, Serialize, Deserialize)]
 pub enum CurveRule {
     /// Straight.
@@ -367,8 +368,7 @@ pub enum CurveRule {
     Line,
     /// A circular arc.
     Arc {
-        /// Tangent of a quarter of the swept angle; positive turns counter-clockwise, 1 is a
-        /// half circle.
+        /// Tangent of a quarter of the swept angle (1); positive turns counter-clockwise, 1 is a half circle.
         bulge: Number,
     },
     /// Cubic Bezier curves through knots.
@@ -377,8 +377,8 @@ pub enum CurveRule {
         handles: [PointId; 2],
         /// Points between the ends, in order.
         knots: Vec<Knot>,
-        /// The length it is drawn to by scaling all handles from their points (m); nothing leaves
-        /// them as they are.
+        /// Length to which the curve is drawn by scaling all handles from their points (m); none leaves the
+        /// handles as they are.
         to_length: Option<Number>,
     },
     /// The mirror image of another curve in the line through two points.
@@ -388,7 +388,7 @@ pub enum CurveRule {
         /// The mirror.
         line: [PointId; 2],
     },
-    /// Another curve turned and scaled to lie between the ends.
+    /// Another curve turned and scaled so that it lies between the ends.
     Copy {
         /// The other curve.
         of: CurveId,

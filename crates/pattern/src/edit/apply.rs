@@ -8,8 +8,9 @@ impl Pattern {
     /// Applies edits in order. On an error the document is unchanged.
     ///
     /// # Errors
-    /// A name no part may have, a number that is not finite, a reference to what was never given
-    /// or is of another kind. A reference to a part that is gone is none: it waits.
+    /// A name that no part may have, a number that is not finite, a reference to an id that was never given
+    /// or that has another kind. A reference to a part that was removed is no error: it waits for the part to
+    /// come back.
     pub fn apply(&mut self, edits: &[Edit]) -> Result<(), EditError> {
         let mut changed = self.clone();
         for edit in edits {
@@ -177,7 +178,7 @@ impl Pattern {
         }
     }
 
-    /// Refuses references to ids that were never given, or that parts of other kinds have.
+    /// Refuses references to ids that were never given or that belong to parts of other kinds.
     fn check_references(&self, entity: &Entity) -> Result<(), EditError> {
         let mut parts = None;
         for reference in entity.references() {
@@ -204,7 +205,7 @@ impl Pattern {
         Ok(())
     }
 
-    /// Whether a part that stands in a list of its own is there.
+    /// Whether a part that stands in a list of its own is in the pattern.
     fn has(&self, part: PartId) -> bool {
         match part {
             PartId::Variable(id) => self.variables.iter().any(|v| v.id == id),
@@ -213,7 +214,7 @@ impl Pattern {
             PartId::Panel(id) => self.panel(id).is_some(),
             PartId::Fabric(id) => self.fabric(id).is_some(),
             PartId::Curve(id) => self.curve(id).is_some(),
-            // Asked of seldom: they are looked for among all parts.
+            // These kinds are seldom asked for: they are searched among all parts.
             PartId::Size(_)
             | PartId::Line(_)
             | PartId::Edge(_)

@@ -1,5 +1,5 @@
-//! Edits: every change of a document is a part put in, a part removed, or a part's place in its
-//! list. All that is clever is a planner that gives these.
+//! Edits: every change of a document puts in a part, removes a part, or moves a part within its list.
+//! Planners work out the edits that an action of the user needs.
 
 mod apply;
 mod references;
@@ -11,19 +11,19 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// One change of a pattern, in absolute values: it means the same whenever it is applied.
+/// One change of a pattern, in absolute values: it has the same meaning whenever it is applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Edit {
     /// Adds a part at the end of its list, or replaces the one with the same id.
     Put(Entity),
-    /// Removes a part. What refers to it waits for its return.
+    /// Removes a part. References to it stay and wait for its return.
     Remove(PartId),
     /// Moves a part to another place of its list, counted from 0 and clamped.
     Order {
         /// The part.
         part: PartId,
-        /// Its new place.
+        /// New index of the part in its list.
         at: usize,
     },
 }
@@ -61,7 +61,7 @@ pub enum Entity {
 pub struct Head {
     /// Name to show.
     pub name: String,
-    /// Unit lengths are shown in.
+    /// Unit in which lengths are shown.
     pub unit: DisplayUnit,
     /// The size used when none is asked for.
     pub base_size: Option<SizeId>,
@@ -70,20 +70,20 @@ pub struct Head {
 /// A sheet without its points and curves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetHead {
-    /// Its id.
+    /// Identifier of the sheet.
     pub id: SheetId,
     /// Name to show and for formulas.
     pub name: String,
-    /// The panel stage it lies on.
+    /// The panel stage that the sheet lies on; none for a free sheet.
     pub on: Option<(PanelId, Option<OperationId>)>,
-    /// Where its origin lies on the table (m).
+    /// Position of the sheet's origin on the table (m).
     pub on_table: [f64; 2],
 }
 
-/// Why edits were refused. The document is unchanged.
+/// Reason why edits were refused. The document is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// A part it names is not there.
+    /// A part that the edit names is not there.
     #[error("{0} is not there: choose one that is")]
     Missing(String),
     /// A name cannot be used.
@@ -97,28 +97,28 @@ pub enum EditError {
     /// A number is not finite.
     #[error("{0} has a number that is not finite: give a finite one")]
     NotFinite(String),
-    /// It refers to what never was, or is of another kind.
+    /// The part refers to an id that was never given, or to a part of another kind.
     #[error("{what} refers to {to}, which {why}: refer to a part of the document")]
     Reference {
         /// The part that refers.
         what: String,
-        /// What it refers to.
+        /// The part referred to.
         to: String,
-        /// What is wrong with that.
+        /// The fault of the reference.
         why: &'static str,
     },
     /// The edit makes no sense here.
     #[error("{message}: {hint}")]
     Impossible {
-        /// What is wrong.
+        /// Description of the fault.
         message: String,
-        /// What to do.
+        /// Advice on how to remedy the fault.
         hint: String,
     },
 }
 
 impl Entity {
-    /// Its id; nothing for the head.
+    /// Identifier of the part; none for the head.
     pub fn id(&self) -> Option<PartId> {
         Some(match self {
             Self::Head(_) => return None,
@@ -135,7 +135,7 @@ impl Entity {
         })
     }
 
-    /// Its name; what a guide is, which has none.
+    /// Name of the part; for a guide, which has none, its kind.
     pub fn name(&self) -> &str {
         match self {
             Self::Head(head) => &head.name,

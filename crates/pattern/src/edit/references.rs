@@ -49,7 +49,8 @@ impl From<&Sheet> for SheetHead {
 }
 
 impl Entity {
-    /// Its part; of a sheet the fields that it has without its points and curves are in the sheet that is given.
+    /// The part of the entity. A sheet without its points and curves is written into the sheet that is
+    /// passed in.
     fn part<'e>(&'e self, sheet: &'e mut Sheet) -> &'e dyn Fields {
         match self {
             Self::Head(head) => head,
@@ -69,7 +70,7 @@ impl Entity {
         }
     }
 
-    /// Gives its part to be changed, with an id of the sheet that it is on.
+    /// Passes the part of the entity to a function that may change it.
     pub(crate) fn change(&mut self, change: &mut dyn FnMut(&mut dyn Fields)) {
         match self {
             Self::Head(head) => change(head),
@@ -106,14 +107,14 @@ impl Entity {
         }
     }
 
-    /// Every part it refers to.
+    /// Every part that the entity refers to.
     pub fn references(&self) -> Vec<PartId> {
         let found = fields::references(self.part(&mut Sheet::default()));
         match self {
             Self::Point(sheet, _) | Self::Curve(sheet, _) => {
                 std::iter::once((*sheet).into()).chain(found).collect()
             }
-            // However many pieces name a part.
+            // Each part once, however many pieces refer to it.
             Self::Marker(_) => found
                 .into_iter()
                 .collect::<BTreeSet<_>>()
@@ -130,7 +131,7 @@ impl Entity {
         }
     }
 
-    /// Whether every number that is written in it is finite.
+    /// Whether every number in the entity is finite.
     pub(crate) fn is_finite(&self) -> bool {
         let mut sheet = Sheet::default();
         fields::numbers(self.part(&mut sheet))
@@ -138,7 +139,7 @@ impl Entity {
             .all(Number::is_finite)
     }
 
-    /// The numbers of all parts of it, or of one, in the order they are shown.
+    /// The numbers of the entity, or of one part of it, in the order in which they are shown.
     pub(crate) fn number_entries(&self, part: Option<PartId>) -> Vec<fields::NumberEntry> {
         fields::number_entries(self.part(&mut Sheet::default()), part)
     }
@@ -184,7 +185,7 @@ impl Pattern {
         all
     }
 
-    /// The entity that a part is, or stands in; nothing if it is not there.
+    /// The entity that a part is or belongs to; none if the part is not in the pattern.
     pub(crate) fn entity_with(&self, part: PartId) -> Option<Entity> {
         let panel = |owns: &dyn Fn(&crate::Panel) -> bool| {
             let panel = self.panels.iter().find(|panel| owns(panel))?;

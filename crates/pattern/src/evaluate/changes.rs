@@ -1,4 +1,4 @@
-//! Takes over what changed in a pattern: definitions of nodes, what they need, names.
+//! Takes over the changes of a pattern: definitions of nodes, their dependencies, names.
 
 use super::Evaluation;
 use super::needs::Needs;
@@ -8,11 +8,11 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 impl Evaluation {
-    /// Sets the definitions that changed, and gives their nodes.
+    /// Sets the definitions that changed, and returns their nodes.
     pub(super) fn take_over(&mut self, before: &Pattern) -> Vec<u32> {
         let pattern = self.pattern.clone();
         let mut changed: Vec<u32> = Vec::new();
-        // Sheets that lie on another stage than before, or were not there.
+        // Sheets that are new or lie on another stage than before.
         let mut laid: Vec<Arc<Sheet>> = Vec::new();
         let same = |a: usize, b: usize, equal: &dyn Fn(usize) -> bool| a == b && (0..a).all(equal);
         if !same(pattern.variables.len(), before.variables.len(), &|k| {
@@ -131,7 +131,8 @@ impl Evaluation {
                     &mut changed,
                 );
             }
-            // A trued edge keeps its direction where a seam ends.
+            // A trued edge keeps its direction at a corner where a seam ends, so these stages depend on
+            // the seams.
             let trued = pattern.panels.iter().flat_map(|panel| {
                 let own = panel.operations.iter();
                 let own = own.filter(|step| step.kind.may_true());
@@ -167,7 +168,7 @@ impl Evaluation {
         }
     }
 
-    /// The number of a node, which is made if it is not there.
+    /// The number of a node; the node is made if it is not there.
     pub(super) fn number_of(&mut self, node: Node) -> u32 {
         if let Some(&k) = self.index.get(&node) {
             return k;
@@ -208,7 +209,7 @@ impl Evaluation {
         }
     }
 
-    /// Marks parts that are gone.
+    /// Marks the nodes of removed parts as missing.
     fn remove_missing(
         &mut self,
         before: impl Iterator<Item = Node>,
@@ -221,7 +222,8 @@ impl Evaluation {
         }
     }
 
-    /// Has a node's needs found again when the lines of these panels change, and of no others.
+    /// Has the dependencies of a node found again whenever the lines of these panels change, and of
+    /// no others.
     fn watch(&mut self, k: u32, panels: Vec<PanelId>) {
         if self.nodes[k as usize].watches == panels {
             return;
@@ -238,7 +240,7 @@ impl Evaluation {
         }
     }
 
-    /// Finds what a node needs. Whether that changed.
+    /// Finds the nodes that a node depends on; returns whether they changed.
     pub(super) fn set_needs(&mut self, k: u32) -> bool {
         let definition = self.nodes[k as usize].definition.clone();
         let found = Needs::of(&definition, &self.pattern, &self.names);
@@ -285,8 +287,8 @@ fn panel_nodes(panel: &Panel) -> Vec<Node> {
         .collect()
 }
 
-/// Whether parts came, went, changed places or were called something else: whether names lead
-/// elsewhere, or are told otherwise.
+/// Whether parts were added, removed, reordered or renamed: names in formulas may then lead to other parts,
+/// and messages may be worded differently.
 pub(super) fn is_renamed(before: &Pattern, now: &Pattern) -> bool {
     !alike(&before.sizes, &now.sizes, |_, _| false)
         || !alike(&before.fabrics, &now.fabrics, |a, b| {
@@ -310,7 +312,7 @@ pub(super) fn is_renamed(before: &Pattern, now: &Pattern) -> bool {
         })
 }
 
-/// Whether two lists have parts of the same names and ids in the same order.
+/// Whether two lists have parts with the same names and ids in the same order.
 fn alike<T>(before: &[Arc<T>], now: &[Arc<T>], same: impl Fn(&T, &T) -> bool) -> bool {
     let mut pairs = before.iter().zip(now);
     before.len() == now.len() && pairs.all(|(a, b)| Arc::ptr_eq(a, b) || same(a, b))

@@ -6,11 +6,11 @@ use super::{Evaluation, curves, operations, points, seams};
 use crate::formula::Failure;
 use crate::{Code, Diagnostic, PartReference, Place, Severity};
 
-/// Names of a cycle that are told.
+/// Most names of a cycle that a message lists.
 const CYCLE_NAMES: usize = 12;
 
 impl Evaluation {
-    /// The value of a node from those of the nodes it needs.
+    /// Computes the value of a node from the values of the nodes that it depends on.
     pub(super) fn compute(&self, k: u32) -> (Result<Value, u32>, Vec<Diagnostic>) {
         let state = &self.nodes[k as usize];
         if let Some(named) = state.cycle {
@@ -32,13 +32,13 @@ impl Evaluation {
         (value.ok_or(cause), computation.diagnostics)
     }
 
-    /// Says that a number needs itself.
+    /// The diagnostic for a number that depends on itself.
     fn cycle(&self, k: u32) -> Diagnostic {
         let mut names: Vec<String> = Vec::new();
         let mut at = k;
         let component = self.nodes[k as usize].cycle;
         let mut seen = std::collections::HashSet::new();
-        // A walk along needs inside the component comes back to where it was.
+        // A walk along dependencies inside the component returns to a node that it has met.
         while seen.insert(at) {
             if names.len() < CYCLE_NAMES {
                 names.push(self.node_words(at));
@@ -142,7 +142,8 @@ impl Computation<'_> {
         }
     }
 
-    /// A measurement, else the variable that is called so now; nothing for a word that is neither.
+    /// The value of a measurement, else of the variable that now has this name; none for a word that
+    /// is neither.
     fn word(&mut self) -> Option<Value> {
         let evaluation = self.evaluation;
         let Node::Word(number) = evaluation.nodes[self.k as usize].node else {

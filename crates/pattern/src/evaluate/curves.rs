@@ -10,10 +10,10 @@ use toile_geometry::{Curve as Piece, Path, Vec2};
 
 /// A point this near to a curve is on it (m).
 const ON_CURVE: f64 = 1e-6;
-/// Handles of a spline that is drawn to a length are scaled by at most this.
+/// Greatest factor by which the handles of a spline are scaled to reach its length (1).
 const MAX_SCALE: f64 = 16.0;
 
-/// The pieces of a curve (m).
+/// Curve pieces that make up a curve (m).
 pub(super) fn curve(c: &mut Computation<'_>, curve: &Arc<Curve>) -> Option<Arc<Path>> {
     let result = pieces(c, curve).map(|pieces| Arc::new(Path::new(pieces)));
     if result.is_ok() {
@@ -75,7 +75,7 @@ fn pieces(c: &mut Computation<'_>, curve: &Curve) -> Result<Vec<Piece>, Failure>
     }
 }
 
-/// A curve turned and scaled so that it leads from one point to another.
+/// A curve turned and scaled so that it leads from one given point to another.
 fn copied(path: &Path, [start, end]: [Vec2; 2]) -> Result<Vec<Piece>, Failure> {
     let (Some(first), Some(last)) = (path.curves().first(), path.curves().last()) else {
         return Ok(Vec::new());
@@ -101,7 +101,7 @@ fn copied(path: &Path, [start, end]: [Vec2; 2]) -> Result<Vec<Piece>, Failure> {
 /// Points of a spline with the handles before and after each (m).
 struct Spline {
     points: Vec<Vec2>,
-    /// Of each piece: its handle at the start and at the end, from their points.
+    /// Handles of each piece at its start and at its end, relative to these points.
     handles: Vec<[Vec2; 2]>,
 }
 
@@ -138,7 +138,7 @@ impl Spline {
         pieces.collect()
     }
 
-    /// The pieces with handles scaled so that they are as long as asked, by bisection.
+    /// The pieces with their handles scaled so that they have the wanted total length, by bisection.
     fn to_length(&self, length: f64) -> Result<Vec<Piece>, Failure> {
         let excess = |scale: f64| -> f64 {
             self.scaled(scale).iter().map(Piece::length).sum::<f64>() - length

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 const HINT: &str = "rename or renumber one of them";
 
-/// Finds parts of one name among those that have an owner in common.
+/// Collects a diagnostic for each name that several parts of one owner share.
 struct Finder(Vec<Diagnostic>);
 
 impl Finder {
@@ -27,8 +27,8 @@ impl Finder {
     }
 }
 
-/// Ids must be unique, or seams would mean two things; names, or formulas and commands would. Two
-/// names that are only shown are worth a warning.
+/// Duplicate ids, and names that formulas or commands use, are errors: a reference would be ambiguous. A
+/// duplicate of a name that is only shown is a warning.
 pub(super) fn duplicates(pattern: &Pattern) -> Vec<Diagnostic> {
     let (error, warning) = (Severity::Error, Severity::Warning);
     let mut finder = Finder(Vec::new());

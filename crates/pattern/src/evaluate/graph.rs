@@ -1,4 +1,4 @@
-//! Brings an evaluation up to date: orders the graph, recomputes.
+//! Brings an evaluation up to date: sorts the graph of dependencies and recomputes changed values.
 
 use super::changes::is_renamed;
 use super::duplicates::duplicates;
@@ -11,7 +11,7 @@ use std::collections::{BinaryHeap, HashSet};
 use std::sync::Arc;
 
 impl Evaluation {
-    /// Brings all values up to date with a pattern and whom it is drafted for.
+    /// Brings all values up to date with a pattern and its wearer.
     pub fn update(&mut self, pattern: &Pattern, wearer: impl Into<Wearer>) -> Update {
         let known = self.nodes.len();
         let dirty = self.take_changes(pattern, Some(wearer.into()));
@@ -21,8 +21,8 @@ impl Evaluation {
         }
     }
 
-    /// Brings points and all that they need up to date with a pattern, and nothing else: for
-    /// planners, which look at places alone and then forget the evaluation.
+    /// Brings these points and everything that they depend on up to date with a pattern, and nothing else.
+    /// For planners, which read the positions and then drop the evaluation.
     pub(crate) fn update_points(&mut self, pattern: &Pattern, points: &[PointId]) {
         let dirty = self.take_changes(pattern, None);
         let nodes = points.iter().map(|&id| Node::Point(id));
@@ -36,7 +36,8 @@ impl Evaluation {
         self.recompute_among(dirty, |k| wanted.contains(&k));
     }
 
-    /// Takes over what changed, the wearer if there is another; the nodes to be computed for it.
+    /// Takes over the changes of the pattern, and the wearer if one is given; returns the nodes to
+    /// be recomputed.
     fn take_changes(&mut self, pattern: &Pattern, wearer: Option<Wearer>) -> HashSet<u32> {
         self.revision += 1;
         let before = std::mem::replace(&mut self.pattern, pattern.clone());
@@ -54,7 +55,7 @@ impl Evaluation {
             self.duplicates = duplicates(pattern);
         }
         if renamed || remeasured {
-            // What was not found may be there now, and what is wrong be told by another name.
+            // A part that was not found may exist now, and messages may name parts differently.
             dirty.extend((0..self.nodes.len() as u32).filter(|&k| {
                 let state = &self.nodes[k as usize];
                 let is_word = matches!(state.node, Node::Word(_));
@@ -68,7 +69,7 @@ impl Evaluation {
         dirty
     }
 
-    /// Finds what nodes need, and orders all anew if that changed.
+    /// Finds the dependencies of the nodes again, and sorts the graph anew if they changed.
     fn follow_needs(&mut self, dirty: &mut HashSet<u32>) {
         let mut waiting: Vec<u32> = dirty.iter().copied().collect();
         waiting.sort_unstable();
@@ -78,7 +79,7 @@ impl Evaluation {
             for k in waiting.drain(..) {
                 reordered |= self.set_needs(k);
             }
-            // Words that were never met need the variables called so.
+            // Words met for the first time depend on the variables with that name.
             waiting.extend(known..self.nodes.len() as u32);
             dirty.extend(&waiting);
         }
@@ -91,8 +92,8 @@ impl Evaluation {
         }
     }
 
-    /// Orders all nodes so that what is needed comes first, and finds cycles: strongly connected
-    /// components by Tarjan (1972), which come out in that order.
+    /// Sorts all nodes so that each comes after those that it depends on, and finds cycles: strongly
+    /// connected components by Tarjan (1972), which come out in that order.
     fn order(&mut self) {
         const UNSEEN: u32 = u32::MAX;
         let count = self.nodes.len();
@@ -105,7 +106,7 @@ impl Evaluation {
             if index[root as usize] != UNSEEN {
                 continue;
             }
-            // Each call of the recursive form is a node and how many of its needs were followed.
+            // Each call of the recursive form is a node, with the number of its dependencies followed so far.
             let mut calls: Vec<(u32, usize)> = vec![(root, 0)];
             while let Some((v, followed)) = calls.pop() {
                 let at = v as usize;
@@ -144,7 +145,7 @@ impl Evaluation {
                         .iter()
                         .copied()
                         .min_by_key(|&w| match self.nodes[w as usize].node {
-                            // A word is in a cycle by the variable that it names.
+                            // A word is part of a cycle through the variable that it names.
                             Node::Word(_) => (true, Node::Word(0)),
                             node @ (Node::Variable(_)
                             | Node::Point(_)
@@ -164,7 +165,7 @@ impl Evaluation {
                     state.rank = rank;
                     let was = std::mem::replace(&mut state.cycle, cycle);
                     if was.is_some() && !is_cycle {
-                        // Out of a cycle: to be computed like what is new.
+                        // The node has left a cycle: it is computed like a new one.
                         state.changed = 0;
                     }
                 }
@@ -173,12 +174,12 @@ impl Evaluation {
         }
     }
 
-    /// Recomputes nodes and what needs them, in order.
+    /// Recomputes nodes and their dependants, in order.
     fn recompute(&mut self, dirty: HashSet<u32>) -> Update {
         self.recompute_among(dirty, |_| true)
     }
 
-    /// The same for those nodes alone that are wanted.
+    /// Recomputes the wanted ones among these nodes and their dependants, in order.
     fn recompute_among(&mut self, dirty: HashSet<u32>, wanted: impl Fn(u32) -> bool) -> Update {
         let mut update = Update::default();
         let mut waiting: HashSet<u32> = dirty.into_iter().filter(|&k| wanted(k)).collect();
@@ -193,7 +194,7 @@ impl Evaluation {
             let revision = self.revision;
             let state = self.state_mut(k);
             state.diagnostics = diagnostics;
-            // What needs a part tells its absence itself, but not its fault.
+            // Dependants report that a part is missing themselves, but not that it has a fault.
             let is_missing = matches!(state.definition, Definition::Missing);
             let was_missing = std::mem::replace(&mut state.missing, is_missing);
             let same = state.changed > 0

@@ -3,8 +3,8 @@
 use crate::{Code, Diagnostic, Marker, PartId, Pattern, Place, RuledPieces};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What waits on markers for a fabric, panel or size to return: one finding for each marker and lost
-/// part. The rest of the marker can be cut.
+/// Diagnostics for markers that wait for a removed fabric, panel or size to return: one for each marker and
+/// lost part. The rest of the marker can still be cut.
 pub(super) fn waiting(pattern: &Pattern) -> Vec<Diagnostic> {
     let markers = pattern.markers.iter();
     markers.flat_map(|marker| of(pattern, marker)).collect()
@@ -72,7 +72,7 @@ fn of(pattern: &Pattern, marker: &Marker) -> Vec<Diagnostic> {
     found
 }
 
-/// Panels and fabrics that rules of a marker name and that are gone.
+/// Removed panels and fabrics that rules of a marker name.
 fn ruled(pattern: &Pattern, marker: &Marker) -> BTreeSet<PartId> {
     let mut lost = BTreeSet::new();
     for rule in &marker.rules {

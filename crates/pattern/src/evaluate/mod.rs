@@ -1,9 +1,9 @@
 //! Evaluation: every value of a pattern for one set of measurements, kept up to date edit by edit.
 //!
-//! Variables, points, curves, edges, panel stages and seams are the nodes of a graph whose edges
-//! say what needs what. An update takes over definitions that changed, orders the graph anew if
-//! needs changed (strongly connected components by Tarjan 1972, on an explicit stack), and
-//! recomputes dependants in that order, stopping where a value stays the same to the bit.
+//! Variables, points, curves, edges, panel stages and seams are the nodes of a graph; its edges are the
+//! dependencies between them. An update takes over changed definitions, sorts the graph anew if dependencies
+//! changed (strongly connected components by Tarjan 1972, on an explicit stack), and recomputes dependants in
+//! that order, stopping where a value stays the same to the bit.
 
 mod changes;
 mod compute;
@@ -32,7 +32,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Every value of a pattern for one wearer. A copy shares all that does not change in it.
+/// Every value of a pattern for one wearer. A copy shares all data that do not change in it.
 #[derive(Clone, Default)]
 pub struct Evaluation {
     pattern: Pattern,
@@ -41,22 +41,22 @@ pub struct Evaluation {
     index: Arc<HashMap<Node, u32>>,
     words: HashMap<Box<str>, u32>,
     word_texts: Vec<Box<str>>,
-    /// Nodes whose needs follow from the lines of a panel.
+    /// Nodes whose dependencies follow from the lines of a panel.
     watchers: Arc<HashMap<crate::PanelId, HashSet<u32>>>,
     names: Arc<crate::formula::Names>,
-    /// Parts whose ids or names are taken twice.
+    /// Diagnostics of ids and names that are used twice.
     duplicates: Vec<Diagnostic>,
     revision: u64,
 }
 
-/// The changes of an update.
+/// Counts of the nodes that an update changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Update {
-    /// Nodes that were computed.
+    /// Number of nodes that were computed.
     pub computed: usize,
-    /// Nodes whose value changed.
+    /// Number of nodes whose value changed.
     pub changed: usize,
-    /// Nodes met for the first time: new parts, and measurements and lost parts that formulas name.
+    /// Number of nodes met for the first time: new parts, and measurements and lost parts that formulas name.
     pub met: usize,
 }
 
@@ -68,17 +68,17 @@ impl Evaluation {
         evaluation
     }
 
-    /// The pattern as it was last evaluated.
+    /// The pattern as last evaluated.
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
     }
 
-    /// The wearer it was last evaluated for.
+    /// The wearer that the pattern was last evaluated for.
     pub fn wearer(&self) -> &Wearer {
         &self.wearer
     }
 
-    /// The size whose values are taken.
+    /// The size whose values the numbers take, if the wearer is one of the pattern's sizes.
     pub fn size(&self) -> Option<crate::SizeId> {
         self.wearer.size
     }
@@ -88,9 +88,9 @@ impl Evaluation {
         &self.names
     }
 
-    /// Everything found: faults of definitions, one a cause.
+    /// All diagnostics: faults of definitions, one for each cause.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
-        // A word that nothing names any more is nobody's concern.
+        // Faults of a word that no formula uses any more are left out.
         let is_used = |state: &NodeState| match state.node {
             Node::Word(_) => !state.needed_by.is_empty(),
             Node::Variable(_)
@@ -112,7 +112,7 @@ impl Evaluation {
         duplicates.chain(own).chain(markers).collect()
     }
 
-    /// An order of nodes that does not tell when they were made: words by their texts, then parts.
+    /// Sort key of a node that does not depend on when it was made: words by their texts, then parts.
     fn place_in_order(&self, state: &NodeState) -> Result<Node, &str> {
         match state.node {
             Node::Word(word) => Err(&self.word_texts[word as usize]),
@@ -125,7 +125,7 @@ impl Evaluation {
         }
     }
 
-    /// Where a point lies (m); nothing if it cannot be computed.
+    /// Position of a point (m); none if it cannot be computed.
     pub fn point(&self, id: PointId) -> Option<Vec2> {
         match self.value(Node::Point(id))? {
             Value::Point(place) => Some(*place),
@@ -142,7 +142,7 @@ impl Evaluation {
             .collect()
     }
 
-    /// A curve as it is drawn (m); nothing if it cannot be computed.
+    /// A curve as drawn (m); none if it cannot be computed.
     pub fn curve(&self, id: crate::CurveId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Curve(id))? {
             Value::Path(path) => Some(path),
@@ -150,7 +150,7 @@ impl Evaluation {
         }
     }
 
-    /// An edge as it is drawn (m); nothing if it cannot be computed.
+    /// An edge as drawn (m); none if it cannot be computed.
     pub fn edge(&self, id: crate::EdgeId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Edge(id))? {
             Value::Path(path) => Some(path),
@@ -158,7 +158,7 @@ impl Evaluation {
         }
     }
 
-    /// A stage of a panel: as drawn, or after an operation.
+    /// A stage of a panel: as drawn, or after an operation; none if it cannot be drawn.
     pub fn stage(
         &self,
         panel: crate::PanelId,
@@ -175,8 +175,7 @@ impl Evaluation {
         self.stage(panel.id, panel.operations.last().map(|o| o.id))
     }
 
-    /// The last stage of a panel as it was when that could last be drawn. To be shown, never to be
-    /// exported.
+    /// The last stage of a panel as it was when it could last be drawn. For display, never for export.
     pub fn last_good_stage(&self, panel: &crate::Panel) -> Option<&Arc<crate::Stage>> {
         let node = Node::Stage(panel.id, panel.operations.last().map(|o| o.id));
         match self.state(node)?.last_good.as_ref()? {
@@ -185,7 +184,7 @@ impl Evaluation {
         }
     }
 
-    /// The value of a variable, and its power of a length: 0 plain, 1 a length (m).
+    /// The value of a variable, and the power of length of its unit: 0 plain, 1 a length (m).
     pub fn variable(&self, id: crate::VariableId) -> Option<(f64, i8)> {
         match self.value(Node::Variable(id))? {
             Value::Number(quantity) => Some((quantity.value, quantity.power)),
@@ -193,7 +192,7 @@ impl Evaluation {
         }
     }
 
-    /// Whether a variable is an angle, whose value is (rad).
+    /// Whether a variable is an angle; its value is then in radians (rad).
     pub fn is_angle(&self, id: crate::VariableId) -> bool {
         matches!(self.value(Node::Variable(id)), Some(Value::Number(quantity)) if quantity.is_angle)
     }
@@ -205,12 +204,12 @@ impl Evaluation {
         }
     }
 
-    /// Place of a node in the order of computation: after everything it needs, but in a cycle.
+    /// Rank of a node in the order of computation: higher than all nodes it depends on, except in a cycle.
     pub(crate) fn rank(&self, node: Node) -> Option<u32> {
         self.state(node).map(|state| state.rank)
     }
 
-    /// Adds a node and everything that needs it, by however many steps.
+    /// Adds a node and all its dependants, direct and indirect, to a set.
     pub fn gather_dependants(&self, node: Node, found: &mut HashSet<Node>) {
         let mut open: Vec<Node> = vec![node];
         while let Some(node) = open.pop() {
@@ -226,7 +225,7 @@ impl Evaluation {
         self.index.get(&node).map(|&k| &*self.nodes[k as usize])
     }
 
-    /// A node to be changed: copied first if another evaluation shares it.
+    /// A node for changing: copied first if another evaluation shares it.
     fn state_mut(&mut self, k: u32) -> &mut NodeState {
         Arc::make_mut(&mut self.nodes[k as usize])
     }

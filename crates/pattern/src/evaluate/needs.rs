@@ -8,19 +8,19 @@ use crate::{
     Pattern, PointId, PointRule, Source, StageLineage, WornRule,
 };
 
-/// Nodes a definition needs, and panels whose lines say which.
+/// The nodes that a definition depends on, and the panels whose lines decide which these are.
 pub(crate) struct Needs<'d> {
     pattern: &'d Pattern,
     names: &'d Names,
     pub nodes: Vec<Node>,
     pub words: Vec<Box<str>>,
     pub panels: Vec<PanelId>,
-    /// Whether it names parts that nothing was called when its formulas were read.
+    /// Whether the definition names parts that did not exist when its formulas were read.
     pub by_name: bool,
 }
 
 impl<'d> Needs<'d> {
-    /// The nodes that a definition needs in a pattern.
+    /// The dependencies of a definition in a pattern.
     pub fn of(definition: &Definition, pattern: &'d Pattern, names: &'d Names) -> Self {
         let mut needs = Self {
             pattern,
@@ -105,7 +105,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// The points and curves that a part is drawn from.
+    /// Adds the points and curves that a part is drawn from.
     fn sources(&mut self, part: &dyn Fields) {
         let points = fields::points(part).into_iter();
         self.nodes.extend(points.map(Node::Point));
@@ -113,7 +113,7 @@ impl<'d> Needs<'d> {
         self.nodes.extend(curves.map(Node::Curve));
     }
 
-    /// What the lines of a panel need that an operation inserts, or those that are drawn.
+    /// Adds the dependencies of the lines that an operation inserts into a panel, or of the lines as drawn.
     fn lines(&mut self, panel: &Panel, by: Option<OperationId>) {
         let own = panel.lines.iter().filter(|line| line.by == by);
         for edge in own.flat_map(|line| &line.edges) {
@@ -122,7 +122,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// What a point needs that lies at a mark of the stage its sheet lies on.
+    /// Adds the dependencies of a point that lies at a mark of the stage under its sheet.
     fn on_stage(&mut self, point: PointId, at: &Mark) {
         let on = self.pattern.point(point).and_then(|found| found.0.on);
         let Some((panel, after)) = on else {
@@ -136,7 +136,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// What notches need that are placed when that many operations are done.
+    /// Adds the dependencies of the notches that are placed after this many operations.
     fn notches(&mut self, panel: &Panel, step: usize) {
         let lineage = self.stage_lineage(panel);
         for notch in &panel.notches {
@@ -150,7 +150,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// The stages a panel comes from, which follow from the panels it is a side of.
+    /// The stages that lead to a panel; they follow from the panels that it is a side of.
     fn stage_lineage(&mut self, panel: &Panel) -> StageLineage {
         let parents = self.pattern.lineage(panel).into_iter().skip(1);
         self.panels.extend(parents.map(|parent| parent.id));
@@ -160,8 +160,8 @@ impl<'d> Needs<'d> {
         self.pattern.stage_lineage(panel)
     }
 
-    /// The number of a mark, and the stage it is placed on, if that comes before so many of the
-    /// panel's operations are done.
+    /// Adds the dependencies of the mark's number, and the stage that the mark is placed on if that comes
+    /// before this many of the panel's operations are done.
     fn mark(&mut self, panel: &Panel, mark: &Mark, before: Option<usize>) {
         let lineage = self.stage_lineage(panel);
         self.numbers(match mark {
@@ -239,7 +239,7 @@ impl<'d> Needs<'d> {
     }
 }
 
-/// The drawn edges of a stretch between corners.
+/// The drawn edges between two corners of one line; none if a corner was made by an operation.
 pub(crate) fn drawn_stretch(lines: &[Line], ends: [CornerName; 2]) -> Option<Vec<&Edge>> {
     let [Name::Drawn(from), Name::Drawn(to)] = ends else {
         return None;

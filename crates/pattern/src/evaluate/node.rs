@@ -1,4 +1,4 @@
-//! What is evaluated, what defines it, and what it needs.
+//! Nodes of the evaluation: keys, definitions, values and dependencies.
 
 use crate::formula::Quantity;
 use crate::stage::Stretch;
@@ -9,10 +9,10 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
-/// Something that has a value.
+/// Key of a node: something that has a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Node {
-    /// A measurement or other word in formulas, by its number among the words that were met.
+    /// A measurement or another word in formulas, by its number among the words met so far.
     Word(u32),
     /// A variable.
     Variable(VariableId),
@@ -37,15 +37,15 @@ pub(crate) enum Definition {
     Variable(Arc<Variable>),
     Point(Arc<Point>),
     Curve(Arc<Curve>),
-    /// An edge: the panel, its line and the edge's place in it.
+    /// An edge: the panel, the index of its line and the index of the edge in the line.
     Edge(Arc<Panel>, usize, usize),
-    /// A stage: the panel and how many of its operations are done.
+    /// A stage: the panel, and the number of its operations that are done.
     Stage(Arc<Panel>, usize),
     Seam(Arc<Seam>),
 }
 
 impl Definition {
-    /// Whether two definitions are one and the same.
+    /// Whether both definitions are the same object, not merely equal.
     pub fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Missing, Self::Missing) | (Self::Word, Self::Word) => true,
@@ -70,18 +70,18 @@ pub(crate) enum Value {
     Seam(Arc<SeamValue>),
 }
 
-/// A seam for one set of measurements.
+/// The value of a seam for one set of measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SeamValue {
-    /// How much longer one side may be (m).
+    /// Length by which one side may exceed the other (m).
     pub ease: f64,
-    /// Of each side, its spans in walking order; nothing where one has no place.
+    /// Spans of each side in walking order.
     pub sides: [Vec<SpanValue>; 2],
-    /// Length of each side, dart legs left out (m).
+    /// Length of each side without the legs of darts (m).
     pub lengths: [f64; 2],
 }
 
-/// A span: a copy and half of a panel, and named edges between shares.
+/// The value of a span: a copy and half of a panel, and stretches of named edges by shares.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SpanValue {
     pub panel: crate::PanelId,
@@ -90,28 +90,28 @@ pub(crate) struct SpanValue {
     pub stretch: Stretch,
 }
 
-/// A node with its place in the graph and its value.
+/// The state of a node: its definition, its neighbours in the graph and its value.
 #[derive(Clone)]
 pub(crate) struct NodeState {
     pub node: Node,
     pub definition: Definition,
     pub needs: Vec<u32>,
     pub needed_by: Vec<u32>,
-    /// Panels from whose lines its needs follow.
+    /// Panels from whose lines the dependencies follow.
     pub watches: Vec<PanelId>,
-    /// Place in the order: larger than that of everything it needs, but in a cycle.
+    /// Rank in the order of computation: higher than all nodes it depends on, except in a cycle.
     pub rank: u32,
-    /// The component of a cycle it is in, named by one of its nodes.
+    /// The strongly connected component of the node if it is a cycle, named by one of its nodes.
     pub cycle: Option<u32>,
-    /// Its value, or the node whose fault keeps it from having one.
+    /// The value, or the node whose fault keeps this one from having a value.
     pub value: Result<Value, u32>,
-    /// Its last value, to be shown while it has none.
+    /// The last value, shown while the node has none.
     pub last_good: Option<Value>,
-    /// Update at which its value last changed.
+    /// Number of the update at which the value last changed.
     pub changed: u64,
-    /// Whether the document had no such part when it was last computed.
+    /// Whether the part was missing from the document when the node was last computed.
     pub missing: bool,
-    /// Whether it names parts that nothing was called when its formulas were read.
+    /// Whether the definition names parts that did not exist when its formulas were read.
     pub by_name: bool,
     pub diagnostics: Vec<Diagnostic>,
 }

@@ -1,4 +1,4 @@
-//! Numbers of a document as values, and what formulas look up.
+//! Values of the numbers of a document, and the values that formulas look up.
 
 use super::Evaluation;
 use super::needs::drawn_stretch;
@@ -11,35 +11,35 @@ use crate::{
 use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
-/// No length of a garment is as long as this (m).
+/// Bound of every length of a pattern: a longer one is refused (m).
 const LONGEST: f64 = 1000.0;
-/// No plain number of a pattern is as large as this.
+/// Bound of every plain number and angle of a pattern: a larger one is refused.
 const LARGEST: f64 = 1e6;
 
-/// The computation of one node: reads values, collects what is wrong.
+/// The computation of one node: reads values and collects diagnostics.
 pub(crate) struct Computation<'e> {
     pub evaluation: &'e Evaluation,
-    /// The node.
+    /// Index of the node.
     pub k: u32,
     pub diagnostics: Vec<Diagnostic>,
-    /// What was missed so far, and where: several numbers of one place that lack the same part have
-    /// one cause.
+    /// References not found so far, with their places: several numbers of one place that lack the same part
+    /// have one cause and are reported once.
     pub missed: Vec<(Place, String)>,
     /// The node whose fault keeps this one from having a value.
     pub cause: u32,
 }
 
 impl Evaluation {
-    /// The value of a number that is no node's own: (m) if a length is wanted, else plain or
-    /// (rad); nothing if it has none.
+    /// The value of a number that does not belong to a node: a length (m), an angle (rad) or plain, as
+    /// wanted; none if it has no value.
     pub fn number(&self, number: &Number, want: Want) -> Option<f64> {
         self.number_of_kind(number, want, &Place::Pattern, "").0
     }
 
-    /// The same, or what is wrong with it in words.
+    /// The value of a number that does not belong to a node, or its fault in words.
     ///
     /// # Errors
-    /// The formula has no value; with what to do.
+    /// The formula has no value; the message ends with advice.
     pub fn number_or_fault(&self, number: &Number, want: Want) -> Result<f64, String> {
         let (value, found) = self.number_of_kind(number, want, &Place::Pattern, "");
         let fault = found.first().map(|found| {
@@ -49,8 +49,7 @@ impl Evaluation {
         value.ok_or_else(|| fault.unwrap_or_else(|| "it has no value yet".into()))
     }
 
-    /// What the value of a number is that may be anything, as a variable's: a length, an angle, else
-    /// plain.
+    /// The kind of a number that may be of any kind, as a variable's: a length, an angle, else plain.
     pub fn kind(&self, number: &Number) -> Want {
         let mut computation = Computation::new(self);
         match computation.variable(number) {
@@ -60,7 +59,7 @@ impl Evaluation {
         }
     }
 
-    /// The value of a length that is no node's own (m), and what is wrong with it.
+    /// The value of a length that does not belong to a node (m), and its diagnostics.
     pub(crate) fn length_of(
         &self,
         number: &Number,
@@ -70,7 +69,7 @@ impl Evaluation {
         self.number_of_kind(number, Want::Length, place, what)
     }
 
-    /// The value of a measurement, and whether it is the base size's because it was not given.
+    /// The value of a measurement, and whether it was borrowed from the base size because it was not given.
     pub(super) fn measurement(&self, name: &str) -> Option<(Quantity, bool)> {
         let given = self.wearer.measurements.get(name);
         let base = || self.pattern.base_measurements()?.get(name);
@@ -84,7 +83,7 @@ impl Evaluation {
         Some((quantity, given.is_none()))
     }
 
-    /// The variable that a word names which is no measurement.
+    /// The variable that a word names, unless the word is a measurement.
     pub(super) fn variable_called(&self, word: &str) -> Option<VariableId> {
         match self.measurement(word) {
             Some(_) => None,
@@ -106,7 +105,7 @@ impl Evaluation {
 }
 
 impl<'e> Computation<'e> {
-    /// The computation of what is no node's own.
+    /// A computation for a number that does not belong to a node.
     fn new(evaluation: &'e Evaluation) -> Self {
         Self {
             evaluation,
@@ -117,7 +116,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// The value of a number; a fault is reported at `place`, `what` names the number in words.
+    /// The value of a number; a fault is reported at `place` and names the number by `what`.
     pub fn number(
         &mut self,
         number: &Number,
@@ -129,7 +128,7 @@ impl<'e> Computation<'e> {
         self.reported(result, place, what)
     }
 
-    /// The value of a number within the bounds of a garment.
+    /// The value of a number, checked against the bounds of a garment.
     pub fn measure(&mut self, number: &Number, want: Want) -> Result<f64, Failure> {
         self.quantity(number, want).and_then(|q| bounded(q, want))
     }
@@ -162,8 +161,8 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// The value of a variable, which may be of any dimension: a size's own value has that of the
-    /// usual number.
+    /// The value of a variable, which may have any dimension: the value for a single size takes the dimension
+    /// of the usual number.
     pub fn variable(&mut self, number: &Number) -> Result<Quantity, Failure> {
         let found = self.quantity(number, Want::Plain)?;
         match number {
@@ -175,7 +174,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// Turns a failure into a diagnostic, unless that was done where it began.
+    /// Turns a failure into a diagnostic, unless it was already reported at its origin.
     pub fn reported<T>(
         &mut self,
         result: Result<T, Failure>,
@@ -209,7 +208,7 @@ impl<'e> Computation<'e> {
         None
     }
 
-    /// The value of a node that is needed.
+    /// The value of a node that this one depends on.
     pub fn needed(&self, node: Node) -> Result<&Value, Failure> {
         let evaluation = self.evaluation;
         let Some(state) = evaluation.state(node) else {
@@ -227,7 +226,7 @@ impl<'e> Computation<'e> {
         self.evaluation.state(node).map(|state| &state.definition)
     }
 
-    /// Where a point lies (m).
+    /// Position of a point (m).
     pub fn point_at(&self, id: crate::PointId) -> Result<Vec2, Failure> {
         match self.needed(Node::Point(id))? {
             Value::Point(place) => Ok(*place),
@@ -237,7 +236,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// The pieces of a curve or an edge (m).
+    /// Curve pieces of a curve or an edge (m).
     pub fn path(&self, node: Node) -> Result<&std::sync::Arc<Path>, Failure> {
         match self.needed(node)? {
             Value::Path(path) => Ok(path),
@@ -284,7 +283,7 @@ impl Reading<'_, '_> {
         Failure::new(Code::MissingReference, message, hint)
     }
 
-    /// The part, or what its text names now.
+    /// The part, or for an unknown name the part that has this name now.
     fn bound<'p>(
         &self,
         part: &'p PartReference,
@@ -406,7 +405,7 @@ impl Environment for Reading<'_, '_> {
         let place = |end: CornerName| stage.placed(drawn, name, MarkValue::Corner(end));
         let walked =
             place(ends[0]).and_then(|from| stage.stretch(name, [from, place(ends[1])?], is_sewn));
-        // What lies on a fold is gone when all is done.
+        // A stretch that lies on a fold is not there any more after all operations: length 0.
         Ok(walked.map_or(0.0, |stretch| stage.stretch_length(0, &stretch)))
     }
 
@@ -440,7 +439,7 @@ impl Environment for Reading<'_, '_> {
     }
 }
 
-/// Refuses wrong dimensions and numbers beyond any garment.
+/// Refuses values of the wrong dimension and values beyond any garment.
 pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     let Quantity { value, power, .. } = quantity;
     let (wanted, limit, unit) = match want {
@@ -475,7 +474,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     Ok(value)
 }
 
-/// A place within the bounds of a garment.
+/// Refuses positions beyond any garment.
 pub(crate) fn bounded_place(place: Vec2) -> Result<Vec2, Failure> {
     for value in [place.x, place.y] {
         bounded(Quantity::length(value), Want::Length)?;

@@ -1,4 +1,4 @@
-//! What is drawn on a stage of a panel: points at its marks, and lines that are inserted into it.
+//! Parts drawn on a stage of a panel: points at its marks, and lines that are inserted into it.
 
 use super::node::Node;
 use super::numbers::Computation;
@@ -9,7 +9,7 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// The place of a mark of the stage that a point's sheet lies on (m).
+/// The position of a point that lies at a mark of the stage under its sheet (m).
 pub(super) fn point(
     c: &mut Computation<'_>,
     point: &Point,
@@ -45,7 +45,7 @@ pub(super) fn point(
         return None;
     };
     if !has_made(&stage, (pattern, panel, lineage), at) {
-        // Why it could not be made is told there.
+        // The operation itself reports why it could not be done.
         let index = &evaluated.c.evaluation.index;
         evaluated.c.cause = index.get(&Node::Stage(panel.id, after)).copied()?;
         return None;
@@ -67,8 +67,8 @@ pub(super) fn point(
 }
 
 impl Pattern {
-    /// Whether a sheet lies on the stage of a panel before a step of its own; lines that were
-    /// inserted since do not count.
+    /// Whether a sheet lies on the stage of a panel before one of its operations; lines inserted in between
+    /// do not count.
     pub(crate) fn lies_before(&self, sheet: SheetId, panel: &crate::Panel, step: usize) -> bool {
         let Some((of, after)) = self.sheet(sheet).and_then(|sheet| sheet.on) else {
             return false;
@@ -86,7 +86,7 @@ impl Pattern {
 }
 
 impl PanelEvaluation<'_, '_, '_> {
-    /// A stage with the lines that an operation inserts; nothing if its sheet lies elsewhere.
+    /// The stage with the lines that an operation inserts; none if their sheet lies on another stage.
     pub(super) fn insert(
         &mut self,
         stage: &Stage,

@@ -14,7 +14,7 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// A stage of a panel; nothing if its outline or the stage before it cannot be drawn.
+/// A stage of a panel; none if its outline or the stage before it cannot be drawn.
 pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Option<Arc<Stage>> {
     if step == 0 {
         return PanelEvaluation::new(c, panel).drawn().map(Arc::new);
@@ -47,7 +47,7 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
     Some(stage)
 }
 
-/// Whether an operation leaves the outline as it is, but for a dart that it takes out.
+/// Whether an operation leaves the outline as it is, except for a dart that it takes out.
 fn keeps_outline(kind: &OperationKind) -> bool {
     match kind {
         OperationKind::Dart { .. }
@@ -62,7 +62,7 @@ fn keeps_outline(kind: &OperationKind) -> bool {
 }
 
 impl PanelEvaluation<'_, '_, '_> {
-    /// Says that an operation leaves its panel as it was.
+    /// Reports that an operation leaves its panel as it was.
     fn note_idle(&mut self, operation: &Operation, place: Place) {
         let what = match &operation.kind {
             OperationKind::Pleat { .. } => "has no depth",
@@ -85,7 +85,7 @@ impl PanelEvaluation<'_, '_, '_> {
         ));
     }
 
-    /// A stage after an operation; nothing if it cannot be done.
+    /// The stage after an operation; none if the operation cannot be done.
     fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
         let place = Place::Operation(self.panel.id, operation.id);
         match &operation.kind {
@@ -175,7 +175,7 @@ impl PanelEvaluation<'_, '_, '_> {
                 if *keeps_length && *trued && intake > 0.0 {
                     mouth.intake = self.width_kept(stage, &mouth, (step, place, &what));
                 }
-                // Places on the edge are those of the edge as drawn, whatever was trued before.
+                // Positions on the edge are measured on the edge as drawn, whatever was trued before.
                 cut_dart(&stage.as_untrued(), &mouth)
             }
             Err(PlaceError::Beyond) => Err(DartError::TooWide),
@@ -204,8 +204,8 @@ impl PanelEvaluation<'_, '_, '_> {
         None
     }
 
-    /// Corners where edges go on: into their mirror image at a fold that comes later, or across a
-    /// seam that ends there, of the panel or one that is split off it.
+    /// Corners at which edges run on: into their mirror image at a later fold, or across a seam that ends
+    /// there, of this panel or of a panel split off it.
     fn going_on(&self, step: usize) -> Vec<CornerName> {
         let pattern = &self.c.evaluation.pattern;
         let later = self.panel.operations.iter().skip(step);
@@ -225,7 +225,7 @@ impl PanelEvaluation<'_, '_, '_> {
             .collect()
     }
 
-    /// A stage of whose darts those are trued that are to be; told where the step's own cannot be.
+    /// The stage with its darts trued that are to be; reports if the dart of this operation cannot be trued.
     pub(super) fn trued(
         &mut self,
         stage: Stage,
@@ -264,7 +264,7 @@ impl PanelEvaluation<'_, '_, '_> {
         stage
     }
 
-    /// The width of the mouth of a dart that keeps the finished length (m).
+    /// The width of the mouth of a dart that keeps the finished length of its edge (m).
     fn width_kept(
         &mut self,
         stage: &Stage,

@@ -1,4 +1,4 @@
-//! Panels as drawn; places of marks and notches on their stages.
+//! Panels as drawn; positions of marks and notches on their stages.
 
 use super::node::Node;
 use super::numbers::Computation;
@@ -11,11 +11,11 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Draws a panel's stages.
+/// The evaluation of a panel's stages.
 pub(super) struct PanelEvaluation<'c, 'e, 'p> {
     pub c: &'c mut Computation<'e>,
     pub panel: &'p Panel,
-    /// The stages the panel comes from.
+    /// The stages that lead to the panel.
     pub lineage: StageLineage,
 }
 
@@ -35,7 +35,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         has_made(stage, (pattern, self.panel, &self.lineage), mark)
     }
 
-    /// A stage the panel comes from.
+    /// One of the stages that lead to the panel, by its index.
     pub(super) fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
         let (panel, after) = self.lineage.stage(step)?;
         let stage = self.c.stage(Node::Stage(panel, after)).cloned();
@@ -71,7 +71,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             for line in panel.lines.iter().filter(drawn) {
                 match self.line(line, general.unwrap_or(0.0)) {
                     Some(line) => stage.lines.push(line),
-                    // Lines inside can be left out; their faults are told.
+                    // Internal lines can be left out; their faults are reported.
                     None => complete &= kind == LineKind::Internal,
                 }
             }
@@ -96,8 +96,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// A side of another panel, with its own grain, and its own width of cloth outside edges that
-    /// have none of their own.
+    /// A side of another panel, with its own grain, and with its own allowance on edges that have none of
+    /// their own.
     fn side(
         &mut self,
         (of, split, side): (PanelId, OperationId, Side),
@@ -129,7 +129,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             Side::Right => 1,
         };
         let Some(found) = whole.sides.get(index) else {
-            // Why it could not be split is told there.
+            // The split itself reports why it could not be done.
             self.c.cause = evaluation.index.get(&node).copied().unwrap_or(self.c.k);
             return None;
         };
@@ -150,7 +150,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
                     Name::Made { by, .. } => by == split,
                 };
                 match edge.name.role() {
-                    // An opening goes on as the edge before it.
+                    // The allowance of an opening continues that of the edge before it.
                     Some(Role::Opening) => edge.allowance = before,
                     _ if is_general => edge.allowance = general,
                     _ => {}
@@ -161,8 +161,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// The notches that are placed when that many operations are done: on the first stage that has
-    /// their corners.
+    /// The notches that are placed after this many operations: each on the first stage that has the corners
+    /// of its mark.
     pub fn notches(&mut self, stage: &Stage, step: usize) -> Vec<StageNotch> {
         let panel = self.panel;
         let mut found = Vec::new();
@@ -197,7 +197,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         })
     }
 
-    /// The pieces of an edge, each with its share of the edge.
+    /// The curve pieces of an edge, each with its share of the edge.
     fn edge(&mut self, edge: &Edge, general: f64) -> Option<Vec<StageEdge>> {
         let place = Place::Edge(self.panel.id, edge.id);
         let own = edge.allowance.as_ref().and_then(|allowance| {
@@ -232,7 +232,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         Some(pieces.collect())
     }
 
-    /// A mark with its number.
+    /// A mark with its number evaluated.
     pub fn mark(&mut self, mark: &Mark, place: &Place, what: &str) -> Option<MarkValue> {
         Some(match mark {
             Mark::Corner(corner) => MarkValue::Corner(*corner),
@@ -256,7 +256,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         })
     }
 
-    /// Where a mark of the operation of a step is, on the first stage that has its corners.
+    /// The position of a mark of an operation, on the first stage that has its corners.
     pub fn first_spot(
         &mut self,
         (line, mark): (LineName, &Mark),
@@ -275,11 +275,11 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             return None;
         }
         let stage = self.past(first, place)?;
-        // What was not made was told where it is made.
+        // A missing corner is reported at the operation that should make it.
         self.has_made(&stage, mark).then(|| stage.spot(line, value))
     }
 
-    /// A place of the stage an operation is done on: a corner as it is there, any other mark as it
+    /// A place on the stage to which an operation is applied: a corner as it is there, any other mark as it
     /// was on the first stage that had its corners.
     pub fn placed(
         &mut self,
@@ -333,13 +333,14 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         self.gone(place, what, &part);
     }
 
-    /// A notch of whose mark a step of the panel's history has the corners first.
+    /// A notch, given the index of the first stage that has the corners of its mark.
     fn notch(&mut self, stage: &Stage, (notch, first): (&Notch, usize)) -> Option<StageNotch> {
         let place = Place::Notch(self.panel.id, notch.id);
         let what = self.words(&format!("notch {:?}", notch.name));
         let mark = self.mark(&notch.at, &place, &what)?;
         let line = Name::Drawn(notch.line);
-        // What the panel is a side of places it where it is cut from that.
+        // A notch whose corners exist before the split is placed on that earlier stage, of the panel that
+        // is split.
         let found = match first < self.lineage.base {
             true => self.past(first, &place)?.spot(line, mark),
             false => stage.spot(line, mark),
@@ -361,7 +362,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             }
         };
         let Some((point, along)) = stage.at_spot(line, spot) else {
-            // An edge without a length is told as that.
+            // An edge without length is reported itself.
             if first < self.lineage.base {
                 self.no_place(PlaceError::Beyond, &place, &what);
             }
@@ -380,8 +381,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
     }
 }
 
-/// Whether a stage has what operations of the panel make of a mark's corners. It has not where one
-/// could not be done, which is told there.
+/// Whether a stage has the corners of a mark that operations of the panel make. It lacks them if an operation
+/// could not be done, which is reported there.
 pub(super) fn has_made(
     stage: &Stage,
     (pattern, panel, lineage): (&Pattern, &Panel, &StageLineage),

@@ -1,4 +1,4 @@
-//! Computes the places of points.
+//! Computes the positions of points.
 
 use super::node::Node;
 use super::numbers::{Computation, bounded_place};
@@ -9,7 +9,7 @@ use crate::{Code, Number, Place, Point, PointId, PointRule};
 use std::sync::Arc;
 use toile_geometry::{Curve, Path, Vec2};
 
-/// The place of a point (m).
+/// The position of a point (m).
 pub(super) fn point(computation: &mut Computation<'_>, point: &Arc<Point>) -> Option<Vec2> {
     if let PointRule::Mark { line, at } = &point.rule {
         return on_stage::point(computation, point, (*line, at));
@@ -47,7 +47,7 @@ impl Computation<'_> {
 fn construct(c: &mut Computation<'_>, rule: &PointRule) -> Result<Vec2, Failure> {
     match rule {
         PointRule::At { x, y } => c.vector(x, y),
-        // It is placed on a stage, not constructed.
+        // A mark is placed on a stage, not constructed.
         PointRule::Mark { .. } => Err(same_place()),
         PointRule::Offset { base, x, y } => Ok(c.point_at(*base)? + c.vector(x, y)?),
         PointRule::Polar {

@@ -13,7 +13,7 @@ use crate::{
 };
 
 impl PanelEvaluation<'_, '_, '_> {
-    /// A stage after a pivot; nothing if that cannot be done.
+    /// The stage after a pivot; none if the pivot cannot be done.
     pub fn pivot(
         &mut self,
         stage: &Stage,
@@ -94,7 +94,7 @@ impl PanelEvaluation<'_, '_, '_> {
         None
     }
 
-    /// A stage after a spread; nothing if that cannot be done.
+    /// The stage after a spread; none if the spread cannot be done.
     pub fn spread(
         &mut self,
         stage: &Stage,
@@ -134,7 +134,7 @@ impl PanelEvaluation<'_, '_, '_> {
         }
     }
 
-    /// A stage with pleats; nothing if they cannot be folded.
+    /// The stage with pleats; none if they cannot be folded.
     pub fn pleat(
         &mut self,
         stage: &Stage,
@@ -197,7 +197,7 @@ impl PanelEvaluation<'_, '_, '_> {
         }
     }
 
-    /// Says why a panel cannot be spread or pleated.
+    /// Reports why a panel cannot be spread or pleated.
     fn no_spread(&mut self, error: SpreadError, place: &Place, what: &str) {
         let (message, hint) = match error {
             SpreadError::Cut(number, error) => {
@@ -265,7 +265,7 @@ impl PanelEvaluation<'_, '_, '_> {
         })
     }
 
-    /// A stage with both its sides; nothing if it cannot be split.
+    /// The stage with both sides of a split; none if it cannot be split.
     pub fn split(
         &mut self,
         stage: &Stage,
@@ -293,7 +293,7 @@ impl PanelEvaluation<'_, '_, '_> {
         None
     }
 
-    /// Whether an operation was done before that step. It is told where it could not be.
+    /// Whether an operation was done before this step. If it failed, that is reported there.
     fn is_done(
         &mut self,
         stage: &Stage,
@@ -324,7 +324,7 @@ impl PanelEvaluation<'_, '_, '_> {
         self.c.diagnostics.push(found);
     }
 
-    /// Says why a panel cannot be cut.
+    /// Reports why a panel cannot be cut.
     pub fn no_cut(&mut self, error: CutError, place: &Place, what: &str) {
         let (message, hint) = match error {
             CutError::Place(error) => return self.no_place(error, place, what),

@@ -1,4 +1,4 @@
-//! Seams: where their spans lie, and how long both sides are when all operations are done.
+//! Seams: positions of their spans, and lengths of both sides after all operations.
 
 use super::node::{Node, SeamValue, SpanValue};
 use super::numbers::Computation;
@@ -8,7 +8,7 @@ use crate::stage::{MarkValue, PlaceError, Stretch, is_sewn, reversed};
 use crate::{Code, Diagnostic, Line, Mark, Name, Panel, Place, Seam, Span, Stage};
 use std::sync::Arc;
 
-/// The value of a seam; nothing if a span has no place.
+/// The value of a seam; none if a span has no position.
 pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue>> {
     let place = Place::Seam(seam.id);
     let what = format!("seam {:?}, ease", seam.name);
@@ -40,7 +40,7 @@ pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue
             ));
         }
     }
-    // Several spans may lack the same thing, which is told once.
+    // Several spans may have the same fault, which is reported once.
     let mut told: Vec<Diagnostic> = Vec::new();
     for found in std::mem::take(&mut c.diagnostics) {
         if !told.contains(&found) {
@@ -66,7 +66,7 @@ fn missing(c: &mut Computation<'_>, seam: &Seam, (message, hint): (String, &str)
     ));
 }
 
-/// Where a span lies, and its length (m).
+/// Position of a span, and its length (m).
 fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValue, f64)> {
     let name = &seam.name;
     let from = mark(c, seam, span, &span.from)?;
@@ -162,8 +162,8 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
     Some((value, length))
 }
 
-/// The edges of a span between its marks when all operations are done, each mark taken on the first
-/// stage that has its corners; nothing if that stage has not what was to be made, which is told there.
+/// The edges of a span between its marks after all operations, each mark taken on the first stage that has
+/// its corners; none if an operation that makes a corner failed, which is reported there.
 fn stretch(
     c: &mut Computation<'_>,
     (seam, span): (&Seam, &Span),

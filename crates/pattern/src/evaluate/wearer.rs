@@ -7,10 +7,10 @@ use toile_measure::Measurements;
 /// The wearer that a pattern is drafted for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wearer {
-    /// Their measurements (m), (rad).
+    /// Measurements of the wearer: lengths (m), angles (rad).
     pub measurements: Measurements,
-    /// The size of the pattern that is made, whose own values numbers take; nothing for a body that
-    /// is none of its sizes.
+    /// The size of the pattern that is made: numbers take their values for it. None for a body that is no
+    /// size of the pattern.
     pub size: Option<SizeId>,
 }
 

@@ -3,19 +3,20 @@
 use super::field::{Value, ValueMut, ValueRef};
 use strum::{VariantArray, VariantNames};
 
-/// An enum that files write as one word: the names that `strum` derives, which serde's are equal to.
+/// An enum that files write as one word. Its words are the names that `strum` derives, which equal those
+/// of serde.
 pub trait Choice: VariantArray + VariantNames + PartialEq + Copy {
-    /// All of them.
+    /// All values.
     fn all() -> &'static [Self] {
         <Self as VariantArray>::VARIANTS
     }
 
-    /// Their words in files, in the same order.
+    /// Words of all values in files, in the same order.
     fn words() -> &'static [&'static str] {
         <Self as VariantNames>::VARIANTS
     }
 
-    /// Its word in files.
+    /// Word of this value in files.
     fn word(self) -> &'static str {
         let place = Self::all().iter().position(|known| *known == self);
         place.map_or("", |k| Self::words()[k])
@@ -40,7 +41,7 @@ mod tests {
     use crate::*;
     use serde::Serialize;
 
-    /// Whether files and journals write a choice by the same words.
+    /// Checks that files and journals write a choice by the same words.
     fn alike<T: Choice + Serialize>() {
         for (choice, word) in T::all().iter().zip(T::words()) {
             assert_eq!(serde_json::to_value(choice).unwrap(), *word);

@@ -4,7 +4,7 @@ use super::{Fields, Group, List, NumberField, Optional, Value, ValueField, Visit
 use crate::{AnyId, Mark, Number};
 use toile_measure::Measurements;
 
-/// How many fields a list has, which is not changed.
+/// The number of fields of a list; the list is not changed.
 pub fn count(walk: &mut dyn FnMut(&mut dyn VisitorMut)) -> usize {
     let mut count = Count(0);
     walk(&mut count);
@@ -43,7 +43,7 @@ impl VisitorMut for Count {
         self.0 += 1;
     }
 
-    // What may be left out has no place in a list.
+    // A field that may be left out cannot stand in a list.
     fn optional(&mut self, _: &'static str, _: &mut dyn Optional) {}
 
     fn mark(&mut self, _: Group, _: &mut Mark) {

@@ -1,20 +1,19 @@
-//! What is said of a field beside its value: its key in files, its label, its quantity, what stands for it where it is
-//! left out.
+//! Descriptions of fields: key in files, label, quantity, default where the field is left out.
 
 use crate::Want;
 
-/// What a file means that leaves a field out.
+/// Meaning of a file that leaves a field out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Absent {
-    /// It is refused.
+    /// The file is refused.
     Refused,
-    /// This number, which is written all the same (m), (rad) or plain.
+    /// The field has this value, (m), (rad) or plain; files write it all the same.
     Means(f64),
-    /// This number, and where it is that, it is not written (m), (rad) or plain.
+    /// The field has this value, (m), (rad) or plain; files leave the field out if it has this value.
     LeftOutAt(f64),
 }
 
-/// Where inspectors show a number among those of its part.
+/// Position of a number among the numbers of its part in an inspector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shown {
     /// Before the others.
@@ -25,18 +24,18 @@ pub enum Shown {
     Last,
 }
 
-/// A number of a part.
+/// Description of a field that holds a number or formula.
 #[derive(Clone, Copy, Debug)]
 pub struct NumberField {
-    /// Its key in files.
+    /// Key of the field in files.
     pub key: &'static str,
-    /// What it is called beside its field.
+    /// Label of the field in inspectors.
     pub label: &'static str,
-    /// What it must be.
+    /// Quantity that the number must be.
     pub want: Want,
-    /// What a file means that leaves it out.
+    /// Meaning of a file that leaves the field out.
     pub absent: Absent,
-    /// Where it is shown.
+    /// Position in inspectors.
     pub shown: Shown,
 }
 
@@ -65,19 +64,19 @@ pub const fn plain(key: &'static str) -> NumberField {
     number(key, Want::Plain)
 }
 
-/// A number that may be anything.
+/// A number of any quantity.
 pub const fn any(key: &'static str) -> NumberField {
     number(key, Want::Any)
 }
 
 impl NumberField {
-    /// With another label than its key.
+    /// With a label that differs from the key.
     #[must_use]
     pub const fn label(self, label: &'static str) -> Self {
         Self { label, ..self }
     }
 
-    /// Left out it means a number, which is always written.
+    /// A file that leaves the field out means this number; the field is always written.
     #[must_use]
     pub const fn means(self, number: f64) -> Self {
         Self {
@@ -86,7 +85,7 @@ impl NumberField {
         }
     }
 
-    /// Left out where it is this number.
+    /// The field is left out of files if it has this value.
     #[must_use]
     pub const fn left_out_at(self, number: f64) -> Self {
         Self {
@@ -114,32 +113,32 @@ impl NumberField {
     }
 }
 
-/// A value that is no number of the document: a text, a flag, a count, a choice, or a number that no formula may be.
+/// Description of a field whose value is not a formula: a text, a flag, a count, a choice, or a number.
 #[derive(Clone, Copy, Debug)]
 pub struct ValueField {
-    /// Its key in files.
+    /// Key of the field in files.
     pub key: &'static str,
-    /// What it measures, where it is a number with a fraction.
+    /// Quantity of the value, if it is a number with a fraction.
     pub want: Want,
-    /// Whether a file may leave it out: it is then that of an empty part.
+    /// Whether files may leave the field out: it then has the value of an empty part.
     pub may_lack: bool,
-    /// Whether it is left out where it is written.
+    /// Whether the field is left out on writing.
     pub is_left_out: bool,
-    /// What a flag is that is left out, if that is not what an empty part has.
+    /// Value of a flag that a file leaves out, if it differs from that of an empty part.
     pub absent_flag: Option<bool>,
-    /// The least and the most that it may be.
+    /// Least and greatest value.
     pub range: Option<[f64; 2]>,
     /// The number that is written as `null`.
     pub null: Option<f64>,
-    /// Whether it is the name of a part.
+    /// Whether the value is the name of a part.
     pub is_name: bool,
-    /// The largest count.
+    /// Largest value of a count.
     pub largest: u32,
-    /// What is said of a count beyond the largest: what is wrong, what to do.
+    /// Message for a count beyond the largest: the fault, and the advice.
     pub beyond: [&'static str; 2],
 }
 
-/// A value that must be there.
+/// A field that must be there.
 pub const fn key(key: &'static str) -> ValueField {
     ValueField {
         key,
@@ -156,7 +155,7 @@ pub const fn key(key: &'static str) -> ValueField {
 }
 
 impl ValueField {
-    /// The name of a part.
+    /// The field with the name of a part.
     pub const NAME: Self = Self {
         is_name: true,
         ..key("name")
@@ -180,7 +179,7 @@ impl ValueField {
         }
     }
 
-    /// Files may leave it out; it is always written.
+    /// Files may leave the field out; it is always written.
     #[must_use]
     pub const fn may_lack(self) -> Self {
         Self {
@@ -189,7 +188,7 @@ impl ValueField {
         }
     }
 
-    /// Files may leave it out, and it is left out where it is what an empty part has.
+    /// Files may leave the field out; it is left out on writing if it has its usual value.
     #[must_use]
     pub const fn left_out_if(self, is_usual: bool) -> Self {
         Self {
@@ -199,7 +198,7 @@ impl ValueField {
         }
     }
 
-    /// A flag that is this where it is left out.
+    /// A flag with this value if a file leaves it out.
     #[must_use]
     pub const fn flag_if_absent(self, flag: bool) -> Self {
         Self {
@@ -209,7 +208,7 @@ impl ValueField {
         }
     }
 
-    /// With the least and the most that it may be.
+    /// With a least and a greatest value.
     #[must_use]
     pub const fn within(self, range: [f64; 2]) -> Self {
         Self {
@@ -227,7 +226,7 @@ impl ValueField {
         }
     }
 
-    /// Of a count the largest.
+    /// With a largest value of a count.
     #[must_use]
     pub const fn at_most(self, largest: u16) -> Self {
         Self {
@@ -236,7 +235,7 @@ impl ValueField {
         }
     }
 
-    /// With other words for a count that is too large: what is wrong, what to do.
+    /// With another message for a count that is too large: the fault, and the advice.
     #[must_use]
     pub const fn beyond(self, what: &'static str, hint: &'static str) -> Self {
         Self {
@@ -246,26 +245,26 @@ impl ValueField {
     }
 }
 
-/// A part or list that is a field of another part.
+/// Description of a field that holds a part or a list.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
-    /// Its key in files.
+    /// Key of the field in files.
     pub key: &'static str,
-    /// What its number is called where the number's own label does not say it.
+    /// Label of its number, if the label of the number's own field does not suffice.
     pub label: Option<&'static str>,
-    /// What a share in it is called.
+    /// Label of a share in the field.
     pub share_label: Option<&'static str>,
-    /// Whether a file may leave it out: it is then empty.
+    /// Whether files may leave the field out: it is then empty.
     pub may_lack: bool,
-    /// Whether it is left out where it is written.
+    /// Whether the field is left out on writing.
     pub is_left_out: bool,
-    /// Whether a list is written even where it is empty.
+    /// Whether a list is written even if it is empty.
     pub even_empty: bool,
-    /// What is said whatever is wrong with it, and what to do.
+    /// Message for any fault of the field: the fault, and the advice.
     pub refusal: Option<[&'static str; 2]>,
 }
 
-/// A part or list that must be there.
+/// A field with a part or list that must be there.
 pub const fn group(key: &'static str) -> Group {
     Group {
         key,
@@ -297,7 +296,7 @@ impl Group {
         }
     }
 
-    /// Files may leave it out; it is always written.
+    /// Files may leave the field out; it is always written.
     #[must_use]
     pub const fn may_lack(self) -> Self {
         Self {
@@ -306,7 +305,7 @@ impl Group {
         }
     }
 
-    /// Left out where it is as an empty one.
+    /// Files may leave the field out; it is left out on writing if it is empty.
     #[must_use]
     pub const fn left_out_if(self, is_usual: bool) -> Self {
         Self {
@@ -316,7 +315,7 @@ impl Group {
         }
     }
 
-    /// A list that is written even where it is empty.
+    /// A list that is written even if it is empty.
     #[must_use]
     pub const fn even_empty(self) -> Self {
         Self {
@@ -325,7 +324,7 @@ impl Group {
         }
     }
 
-    /// Refused in words of its own: what is wrong, what to do.
+    /// With its own message for any fault: the fault, and the advice.
     #[must_use]
     pub const fn refusal(self, what: &'static str, hint: &'static str) -> Self {
         Self {
@@ -346,7 +345,7 @@ pub enum ValueRef<'a> {
     Real(f64),
     /// A text.
     Text(&'a str),
-    /// One of a closed list of words.
+    /// A word of a closed list.
     Word(&'a str),
 }
 
@@ -354,13 +353,13 @@ pub enum ValueRef<'a> {
 pub enum ValueMut<'a> {
     /// A flag.
     Flag(&'a mut bool),
-    /// A whole number up to a largest.
+    /// A whole number: the largest value, and a function that sets it.
     Count(u32, &'a mut dyn FnMut(u32)),
     /// A number: a length (m), an angle (rad) or plain.
     Real(&'a mut f64),
     /// A text.
     Text(&'a mut String),
-    /// One of a closed list of words, to be chosen by its place in it.
+    /// A word of a closed list: the list, and a function that sets the word by its index.
     Word(&'static [&'static str], &'a mut dyn FnMut(usize)),
 }
 
@@ -368,7 +367,7 @@ pub enum ValueMut<'a> {
 pub trait Value {
     /// The value.
     fn get(&self) -> ValueRef<'_>;
-    /// Gives it to be changed.
+    /// Passes the value to a function that may change it.
     fn change(&mut self, by: &mut dyn FnMut(ValueMut<'_>));
 }
 
@@ -410,7 +409,7 @@ macro_rules! counts {
             }
 
             fn change(&mut self, by: &mut dyn FnMut(ValueMut<'_>)) {
-                // What is given is at most the largest.
+                // The number passed in is at most the largest value.
                 by(ValueMut::Count(<$type>::MAX.into(), &mut |count| {
                     *self = count.try_into().unwrap_or(<$type>::MAX);
                 }));

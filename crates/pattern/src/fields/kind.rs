@@ -1,49 +1,50 @@
-//! Kinds of a part that a file tells by the fields it has.
+//! Kinds of a part, such as the variants of a rule, which a file tells by the fields that are there.
 
 use super::{Fields, Group, List, NumberField, Optional, Value, ValueField, Visitor};
 use crate::{AnyId, Mark, Number};
 use strum::IntoEnumIterator;
 use toile_measure::Measurements;
 
-/// How a file tells that a part is of a kind.
+/// The way in which a file tells that a part is of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
-    /// By this field.
+    /// By the presence of this field.
     Field(&'static str),
-    /// By these fields together; by none where it is all that is left.
+    /// By the presence of these fields together; an empty list marks the kind that is taken if no other
+    /// is told.
     By(&'static [&'static str]),
-    /// It is a bare number.
+    /// The part is a bare number.
     Number,
-    /// It is a bare text.
+    /// The part is a bare text.
     Text,
-    /// It is not written at all.
+    /// The kind is never written.
     Never,
 }
 
 /// A kind of a part.
 #[derive(Clone, Debug)]
 pub struct Kind {
-    /// How it is told.
+    /// The way in which files tell the kind.
     pub told: Told,
-    /// Its fields.
+    /// Keys of the fields of the kind.
     pub keys: Vec<&'static str>,
-    /// Its place among the variants as they are declared.
+    /// Index of the variant as declared.
     variant: usize,
 }
 
-/// What is said of a part whose file tells no kind, or two: what is wrong, what to do.
+/// Messages for a part whose file tells no kind, or two: the fault, and the advice.
 #[derive(Clone, Debug, Default)]
 pub struct Clash {
-    /// Where no kind is told; without it the part is of the usual kind.
+    /// Message if no kind is told; without it the part is of the usual kind.
     pub none: Option<[String; 2]>,
-    /// Where a field stands beside those of another kind.
+    /// Message if fields of two kinds stand together.
     pub two: Option<[&'static str; 2]>,
-    /// Which of the kinds is meant where none is told; without it the last.
+    /// Index of the kind that is assumed if none is told; without it the last kind.
     pub usual: Option<usize>,
 }
 
 impl Kind {
-    /// The fields that tell it together.
+    /// The fields that tell the kind together.
     pub fn telling(&self) -> &[&'static str] {
         match &self.told {
             Told::Field(field) => std::slice::from_ref(field),
@@ -52,7 +53,7 @@ impl Kind {
         }
     }
 
-    /// A kind that is told by a field and has further ones.
+    /// A kind that is told by one field and has further fields.
     pub fn told_by(field: &'static str, further: &[&'static str]) -> Self {
         Self {
             told: Told::Field(field),
@@ -63,7 +64,7 @@ impl Kind {
         }
     }
 
-    /// All kinds of a type, those last that nothing tells; kinds that are not written are left out.
+    /// All kinds of a type, kinds without telling fields last; kinds that are never written are left out.
     pub fn all<T: Fields + IntoEnumIterator>(told: impl Fn(&T) -> Told) -> Vec<Self> {
         let kinds = T::iter().enumerate().map(|(variant, blank)| Self {
             told: told(&blank),

@@ -11,7 +11,7 @@ pub fn numbers(part: &dyn Fields) -> Vec<&Number> {
     found.numbers
 }
 
-/// Every place on a line that a part names.
+/// Every mark on a line that a part names.
 pub fn marks(part: &dyn Fields) -> Vec<&Mark> {
     let mut found = Found::default();
     part.visit(&mut found);

@@ -1,9 +1,10 @@
-//! The fields of every part of the document, each said once: [`fields!`](crate::fields!) lists those of a type in the
-//! order of the file, and everything that walks over fields is a [`Visitor`] or a [`VisitorMut`].
+//! The fields of every part of the document, each described once: [`fields!`](crate::fields!) lists
+//! the fields of a type in the order of the file, and all code that walks over fields is a [`Visitor`]
+//! or a [`VisitorMut`].
 //!
-//! What follows from the list alone: references ([`references()`]), new ids in copies ([`Remap`]), numbers with their labels
-//! for inspectors ([`numbers_of`](crate::plan::numbers_of)), marks ([`marks`]), and in the crate `interchange` the reader
-//! and the writer of files with the fields they know.
+//! Derived from this list alone: references ([`references()`]), new ids in copies ([`Remap`]), numbers with
+//! their labels for inspectors ([`numbers_of`](crate::plan::numbers_of)), marks ([`marks`]), and in the crate
+//! `interchange` the reader and the writer of files with their known fields.
 
 mod choice;
 mod count;
@@ -32,10 +33,10 @@ use crate::{AnyId, Mark, Number};
 use std::sync::Arc;
 use toile_measure::Measurements;
 
-/// Key of a field that is its part itself: a part that is written as a bare number or text, not as an object.
+/// Key of the field of a part that is written as a bare number or text, not as an object.
 pub const ITSELF: &str = "";
 
-/// Meets every field of a part in the order of the file.
+/// Visits every field of a part in the order of the file.
 ///
 /// No method has a default: a visitor that leaves one out does not compile.
 ///
@@ -57,27 +58,27 @@ pub trait Visitor<'a> {
     fn optional_number(&mut self, field: NumberField, number: &'a Option<Number>);
     /// A text, a flag, a count, a choice, a value.
     fn value(&mut self, field: ValueField, value: &'a dyn Value);
-    /// The part is nothing but this word.
+    /// The part is written as just this word.
     fn word(&mut self, word: &'static str);
     /// A table of measurements.
     fn measurements(&mut self, key: &'static str, table: &'a Measurements);
-    /// Says whether a field is there that may be left out; if it is, its own call follows.
+    /// Tells whether a field is there that may be left out; if it is, the call for the field follows.
     fn optional(&mut self, key: &'static str, field: &'a dyn Optional);
-    /// A place on a line.
+    /// A mark on a line.
     fn mark(&mut self, group: Group, mark: &'a Mark);
     /// A part with fields of its own.
     fn part(&mut self, group: Group, part: &'a dyn Fields);
     /// A part whose fields stand among those of the part it belongs to.
     fn flat(&mut self, part: &'a dyn Fields);
-    /// Fields that stand in an object of their own.
+    /// Fields that are written in an object of their own.
     fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn Visitor<'a>));
-    /// Fields that stand in a list without their keys, as many as there are.
+    /// Fields that are written in a list of fixed length, without their keys.
     fn list(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn Visitor<'a>));
-    /// Any number of parts; the field is left out where there are none.
+    /// A list of any number of parts; the field is left out if the list is empty.
     fn each(&mut self, group: Group, parts: &'a dyn List);
 }
 
-/// Meets the same fields, to change them.
+/// Visits every field of a part in the order of the file, to change it.
 pub trait VisitorMut {
     /// The part's own id.
     fn own(&mut self, id: &mut dyn AnyId);
@@ -89,70 +90,71 @@ pub trait VisitorMut {
     fn optional_number(&mut self, field: NumberField, number: &mut Option<Number>);
     /// A text, a flag, a count, a choice, a value.
     fn value(&mut self, field: ValueField, value: &mut dyn Value);
-    /// The part is nothing but this word.
+    /// The part is written as just this word.
     fn word(&mut self, word: &'static str);
     /// A table of measurements.
     fn measurements(&mut self, key: &'static str, table: &mut Measurements);
-    /// Makes a field be there or not that may be left out; if it is then, its own call follows.
+    /// May add or remove a field that may be left out; if it is there afterwards, the call for the
+    /// field follows.
     fn optional(&mut self, key: &'static str, field: &mut dyn Optional);
-    /// A place on a line.
+    /// A mark on a line.
     fn mark(&mut self, group: Group, mark: &mut Mark);
     /// A part with fields of its own.
     fn part(&mut self, group: Group, part: &mut dyn Fields);
     /// A part whose fields stand among those of the part it belongs to.
     fn flat(&mut self, part: &mut dyn Fields);
-    /// Fields that stand in an object of their own.
+    /// Fields that are written in an object of their own.
     fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut));
-    /// Fields that stand in a list without their keys, as many as there are.
+    /// Fields that are written in a list of fixed length, without their keys.
     fn list(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut));
-    /// Any number of parts; the field is left out where there are none.
+    /// A list of any number of parts; the field is left out if the list is empty.
     fn each(&mut self, group: Group, parts: &mut dyn List);
 }
 
 /// A part of the document whose fields can be visited.
 pub trait Fields {
-    /// Shows every field to a visitor, in the order of the file.
+    /// Visits every field, in the order of the file.
     fn visit<'a>(&'a self, v: &mut dyn Visitor<'a>);
-    /// The same, to be changed.
+    /// Visits every field for changing, in the order of the file.
     fn visit_mut(&mut self, v: &mut dyn VisitorMut);
-    /// The kinds it may be of, in the order in which a file tells them; none where there is but one.
+    /// The kinds of the part, in the order in which a file is asked for them; none if there is only one.
     fn kinds(&self) -> &'static [Kind] {
         &[]
     }
-    /// Becomes an empty one of a kind.
+    /// Replaces the part by an empty one of this kind.
     fn become_kind(&mut self, _kind: usize) {}
-    /// What is said where a file tells no kind, or two.
+    /// Messages for a file that tells no kind, or two.
     fn clash(&self) -> Clash {
         Clash::default()
     }
-    /// The first thing that no such part may have, though each of its fields may be as it is.
+    /// The first fault of the part as a whole, though each of its fields is valid by itself.
     fn fault(&self) -> Option<FieldFault> {
         None
     }
 }
 
-/// A fault of a part, with its place in it.
+/// A fault of a part, with the field at fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldFault {
-    /// The field.
+    /// Key of the field.
     pub field: &'static str,
-    /// Which item of it, from 0, if it is a list.
+    /// Index of the item, from 0, if the field is a list.
     pub item: Option<usize>,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
-    /// What to do.
+    /// Advice on how to remedy the fault.
     pub hint: &'static str,
 }
 
-/// Parts in a row.
+/// A list of parts.
 pub trait List {
-    /// How many there are.
+    /// Number of parts.
     fn count(&self) -> usize;
-    /// One of them, from 0 and below the count.
+    /// One of the parts, by an index below the count.
     fn get(&self, k: usize) -> &dyn Fields;
-    /// The same, to be changed; a shared one is copied first.
+    /// One of the parts for changing; a shared part is copied first.
     fn get_mut(&mut self, k: usize) -> &mut dyn Fields;
-    /// Makes it so many, new ones empty.
+    /// Sets the number of parts; new ones are empty.
     fn resize(&mut self, count: usize);
 }
 
@@ -174,11 +176,11 @@ impl<T: Fields + Default> List for Vec<T> {
     }
 }
 
-/// Something that may be left out.
+/// A field that may be left out.
 pub trait Optional {
-    /// Whether it is there.
+    /// Whether the field is there.
     fn is_there(&self) -> bool;
-    /// Makes it an empty one, or takes it away.
+    /// Adds the field, empty, or removes it.
     fn set(&mut self, is_there: bool);
 }
 
@@ -218,13 +220,14 @@ impl<T: Fields + Clone> Fields for Arc<T> {
     }
 }
 
-/// Lists the fields of a type, once for all visitors: `fields!(Type, |self, v| { ... })`. The body takes the value apart by
-/// patterns without `..`, so that a field which is forgotten does not compile, and shows each to the visitor `v`; it is
-/// compiled twice, once with references and once with mutable ones. A type with parameters has them before it, as in `@[Id: AnyId] Name<Id>`.
+/// Lists the fields of a type, once for all visitors: `fields!(Type, |self, v| { ... })`. The body
+/// destructures the value by patterns without `..`, so that a forgotten field does not compile, and passes
+/// each field to the visitor `v`; it is compiled twice, once with references and once with mutable ones. Type
+/// parameters stand in front, as in `@[Id: AnyId] Name<Id>`.
 ///
-/// An enum whose kind a file tells by its fields adds `, kinds: |self| match self { ... }`, which gives for each variant
-/// how it is told ([`Told`]), and, where that is refused in words of its own, `, clash: ...` ([`Clash`]). Its variants are
-/// tried in the order of their declaration, those last that nothing tells.
+/// An enum whose kind a file tells by its fields adds `, kinds: |self| match self { ... }`, which gives for
+/// each variant the way it is told ([`Told`]), and, for messages of its own, `, clash: ...` ([`Clash`]). The
+/// variants are tried in the order of their declaration, variants without telling fields last.
 ///
 /// A field that is forgotten:
 ///
@@ -236,7 +239,7 @@ impl<T: Fields + Clone> Fields for Arc<T> {
 /// });
 /// ```
 ///
-/// The same with all its fields:
+/// The same type with all its fields:
 ///
 /// ```
 /// struct Hem { depth: toile_pattern::Number, rolled: bool }

@@ -1,4 +1,4 @@
-//! Fields of the names of corners and lines, and of places on a line.
+//! Fields of the names of corners and lines, and of marks on a line.
 
 use super::{Choice, ITSELF, Told, group, key, length, plain};
 use crate::{AnyId, Mark, Name, OperationId, Role, fields};

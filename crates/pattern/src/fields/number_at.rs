@@ -7,17 +7,18 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use toile_measure::Measurements;
 
-/// Where a number of the document stands: keys and places in lists from its part on, as in `spread.cuts[1].from.distance`.
+/// Address of a number in the document: keys and list indices starting from its part, as
+/// in `spread.cuts[1].from.distance`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct NumberAddress {
-    /// The part it is a number of.
+    /// The part that the number belongs to.
     pub part: PartId,
-    /// The path.
+    /// Path of keys and list indices.
     pub path: String,
 }
 
 impl NumberAddress {
-    /// The number of a part with that path, if it has one.
+    /// The address of the number of a part with this path; the number need not exist.
     pub fn new(part: impl Into<PartId>, path: impl Into<String>) -> Self {
         Self {
             part: part.into(),
@@ -26,39 +27,41 @@ impl NumberAddress {
     }
 }
 
-/// A number of a part, for an inspector.
+/// A number of a part, with all data that an inspector shows of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberEntry {
-    /// Where it stands.
+    /// Address of the number.
     pub place: NumberAddress,
-    /// What it is called beside its field.
+    /// Label of the number.
     pub label: &'static str,
-    /// What it must be.
+    /// Quantity that the number must be.
     pub want: Want,
-    /// The number; nothing where it may be left out and is.
+    /// The number; none if it is optional and left out.
     pub number: Option<Number>,
-    /// The place on a line that it is the number of, if it is.
+    /// The mark on a line that the number belongs to, if any.
     pub mark: Option<Mark>,
-    /// Which of several cuts, pleats or spans it belongs to, from 0.
+    /// Index of the cut, pleat or span that the number belongs to, from 0.
     pub item: Option<usize>,
 }
 
-/// A number that is there, or may be.
+/// A reference to a number for changing.
 pub enum NumberSlot<'e> {
-    /// One that is always there.
+    /// A number that is always there.
     Always(&'e mut Number),
-    /// One that may be left out.
+    /// A number that may be left out.
     Optional(&'e mut Option<Number>),
 }
 
-/// The numbers of a part, which may stand within another, in the order they are shown; without a part those of all.
+/// The numbers of a part, which may stand within another, in the order in which they are shown; without a
+/// part the numbers of all parts.
 pub fn number_entries(whole: &dyn Fields, part: Option<PartId>) -> Vec<NumberEntry> {
     let mut found = found(whole, part);
     found.sort_by_key(|found| found.shown);
     found.into_iter().map(|found| found.entry).collect()
 }
 
-/// Gives a number of a part, which may stand within another, to be changed; whether it is there.
+/// Passes a number of a part, which may stand within another, to a function that may change it; returns
+/// whether the number was found.
 pub fn with_number(
     whole: &mut dyn Fields,
     place: &NumberAddress,
@@ -76,12 +79,12 @@ pub fn with_number(
     true
 }
 
-/// A path in the making.
+/// A path while it is built.
 #[derive(Default)]
 struct Path(String);
 
 impl Path {
-    /// Adds a key, and of a list the place in it; returns what it was long before.
+    /// Appends a key and, for a list, an index; returns the length that the path had before.
     fn enter(&mut self, key: &str, item: Option<usize>) -> usize {
         let before = self.0.len();
         if !key.is_empty() && before > 0 {
@@ -100,7 +103,7 @@ impl Path {
     }
 }
 
-/// A number, and its path from the root.
+/// A number, with its path from the root.
 struct FoundNumber {
     entry: NumberEntry,
     path: String,
@@ -124,7 +127,7 @@ fn found(whole: &dyn Fields, part: Option<PartId>) -> Vec<FoundNumber> {
 
 struct Numbers<'a> {
     part: Option<PartId>,
-    /// The part that is visited, and how long its own path is.
+    /// The part that is visited, and the length of its own path.
     owner: Option<PartId>,
     start: usize,
     path: Path,
@@ -161,7 +164,7 @@ impl<'a> Numbers<'a> {
         self.path.leave(before);
     }
 
-    /// Visits what stands under a key; what it changes of the state is as before then.
+    /// Visits everything under a key, and restores the state of the visitor afterwards.
     fn within(&mut self, group: Group, item: Option<usize>, visit: impl FnOnce(&mut Self)) {
         let before = self.path.enter(group.key, item);
         let state = (self.owner, self.start, self.labels, self.mark, self.item);
@@ -228,7 +231,8 @@ impl<'a> Visitor<'a> for Numbers<'a> {
     }
 }
 
-/// Goes down to one number alone: what else it touched would count as changed.
+/// Visits only the fields that lead to the wanted number: everything else that it touched would count
+/// as changed.
 struct Changing<'w> {
     wanted: &'w str,
     path: Path,

@@ -11,14 +11,14 @@ pub fn references(part: &dyn Fields) -> Vec<PartId> {
     found.0
 }
 
-/// The points that a part is drawn from: those that its own fields name, neither in formulas nor by a place on a line.
+/// The points that a part is drawn from: points that its own fields name, not points in formulas or marks.
 pub fn points(part: &dyn Fields) -> Vec<PointId> {
     let sources = sources(part).into_iter();
     let points = sources.filter_map(|part| part.try_into().ok());
     points.collect()
 }
 
-/// The curves that a part is drawn from, likewise.
+/// The curves that a part is drawn from: curves that its own fields name, not curves in formulas or marks.
 pub fn curves(part: &dyn Fields) -> Vec<CurveId> {
     let sources = sources(part).into_iter();
     let curves = sources.filter_map(|part| part.try_into().ok());

@@ -5,17 +5,17 @@ use crate::{AnyId, Entity, Mark, Name, Number, PartId, PartReference, SizeId, To
 use std::collections::HashMap;
 use toile_measure::Measurements;
 
-/// From old ids to new ones. Ids it does not know stay.
+/// A map from old ids to new ones. Ids that are not in the map stay as they are.
 #[derive(Default)]
 pub struct Remap {
-    /// Of each part, the one that stands for it.
+    /// New id of each part.
     pub ids: HashMap<PartId, PartId>,
-    /// Of each size, the one that stands for it; values of sizes that are not here are dropped.
+    /// New id of each size; numbers lose their values for sizes that are not in the map.
     pub sizes: HashMap<SizeId, SizeId>,
 }
 
 impl Remap {
-    /// The id that stands for one.
+    /// The new id for an id.
     pub fn new_id<T: Copy + Into<PartId> + From<u32>>(&self, id: T) -> T {
         let found = self.ids.get(&id.into());
         found.map_or(id, |part| T::from(part.number()))
@@ -65,7 +65,8 @@ impl Remap {
 }
 
 impl Remap {
-    /// The entity with all ids changed, its own too. A fragment has no sizes and no markers, which stay.
+    /// The entity with all ids replaced, its own too. A fragment contains no sizes and markers; these are
+    /// not changed.
     pub fn entity(&mut self, mut entity: Entity) -> Entity {
         if let Some(sheet) = entity.sheet_mut() {
             *sheet = self.new_id(*sheet);

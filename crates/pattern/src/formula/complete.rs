@@ -1,4 +1,4 @@
-//! Names that may go on with a formula as it is typed.
+//! Completions of a formula while it is typed.
 
 use super::names::Names;
 use super::parse::FUNCTION_NAMES;
@@ -8,15 +8,15 @@ use toile_measure::CATALOGUE;
 /// A formula with its last word completed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Completion {
-    /// The word, as it is shown.
+    /// The completed word, as it is shown.
     pub word: String,
-    /// The whole text with it.
+    /// The whole text with the completed word.
     pub text: String,
 }
 
 impl Names {
-    /// Names the last word of a text may become: measurements, variables, functions and panels, and
-    /// behind `panel.` its edges and points. Those that begin as the word come first.
+    /// Names that the last word of a text may become: measurements, variables, functions and panels, and
+    /// after `panel.` the panel's edges and points. Names that begin with the word come first.
     pub fn completions(&self, text: &str) -> Vec<Completion> {
         let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
         let start = text
@@ -85,7 +85,7 @@ impl Names {
         let mut words: Vec<String> = variables.collect();
         match &self.measured {
             measured if measured.is_empty() => {
-                // No sizes: formulas use what the wearer was measured by.
+                // A pattern without sizes uses the wearer's measurements: the whole catalogue is proposed.
                 words.extend(CATALOGUE.iter().map(|known| known.name.to_owned()));
             }
             measured => words.extend(measured.iter().map(|name| name.to_string())),
@@ -119,7 +119,7 @@ mod tests {
         assert!(found("wai").contains(&"waist".into()));
         assert!(found("2 * (wai").contains(&"2 * (waist".into()));
         assert!(found("le").contains(&"length(".into()));
-        // Nothing is proposed for numbers, for whole words, for nothing.
+        // Nothing is proposed for numbers, complete words and the empty text.
         for text in ["", "12", "1.5", "waist_ease", "waist + ", "nobody.ar"] {
             assert_eq!(found(text), Vec::<String>::new(), "{text}");
         }

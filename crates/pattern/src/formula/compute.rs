@@ -1,5 +1,4 @@
-//! Computes formulas, keeping track of lengths, so that `bust + 2` is refused and `bust + 2cm`
-//! is not.
+//! Computes formulas and checks their dimensions: `bust + 2` is refused and `bust + 2cm` is not.
 
 use super::{Comparison, Formula, Function, Operation};
 use crate::{Code, PartReference, VariableId};
@@ -11,16 +10,17 @@ use toile_geometry::Vec2;
 pub(crate) struct Quantity {
     pub value: f64,
     pub power: i8,
-    /// Whether a plain number is an angle (rad), which is told in degrees. Nothing is refused by it.
+    /// Whether a plain number is an angle (rad), which is shown in degrees. No formula is refused because
+    /// of it.
     pub is_angle: bool,
 }
 
-/// Why a formula has no value.
+/// Reason why a formula has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Failure {
-    /// Something it needs has no value; that was reported at the node of that number.
+    /// A value that the formula needs is missing; the fault was reported at the node of that number.
     Reported(u32),
-    /// A fault of this formula, at a column if it is known.
+    /// A fault of this formula, with its column if known.
     Fault {
         code: Code,
         column: Option<usize>,
@@ -40,7 +40,7 @@ impl Failure {
     }
 }
 
-/// Where formulas look up what they name.
+/// Source of the values that formulas name.
 pub(crate) trait Environment {
     fn variable(&self, id: VariableId) -> Result<Quantity, Failure>;
     fn measurement(&self, name: &str) -> Result<Quantity, Failure>;
@@ -54,7 +54,7 @@ pub(crate) trait Environment {
     fn point(&self, part: &PartReference) -> Result<Vec2, Failure>;
 }
 
-/// Highest power of a length that makes sense on the way to a result.
+/// Highest power of length allowed in intermediate results.
 const MAXIMUM_POWER: i8 = 6;
 
 /// The value of a formula.
@@ -229,7 +229,7 @@ fn compare(comparison: Comparison, a: f64, b: f64) -> bool {
     }
 }
 
-/// The last `N` values; the parser wrote as many as each step takes.
+/// Pops the last `N` values; the parser ensures that the stack has enough for each step.
 fn pop<const N: usize>(stack: &mut Vec<Quantity>) -> [Quantity; N] {
     let rest = stack.split_off(stack.len() - N);
     std::array::from_fn(|k| rest[k])
@@ -237,7 +237,7 @@ fn pop<const N: usize>(stack: &mut Vec<Quantity>) -> [Quantity; N] {
 
 type Arithmetic = Result<Quantity, (String, &'static str)>;
 
-/// The dimension two values share; zero has any.
+/// The common power of length of two values; zero fits any.
 fn common_power(a: Quantity, b: Quantity) -> Option<i8> {
     let any = |q: Quantity| q.value == 0.0 && q.power == 0;
     if a.power == b.power || any(b) {
@@ -271,7 +271,7 @@ fn product(a: Quantity, b: Quantity) -> Arithmetic {
             "a length may be multiplied by plain numbers only, if the result is a length",
         ));
     }
-    // An angle times a length is an arc.
+    // The product of an angle and a length is the length of an arc.
     Ok(Quantity {
         value: a.value * b.value,
         power,
@@ -365,7 +365,7 @@ fn square_root(a: Quantity) -> Arithmetic {
     })
 }
 
-/// A dimension in words.
+/// Name of a dimension for messages.
 pub(crate) fn kind(power: i8) -> &'static str {
     match power {
         0 => "a plain number",

@@ -3,15 +3,16 @@
 use super::{FormulaError, Quantity, RESERVED};
 use std::cell::Cell;
 
-/// A formula's text and the byte that is read next.
+/// A formula's text, and the byte position to be read next.
 pub(super) struct Cursor<'a> {
     pub text: &'a str,
     pub at: usize,
-    /// A byte and the characters before it, so that columns are not counted from the start again.
+    /// A byte position and the number of characters before it, so that columns are not counted from the
+    /// start again.
     counted: Cell<(usize, usize)>,
 }
 
-/// A number with a unit, where the word is one.
+/// A number with this unit; none if the word is not a unit.
 fn quantity(number: f64, unit: &str) -> Option<Quantity> {
     Some(match unit {
         "m" => Quantity::length(number),
@@ -68,7 +69,7 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// Takes a word that stands before a name or an id, as in `curve front.side`.
+    /// Takes a word that stands before a name or an id, such as `curve` in `curve front.side`.
     pub fn take_prefix(&mut self, wanted: &str) -> bool {
         let before = self.at;
         let found = self.take_word(wanted) && {
@@ -143,7 +144,7 @@ impl<'a> Cursor<'a> {
         Ok(constant)
     }
 
-    /// `5/8in` or `1 5/8in`: inches, and the bytes it takes. Anything else is no such number.
+    /// Reads `5/8in` or `1 5/8in`: inches, and the number of bytes read. None for any other text.
     fn inch_fraction(&self) -> Option<(f64, usize)> {
         let text = self.rest();
         let number = |from: usize, length: usize| text.get(from..from + length)?.parse().ok();
@@ -168,7 +169,7 @@ impl<'a> Cursor<'a> {
         (is_inch && below > 0.0).then_some((whole + above / below, end + 2))
     }
 
-    /// Applies the unit that follows a number, if one does.
+    /// Applies the unit that follows the number, if there is one.
     fn unit(&mut self, number: f64) -> Result<Quantity, FormulaError> {
         let before = self.at;
         self.skip_space();

@@ -1,8 +1,8 @@
 //! Formulas: arithmetic on measurements, variables and drafted lengths.
 //!
-//! A formula holds the ids of what it names and prints their names of the day, so that renaming a
-//! part touches no formula. It is kept in postfix order with jumps, so that computing it needs no
-//! recursion whatever its length.
+//! A formula holds the ids of the parts that it names and is printed with their current names, so that
+//! renaming a part leaves all formulas unchanged. It is kept in postfix order with jumps, so that computing
+//! it needs no recursion, however long it is.
 
 mod by_id;
 mod complete;
@@ -24,35 +24,35 @@ use crate::{PartId, PartReference, VariableId};
 use std::fmt;
 use std::sync::Arc;
 
-/// Words that are operators, so that parts called so stand in quotes.
+/// Words that are operators; a part with such a name is written in quotes.
 const RESERVED: &[&str] = &["and", "or", "not"];
-/// The number of that name, unless a variable has it.
+/// Name of the constant 3.14159..., unless a variable has this name.
 pub(crate) const PI: &str = "pi";
-/// Longest formula that is read, each name counted as one (bytes).
+/// Longest formula that is read, each part's name counted as one byte (bytes).
 pub const FORMULA_LENGTH: usize = 2000;
 /// Deepest nesting of parentheses, signs and calls that is read.
 pub const FORMULA_DEPTH: usize = 50;
 
-/// A formula that has been read. Two are equal when they say the same of the same parts.
+/// A parsed formula. Two formulas are equal if they compute the same from the same parts.
 #[derive(Clone)]
 pub struct Formula {
     tokens: Arc<[Token]>,
     steps: Arc<[Step]>,
 }
 
-/// Why a text is not a formula.
+/// Reason why a text is not a formula.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("column {column}: {message}; {hint}")]
 pub struct FormulaError {
     /// Column of the offending character, from 1.
     pub column: usize,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
-    /// What to do about it.
+    /// Advice on how to remedy the fault.
     pub hint: String,
 }
 
-/// A stretch of the text, or a name in it.
+/// A piece of the formula's text, or a name in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Token {
     /// Text as it was written.
@@ -65,15 +65,15 @@ pub enum Token {
     Part(PartReference),
 }
 
-/// What a formula needs to have a value.
+/// A value that a formula depends on.
 pub(crate) enum Use<'f> {
     Variable(VariableId),
-    /// A measurement, else a variable that had not that name when the formula was read.
+    /// A measurement, else a variable that did not have this name when the formula was read.
     Word(&'f str),
     Part {
         part: &'f PartReference,
         kind: Kind,
-        /// Whether it is measured after all operations.
+        /// Whether the part is measured after all operations.
         finished: bool,
     },
 }
@@ -81,12 +81,12 @@ pub(crate) enum Use<'f> {
 /// One step of a formula in postfix order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// Where it stands in the text that was read, from 1.
+    /// Column of the step in the text that was read, from 1.
     pub column: usize,
     pub operation: Operation,
 }
 
-/// What a step does to the stack.
+/// Effect of a step on the stack.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Operation {
     /// Pushes a number.
@@ -104,7 +104,7 @@ pub(crate) enum Operation {
     Compare(Comparison),
     And,
     Or,
-    /// Takes that many values and pushes one.
+    /// Pops this many arguments and pushes the result of the function.
     Call(Function, usize),
     /// Pushes the length of a part.
     Length(PartReference),
@@ -112,15 +112,15 @@ pub(crate) enum Operation {
     Finished(PartReference),
     /// Pushes the direction of a part from start to end, from +x counter-clockwise.
     Angle(PartReference),
-    /// Pushes the direction from a point to another.
+    /// Pushes the direction from one point to another.
     AngleBetween(PartReference, PartReference),
     /// Pushes a coordinate of a point: 0 is x, 1 is y.
     Coordinate(PartReference, usize),
     /// Pushes the distance between two points.
     Distance(PartReference, PartReference),
-    /// Takes a value; goes on at the step of that number if it is 0.
+    /// Pops a value; if it is 0, continues at the step with this index.
     JumpUnless(usize),
-    /// Goes on at the step of that number.
+    /// Continues at the step with this index.
     Jump(usize),
 }
 
@@ -149,31 +149,31 @@ pub(crate) enum Function {
 }
 
 impl Formula {
-    /// Reads a formula, its names looked up in a document.
+    /// Parses a formula and looks up its names in a document.
     ///
     /// Numbers may carry a unit (`mm cm m in deg rad`, and `1 5/8in`); `pi` is 3.14159...; names are
-    /// variables or measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
-    /// `x`, `y` speak of parts as they are drawn, `finished` of an edge after all operations;
-    /// `length('side seam')` of a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
-    /// that are not plain words stand in single quotes. `?47` is the part of that id, whatever it is
-    /// called and whether it is there.
+    /// variables or measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`,
+    /// `distance`, `x`, `y` measure parts as drawn, `finished` an edge after all operations;
+    /// `length('side seam')` measures a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names that
+    /// are not plain words stand in single quotes. `?47` is the part with that id, whatever its name is and even
+    /// if it is removed.
     ///
     /// # Errors
-    /// The text is no formula. A name that is not known is no error: it is kept, and the formula
-    /// has no value until something has that name.
+    /// The text is not a formula. An unknown name is no error: it is kept, and the formula has no value until
+    /// a part has that name.
     pub fn parse(text: &str, names: &Names) -> Result<Self, FormulaError> {
         parse::parse(text, names)
     }
 
-    /// Reads a formula that speaks of no part: measurements and numbers alone.
+    /// Parses a formula of measurements and numbers alone, without names of parts.
     ///
     /// # Errors
-    /// The text is no formula.
+    /// The text is not a formula.
     pub fn of_measurements(text: &str) -> Result<Self, FormulaError> {
         parse::parse(text, &Names::default())
     }
 
-    /// The formula with names of the day.
+    /// The text of the formula with the current names of its parts.
     pub fn text(&self, names: &Names) -> String {
         self.tokens.iter().map(|token| names.print(token)).collect()
     }
@@ -182,7 +182,7 @@ impl Formula {
         &self.steps
     }
 
-    /// Everything the formula names, in the order of its text.
+    /// The text of the formula as pieces of text and names, in order.
     pub fn tokens(&self) -> &[Token] {
         &self.tokens
     }
@@ -200,7 +200,7 @@ impl Formula {
         found
     }
 
-    /// Everything a value of the formula needs.
+    /// Every value that the formula depends on.
     pub(crate) fn uses(&self) -> Vec<Use<'_>> {
         let part = |part, kind| Use::Part {
             part,
@@ -241,7 +241,7 @@ impl Formula {
         uses
     }
 
-    /// Parts of a document that names in the formula lead to, though nothing was called so when it
+    /// Parts that names in the formula lead to now, although no part had these names when the formula
     /// was read.
     pub(crate) fn found_by_name(&self, names: &Names) -> Vec<PartId> {
         let found = self.uses().into_iter().flat_map(|used| match used {
@@ -258,7 +258,7 @@ impl Formula {
         found.collect()
     }
 
-    /// The formula with every reference put through a map, as pasting does.
+    /// The formula with every name replaced through a map, as pasting does.
     #[must_use]
     pub fn mapped(&self, map: &mut impl FnMut(&Token) -> Token) -> Self {
         let tokens: Arc<[Token]> = self.tokens.iter().map(&mut *map).collect();

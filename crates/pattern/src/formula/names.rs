@@ -1,4 +1,4 @@
-//! Names of a document's parts, and the ids they lead to.
+//! Names of a document's parts, and the ids of these parts.
 
 use super::written::{Corner, Kind, Owner, Word, Written};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 use std::collections::{BTreeMap, BTreeSet};
 use toile_measure::definition;
 
-/// The names formulas may use, of one state of a document.
+/// The names that formulas may use, for one state of a document.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Names {
     pub(super) variables: Book<(), VariableId>,
@@ -18,7 +18,7 @@ pub struct Names {
     pub(super) points: Book<SheetId, PointId>,
     pub(super) curves: Book<SheetId, CurveId>,
     pub(super) operations: Book<PanelId, OperationId>,
-    /// Ends of the first edge of a name in each panel.
+    /// Ends of the first edge with each name in each panel.
     pub(super) edges: BTreeMap<PanelId, BTreeMap<Box<str>, [PointId; 2]>>,
     /// Name of the first edge with these ends in a panel.
     pub(super) spanned: BTreeMap<(PanelId, [PointId; 2]), Box<str>>,
@@ -32,7 +32,8 @@ pub struct Names {
     pub(super) by_id: bool,
 }
 
-/// Names of one kind of part, each within an owner. Of several parts of one name the first has it.
+/// Names of one kind of part, each within an owner. If several parts have the same name, it stands for
+/// the first.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Book<Owner, Id> {
     of: BTreeMap<Id, (Owner, Box<str>)>,
@@ -116,7 +117,7 @@ impl Names {
         }
     }
 
-    /// Parts written as `@` and their ids: for journals, which outlive names.
+    /// Names for journals: parts are written as `@` and their ids, which outlive names.
     pub(crate) fn by_id() -> Self {
         Self {
             by_id: true,
@@ -146,17 +147,17 @@ impl Names {
         self.sheets.name(sheet).map(|(_, name)| name)
     }
 
-    /// Whether a word is a measurement's name: of the catalogue, or of a size's table.
+    /// Whether a word is the name of a measurement: in the catalogue, or in the table of a size.
     pub(super) fn is_measurement(&self, name: &str) -> bool {
         definition(name).is_some() || self.measured.contains(name)
     }
 
-    /// The part a text names; nothing if there is none.
+    /// The part that a text names; none if there is no such part.
     pub(crate) fn part(&self, text: &str, kind: Kind) -> Option<PartReference> {
         self.part_of(&Written::of(text, kind)?, kind)
     }
 
-    /// The part that is written so; nothing if there is none.
+    /// The part for a parsed notation; none if there is no such part.
     pub(super) fn part_of(&self, written: &Written, kind: Kind) -> Option<PartReference> {
         match written {
             Written::Lost(id) if kind == Kind::Point => Some(PartReference::Point((*id).into())),
@@ -210,7 +211,8 @@ impl Names {
         }
     }
 
-    /// The sheet an owner leads to: of the panel called so, else the sheet called so.
+    /// The sheet that an owner's name leads to: the sheet of the panel with this name, else the sheet with
+    /// this name.
     fn sheet(&self, owner: &Owner) -> Option<SheetId> {
         let panel = self.owning_panel(owner);
         let traced = panel.and_then(|panel| self.source.get(&panel).copied());
@@ -254,7 +256,7 @@ impl Names {
         }
     }
 
-    /// Why a text names nothing, and what may have been meant.
+    /// Reason why a text names no part, and advice, if possible with the most similar name.
     pub(crate) fn missing(&self, text: &str, kind: Kind) -> (String, String) {
         match Written::of(text, kind) {
             None => removed(text),
@@ -323,7 +325,7 @@ impl Names {
     }
 }
 
-/// Why what was there is not, and what to do.
+/// Message for a part that was removed, and advice.
 fn removed(what: &str) -> (String, String) {
     (
         format!("{what} was removed"),

@@ -36,7 +36,7 @@ const COMPARISONS: &[(&str, Comparison)] = &[
     ("=", Comparison::Equal),
 ];
 
-/// No part's name takes as many bytes in a formula: four names of 80 characters, and quotes.
+/// Bound of the length of a part's name in a formula (bytes): four names of 80 characters, and quotes.
 const MAX_NAME_LENGTH: usize = 1500;
 
 struct Parser<'a> {
@@ -45,7 +45,7 @@ struct Parser<'a> {
     depth: usize,
     steps: Vec<Step>,
     tokens: Vec<Token>,
-    /// Where the text that is in no token yet begins.
+    /// Start of the text that is not in a token yet.
     pending: usize,
 }
 
@@ -93,7 +93,7 @@ impl Parser<'_> {
         self.steps.push(Step { column, operation });
     }
 
-    /// Puts the text up to a place into a token.
+    /// Puts the pending text up to a position into a token.
     fn flush(&mut self, end: usize) {
         if self.pending < end {
             let text = &self.cursor.text[self.pending..end];
@@ -102,7 +102,7 @@ impl Parser<'_> {
         self.pending = end;
     }
 
-    /// A name from `start` to here becomes a token of its own.
+    /// Makes the name from `start` to the current position a token of its own.
     fn name_token(&mut self, start: usize, token: Token) {
         self.flush(start);
         self.tokens.push(token);
@@ -256,7 +256,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `?47`: a variable that was removed, or whose name is another's.
+    /// Reads `?47`: a variable that was removed, or whose name belongs to another.
     fn lost(&mut self) -> Result<(), FormulaError> {
         let (column, start) = (self.cursor.column(), self.cursor.at);
         let variable = id(&mut self.cursor)?.into();
@@ -265,7 +265,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `@12`: a variable by its id.
+    /// Reads `@12`: a variable by its id.
     fn variable_by_id(&mut self) -> Result<(), FormulaError> {
         let (column, start) = (self.cursor.column(), self.cursor.at);
         let length = self.cursor.digits(1);
@@ -293,7 +293,7 @@ impl Parser<'_> {
             self.cursor.at = end;
             let (token, operation) = match self.names.variable(&name) {
                 Some(id) => (Token::Variable(id), Operation::Variable(id)),
-                // Text like a number.
+                // `pi` stays plain text, as a number does: it is no name of a part.
                 None if &*name == PI && !is_quoted => {
                     self.push(column, Operation::Constant(Quantity::plain(consts::PI)));
                     return Ok(());
@@ -334,7 +334,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The direction of an edge, or from a point to another.
+    /// Reads the arguments of `angle`: an edge, or two points.
     fn angle(&mut self) -> Result<Operation, FormulaError> {
         self.cursor.at += 1;
         let start = self.cursor.at;
@@ -359,7 +359,7 @@ impl Parser<'_> {
             .error_here("stands where a comma is missing", hint))
     }
 
-    /// `if(condition, value, otherwise)`: only the value that is chosen is computed.
+    /// Reads `if(condition, value, otherwise)`: only the chosen value is computed.
     fn condition(&mut self, column: usize) -> Result<(), FormulaError> {
         const HINT: &str = "write if(condition, value, otherwise)";
         self.enter()?;
@@ -410,7 +410,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A part, by its names or ids.
+    /// Reads a part, by its names or ids.
     fn part(&mut self, kind: Kind) -> Result<PartReference, FormulaError> {
         self.cursor.skip_space();
         let start = self.cursor.at;

@@ -1,11 +1,11 @@
-//! Formulas of plain numbers, as tables of other programs have them: no lengths, no parts.
+//! Formulas of plain numbers, such as tables of other programs have: without lengths and parts.
 
 use super::compute::{Environment, Failure, Quantity, compute};
 use super::{Formula, FormulaError, Token};
 use crate::{Code, PartReference, VariableId};
 use toile_geometry::Vec2;
 
-/// What words are worth.
+/// An environment that gives words the plain values of a table.
 struct Words<F>(F);
 
 impl<F: Fn(&str) -> Option<f64>> Environment for Words<F> {
@@ -54,7 +54,7 @@ impl Formula {
         })
     }
 
-    /// The value where words are plain numbers, as in a table that is all in one unit.
+    /// The value of the formula with plain numbers for its words, as in a table that is all in one unit.
     ///
     /// # Errors
     /// A word without a number, a part, a number with a unit of length, a result that is not finite.

@@ -1,4 +1,4 @@
-//! Prints what a formula names with the names of the day.
+//! Prints the parts that a formula names, with their current names.
 
 use super::by_id::ids_of;
 use super::written::{Corner, Kind, Owner, Word, Written};
@@ -6,8 +6,8 @@ use super::{Names, Token, quoted};
 use crate::{CornerName, Name, PanelId, PartReference, SheetId, VariableId};
 
 impl Names {
-    /// A token with the names of the day. Read again, it is the same token: a part that is gone,
-    /// or whose name leads to another, prints as `?` and its id.
+    /// The text of a token with current names. Parsed again it gives the same token: a part that is gone, or
+    /// whose name leads to another part, is printed as `?` and its id.
     pub fn print(&self, token: &Token) -> String {
         match token {
             Token::Text(text) => text.to_string(),
@@ -29,7 +29,7 @@ impl Names {
         }
     }
 
-    /// A part with the names of the day.
+    /// The text of a part with current names.
     pub fn print_part(&self, part: &PartReference) -> String {
         if self.by_id {
             return ids_of(part);
@@ -56,8 +56,8 @@ impl Names {
         written.to_string()
     }
 
-    /// A point or curve by its own name and that of its sheet or of the panel traced from it;
-    /// nothing if all of these lead to another part.
+    /// Notation of a point or curve by its own name and the name of its sheet, or of the panel traced from
+    /// the sheet; none if all of these lead to another part.
     fn in_sheet(&self, sheet: SheetId, name: &str, part: &PartReference) -> Option<Written> {
         let is_point = matches!(part, PartReference::Point(_));
         let kind = if is_point { Kind::Point } else { Kind::Stretch };

@@ -1,4 +1,4 @@
-//! Notation of parts in formulas: by name, or `?id` where the part is lost or its name leads to another.
+//! Notation of parts in formulas: by name, or `?id` if the part is lost or its name leads to another part.
 
 use super::cursor::Cursor;
 use super::{FormulaError, quoted};
@@ -7,17 +7,17 @@ use std::fmt;
 
 const HINT: &str = "write panel.name, for example front.armhole";
 
-/// The argument that a function measures.
+/// Kind of part that a function takes as argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Point,
     /// An edge, a stretch of a line or a curve.
     Stretch,
-    /// Any of these, or a seam.
+    /// An edge, a stretch of a line, a curve or a seam.
     StretchOrSeam,
 }
 
-/// A name, or `?` and an id.
+/// A name, or `?` with an id.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Word {
     Name(Box<str>),
@@ -27,9 +27,9 @@ pub(crate) enum Word {
 /// The owner of points, edges and curves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Owner {
-    /// A panel and the sheet it is traced from, else a sheet.
+    /// A panel and the sheet it is traced from; if there is no such panel, a sheet.
     Panel(Word),
-    /// `sheet front`: a sheet, whatever panel is called so.
+    /// `sheet front`: a sheet, even if a panel has the same name.
     Sheet(Word),
 }
 
@@ -45,16 +45,16 @@ pub(crate) enum Corner {
     },
 }
 
-/// A part as it is written.
+/// A part as written in a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Written {
-    /// `?47`: a point; where a length is measured, a part that was lost and does not say its kind.
+    /// `?47`: a point; as the argument of a length, a part that was removed and whose kind is not known.
     Lost(u32),
     /// `'side seam'`, or `seam ?9`.
     Seam(Word),
     /// `curve ?12`
     Curve(u32),
-    /// `curve front.side`: a curve of a sheet, whatever edge is called so.
+    /// `curve front.side`: a curve of a sheet, even if an edge has the same name.
     CurveOf(Word, Word),
     /// `front.armhole`
     Part(Owner, Word),
@@ -63,14 +63,14 @@ pub(crate) enum Written {
 }
 
 impl Written {
-    /// The part a whole text is; nothing if it is none of that kind.
+    /// Parses a text that is one part; none if it is no part of this kind.
     pub fn of(text: &str, kind: Kind) -> Option<Self> {
         let mut cursor = Cursor::new(text);
         let written = Self::read(&mut cursor, kind).ok()?;
         cursor.peek().is_none().then_some(written)
     }
 
-    /// Reads a part.
+    /// Reads a part from a formula.
     pub fn read(cursor: &mut Cursor<'_>, kind: Kind) -> Result<Self, FormulaError> {
         cursor.skip_space();
         if kind != Kind::Point && cursor.take_prefix("curve") {
@@ -130,7 +130,7 @@ impl Written {
     }
 }
 
-/// The curve after its word.
+/// Reads a curve after the word `curve`.
 fn curve(cursor: &mut Cursor<'_>) -> Result<Written, FormulaError> {
     let owner = word(cursor)?;
     let end = cursor.at;
@@ -153,7 +153,7 @@ fn word(cursor: &mut Cursor<'_>) -> Result<Word, FormulaError> {
     }
 }
 
-/// `?47`
+/// Reads an id such as `?47`.
 pub(super) fn id(cursor: &mut Cursor<'_>) -> Result<u32, FormulaError> {
     cursor.skip_space();
     let number = |cursor: &Cursor<'_>| cursor.rest().get(1..1 + cursor.digits(1))?.parse().ok();
@@ -170,7 +170,7 @@ pub(super) fn id(cursor: &mut Cursor<'_>) -> Result<u32, FormulaError> {
     }
 }
 
-/// A corner whose first word was read.
+/// Reads the rest of a corner after its first word.
 fn corner(cursor: &mut Cursor<'_>, first: Word) -> Result<Corner, FormulaError> {
     let rest = cursor.rest();
     if !rest.starts_with('.') || rest.starts_with("..") {

@@ -1,4 +1,4 @@
-//! A graph whose nodes are of two kinds: each link says that its nodes are alike, or unlike.
+//! Two-colouring of a graph: each link demands that its nodes are of the same kind, or of different kinds.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -6,22 +6,22 @@ use std::collections::{BTreeMap, VecDeque};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Link {
     pub nodes: [usize; 2],
-    /// Whether they are of different kinds.
+    /// Whether the nodes must be of different kinds.
     pub unlike: bool,
 }
 
 /// The kinds of all nodes, as far as links decide them.
 pub(crate) struct Colouring {
-    /// Of each node, the smallest node of its component.
+    /// Root of each node: the smallest node of its component.
     pub root: Vec<usize>,
-    /// Of each node, whether it is unlike its root.
+    /// Whether each node is of another kind than its root.
     pub unlike: Vec<bool>,
-    /// Of components that no kinds suit, by their roots: the links of a short ring that shows it.
+    /// For each component that has no valid colouring, by its root: the links of a short ring that proves it.
     pub rings: BTreeMap<usize, Vec<usize>>,
 }
 
 impl Colouring {
-    /// Goes through the graph breadth first, in the order of nodes and links.
+    /// Colours the graph by breadth-first search, in the order of nodes and links.
     pub fn new(count: usize, links: &[Link]) -> Self {
         let mut beside: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (index, link) in links.iter().enumerate() {
@@ -55,7 +55,7 @@ impl Colouring {
         colouring
     }
 
-    /// Keeps, of each component, the shortest ring through a link that does not hold.
+    /// Keeps for each component the shortest ring through a violated link.
     fn find_rings(&mut self, links: &[Link], beside: &[Vec<usize>]) {
         for (index, link) in links.iter().enumerate() {
             let [a, b] = link.nodes;
@@ -72,7 +72,7 @@ impl Colouring {
     }
 }
 
-/// The other node of a link; the same where it joins a node to itself.
+/// The other node of a link; the same node if the link joins it to itself.
 fn across(link: Link, node: usize) -> usize {
     match link.nodes {
         [a, b] if a == node => b,
@@ -80,13 +80,13 @@ fn across(link: Link, node: usize) -> usize {
     }
 }
 
-/// The shortest way from one node to another by which they are unlike, or alike.
+/// The shortest path from one node to another that makes them unlike, or alike.
 fn way(
     (from, to, unlike): (usize, usize, bool),
     links: &[Link],
     beside: &[Vec<usize>],
 ) -> Vec<usize> {
-    // Every node is met twice at most: as one like the first, and as one unlike it.
+    // Each node is visited at most twice: as one like the first node, and as one unlike it.
     let mut reached_by: BTreeMap<(usize, bool), Option<usize>> = BTreeMap::new();
     reached_by.insert((from, false), None);
     let mut open = VecDeque::from([(from, false)]);
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn of_a_component_that_no_kinds_suit_the_shortest_ring_is_kept() {
-        // 0-1-2-3-0 with one unlike link, and 4 on it by a triangle that holds.
+        // Ring 0-1-2-3-0 with one unlike link, and node 4 attached to it.
         let links = [
             link(0, 1, false),
             link(1, 2, false),

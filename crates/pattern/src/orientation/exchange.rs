@@ -1,9 +1,9 @@
-//! Which spans of seams take the other copy of a pair, or the other half of a folded panel, so that
-//! every piece shows its right side.
+//! Chooses the spans of seams that take the other copy of a pair, or the other half of a folded panel, so
+//! that every piece shows its right side.
 //!
-//! A span on the other copy or half lies on the mirror image, so it runs the other way round its
-//! cloth: each exchange turns a seam that would show a wrong side into one that does not, and back.
-//! What must be exchanged together, and what a seam asks of its two sides, are links of one graph.
+//! A span on the other copy or half lies on the mirror image, so it runs the other way round its cloth: each
+//! exchange turns a seam that would show a wrong side into one that does not, and back. Spans that must be
+//! exchanged together, and the demand of a seam on its two sides, are links of one graph.
 
 use super::colouring::{Colouring, Link};
 use super::meetings::Meeting;
@@ -11,10 +11,10 @@ use crate::evaluate::SpanValue;
 use crate::{EdgeName, PanelId};
 use std::collections::BTreeMap;
 
-/// Stretches that share less than this of their edge lie apart.
+/// Stretches that overlap by less than this share of their edge count as apart.
 const APART: f64 = 1e-9;
 
-/// What a cutter may lay in the place of what a span is on.
+/// The mirror image of a piece of cloth that a cutter may lay in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Twin {
     /// The other copy of a mirrored pair.
@@ -24,7 +24,7 @@ pub(crate) enum Twin {
 }
 
 impl Twin {
-    /// A span on the other copy or half.
+    /// A span moved to the other copy or half.
     pub fn of(self, span: &SpanValue) -> SpanValue {
         let mut twin = span.clone();
         match self {
@@ -37,14 +37,14 @@ impl Twin {
 
 /// A span of a seam.
 pub(crate) struct SeamSpan<'a> {
-    /// Number of its seam, and its side.
+    /// Number of the seam that the span belongs to.
     pub seam: usize,
     pub side: usize,
     pub value: &'a SpanValue,
     pub twin: Option<Twin>,
 }
 
-/// Spans between which alone exchanges go: of one panel, of two copies or of two halves.
+/// Spans that may be exchanged among each other: of one panel, between two copies or between two halves.
 type Class = (PanelId, Twin, u32, u8);
 
 impl SeamSpan<'_> {
@@ -56,7 +56,7 @@ impl SeamSpan<'_> {
         })
     }
 
-    /// Whether it is on the second of the two copies or halves.
+    /// Whether the span is on the second of the two copies or halves.
     fn is_second(&self) -> bool {
         match self.twin {
             Some(Twin::Copy) => self.value.copy % 2 == 1,
@@ -65,7 +65,7 @@ impl SeamSpan<'_> {
         }
     }
 
-    /// The span on the other copy or half.
+    /// The span moved to the other copy or half; unchanged if there is none.
     pub fn exchanged(&self) -> SpanValue {
         match self.twin {
             Some(twin) => twin.of(self.value),
@@ -74,17 +74,19 @@ impl SeamSpan<'_> {
     }
 }
 
-/// What becomes of a span.
+/// Decision about a span.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Taken {
-    /// Whether it takes the other copy or half.
+    /// Whether the span takes the other copy or half.
     pub exchanged: bool,
-    /// Whether that sets a seam right: else two seams change places, and what is sewn stays the same.
+    /// Whether the exchange sets a seam right; otherwise two seams change places, and the sewn garment stays
+    /// the same.
     pub is_needed: bool,
 }
 
-/// Which spans are exchanged so that every seam is right; none where that cannot be, or need not.
-/// `asked` are pairs of spans that lie across a seam, each with whether they turn a piece.
+/// Chooses the spans to exchange so that every seam is right; none if that is impossible or not needed.
+/// `asked` are pairs of spans that lie opposite each other in a seam, each with whether they turn a
+/// piece over.
 pub(crate) fn choose(spans: &[SeamSpan<'_>], asked: &[Meeting]) -> Vec<Taken> {
     let mut exchanged = vec![Taken::default(); spans.len()];
     if asked.iter().all(|meeting| !meeting.turns) {
@@ -132,9 +134,10 @@ fn alike(nodes: [usize; 2]) -> Link {
     }
 }
 
-/// What makes one choice better than another, in this order: fewer exchanges, unless all of them change
-/// places with others; of each seam, in the order of the document, fewer spans on second copies and halves;
-/// fewer halves exchanged; first copies first.
+/// Cost of a choice, compared in this order: number of exchanges, unless all of them change places with
+/// others; for each seam, in the order of the document, number of spans on second copies and halves; number
+/// of exchanged halves; for each span whether it is then on a second copy or half, so that the earliest spans
+/// are on first copies.
 type Cost = (usize, Vec<usize>, usize, Vec<bool>);
 
 fn cost(spans: &[SeamSpan<'_>], members: &[usize], (moved, swaps): (&[bool], bool)) -> Cost {
@@ -160,12 +163,12 @@ fn cost(spans: &[SeamSpan<'_>], members: &[usize], (moved, swaps): (&[bool], boo
     )
 }
 
-/// Spans that are exchanged together or not at all.
+/// Constraints: spans that are exchanged together or not at all.
 struct Ties {
     links: Vec<[usize; 2]>,
     /// Whether each span may be exchanged.
     may_move: Vec<bool>,
-    /// Whether each changes places with others if it is.
+    /// Whether each span changes places with others if it is exchanged.
     swaps: Vec<bool>,
 }
 
@@ -185,12 +188,13 @@ impl Ties {
         for ((_, twin, ..), members) in &classes {
             let met = ties.tie_places(spans, members);
             for (&k, met) in members.iter().zip(met) {
-                // A half moves only to where a seam is that moves here: its piece stays where it is.
+                // A half is exchanged only if another seam is on its stretch: the piece itself stays
+                // in place.
                 ties.may_move[k] = met || *twin == Twin::Copy;
             }
             ties.tie_chains(spans, members);
         }
-        // Spans of one chain move together, so none may move where one may not.
+        // Spans of one chain move together: if one may not move, none may.
         let links: Vec<Link> = ties.links.iter().map(|&nodes| alike(nodes)).collect();
         let groups = Colouring::new(spans.len(), &links).root;
         let held: Vec<usize> = (0..spans.len())
@@ -203,8 +207,9 @@ impl Ties {
         ties
     }
 
-    /// Ties spans that would lie on each other's places. Of each span, whether another is there already,
-    /// or would be: two on one place were meant for both copies or halves, and each goes its own way.
+    /// Ties spans on the same stretch of the two copies or halves: they change places with each other. Spans
+    /// on the same stretch of one copy are not tied: they were meant for both copies or halves. Returns for
+    /// each span whether another lies on its stretch of either copy or half.
     fn tie_places(&mut self, spans: &[SeamSpan<'_>], members: &[usize]) -> Vec<bool> {
         let mut met = vec![false; members.len()];
         let mut places: BTreeMap<EdgeName, Vec<(f64, f64, usize)>> = BTreeMap::new();
@@ -231,8 +236,8 @@ impl Ties {
         met
     }
 
-    /// Ties the spans of a panel within one side of a seam; and all of a copy whose other is not sewn
-    /// at all, which takes its place as a whole.
+    /// Ties the spans of a panel within one side of a seam; and all spans of a copy whose twin is not sewn at
+    /// all: the twin takes its place as a whole.
     fn tie_chains(&mut self, spans: &[SeamSpan<'_>], members: &[usize]) {
         let is_whole = members
             .windows(2)

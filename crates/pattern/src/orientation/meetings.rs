@@ -1,12 +1,12 @@
-//! What lies across a seam from what, and whether both show the same side of the cloth.
+//! Parts of seam sides that lie opposite each other, and whether both show the same side of the cloth.
 
 use crate::{Draft, DraftSpan, Piece, PieceEdge};
 
-/// Spans that lie across from each other along less than this share of the seam do so by a difference
-/// of lengths, not by design.
+/// Spans opposite each other along less than this share of the seam are so because of a difference of
+/// lengths, not by design.
 const BESIDE: f64 = 0.02;
 
-/// Two spans that lie across a seam from each other.
+/// Two spans that lie opposite each other in a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Meeting {
     /// Numbers of the spans, of the first side and of the second.
@@ -15,17 +15,17 @@ pub(crate) struct Meeting {
     pub turns: bool,
 }
 
-/// A part of one side of a seam: spans on one piece, one after another.
+/// A part of one side of a seam: consecutive spans on one piece.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SidePart {
-    /// Length of its spans (m).
+    /// Total length of the spans (m).
     pub length: f64,
-    /// Whether it runs round its cloth as the outline does: counter-clockwise seen from the right side.
+    /// Whether the part runs in the direction of the outline: counter-clockwise seen from the right side.
     pub along_outline: bool,
 }
 
 impl SidePart {
-    /// The part that consists of some spans; nothing if they have no length.
+    /// The part that consists of these spans; none if they have no length.
     pub fn of(draft: &Draft, spans: &[DraftSpan]) -> Option<Self> {
         let mut part = Self {
             length: 0.0,
@@ -47,8 +47,8 @@ fn edges(piece: &Piece) -> impl Iterator<Item = &PieceEdge> {
     piece.outline.iter().chain(piece.holes.iter().flatten())
 }
 
-/// The parts of both sides that lie across from each other, each side going from 0 to 1 by shares of
-/// its length. Numbers are those of the parts on their sides.
+/// The parts of both sides that lie opposite each other, measured by shares from 0 to 1 of each side's
+/// length. The numbers are indices of the parts on their sides.
 pub(crate) fn meetings(sides: [&[SidePart]; 2]) -> Vec<Meeting> {
     let shares = sides.map(|parts| {
         let total: f64 = parts.iter().map(|part| part.length).sum();

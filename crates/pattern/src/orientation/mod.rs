@@ -1,4 +1,4 @@
-//! Which side of the cloth every piece of a garment shows.
+//! Right and wrong sides: which side of the cloth each piece of a garment shows.
 //!
 //! Seen from its right side the outline of a piece runs counter-clockwise. Where two pieces that both
 //! show their right side are sewn, their outlines run against each other along the seam; where they run

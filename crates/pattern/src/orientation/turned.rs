@@ -6,17 +6,17 @@ use super::words::{ring_words, turned_words};
 use crate::{Diagnostic, Draft, DraftSpan, SeamOrigin};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A seam between two pieces: its place in the draft, and how it lays them.
+/// A pair of pieces joined by a seam: index of the seam in the draft, and the way in which it joins them.
 struct Joined {
     seam: usize,
     pieces: [usize; 2],
-    /// Whether one of them shows its wrong side when the other shows its right side.
+    /// Whether one piece shows its wrong side if the other shows its right side.
     opposite: bool,
-    /// Whether right sides lie together while it is sewn, so that this is a mistake.
+    /// Whether right sides lie together during sewing, so that showing a wrong side is a mistake.
     is_fault: bool,
 }
 
-/// Pieces that show their wrong side, and rings of pieces that have none.
+/// Diagnostics for pieces that show their wrong side, and for rings of pieces that have no valid sides.
 pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
     let joined = joined(draft);
     let mut found = Vec::new();
@@ -40,8 +40,8 @@ pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
         if as_laid.rings.contains_key(&root) {
             continue;
         }
-        // Seams that are meant to lay a wrong side outward leave a piece its place, unless other seams
-        // of it speak against them.
+        // Seams that lay a wrong side outward on purpose do not count against a piece, unless its other seams
+        // contradict them.
         let colouring = match as_meant.rings.contains_key(&root) {
             true => &as_laid,
             false => &as_meant,
@@ -65,7 +65,8 @@ pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
     found
 }
 
-/// Every meeting of two pieces along a seam of the document. The legs of a dart run against each other.
+/// All pairs of pieces that meet along seams of the document. Seams of darts are left out: their legs always
+/// run against each other.
 fn joined(draft: &Draft) -> Vec<Joined> {
     let mut all = Vec::new();
     for (index, seam) in draft.seams.iter().enumerate() {
@@ -87,7 +88,7 @@ fn joined(draft: &Draft) -> Vec<Joined> {
     all
 }
 
-/// The stretches of a side that lie on one piece each and run one way round it.
+/// The parts of a side, each on one piece and running one way round it.
 fn parts(draft: &Draft, side: &[DraftSpan]) -> Vec<(usize, SidePart)> {
     let is_one =
         |a: &DraftSpan, b: &DraftSpan| a.piece == b.piece && (a.to > a.from) == (b.to > b.from);
@@ -104,7 +105,8 @@ fn links(joined: &[Joined], unlike: impl Fn(&Joined) -> bool) -> Vec<Link> {
     joined.iter().map(link).collect()
 }
 
-/// Whether some pieces are the ones to name: fewer than the others, else of less cloth, else later.
+/// Whether these pieces are to be reported rather than the others: if they are fewer, else of less cloth,
+/// else later.
 fn smaller(draft: &Draft, some: &[usize], others: &[usize]) -> bool {
     let cloth = |pieces: &[usize]| -> f64 {
         let edges = pieces.iter().flat_map(|&k| &draft.pieces[k].outline);

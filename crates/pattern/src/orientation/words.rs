@@ -1,10 +1,10 @@
-//! What is told of the sides that pieces show.
+//! Messages about the sides that pieces show.
 
 use super::exchange::Twin;
 use crate::{Code, Diagnostic, Draft, Place};
 use std::collections::BTreeSet;
 
-/// Which seams take another copy or half of a panel than is written.
+/// Message: the seams that take another copy or half of a panel than is written.
 pub(crate) fn exchange_words<'n>(
     twin: Twin,
     panel: &str,
@@ -23,7 +23,7 @@ pub(crate) fn exchange_words<'n>(
     )
 }
 
-/// A piece that shows its wrong side by some seams.
+/// Diagnostic for a piece that shows its wrong side because of these seams.
 pub(super) fn turned_words(draft: &Draft, piece: usize, seams: BTreeSet<usize>) -> Diagnostic {
     let found = &draft.pieces[piece];
     Diagnostic::warning(
@@ -40,7 +40,7 @@ pub(super) fn turned_words(draft: &Draft, piece: usize, seams: BTreeSet<usize>) 
     )
 }
 
-/// Pieces, sewn to a ring, that no choice of sides suits.
+/// Diagnostic for a ring of pieces that no choice of sides suits.
 pub(super) fn ring_words(
     draft: &Draft,
     pieces: &BTreeSet<usize>,
@@ -78,7 +78,7 @@ fn seams_named(names: &[String]) -> String {
     format!("{word} {}", listed(names))
 }
 
-/// Names one after another, the last after "and".
+/// A list of names in words, the last after "and".
 fn listed(names: &[String]) -> String {
     match names {
         [] => String::new(),

@@ -10,18 +10,18 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Points and curves that are added to one sheet.
+/// New points and curves of one sheet, while they are planned.
 pub(super) struct Additions {
-    /// The sheet with all that was added.
+    /// The sheet with all additions so far.
     pub sheet: Sheet,
-    /// Gives ids that are free.
+    /// Source of new ids.
     pub ids: Ids,
     /// The edits that add the parts.
     pub edits: Vec<Edit>,
 }
 
 impl Additions {
-    /// Nothing yet.
+    /// No additions yet.
     pub fn new(pattern: &Pattern, id: SheetId) -> Result<Self, EditError> {
         Ok(Self {
             sheet: (**sheet(pattern, id)?).clone(),
@@ -30,7 +30,7 @@ impl Additions {
         })
     }
 
-    /// Adds a point; without a name it is called by the next letter.
+    /// Adds a point; without a name it is called by the next free letter.
     pub fn point(&mut self, name: Option<&str>, rule: PointRule) -> Result<PointId, EditError> {
         let name = match name {
             Some(name) => wished(name, |name| point_owner(&self.sheet, name))?,
@@ -56,7 +56,7 @@ impl Additions {
         Ok(id)
     }
 
-    /// Adds a curve; without a name it is called by its ends.
+    /// Adds a curve; without a name it is called by the names of its ends.
     pub fn curve(
         &mut self,
         name: Option<&str>,
@@ -88,7 +88,7 @@ impl Additions {
         Ok(id)
     }
 
-    /// The names of both ends in a row, if they are short; else a word and a number.
+    /// A free name from the names of both ends if they are short; else a word and a number.
     fn curve_name(&self, ends: [PointId; 2]) -> String {
         let name = |id| self.sheet.point(id).map_or("", |point| &*point.name);
         let both: String = ends.map(name).concat();

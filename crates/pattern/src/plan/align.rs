@@ -1,4 +1,4 @@
-//! Lines up parts along their sides or middles, and spreads them evenly.
+//! Aligns parts by their sides or middles, and distributes them evenly.
 
 use super::impossible;
 use super::lookup::place;
@@ -6,24 +6,24 @@ use super::transform::{Moved, move_points};
 use crate::{EditError, Evaluation, PointId};
 use toile_geometry::{Bounds2, Vec2};
 
-/// What is lined up.
+/// The sides or middles that are aligned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
-    /// Left sides, at the leftmost.
+    /// Left sides, with the leftmost.
     Left,
-    /// Right sides, at the rightmost.
+    /// Right sides, with the rightmost.
     Right,
-    /// Upper sides, at the topmost.
+    /// Upper sides, with the topmost.
     Top,
-    /// Lower sides, at the bottommost.
+    /// Lower sides, with the bottommost.
     Bottom,
-    /// Middles on one vertical, that of all together.
+    /// Middles on one vertical line, through the middle of all groups together.
     Middle,
-    /// Middles on one level, that of all together.
+    /// Middles on one horizontal line, through the middle of all groups together.
     Level,
 }
 
-/// A direction to spread along.
+/// A direction in which parts are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// To the right.
@@ -32,10 +32,10 @@ pub enum Axis {
     Y,
 }
 
-/// The edits that line up groups of points, each of which moves as one.
+/// Plans to align groups of points; each group moves as one.
 ///
 /// # Errors
-/// There are fewer than two groups, or an empty one; a point is not there or cannot be drawn; none
+/// There are fewer than two groups, or an empty one; a point is missing or cannot be drawn; no group
 /// can move.
 pub fn align(
     evaluation: &Evaluation,
@@ -56,12 +56,12 @@ pub fn align(
     shifted(evaluation, groups, &shifts)
 }
 
-/// The edits that spread groups of points evenly along an axis: the outermost stay, the middles of
-/// the others come to equal distances in the order they have.
+/// Plans to distribute groups of points evenly along an axis: the outermost stay, the middles of the others
+/// come to equal distances in their present order.
 ///
 /// # Errors
-/// There are fewer than three groups, or an empty one; a point is not there or cannot be drawn;
-/// none can move.
+/// There are fewer than three groups, or an empty one; a point is missing or cannot be drawn; no group
+/// can move.
 pub fn distribute(
     evaluation: &Evaluation,
     groups: &[Vec<PointId>],

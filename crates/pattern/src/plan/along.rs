@@ -1,5 +1,4 @@
-//! Distances along an edge of a panel as it is finished: darts sewn, pleats folded, openings of a spread
-//! in between.
+//! Distances along an edge of a finished panel: darts sewn, pleats folded, openings of a spread included.
 
 use super::impossible;
 use super::lookup::{self, finite};
@@ -11,37 +10,37 @@ use crate::{
 };
 use toile_geometry::{Curve, Path, Vec2};
 
-/// Distances that differ by less are one (m).
+/// Distances that differ by less than this count as the same (m).
 const SAME: f64 = 1e-9;
 
-/// An edge of a panel as it is finished, from corner to corner.
+/// An edge of a finished panel, from corner to corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinishedEdge {
     /// The panel.
     pub panel: PanelId,
-    /// The line it is on.
+    /// The line that the edge is on.
     pub line: LineId,
-    /// The corners it runs between.
+    /// The corners at the ends of the edge.
     pub ends: [CornerName; 2],
-    /// Its length (m).
+    /// Length of the finished edge (m).
     pub length: f64,
     parts: Vec<Part>,
 }
 
-/// One curve of it, and which stretch of which edge that is.
+/// One curve of a finished edge, with the stretch of the named edge that it comes from.
 #[derive(Clone, Debug, PartialEq)]
 struct Part {
     edge: EdgeName,
     shares: [f64; 2],
     path: Path,
-    /// Distance from the first corner to its start (m).
+    /// Distance from the first corner to the start of the curve (m).
     start: f64,
 }
 
-/// An edge of a panel as it is finished.
+/// Returns an edge of a panel as finished.
 ///
 /// # Errors
-/// The panel has no such edge, or it cannot be drawn.
+/// The panel has no such edge, or the edge cannot be drawn.
 pub fn finished_edge(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -102,7 +101,7 @@ pub fn finished_edge(
 }
 
 impl FinishedEdge {
-    /// How far from its first corner the place of it lies that is nearest to another (m).
+    /// Distance along the edge from its first corner to the point of it nearest to `near` (m).
     pub fn nearest(&self, near: Vec2) -> f64 {
         let found = self.parts.iter().filter_map(|part| {
             let place = part.path.nearest(near)?;
@@ -113,30 +112,30 @@ impl FinishedEdge {
         found.map_or(0.0, |(_, along)| along)
     }
 
-    /// The part at a distance from the first corner, and how far along it (m).
+    /// The curve at a distance from the first corner, and the distance along that curve (m).
     fn part(&self, along: f64) -> Option<(&Part, f64)> {
         let part = self.parts.iter().rev().find(|part| part.start < along);
         let part = part.or(self.parts.first())?;
         Some((part, (along - part.start).clamp(0.0, part.path.length())))
     }
 
-    /// Which edge is there at a distance from the first corner (m), and the share of it.
+    /// The named edge at a distance from the first corner (m), and the share of it.
     pub fn share(&self, along: f64) -> Option<(EdgeName, f64)> {
         let (part, local) = self.part(along)?;
         let [from, to] = part.shares;
         Some((part.edge, from + (to - from) * local / part.path.length()))
     }
 
-    /// The place at a distance from the first corner (m).
+    /// The position at a distance from the first corner (m).
     pub fn place(&self, along: f64) -> Option<Vec2> {
         let (part, along) = self.part(along)?;
         Some(part.path.point(part.path.at_length(along)?))
     }
 }
 
-/// The mark on a finished edge at a distance from one of its corners, 0 the first and 1 the second;
-/// from the second the distance is zero or less. Marks are measured on the first stage that has their
-/// corner: what operations since then take out of the edge or put into it is added to the distance.
+/// The mark on a finished edge at a distance from one of its corners, 0 the first and 1 the second; from the
+/// second the distance is zero or negative. Marks are measured on the first stage that has their corner:
+/// lengths that later operations take out of the edge or put into it are added to the distance.
 ///
 /// # Errors
 /// The distance has no value or is longer than the edge.
@@ -181,7 +180,7 @@ pub fn mark_along(
                 moved => added(distance, moved),
             },
         }),
-        // An operation made that part: a share of it is a place that stays.
+        // An operation made this part: the mark is a share of it, which survives edits.
         None => {
             let panel = lookup::panel(evaluation.pattern(), edge.panel)?;
             let stage = evaluation.last_stage(panel).ok_or_else(beyond)?;
@@ -195,8 +194,8 @@ pub fn mark_along(
     }
 }
 
-/// How far a spot of a finished edge is from a corner of that on the first stage that has the corner
-/// (m), less than zero against the line; nothing if that stage does not have the spot.
+/// Distance of a spot of a finished edge from a corner of it, on the first stage that has the corner (m),
+/// negative against the line; none if that stage does not have the spot.
 fn on_first_stage(
     evaluation: &Evaluation,
     edge: &FinishedEdge,

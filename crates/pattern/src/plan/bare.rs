@@ -1,15 +1,14 @@
-//! Bare numbers in formulas that are typed. Beside a length a number without a unit means the
-//! document's unit, beside an angle degrees: `waist / 4 + 2` is a quarter of the waist and 2 cm, and
-//! where a length is asked for `40 * cos(30deg)` is 40 cm times that. The unit is written into the
-//! formula, so that a later change of the document's unit moves nothing. What is made with `pi` is an
-//! angle in radians as it stands.
+//! Numbers without unit in typed formulas. Beside a length such a number is in the document's unit, beside an
+//! angle in degrees: `waist / 4 + 2` is a quarter of the waist plus 2 cm, and where a length is expected,
+//! `40 * cos(30deg)` is 40 cm times that. The unit is written into the formula, so that a later change of the
+//! document's unit changes no value. An expression with `pi` is an angle in radians and stays as it is.
 
 use crate::formula::{Function, Operation, Quantity};
 use crate::{Evaluation, Formula, Want};
 use std::f64::consts::PI;
 use toile_measure::UnitKind;
 
-/// What a value is.
+/// Quantity of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Length,
@@ -18,14 +17,14 @@ enum Kind {
     Unknown,
 }
 
-/// A value of the formula.
+/// A value on the stack while a formula is examined.
 #[derive(Clone, Debug)]
 struct Value {
     kind: Kind,
-    /// Columns of the bare numbers it is made of, if it is made of nothing else by adding and
-    /// choosing, or of the only factor that has them; a zero needs no unit and has no column.
+    /// Columns of the numbers without unit that the value consists of by sums and choices alone, or of the
+    /// only factor that has any; a zero needs no unit and has no column.
     bare: Option<Vec<usize>>,
-    /// Whether `pi` is in it.
+    /// Whether the value contains `pi`.
     is_round: bool,
 }
 
@@ -40,8 +39,8 @@ impl Value {
 }
 
 impl Value {
-    /// A product or quotient: a plain one gets its unit at the only factor that can have one. Of which of two
-    /// it is meant to be nobody can know.
+    /// A product or quotient: a plain one takes its unit at the only factor that can have one. If both
+    /// factors can, the intended one is unknown, and neither is changed.
     fn product(first: Self, second: Self, kind: impl Fn([Kind; 2]) -> Kind) -> Self {
         let kind = kind([first.kind, second.kind]);
         Self {
@@ -55,8 +54,8 @@ impl Value {
     }
 }
 
-/// The text with units where it has bare numbers in the place of lengths and angles; the text as it
-/// is where it has none.
+/// The text with units added to its numbers without unit that stand for lengths and angles; unchanged if
+/// there are none.
 pub(super) fn with_units(
     evaluation: &Evaluation,
     text: &str,
@@ -84,7 +83,7 @@ pub(super) fn with_units(
     written.into_iter().collect()
 }
 
-/// The place after the digits of a number.
+/// The position after the digits of a number.
 fn number_end(text: &[char], start: usize) -> usize {
     let mut end = start;
     while let Some(c) = text.get(end) {
@@ -104,15 +103,15 @@ fn number_end(text: &[char], start: usize) -> usize {
 
 struct Units<'e> {
     evaluation: &'e Evaluation,
-    /// Columns of numbers that get a unit, and which.
+    /// Columns of the numbers that get a unit, with its kind.
     given: Vec<(usize, Kind)>,
 }
 
 impl Units<'_> {
-    /// Goes through the steps once, with kinds in place of values.
+    /// Runs through the steps once, with quantities in place of values.
     fn read(&mut self, formula: &Formula, want: Want) {
         let mut stack: Vec<Value> = Vec::new();
-        // Steps at which the two branches of a condition meet.
+        // Steps at which the two branches of a condition join.
         let mut meets: Vec<usize> = Vec::new();
         for (k, step) in formula.steps().iter().enumerate() {
             self.meet(&mut stack, &mut meets, k);
@@ -149,14 +148,14 @@ impl Units<'_> {
                     let (second, first) = (pop(), pop());
                     Value::product(first, second, |kinds| match kinds {
                         [Kind::Plain, kind] | [kind, Kind::Plain] => kind,
-                        // An arc.
+                        // The product of an angle and a length is the length of an arc.
                         [Kind::Angle, Kind::Length] | [Kind::Length, Kind::Angle] => Kind::Length,
                         _ => Kind::Unknown,
                     })
                 }
                 Operation::Divide => {
                     let (mut second, first) = (pop(), pop());
-                    // What is divided has the unit.
+                    // The unit goes to the dividend.
                     second.bare = None;
                     Value::product(first, second, |kinds| match kinds {
                         [kind, Kind::Plain] => kind,
@@ -223,7 +222,8 @@ impl Units<'_> {
         }
     }
 
-    /// Values that must be of one kind: bare numbers among them take that of the other.
+    /// Joins values that must be of one quantity: numbers without unit among them take the quantity of the
+    /// other value.
     fn join(&mut self, [first, second]: [Value; 2]) -> Value {
         let bare_of = |value: &Value| value.bare.clone().unwrap_or_default();
         let mut give = |plain: &Value, kind: Kind| {
@@ -255,7 +255,7 @@ impl Units<'_> {
             Quantity { is_angle: true, .. } => Value::of(Kind::Angle),
             Quantity { value, .. } => Value {
                 kind: Kind::Plain,
-                // A name takes no unit.
+                // `pi` is a name and takes no unit.
                 bare: match value {
                     PI => None,
                     0.0 => Some(Vec::new()),
@@ -318,22 +318,22 @@ mod tests {
                 Want::Angle,
             ),
             ("waist + 1e1", "waist + 1e1cm", Want::Length),
-            // A variable may be anything: only what stands beside a length is one.
+            // A variable may be of any quantity: only a number beside a length is one.
             ("waist/4 + 2", "waist/4 + 2cm", Want::Any),
-            // Factors, zeros and ratios have none.
+            // Factors, zeros and ratios get no unit.
             ("waist * 2", "waist * 2", Want::Length),
             ("max(waist, 0)", "max(waist, 0)", Want::Length),
             ("waist / 72cm + 1", "waist / 72cm + 1", Want::Plain),
             ("waist + 1 5/8in", "waist + 1 5/8in", Want::Length),
             ("waist + 3 mm", "waist + 3 mm", Want::Length),
-            // Of a product one factor is a length, and so is what is divided.
+            // One factor of a product is a length; in a quotient it is the dividend.
             ("40*cos(30deg)", "40cm*cos(30deg)", Want::Length),
             ("sin(30deg) * 40 / 3", "sin(30deg) * 40cm / 3", Want::Length),
             ("(1 + 2) * pi", "(1cm + 2cm) * pi", Want::Length),
             ("sqrt(2) * 5 - waist", "sqrt(2) * 5cm - waist", Want::Length),
             ("waist / (2*pi)", "waist / (2*pi)", Want::Length),
             ("3 * shoulder_incl", "3 * shoulder_incl", Want::Angle),
-            // With `pi` an angle is in radians, as in the books.
+            // With `pi` an angle is in radians, as in textbooks.
             ("pi / 6", "pi / 6", Want::Angle),
             (
                 "2 * pi / 3 + shoulder_incl",
@@ -345,10 +345,10 @@ mod tests {
             let shown = plan::number_text(&evaluation, &number, want);
             assert_eq!(shown, kept, "{typed}");
             assert!(evaluation.number(&number, want).is_some(), "{typed}");
-            // What is shown may be typed again.
+            // The text that is shown may be typed again.
             assert_eq!(plan::read_number(&evaluation, &shown, want), Ok(number));
         }
-        // A sum with a plain variable or product is no length, and is refused where it is used.
+        // A sum with a plain variable or product is no length, and is refused on use.
         let number = plan::read_number(&evaluation, "waist + 2 * 3", Want::Length).unwrap();
         assert!(matches!(number, Number::Formula(_)));
         assert!(evaluation.number(&number, Want::Length).is_none());

@@ -1,10 +1,10 @@
-//! Binds names in formulas to parts once these exist.
+//! Binds names in formulas to parts as soon as these exist.
 
 use super::numbers::put_number;
 use crate::{Edit, Evaluation, Formula, Names, Number, PartReference, Token};
 
-/// The edits after which formulas that name what was not there mean what is called so now. Formulas
-/// that also speak of removed parts keep waiting for them.
+/// Plans to bind names in formulas that had no part before and have one now. Formulas that also name removed
+/// parts keep waiting for them.
 pub(super) fn bound(evaluation: &Evaluation) -> Vec<Edit> {
     let names = evaluation.names();
     let mut edits = Vec::new();
@@ -22,7 +22,7 @@ pub(super) fn bound(evaluation: &Evaluation) -> Vec<Edit> {
     edits
 }
 
-/// The number with its names bound; nothing if nothing changes.
+/// The number with its names bound; none if nothing changes.
 fn bound_number(number: &Number, names: &Names) -> Option<Number> {
     match number {
         Number::Value(_) => None,

@@ -1,4 +1,4 @@
-//! Chains of stretches of curves: what the lines of panels are traced from.
+//! Chains of stretches of curves, from which the lines of panels are traced.
 
 use super::impossible;
 use super::lookup::{self, place};
@@ -9,20 +9,20 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Path;
 
-/// A point this near to a curve is on it (m), as evaluation takes it.
+/// A point this near to a curve is on it (m); evaluation uses the same limit.
 pub(super) const ON_CURVE: f64 = 1e-6;
 
-/// What a line of a panel is traced from.
+/// The points or curves that a line of a panel is traced from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Chain<'a> {
-    /// Corners in order; between two of them it follows the one curve that both lie on.
+    /// Corners in order; between two of them the line follows the only curve that both lie on.
     Points(&'a [PointId]),
     /// Whole curves in order, each sharing an end with the next.
     Curves(&'a [CurveId]),
 }
 
 impl Chain<'_> {
-    /// The sheet its first part is on.
+    /// The sheet of the first part.
     pub(super) fn sheet<'p>(&self, pattern: &'p Pattern) -> Option<&'p Arc<Sheet>> {
         Some(match self {
             Self::Points(points) => pattern.point(*points.first()?)?.0,
@@ -36,9 +36,9 @@ impl Chain<'_> {
 pub(super) struct Stretch {
     pub curve: CurveId,
     pub ends: [PointId; 2],
-    /// How it runs from the first end to the second (m).
+    /// The curve from the first end to the second (m).
     pub path: Arc<Path>,
-    /// Whether it runs against its curve.
+    /// Whether the stretch runs against its curve.
     pub is_reversed: bool,
 }
 
@@ -53,7 +53,7 @@ impl Stretch {
     }
 }
 
-/// Arc length from the start of a curve to a point (m); nothing if the point is not on it.
+/// Arc length from the start of a curve to a point (m); none if the point is not on the curve.
 pub(super) fn along(
     evaluation: &Evaluation,
     curve: &Curve,
@@ -82,7 +82,7 @@ pub(super) fn along(
     ((path.point(nearest) - at).norm() <= ON_CURVE).then_some(nearest.along)
 }
 
-/// The stretches of a chain, closed unless it becomes an internal line.
+/// The stretches of a chain, closed unless it is for an internal line.
 pub(super) fn stretches(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -144,7 +144,7 @@ fn through(
         .collect()
 }
 
-/// The stretch of the one curve that two points lie on.
+/// The stretch between two points on the only curve that both lie on.
 fn between(
     evaluation: &Evaluation,
     sheet: &Sheet,
@@ -260,7 +260,7 @@ pub(super) fn swept(stretches: &[Stretch]) -> f64 {
     curves.map(|curve| curve.swept_area()).sum()
 }
 
-/// Stretches wound as a line of that kind is: an outline counter-clockwise, a hole against it.
+/// Stretches in the direction that a line of this kind has: an outline counter-clockwise, a hole clockwise.
 pub(super) fn wound(stretches: Vec<Stretch>, kind: LineKind) -> Result<Vec<Stretch>, EditError> {
     let area = swept(&stretches);
     let wanted = match kind {
@@ -283,7 +283,8 @@ pub(super) fn wound(stretches: Vec<Stretch>, kind: LineKind) -> Result<Vec<Stret
 /// Edges that follow stretches, each named after its curve.
 ///
 /// # Errors
-/// One goes all round a closed curve against it: its ends, which are one, could not tell.
+/// A stretch goes all round a closed curve against it: its two ends are the same point and could not tell
+/// the direction.
 pub(super) fn edges(
     sheet: &Sheet,
     stretches: &[Stretch],

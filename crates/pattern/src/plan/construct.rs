@@ -10,13 +10,13 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// How a new curve is to run between its ends.
+/// Shape of a new curve between its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveShape {
-    /// A circular arc through a place (m).
+    /// A circular arc through a point (m).
     ArcThrough(Vec2),
-    /// A spline with handles at places (m); handle points are added to the sheet, each beside the
-    /// point it belongs to, so that it follows it.
+    /// A spline with handles at these positions (m); a point for each handle is added to the sheet, placed
+    /// relative to the end or knot of the handle so that it follows it.
     Spline {
         /// Handles at the start and at the end (m).
         handles: [Vec2; 2],
@@ -27,11 +27,11 @@ pub enum CurveShape {
     Rule(CurveRule),
 }
 
-/// The edits that add an empty sheet whose origin lies at a place of the table (m); and the sheet.
-/// Without a name it is called `sheet`, `sheet 2`, ...
+/// Plans to add an empty sheet with its origin at a position on the table (m); returns the sheet too. Without
+/// a name it is called `sheet`, `sheet 2`, ...
 ///
 /// # Errors
-/// The name is taken or can be none; the place is not finite.
+/// The name is taken or not allowed; the position is not finite.
 pub fn add_sheet(
     evaluation: &Evaluation,
     name: Option<&str>,
@@ -55,11 +55,11 @@ pub fn add_sheet(
     Ok((vec![Edit::Put(Entity::Sheet(head))], id))
 }
 
-/// The edits that lay sheets elsewhere on the table, each with its origin at a place (m). What is
-/// traced from a sheet goes with it.
+/// Plans to move sheets on the table, each with its origin to a position (m). Panels traced from a sheet move
+/// with it.
 ///
 /// # Errors
-/// A sheet is not there, or lies on a panel and goes with that; a place is not finite.
+/// A sheet is missing, or lies on a panel and moves with that; a position is not finite.
 pub fn move_sheets(
     evaluation: &Evaluation,
     places: &[(SheetId, [f64; 2])],
@@ -84,11 +84,11 @@ pub fn move_sheets(
     places.iter().map(put).collect()
 }
 
-/// The edits that add a point to a sheet; and the point. Without a name it is called by the next
-/// free letter: A, B, ... Z, A1, ...
+/// Plans to add a point to a sheet; returns the point too. Without a name it is called by the next free
+/// letter: A, B, ... Z, A1, ...
 ///
 /// # Errors
-/// The name is taken or can be none; the rule names parts of other sheets, or leads to no place.
+/// The name is taken or not allowed; the rule names parts of other sheets, or gives no position.
 pub fn add_point(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -103,11 +103,11 @@ pub fn add_point(
     Ok((additions.edits, id))
 }
 
-/// The edits that add a curve between two points of a sheet; and the curve. Without a name it is
-/// called by its ends, as in `AB`.
+/// Plans to add a curve between two points of a sheet; returns the curve too. Without a name it is called by
+/// its ends, as in `AB`.
 ///
 /// # Errors
-/// The name is taken or can be none; the ends are not on the sheet; the shape has no place.
+/// The name is taken or not allowed; the ends are not on the sheet; the shape cannot be drawn.
 pub fn add_curve(
     evaluation: &Evaluation,
     (sheet, name): (SheetId, Option<&str>),
@@ -141,10 +141,10 @@ pub fn add_curve(
     Ok((additions.edits, id))
 }
 
-/// The edits that bend a curve to a circular arc through a place (m); its ends stay.
+/// Plans to bend a curve to a circular arc through a point (m); its ends stay.
 ///
 /// # Errors
-/// The curve is not there; the place is not finite, or no arc between its ends leads through it.
+/// The curve is missing; the point is not finite, or no arc between the ends goes through it.
 pub fn bend_curve(
     evaluation: &Evaluation,
     id: CurveId,
@@ -166,8 +166,8 @@ pub fn bend_curve(
     Ok(edits)
 }
 
-/// The bulge of the arc between two points through a place. The chords to the place turn there by
-/// half the swept angle (inscribed angle theorem), and the bulge is the tangent of a quarter of it.
+/// The bulge of the arc between two points through a third. The chords to the third point turn there by half
+/// the swept angle (inscribed angle theorem), and the bulge is the tangent of a quarter of the swept angle.
 fn bulge_through(
     evaluation: &Evaluation,
     ends: [PointId; 2],
@@ -189,7 +189,7 @@ fn bulge_through(
     ))
 }
 
-/// A spline rule, its handles and knots added to the sheet.
+/// A spline rule; its handles and knots are added to the sheet.
 fn spline(
     evaluation: &Evaluation,
     additions: &mut Additions,

@@ -1,4 +1,4 @@
-//! Puts points where curves cross, so that panels can be traced between them.
+//! Adds points at crossings of curves, so that panels can be traced between them.
 
 use super::additions::Additions;
 use super::chain::ON_CURVE;
@@ -6,11 +6,11 @@ use super::impossible;
 use super::lookup::{curve, path};
 use crate::{CurveId, Edit, EditError, Evaluation, PointId, PointRule, SheetId};
 
-/// The edits that put a point at every crossing of two curves of a sheet that has none yet; and the
-/// points, in the order of the first curve. They stay at the crossings, whatever moves.
+/// Plans to add a point at every crossing of two curves of a sheet that has none yet; returns the points too,
+/// in the order of the first curve. They stay at the crossings when the curves move.
 ///
 /// # Errors
-/// A curve is not there or cannot be drawn; they do not cross, or have a point at every crossing.
+/// A curve is missing or cannot be drawn; the curves do not cross, or have a point at every crossing.
 pub fn mark_crossings(
     evaluation: &Evaluation,
     sheet: SheetId,

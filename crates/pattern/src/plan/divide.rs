@@ -11,11 +11,11 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// The edits that put a corner on an edge at its place nearest to a point of the finished panel (m),
-/// or in its middle; and the corner. On a side of a split the panel that was split gets it.
+/// Plans to divide an edge by a new corner at the place nearest to a point of the finished panel (m), or in
+/// its middle; returns the corner too. For a side of a split panel, the panel that was split gets the corner.
 ///
 /// # Errors
-/// The edge is not there or cannot be drawn, or the place is one of its ends.
+/// The edge is missing or cannot be drawn, or the place is one of its ends.
 pub fn divide_edge(
     evaluation: &Evaluation,
     (panel, edge): (PanelId, EdgeId),
@@ -24,7 +24,7 @@ pub fn divide_edge(
     let pattern = evaluation.pattern();
     let missing = |part: &dyn std::fmt::Display| EditError::Missing(part.to_string());
     let seen = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
-    // Of a side the edges are those of the panel that was split.
+    // The edges of a side belong to the panel that was split.
     let owner = pattern.owner_of(panel, edge.into());
     let owner = owner.ok_or_else(|| missing(&edge))?;
     let old = owner.edge(edge).ok_or_else(|| missing(&edge))?;
@@ -87,11 +87,11 @@ pub fn divide_edge(
     Ok((edits, corner))
 }
 
-/// The edits that take a corner away: the edges before and after it become one. Both lie on the
-/// joined curve if they followed one curve; else it is a straight line.
+/// Plans to remove a corner: the edges before and after it become one. If both follow one curve, the new edge
+/// follows it too; else it is a straight line.
 ///
 /// # Errors
-/// The panel has no such corner, or its line would lose too many.
+/// The panel has no such corner, or its line would have too few corners left.
 pub fn join_edges(
     evaluation: &Evaluation,
     (panel, corner): (PanelId, PointId),
@@ -158,7 +158,8 @@ pub fn join_edges(
     Ok(edits)
 }
 
-/// Removals of the corner and of curves that nothing uses, not the panel as it is now either.
+/// Removals of the corner, if a division made it, and of the curves, where nothing uses them any more, the
+/// changed panel included.
 fn unused(
     evaluation: &Evaluation,
     panel: &Arc<Panel>,

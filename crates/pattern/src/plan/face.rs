@@ -1,8 +1,8 @@
-//! The face of a sheet's curves that contains a place: what a tap inside a drawing means.
+//! The face of a sheet's curves that contains a point: the outline meant by a tap inside a drawing.
 //!
-//! Curves are cut at the points that lie on them; the stretches are the edges of a planar graph.
-//! Its faces are walked by turning at every node to the next stretch clockwise (de Berg, Cheong,
-//! van Kreveld, Overmars 2008, chapter 2), after stretches that bound nothing were left out.
+//! Curves are cut at the points that lie on them; the stretches are the edges of a planar graph. Its faces
+//! are walked by turning at every node to the next stretch clockwise (de Berg, Cheong, van Kreveld, Overmars
+//! 2008, chapter 2), after removal of stretches that bound no face.
 
 use super::chain::{ON_CURVE, Stretch, along};
 use super::impossible;
@@ -10,18 +10,18 @@ use crate::{Curve, CurveId, EditError, Evaluation, PointId, Sheet};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Polygon, Vec2};
 
-/// Faces are compared with places by polygons this near to them (m).
+/// Distance of the polygons that stand for faces from their curves (m).
 const FLAT: f64 = 1e-5;
-/// Stretches at a node are put in order by where they are at this share of the shortest.
+/// Stretches at a node are sorted by their positions at this share of the shortest stretch.
 const NEAR_NODE: f64 = 1e-3;
 
-/// A face: its outline counter-clockwise and what is cut out of it, clockwise.
+/// A face: its outline counter-clockwise, and the holes in it clockwise.
 pub(super) struct Face {
     pub outline: Vec<Stretch>,
     pub holes: Vec<Vec<Stretch>>,
 }
 
-/// The smallest closed line of stretches round a place.
+/// The smallest closed line of stretches round a point.
 pub(super) fn face(evaluation: &Evaluation, sheet: &Sheet, place: Vec2) -> Result<Face, EditError> {
     let mut graph = Graph::new(evaluation, sheet);
     graph.refuse_on_curve(sheet, place)?;
@@ -58,7 +58,7 @@ pub(super) fn face(evaluation: &Evaluation, sheet: &Sheet, place: Vec2) -> Resul
 struct Link {
     curve: CurveId,
     nodes: [usize; 2],
-    /// Arc lengths along the curve where it begins and ends (m).
+    /// Arc lengths along the curve at the start and the end of the link (m).
     along: [f64; 2],
     path: Path,
 }
@@ -69,17 +69,17 @@ struct Cycle {
     /// Signed area (m2).
     area: f64,
     polygon: Polygon,
-    /// A place on it (m).
+    /// A point on its boundary (m).
     inner: Vec2,
     /// The connected part of the graph it belongs to.
     component: usize,
 }
 
 struct Graph {
-    /// Points where links meet, and where they lie (m).
+    /// Points at which links meet, with their positions (m).
     nodes: Vec<(PointId, Vec2)>,
     links: Vec<Link>,
-    /// Links that bound something.
+    /// Links that bound a face.
     used: Vec<bool>,
 }
 
@@ -100,7 +100,7 @@ impl Graph {
         graph
     }
 
-    /// The node at a point; points in one place are one node, called by the first.
+    /// The node at a point; points at the same position are one node, which stands for the first of them.
     fn node(&mut self, evaluation: &Evaluation, point: PointId) -> Option<usize> {
         let at = evaluation.point(point)?;
         let known = self
@@ -166,7 +166,7 @@ impl Graph {
         }
     }
 
-    /// Refuses a face in which curves cross where no point is: it may be smaller than it seems.
+    /// Refuses a face inside which curves cross without a point: the face may be smaller than it seems.
     fn refuse_crossing(
         &self,
         evaluation: &Evaluation,
@@ -212,8 +212,8 @@ impl Graph {
         Ok(())
     }
 
-    /// Leaves out links that bound nothing: those with one face on both sides, as loose lines and
-    /// bridges between lines have. Leaving them out joins no two faces, so that once is enough.
+    /// Removes links that bound no face, with the same face on both sides, such as loose lines and bridges
+    /// between lines. Removing them joins no two faces, so that one pass is enough.
     fn prune(&mut self) {
         let mut face = vec![0_usize; 2 * self.links.len()];
         for (k, halves) in self.walk().iter().enumerate() {
@@ -311,7 +311,7 @@ impl Graph {
         cycles.collect()
     }
 
-    /// Of every node, the least node of its connected part.
+    /// For every node, the smallest node of its connected component.
     fn components(&self) -> Vec<usize> {
         let mut least: Vec<usize> = (0..self.nodes.len()).collect();
         let mut changed = true;
@@ -335,7 +335,7 @@ impl Graph {
         }
     }
 
-    /// The stretches round a face; links of one curve are one where nothing else meets them.
+    /// The stretches round a face; links of one curve are joined at a node where nothing else meets them.
     fn walked(&self, evaluation: &Evaluation, sheet: &Sheet, cycle: &Cycle) -> Vec<Stretch> {
         let stars = self.stars();
         let ends = |curve: CurveId| sheet.curve(curve).map(|curve| curve.ends);
@@ -383,7 +383,7 @@ impl Graph {
     }
 }
 
-/// Bounds that hold a path with room to spare.
+/// Bounding box of a path with some margin.
 fn bounds(path: &Path) -> Bounds2 {
     Bounds2::of(path.flatten(FLAT)).grown(2.0 * FLAT)
 }

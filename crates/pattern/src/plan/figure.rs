@@ -1,4 +1,4 @@
-//! Draws rectangles and polygons on a sheet, with panels of them on request.
+//! Draws rectangles and polygons on a sheet, on request with panels traced round them.
 
 use super::additions::Additions;
 use super::chain::Chain;
@@ -12,7 +12,7 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// Where a rectangle begins.
+/// First corner of a rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FirstCorner {
     /// At coordinates of the sheet (m).
@@ -21,23 +21,23 @@ pub enum FirstCorner {
     Point(PointId),
 }
 
-/// The parts of a figure that was drawn.
+/// The parts of a new figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Its corners, in order.
+    /// Corners, in order.
     pub points: Vec<PointId>,
-    /// Its sides: each from its corner to the next.
+    /// Sides: each from its corner to the next.
     pub curves: Vec<CurveId>,
-    /// The panel traced round it.
+    /// The panel traced round the figure.
     pub panel: Option<PanelId>,
 }
 
-/// The edits that draw a rectangle from a corner to the right and upward, by `[width, height]` (m);
-/// and its parts. The other corners lie beside the first, so that formulas stay formulas. Its sides
+/// Plans to draw a rectangle from a corner to the right and upward, by `[width, height]` (m); returns its
+/// parts too. The other corners are placed relative to the first, so that formulas stay formulas. The sides
 /// are called bottom, right, top and left.
 ///
 /// # Errors
-/// The sheet or the corner is not there; a side has no length or no value; the panel is refused.
+/// The sheet or the corner is missing; a side has no length or no value; the panel is refused.
 pub fn add_rectangle(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -91,12 +91,10 @@ pub fn add_rectangle(
     finished(&drawn, additions, figure, panel)
 }
 
-/// The edits that draw a polygon through places of a sheet (m), each a point of its own; and its
-/// parts.
+/// Plans to draw a polygon through points of a sheet (m), each with a new point; returns its parts too.
 ///
 /// # Errors
-/// There are fewer than three places, or two that follow each other are the same; the panel is
-/// refused.
+/// There are fewer than three points, or two consecutive ones are the same; the panel is refused.
 pub fn add_polygon(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -131,7 +129,7 @@ pub fn add_polygon(
     finished(&drawn, additions, figure, panel)
 }
 
-/// The figure with a panel round it, if one is wished.
+/// The figure with a panel round it, if requested.
 fn finished(
     drawn: &Evaluation,
     additions: Additions,

@@ -1,21 +1,21 @@
-//! What truing does to the finished length of an edge.
+//! Effect of truing on the finished length of an edge.
 
 use crate::{EdgeName, Evaluation, OperationId, PanelId};
 
-/// The finished length of the edge a dart is taken out of.
+/// The finished length of the edge that a dart opens in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FinishedLength {
     /// The edge.
     pub edge: EdgeName,
-    /// Its length once its darts are closed (m).
+    /// Length with all darts of the edge closed (m).
     pub length: f64,
-    /// The same if none of its darts were trued, their mouths as wide (m).
+    /// Length if none of its darts were trued and their mouths were just as wide (m).
     pub untrued: f64,
     /// Width of the dart's mouth (m).
     pub mouth: f64,
 }
 
-/// The finished length of the edge a dart is taken out of; nothing where the dart lies between two edges, or cannot
+/// The finished length of the edge that a dart opens in; none if the dart lies between two edges, or cannot
 /// be taken out.
 pub fn finished_length(
     evaluation: &Evaluation,
@@ -23,12 +23,12 @@ pub fn finished_length(
     dart: OperationId,
 ) -> Option<FinishedLength> {
     let pattern = evaluation.pattern();
-    // What cuts the outline apart forgets how it was before it was trued.
+    // Operations that cut the outline apart drop the record of its edges before truing.
     let owner = pattern.owner_of(panel, dart.into())?;
     let steps = owner.operations.iter().rev();
     let mut stages = steps.filter_map(|step| evaluation.stage(owner.id, Some(step.id)));
     let before = stages.find(|stage| !stage.untrued.is_empty());
-    // Both lengths are of one stage, so that nothing else is taken for truing.
+    // Both lengths are of one stage, so that no other change is mistaken for truing.
     let stage = match before {
         Some(stage) => stage,
         None => evaluation.last_stage(pattern.panel(panel)?)?,

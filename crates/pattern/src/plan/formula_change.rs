@@ -9,33 +9,33 @@ use crate::{Edit, EditError, Entity, Evaluation, Number, PointId, Variable, Vari
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Steps in which the value of a variable is found: one is enough where a formula is linear in it.
+/// Most steps of the secant method for the value of a variable: one suffices for a linear formula.
 const STEPS: usize = 12;
-/// How far a number may be from the one that is wanted (m), (rad) or plain: well below what a point may
-/// be off, as several numbers place a point.
+/// Tolerance of a number (m), (rad) or plain: well below the tolerance of a point, as several numbers place
+/// a point.
 const NUMBER_TOLERANCE: f64 = 1e-12;
-/// How far a point may be from where it is moved to (m).
+/// Tolerance of the new position of a point (m).
 const POINT_TOLERANCE: f64 = 1e-9;
-/// Least change of a number with a variable by which it is found.
+/// Least slope of a number with respect to a variable for which the variable is solved for.
 const MIN_SLOPE: f64 = 1e-6;
 
-/// What becomes of a formula when what it places is moved.
+/// Treatment of a formula when the point that it places is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FormulaChange {
-    /// It stays, and something is added to it, in every size.
+    /// The formula stays, and an adjustment is added to it, in every size.
     #[default]
     Adjust,
-    /// It stays, and a variable that it names gets another value.
+    /// The formula stays, and a variable that it names gets another value.
     Variable,
-    /// It stays in the other sizes; in the one on show a value stands in its place. A plain value
-    /// stays in the other sizes too.
+    /// The formula stays in the other sizes; in the current size a value replaces it. A plain value stays in
+    /// the other sizes too.
     ThisSize,
-    /// A value stands in its place in every size.
+    /// A value replaces the formula in every size.
     Detach,
 }
 
 impl FormulaChange {
-    /// The next choice, round and round.
+    /// The next choice, in a cycle.
     pub fn next(self) -> Self {
         match self {
             Self::Adjust => Self::Variable,
@@ -46,11 +46,11 @@ impl FormulaChange {
     }
 }
 
-/// The edits that move a point to `to` (m) as it is drawn now, with formulas that place it changed
-/// as is chosen; see [`move_point`].
+/// Plans to move a point to `to` (m) in the current drawing, with the formulas that place it changed as
+/// chosen; see [`move_point`].
 ///
 /// # Errors
-/// As [`move_point`]; there is no size, or no variable of the formula changes the number.
+/// As for [`move_point`]; there is no size, or no variable of the formula changes the number.
 pub fn move_point_by(
     evaluation: &Evaluation,
     point: PointId,
@@ -63,10 +63,10 @@ pub fn move_point_by(
     else {
         return Ok(edits);
     };
-    // A point on a line may not reach the place itself.
+    // A point on a line may be unable to reach `to` exactly.
     let goal = place(&after(evaluation, &edits)?, point)?;
     let mut variables: Vec<(VariableId, Edit)> = Vec::new();
-    // The pattern with the variables that were changed so far: another number may name them too.
+    // The pattern with the variables changed so far: another number may name them too.
     let mut work = evaluation.clone();
     for entry in numbers_of(evaluation, point.into()) {
         let want = entry.want;
@@ -90,7 +90,7 @@ pub fn move_point_by(
         let new = match change {
             FormulaChange::Adjust | FormulaChange::Detach => Number::Value(value),
             FormulaChange::ThisSize => in_this_size(evaluation, old, value)?,
-            // A value names no variable: it is changed itself.
+            // A plain value names no variable: the value itself is changed.
             FormulaChange::Variable if old.as_formula().is_none() => continue,
             FormulaChange::Variable => {
                 let taken: Vec<VariableId> = variables.iter().map(|found| found.0).collect();
@@ -112,7 +112,7 @@ pub fn move_point_by(
     }
 }
 
-/// A number with a value of its own in the size on show.
+/// The number with a value of its own in the current size.
 fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Number, EditError> {
     let size = evaluation.size().ok_or_else(|| {
         impossible(
@@ -131,8 +131,8 @@ fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Numb
     Ok(Number::PerSize { usual, sizes })
 }
 
-/// The variable of a number, other than those that are taken, with whose new value the number
-/// reaches a target; and the edit that gives it. Found by the secant method.
+/// Finds a variable of a number, not among those taken, with whose new value the number reaches a target;
+/// returns also the edit that sets it. By the secant method.
 fn solve(
     evaluation: &Evaluation,
     (number, taken): (&Number, &[VariableId]),

@@ -11,25 +11,25 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Says that data is a fragment.
+/// Tag that marks data as a fragment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FragmentKind {
-    /// It is.
+    /// The only value.
     #[default]
     Fragment,
 }
 
-/// Parts of a pattern, whole in themselves but for what their formulas speak of.
+/// Parts of a pattern, complete except for the parts outside that their formulas name.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Fragment {
-    /// Says that it is a fragment.
+    /// Tag that marks the data as a fragment.
     pub kind: FragmentKind,
-    /// Name of the pattern it was copied from.
+    /// Name of the pattern that the parts were copied from.
     pub pattern: String,
-    /// Sheets with those of their points and curves that were copied.
+    /// Sheets with their copied points and curves.
     pub sheets: Vec<Arc<Sheet>>,
-    /// Those of them that were chosen themselves: they are pasted as sheets, not onto another.
+    /// Sheets that were chosen themselves: they are pasted as sheets, not onto another sheet.
     #[serde(default)]
     pub whole_sheets: Vec<SheetId>,
     /// Panels.
@@ -40,35 +40,35 @@ pub struct Fragment {
     pub variables: Vec<Arc<Variable>>,
     /// Fabrics of the panels.
     pub fabrics: Vec<Arc<Fabric>>,
-    /// Parts that formulas speak of and that were not copied.
+    /// Parts that formulas name and that were not copied.
     pub outside: Vec<Outside>,
-    /// What numbers that speak of such parts come to.
+    /// Values of the numbers that name such parts.
     pub values: Vec<OutsideValue>,
 }
 
-/// A part that was not copied.
+/// A part that formulas name and that was not copied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outside {
     /// The part.
     pub part: PartId,
-    /// What it is called, in words; nothing if it was not there.
+    /// Description of the part; none if it was missing.
     pub words: Option<String>,
-    /// Its own name, where that says it alone: of a size.
+    /// Name of the part, if the name alone identifies it: for a size.
     pub name: Option<String>,
 }
 
-/// What a number that speaks of parts outside comes to.
+/// Value of a number that names parts outside the fragment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutsideValue {
-    /// Where it stands in the fragment.
+    /// Address of the number in the fragment.
     pub place: NumberAddress,
-    /// Its value (m), (rad) or plain; nothing if it had none.
+    /// Value of the number (m), (rad) or plain; none if it had none.
     pub value: Option<f64>,
-    /// Its power of a length.
+    /// Power of length of the value: 0 plain, 1 a length.
     pub power: i8,
 }
 
-/// Everything a number refers to.
+/// Every part that a number refers to.
 pub(super) fn references(number: &Number) -> Vec<PartId> {
     let speaks = Variable {
         number: number.clone(),
@@ -77,12 +77,11 @@ pub(super) fn references(number: &Number) -> Vec<PartId> {
     Entity::Variable(Arc::new(speaks)).references()
 }
 
-/// A copy of parts: points and curves with all that they are constructed from in their sheet,
-/// panels with the curves they follow, whole sheets, variables, and seams whose panels are all
-/// copied.
+/// Copies parts: points and curves with everything that they are constructed from in their sheet, panels with
+/// the curves they follow, whole sheets, variables, and seams whose panels are all copied.
 ///
 /// # Errors
-/// Nothing is chosen, a part is not there, or is copied only with its panel.
+/// No part is chosen, a part is missing, or is copied only with its panel.
 pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditError> {
     let pattern = evaluation.pattern();
     let chosen = closure(pattern, parts)?;
@@ -139,7 +138,7 @@ fn whole_sheet(part: &PartId) -> Option<SheetId> {
     SheetId::try_from(*part).ok()
 }
 
-/// Gives points at marks of a panel that is not copied their places as they are.
+/// Gives points at marks of a panel that is not copied their current positions.
 fn lay_free(evaluation: &Evaluation, sheet: &mut Sheet) {
     for point in &mut sheet.points {
         if let (PointRule::Mark { .. }, Some(at)) = (&point.rule, evaluation.point(point.id)) {
@@ -148,10 +147,10 @@ fn lay_free(evaluation: &Evaluation, sheet: &mut Sheet) {
     }
 }
 
-/// A copy of all that a pattern has but its sizes.
+/// Copies everything in a pattern except its sizes.
 ///
 /// # Errors
-/// It has nothing to copy.
+/// The pattern has nothing to copy.
 pub(super) fn copy_all(evaluation: &Evaluation) -> Result<Fragment, EditError> {
     let pattern = evaluation.pattern();
     let mut parts: Vec<PartId> = pattern.sheets.iter().map(|s| s.id.into()).collect();
@@ -161,7 +160,7 @@ pub(super) fn copy_all(evaluation: &Evaluation) -> Result<Fragment, EditError> {
     copy(evaluation, &parts)
 }
 
-/// The parts chosen, with what they need inside their sheets.
+/// The chosen parts, with the parts of their sheets that they depend on.
 fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, EditError> {
     let known: BTreeSet<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
     let mut chosen: BTreeSet<PartId> = BTreeSet::new();
@@ -192,14 +191,14 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
         if !chosen.insert(part) {
             continue;
         }
-        // A side comes with the panel it is cut from.
+        // A side brings the panel that it is cut from.
         if let PartId::Panel(id) = part
             && let Some(Source::Side { of, .. }) = pattern.panel(id).map(|panel| panel.source)
             && known.contains(&of.into())
         {
             open.extend(seeds(pattern, of.into())?);
         }
-        // So do sheets that it inserts.
+        // A panel also brings the sheets that it inserts.
         if let PartId::Panel(id) = part {
             let steps = pattern
                 .panel(id)
@@ -228,7 +227,7 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
     Ok(chosen)
 }
 
-/// What a chosen part stands for.
+/// The parts to copy for a chosen part.
 fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
     Ok(match part {
         PartId::Point(_)
@@ -243,7 +242,7 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
                 all.extend(sheet.points.iter().map(|point| PartId::from(point.id)));
                 all.extend(sheet.curves.iter().map(|curve| PartId::from(curve.id)));
             }
-            // What is traced from a sheet goes with it, as when it is moved or removed.
+            // Panels traced from a sheet are copied with it, as they are moved and removed with it.
             let traced = pattern
                 .panels
                 .iter()
@@ -277,7 +276,7 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
     })
 }
 
-/// Notes what the numbers of a fragment speak of that it does not have, and what they come to.
+/// Records the parts outside a fragment that its numbers name, and the values of these numbers.
 fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
     let pattern = evaluation.pattern();
     let places = pattern.parts();
@@ -327,7 +326,7 @@ fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
 }
 
 impl Fragment {
-    /// The fragment as a pattern of its own, in which every id counts as given.
+    /// The fragment as a pattern of its own, in which every id counts as taken.
     pub(super) fn as_pattern(&self) -> Pattern {
         Pattern {
             sheets: self.sheets.clone(),
@@ -340,7 +339,7 @@ impl Fragment {
         }
     }
 
-    /// What would put all of the fragment into an empty pattern.
+    /// The entities that put the whole fragment into an empty pattern.
     pub(super) fn entities(&self) -> Vec<Entity> {
         let mut all: Vec<Entity> = Vec::new();
         all.extend(self.fabrics.iter().cloned().map(Entity::Fabric));

@@ -4,10 +4,10 @@ use super::lookup::finite;
 use crate::{Edit, EditError, Entity, Evaluation, Guide, GuideId, GuideRun};
 use std::sync::Arc;
 
-/// The edits that add a guide at a place of the table (m); and the guide.
+/// Plans to add a guide at a position on the table (m); returns the guide too.
 ///
 /// # Errors
-/// The place is not finite.
+/// The position is not finite.
 pub fn add_guide(
     evaluation: &Evaluation,
     runs: GuideRun,
@@ -18,17 +18,17 @@ pub fn add_guide(
     Ok((vec![put(Guide { id, runs, at })?], id))
 }
 
-/// The edits that lay a guide at another place of the table (m).
+/// Plans to move a guide to another position on the table (m).
 ///
 /// # Errors
-/// It is not there, or the place is not finite.
+/// The guide is missing, or the position is not finite.
 pub fn move_guide(evaluation: &Evaluation, id: GuideId, at: f64) -> Result<Vec<Edit>, EditError> {
     let found = evaluation.pattern().guide(id);
     let guide = found.ok_or_else(|| EditError::Missing(id.to_string()))?;
     Ok(vec![put(Guide { at, ..**guide })?])
 }
 
-/// The edits that remove all guides.
+/// Plans to remove all guides.
 pub fn remove_guides(evaluation: &Evaluation) -> Vec<Edit> {
     let guides = evaluation.pattern().guides.iter();
     guides.map(|guide| Edit::Remove(guide.id.into())).collect()

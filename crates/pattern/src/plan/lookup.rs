@@ -1,4 +1,5 @@
-//! The parts a planner is asked about, or a refusal that names them; and what edits would lead to.
+//! Looks up parts for planners, with an error that names a missing part; and the evaluation that edits
+//! would give.
 
 use super::impossible;
 use crate::{
@@ -34,7 +35,7 @@ pub(super) fn panel(pattern: &Pattern, id: PanelId) -> Result<&Arc<Panel>, EditE
     pattern.panel(id).ok_or_else(|| missing(&id))
 }
 
-/// The sheet a panel's own lines are drawn on.
+/// The sheet on which a panel's own lines are drawn.
 pub(super) fn drawn_on<'p>(
     pattern: &'p Pattern,
     panel: &Panel,
@@ -59,7 +60,7 @@ pub(super) fn seam(pattern: &Pattern, id: SeamId) -> Result<&Arc<Seam>, EditErro
     pattern.seam(id).ok_or_else(|| missing(&id))
 }
 
-/// Where a point lies (m), or a refusal that names it.
+/// Position of a point (m), or an error that names the point.
 pub(super) fn place(evaluation: &Evaluation, id: PointId) -> Result<Vec2, EditError> {
     let (_, found) = point(evaluation.pattern(), id)?;
     evaluation.point(id).ok_or_else(|| {
@@ -70,7 +71,7 @@ pub(super) fn place(evaluation: &Evaluation, id: PointId) -> Result<Vec2, EditEr
     })
 }
 
-/// How a curve runs (m), or a refusal that names it.
+/// A curve as drawn (m), or an error that names the curve.
 pub(super) fn path(evaluation: &Evaluation, id: CurveId) -> Result<&Arc<Path>, EditError> {
     let (_, found) = curve(evaluation.pattern(), id)?;
     evaluation.curve(id).ok_or_else(|| {
@@ -81,7 +82,7 @@ pub(super) fn path(evaluation: &Evaluation, id: CurveId) -> Result<&Arc<Path>, E
     })
 }
 
-/// Refuses places that are not finite; `what` names them.
+/// Refuses positions that are not finite; `what` names them.
 pub(super) fn finite(what: &str, places: &[Vec2]) -> Result<(), EditError> {
     match places.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
         true => Ok(()),
@@ -89,7 +90,7 @@ pub(super) fn finite(what: &str, places: &[Vec2]) -> Result<(), EditError> {
     }
 }
 
-/// The evaluation after edits. What is asked for stays unchanged.
+/// The evaluation after edits. The given evaluation stays unchanged.
 ///
 /// # Errors
 /// The document does not take the edits.
@@ -101,8 +102,8 @@ pub(super) fn after(evaluation: &Evaluation, edits: &[Edit]) -> Result<Evaluatio
     Ok(after)
 }
 
-/// Refuses edits after which one of the places has a fault it has not now, in the words of that
-/// fault.
+/// Refuses edits that give one of these places a fault that it does not have now, with the message of
+/// that fault.
 pub(super) fn refuse_faults(
     before: &Evaluation,
     after: &Evaluation,

@@ -1,4 +1,4 @@
-//! Markers: made, given other fabric or another order, their pieces laid, moved, turned, turned
+//! Plans changes of markers: new markers, other fabric, another order; pieces laid, moved, turned, turned
 //! over, locked and taken off.
 
 use super::impossible;
@@ -11,12 +11,12 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// The edits that add a marker of a fabric for one garment, of the size that the pattern is drafted to or to the
-/// wearer's measurements; and the marker.
-/// Without a name it is called "marker", the second "marker 2".
+/// Plans to add a marker of a fabric for one garment, of the size that the pattern is drafted for or of
+/// the wearer's measurements; returns the marker too. Without a name it is called "marker", the second
+/// "marker 2".
 ///
 /// # Errors
-/// The fabric is not there; the name is taken or can be none.
+/// The fabric is missing; the name is taken or not allowed.
 pub fn add_marker(
     evaluation: &Evaluation,
     name: Option<&str>,
@@ -49,20 +49,20 @@ pub fn add_marker(
     Ok((vec![Edit::Put(Entity::Marker(Arc::new(marker)))], id))
 }
 
-/// The edits that take a marker away.
+/// Plans to remove a marker.
 ///
 /// # Errors
-/// The marker is not there.
+/// The marker is missing.
 pub fn remove_marker(evaluation: &Evaluation, id: MarkerId) -> Result<Vec<Edit>, EditError> {
     found(evaluation, id)?;
     Ok(vec![Edit::Remove(id.into())])
 }
 
-/// The edits that give a marker another order. Pieces that it does not cut any more keep their
-/// places for the day they are ordered again.
+/// Plans to give a marker another order. Pieces that are not cut any more keep their placements in case they
+/// are ordered again.
 ///
 /// # Errors
-/// The marker is not there; a size is ordered twice or not at all.
+/// The marker is missing; a size is ordered twice or with quantity 0.
 pub fn set_marker_order(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -72,10 +72,11 @@ pub fn set_marker_order(
     put(Marker { order, ..marker })
 }
 
-/// The edits that lay a marker on other fabric, whatever the garment is cut from or not. Pieces keep their places.
+/// Plans to lay a marker on another fabric, and sets whether it stays on it if the garment is cut from
+/// another. Pieces keep their positions.
 ///
 /// # Errors
-/// The marker is not there.
+/// The marker is missing.
 pub fn set_marker_fabric(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -89,10 +90,10 @@ pub fn set_marker_fabric(
     })
 }
 
-/// The edits that lay the fabric of a marker otherwise. Pieces keep their places.
+/// Plans to change the cloth settings of a marker. Pieces keep their positions.
 ///
 /// # Errors
-/// The marker is not there; a setting is none that fabric can be laid by.
+/// The marker is missing; no fabric can be laid with one of the settings.
 pub fn set_marker_cloth(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -102,11 +103,11 @@ pub fn set_marker_cloth(
     put(Marker { cloth, ..marker })
 }
 
-/// The edits that take one of a marker's rolls away, counted from 0. What lay on it waits to be laid; without any roll
-/// pieces lie on as much as it takes, where they are.
+/// Plans to remove one of a marker's rolls, counted from 0. Pieces on it wait to be laid; if it was the only
+/// roll, pieces stay where they are, on as much fabric as needed.
 ///
 /// # Errors
-/// The marker or the roll is not there.
+/// The marker or the roll is missing.
 pub fn remove_marker_roll(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -129,10 +130,11 @@ pub fn remove_marker_roll(
     put(marker)
 }
 
-/// The edits that give a marker other rules for its pieces.
+/// Plans to give a marker other rules for its pieces.
 ///
 /// # Errors
-/// The marker is not there; a rule is none that a piece can be laid by; the same pieces have two.
+/// The marker is missing; no piece can be laid with one of the rules; there are two rules for the
+/// same pieces.
 pub fn set_marker_rules(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -142,10 +144,10 @@ pub fn set_marker_rules(
     put(Marker { rules, ..marker })
 }
 
-/// The edits that give a marker other sets of marks that lie on the same place of the print.
+/// Plans to give a marker other sets of marks that lie on the same place of the print.
 ///
 /// # Errors
-/// The marker is not there; a set has fewer than two marks.
+/// The marker is missing; a set has fewer than two marks.
 pub fn set_matched_marks(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -155,12 +157,13 @@ pub fn set_matched_marks(
     put(Marker { matched, ..marker })
 }
 
-/// The edits that lay all of a marker anew, as a search found it. Locked pieces and those that the
-/// order does not cut, or whose panel is gone, keep their places; other pieces that are not given
-/// wait to be laid.
+/// Plans to lay all pieces of a marker anew, as a search found it. Locked pieces, and pieces that the order
+/// does not cut or whose panel is gone, keep their placements; other pieces without a new placement wait to
+/// be laid.
 ///
 /// # Errors
-/// The marker is not there; a piece is laid twice or nowhere; a locked piece would move.
+/// The marker is missing; a piece is laid twice or at a position that is not finite; a locked piece
+/// would move.
 pub fn place_marker(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -186,10 +189,11 @@ pub fn place_marker(
     put(marker)
 }
 
-/// The edits that lay some pieces of a marker: those that wait, and those that lie elsewhere.
+/// Plans to lay some pieces of a marker: waiting pieces, and pieces that lie elsewhere.
 ///
 /// # Errors
-/// The marker is not there; a piece is laid twice or nowhere, or is locked where it is.
+/// The marker is missing; a piece is laid twice or at a position that is not finite, or is locked where
+/// it lies.
 pub fn place_pieces(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -207,10 +211,10 @@ pub fn place_pieces(
     put(marker)
 }
 
-/// The edits that take pieces off a marker: they wait to be laid.
+/// Plans to take pieces off a marker: they wait to be laid.
 ///
 /// # Errors
-/// The marker is not there; a piece does not lie on it or is locked.
+/// The marker is missing; a piece does not lie on it or is locked.
 pub fn take_off_pieces(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -222,10 +226,10 @@ pub fn take_off_pieces(
     put(marker)
 }
 
-/// The edits that move pieces of a marker (m).
+/// Plans to move pieces of a marker (m).
 ///
 /// # Errors
-/// The marker is not there; a piece does not lie on it or is locked; the move is not finite.
+/// The marker is missing; a piece does not lie on it or is locked; the displacement is not finite.
 pub fn move_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -236,10 +240,10 @@ pub fn move_pieces(
     })?)
 }
 
-/// The edits that turn pieces of a marker together round a point of it, counter-clockwise (rad).
+/// Plans to turn pieces of a marker together about a centre, counter-clockwise (rad).
 ///
 /// # Errors
-/// The marker is not there; a piece does not lie on it or is locked; a number is not finite.
+/// The marker is missing; a piece does not lie on it or is locked; a number is not finite.
 pub fn turn_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -253,10 +257,10 @@ pub fn turn_pieces(
     })?)
 }
 
-/// The edits that turn pieces of a marker over together, about a line along the warp (m).
+/// Plans to turn pieces of a marker over together, about a line along the warp (m).
 ///
 /// # Errors
-/// The marker is not there; a piece does not lie on it or is locked; the line is not finite.
+/// The marker is missing; a piece does not lie on it or is locked; the line is not finite.
 pub fn flip_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -269,10 +273,10 @@ pub fn flip_pieces(
     })?)
 }
 
-/// The edits that lock pieces of a marker where they lie, or unlock them.
+/// Plans to lock pieces of a marker where they lie, or to unlock them.
 ///
 /// # Errors
-/// The marker is not there; a piece does not lie on it.
+/// The marker is missing; a piece does not lie on it.
 pub fn lock_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -291,7 +295,7 @@ fn found(evaluation: &Evaluation, id: MarkerId) -> Result<&Marker, EditError> {
     Ok(marker)
 }
 
-/// The edit that puts a marker, if it is one that may be.
+/// The edit that puts a marker, refused if the marker has a fault.
 fn put(marker: Marker) -> Result<Vec<Edit>, EditError> {
     if let Some(fault) = marker.fault() {
         let what = format!("marker {:?}: {}", marker.name, fault.message);
@@ -300,7 +304,7 @@ fn put(marker: Marker) -> Result<Vec<Edit>, EditError> {
     Ok(vec![Edit::Put(Entity::Marker(Arc::new(marker)))])
 }
 
-/// The marker with pieces of it changed that are not locked.
+/// The marker with these pieces changed; refused if one of them is locked.
 fn changed(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -346,12 +350,12 @@ fn locked(evaluation: &Evaluation, piece: OrderedPiece) -> EditError {
     )
 }
 
-/// A piece in words.
+/// Description of a piece.
 fn words(evaluation: &Evaluation, piece: OrderedPiece) -> String {
     evaluation.pattern().piece_words(piece)
 }
 
-/// An angle from above -PI to PI (rad), unchanged where it is one.
+/// The same angle above -PI and up to PI (rad); an angle in this range is returned unchanged.
 fn principal(angle: f64) -> f64 {
     match angle {
         angle if angle > -PI && angle <= PI => angle,
@@ -359,7 +363,7 @@ fn principal(angle: f64) -> f64 {
     }
 }
 
-/// Cosine and sine, exact for whole quarter turns.
+/// Cosine and sine, exact for multiples of a quarter turn.
 fn direction(angle: f64) -> [f64; 2] {
     let quarters = (angle / FRAC_PI_2).round();
     if (angle - quarters * FRAC_PI_2).abs() > 1e-12 {

@@ -1,4 +1,4 @@
-//! Finds the mark on a line of a panel nearest to a place.
+//! Finds the mark on a line of a panel nearest to a point.
 
 use super::chain::ON_CURVE;
 use super::construct::add_point;
@@ -10,23 +10,23 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// A mark and where it is.
+/// A mark with its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearMark {
-    /// The line it is on.
+    /// The line that the mark is on.
     pub line: LineId,
-    /// The edge it is on.
+    /// The edge that the mark is on.
     pub edge: EdgeName,
     /// The mark: a corner, or a share of the way along the edge.
     pub mark: Mark,
-    /// Where it is (m).
+    /// Position of the mark (m).
     pub at: Vec2,
 }
 
-/// The mark nearest to a place (m) on the lines of a panel as it is finished.
+/// The mark nearest to a point (m) on the lines of a finished panel.
 ///
 /// # Errors
-/// The panel is not there or none of its edges can be drawn; the place is not finite.
+/// The panel is missing or none of its edges can be drawn; the point is not finite.
 pub fn nearest_mark(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -57,11 +57,11 @@ pub fn nearest_mark(
     })
 }
 
-/// The edits that put a point of the panel's sheet at a mark, unless a corner is there; and the
-/// point. It stays there, whatever moves.
+/// Plans to add a point at a mark to the panel's sheet, unless there is a corner at the mark; returns the
+/// point too. It stays at the mark when the panel changes.
 ///
 /// # Errors
-/// The panel is not there; operations moved the place away from where it was drawn, or made it.
+/// The panel is missing; operations moved the place away from where it was drawn, or made it.
 pub(super) fn point_at_mark(
     evaluation: &Evaluation,
     panel: PanelId,

@@ -1,4 +1,4 @@
-//! Finds the opposite places on a seam: matched notches, and the mirror twin of an edge that is sewn.
+//! Opposite places on a seam, matched notches, and the mirror twin of a sewn edge.
 
 use super::lookup::{self, after};
 use super::notch::add_notch;
@@ -11,10 +11,10 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// Sides of which less goes along the grain run across it.
+/// Least share of a side's direction along the grain; a side below it runs across the grain.
 const STEEP: f64 = 0.5;
 
-/// A place that lies opposite another on a seam.
+/// A place opposite another on a seam.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opposite {
     /// The panel.
@@ -25,9 +25,9 @@ pub struct Opposite {
     pub share: f64,
 }
 
-/// The places opposite one of an edge, one for each seam that sews it there: as far along the other
-/// side in proportion to its length, so that ease is spread evenly. A place that lies opposite in
-/// several seams, as those of both halves of a folded panel, is told once.
+/// The places opposite one place of an edge, one for each seam there: at the same share of the other side's
+/// length, so that ease is spread evenly. A place that is opposite in several seams, such as those of both
+/// halves of a folded panel, is returned once.
 pub fn opposites(evaluation: &Evaluation, edge: EdgeId, share: f64) -> Vec<Opposite> {
     let mut found: Vec<Opposite> = Vec::new();
     for seam in &evaluation.pattern().seams {
@@ -55,7 +55,7 @@ pub fn opposites(evaluation: &Evaluation, edge: EdgeId, share: f64) -> Vec<Oppos
     found
 }
 
-/// Length of the named edge of a stretch, mouths of darts included (m).
+/// The drawn edge of a name and its length, mouths of darts included (m).
 fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f64)> {
     let Name::Drawn(edge) = name else {
         return None;
@@ -63,7 +63,7 @@ fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f
     Some((edge, evaluation.edge(edge)?.length()))
 }
 
-/// How far along a side a share of an edge lies (m).
+/// Distance along a side to a share of one of its edges (m).
 fn reached(
     evaluation: &Evaluation,
     side: &[SpanValue],
@@ -81,7 +81,7 @@ fn reached(
     None
 }
 
-/// The place at a distance along a side.
+/// The place at a distance along a side (m).
 fn walked(evaluation: &Evaluation, side: &[SpanValue], way: f64) -> Option<Opposite> {
     let mut left = way;
     let mut last = None;
@@ -111,8 +111,8 @@ fn walked(evaluation: &Evaluation, side: &[SpanValue], way: f64) -> Option<Oppos
 /// A notch and its panel.
 pub type PanelNotch = (PanelId, NotchId);
 
-/// The edits that put a notch at a mark of a panel and one opposite on each seam there; and the
-/// notches.
+/// Plans to add a notch at a mark of a panel, and one opposite it on each seam there; returns the
+/// notches too.
 ///
 /// # Errors
 /// The mark is a corner, or the edge is not sewn there.
@@ -168,8 +168,8 @@ fn located(
     found.ok_or_else(|| EditError::Missing(place.edge.to_string()))
 }
 
-/// The same edge on the other side of the wearer: on the mirrored half of a folded panel, or on the
-/// other copy of a mirrored pair. Other panels have none.
+/// The same edge on the other side of the wearer: on the mirrored half of a folded panel, or on the other
+/// copy of a mirrored pair. None for other panels.
 pub fn twin(pattern: &Pattern, edge: SewnEdge) -> Option<SewnEdge> {
     let panel = pattern.panel(edge.panel)?;
     match is_folded(panel) {
@@ -185,9 +185,8 @@ pub fn twin(pattern: &Pattern, edge: SewnEdge) -> Option<SewnEdge> {
     }
 }
 
-/// Whether a seam sews an end that is up on one side to one that is down on the other, by the grain
-/// of their panels as drawn. Sides that run across the grain tell nothing, nor do those of panels
-/// that cannot be drawn.
+/// Whether a seam sews an upper end of one side to a lower end of the other, by the grain of their panels as
+/// drawn. Sides that run across the grain, and panels that cannot be drawn, give no answer: false.
 pub fn is_upside_down(evaluation: &Evaluation, seam: SeamId) -> bool {
     let Some(seam) = evaluation.pattern().seam(seam) else {
         return false;
@@ -197,8 +196,8 @@ pub fn is_upside_down(evaluation: &Evaluation, seam: SeamId) -> bool {
         .is_some_and(|(one, two)| one * two < 0.0 && one.abs().min(two.abs()) > STEEP)
 }
 
-/// Whether a seam is walked the same way round both pieces, seen from their right sides, so that one of
-/// them would show its wrong side.
+/// Whether a seam runs the same way round both pieces, seen from their right sides, so that one of them would
+/// show its wrong side.
 pub fn turns_over(evaluation: &Evaluation, seam: SeamId) -> bool {
     let pattern = evaluation.pattern();
     let Some(seam) = pattern.seam(seam).filter(|seam| seam.right_sides_together) else {
@@ -214,8 +213,8 @@ pub fn turns_over(evaluation: &Evaluation, seam: SeamId) -> bool {
     one.is_some() && one == two
 }
 
-/// How much of the way from the start to the end of a side goes along the grain: 1 all of it
-/// upward, -1 downward.
+/// Component along the grain of the unit direction from the start to the end of a side: 1 straight up, -1
+/// straight down.
 fn rise(evaluation: &Evaluation, side: &[Span]) -> Option<f64> {
     let (first, last) = (side.first()?, side.last()?);
     let place = |mark: &Mark| match mark {

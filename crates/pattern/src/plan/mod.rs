@@ -90,7 +90,7 @@ pub use typed::{number_shown, number_text, read_number};
 
 use crate::EditError;
 
-/// A refusal with what is wrong and what to do.
+/// An error with the fault and the advice.
 fn impossible(message: impl Into<String>, hint: impl Into<String>) -> EditError {
     EditError::Impossible {
         message: message.into(),

@@ -1,5 +1,5 @@
-//! Moves a point without losing how it is made: formulas stay and get something added, constructed
-//! points keep their construction.
+//! Moves a point without losing its construction: formulas stay and get an adjustment, constructed points
+//! keep their construction.
 
 use super::impossible;
 use crate::stage::{MarkValue, Placed};
@@ -11,14 +11,14 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
-/// The edits that move a point to `to` (m) as it is drawn now.
+/// Plans to move a point to `to` (m) in the current drawing.
 ///
-/// A value is set; a formula keeps its text and gets something added. A point constructed from
-/// others keeps its construction with new numbers, so a point on a curve or a line goes to the
-/// nearest place on it.
+/// A value is set; a formula keeps its text and gets an adjustment. A point constructed from others keeps
+/// its construction with new numbers, so that a point on a curve or a line moves to the place on it nearest
+/// to `to`.
 ///
 /// # Errors
-/// The point is not there, cannot be drawn, or follows from others alone.
+/// The point is missing, cannot be drawn, or is determined by other points alone.
 pub fn move_point(
     evaluation: &Evaluation,
     point: PointId,
@@ -54,7 +54,8 @@ fn direction(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2,
     ))
 }
 
-/// The rule with which a point of a sheet that lies at `now` comes to `to` (m), or as near as it lets it.
+/// The rule with which a point of a sheet, now at `now`, comes to `to` (m), or as near to it as the
+/// rule allows.
 pub(super) fn moved(
     evaluation: &Evaluation,
     (sheet, old): (&Sheet, &PointRule),
@@ -155,8 +156,8 @@ pub(super) fn moved(
     })
 }
 
-/// A mark of the stage a sheet lies on, moved along its line from the place nearest to one to that
-/// nearest to another (m).
+/// A mark of the stage that a sheet lies on, moved along its line from the place nearest to `now` to the
+/// place nearest to `to` (m).
 fn moved_mark(
     evaluation: &Evaluation,
     (sheet, line, mark): (&Sheet, LineName, &Mark),
@@ -203,7 +204,7 @@ fn moved_mark(
     let along = |at: Vec2| path.nearest(at).map(|place| place.along);
     let shift = along(to).zip(along(now)).map(|(to, now)| to - now);
     let mut shift = shift.ok_or_else(lost)?;
-    // Round a closed line the nearer way.
+    // On a closed line the mark takes the shorter way round.
     if shift.abs() > 0.5 * path.length() {
         shift -= path.length().copysign(shift);
     }
@@ -227,8 +228,8 @@ fn moved_mark(
     })
 }
 
-/// How much farther along a curve the place nearest to `to` is than that nearest to `now` (m), and
-/// the curve's length (m).
+/// Distance along a curve from the place nearest to `now` to the place nearest to `to` (m), and the curve's
+/// length (m).
 fn along_curve(
     evaluation: &Evaluation,
     curve: crate::CurveId,
@@ -241,7 +242,7 @@ fn along_curve(
     Ok((place(to) - place(now), path.length().max(1e-12)))
 }
 
-/// The number with something added (m), (rad) or plain.
+/// The number with a shift added (m), (rad) or plain.
 pub(super) fn added(number: &Number, shift: f64) -> Number {
     match number {
         Number::Value(value) => Number::Value(value + shift),

@@ -1,8 +1,8 @@
-//! Names for new parts: the one that is wished, or a free one of the kind pattern makers use.
+//! Names for new parts: the requested one, or a free one of the kind that pattern makers use.
 
 use crate::{EditError, NAME_LENGTH, Panel, Pattern, Sheet, is_part_name};
 
-/// A name that is not taken, made from one that is wanted: `side`, `side 2`, `side 3`.
+/// A free name made from a wanted one: `side`, `side 2`, `side 3`.
 pub(super) fn free_name(wanted: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut name: String = wanted.chars().take(NAME_LENGTH - 4).collect();
     let mut number = 2;
@@ -14,7 +14,7 @@ pub(super) fn free_name(wanted: &str, taken: impl Fn(&str) -> bool) -> String {
     name
 }
 
-/// The first free of A, B, ... Z, A1, B1, ... Z1, A2, ...
+/// The first free name of A, B, ... Z, A1, B1, ... Z1, A2, ...
 pub(super) fn letter_name(taken: impl Fn(&str) -> bool) -> String {
     let mut round = 0_u32;
     loop {
@@ -31,7 +31,7 @@ pub(super) fn letter_name(taken: impl Fn(&str) -> bool) -> String {
     }
 }
 
-/// A word and the first number from 1 with which it is free: `h1`, `h2`.
+/// A word with the first number from 1 that makes it a free name: `h1`, `h2`.
 pub(super) fn numbered_name(word: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut number = 1_u32;
     while taken(&format!("{word}{number}")) {
@@ -40,10 +40,10 @@ pub(super) fn numbered_name(word: &str, taken: impl Fn(&str) -> bool) -> String 
     format!("{word}{number}")
 }
 
-/// The wished name if it is a free one; `owner` says in words who has a name.
+/// The requested name, if it is free; `owner` describes the part that has a name.
 ///
 /// # Errors
-/// It cannot be a name, or another part has it.
+/// The name is not allowed, or another part has it.
 pub(super) fn wished(
     name: &str,
     owner: impl Fn(&str) -> Option<String>,
@@ -59,19 +59,20 @@ pub(super) fn wished(
     }
 }
 
-/// Who has the name of a point of a sheet.
+/// Description of the point of a sheet that has this name.
 pub(super) fn point_owner(sheet: &Sheet, name: &str) -> Option<String> {
     let found = sheet.point_named(name)?;
     Some(format!("point {:?} of sheet {:?}", found.name, sheet.name))
 }
 
-/// Who has the name of a curve of a sheet.
+/// Description of the curve of a sheet that has this name.
 pub(super) fn curve_owner(sheet: &Sheet, name: &str) -> Option<String> {
     let found = sheet.curve_named(name)?;
     Some(format!("curve {:?} of sheet {:?}", found.name, sheet.name))
 }
 
-/// Who has the name of a sheet. A panel of another sheet has it too: formulas would find its parts.
+/// Description of the part that has a sheet's name. A panel of another sheet counts too: formulas would find
+/// its parts.
 pub(super) fn sheet_owner(pattern: &Pattern, own: Option<&Sheet>, name: &str) -> Option<String> {
     let other = |sheet: &Sheet| own.is_none_or(|own| own.id != sheet.id);
     let mut sheets = pattern.sheets.iter();
@@ -85,8 +86,8 @@ pub(super) fn sheet_owner(pattern: &Pattern, own: Option<&Sheet>, name: &str) ->
         .then(|| format!("panel {name:?}"))
 }
 
-/// Who has the name of a panel. A sheet it is not traced from has it too: formulas would not find
-/// that sheet's parts any more.
+/// Description of the part that has a panel's name. A sheet that the panel is not traced from counts too:
+/// formulas would not find the sheet's parts any more.
 pub(super) fn panel_owner(pattern: &Pattern, own: &Panel, name: &str) -> Option<String> {
     let mut panels = pattern.panels.iter();
     if panels.any(|panel| panel.name == name && panel.id != own.id) {

@@ -1,4 +1,4 @@
-//! Puts notches on lines of panels, one or a row of them, and changes them.
+//! Adds notches to lines of panels, one or a row of them, and changes them.
 
 use super::impossible;
 use super::lookup::{self, after, refuse_faults};
@@ -19,15 +19,14 @@ pub struct NotchRow {
     pub line: LineId,
     /// The corners, in the order of the line; neither gets a notch.
     pub ends: [CornerName; 2],
-    /// How many.
+    /// Number of notches.
     pub count: u32,
 }
 
-/// The edits that put a notch on a line of a panel; and the notch. It is called `notch`,
-/// `notch 2`, ...
+/// Plans to add a notch to a line of a panel; returns the notch too. It is called `notch`, `notch 2`, ...
 ///
 /// # Errors
-/// The panel or line is not there, or the mark is not on the line.
+/// The panel or line is missing, or the mark is not on the line.
 pub fn add_notch(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -38,10 +37,10 @@ pub fn add_notch(
     Ok((edits, ids[0]))
 }
 
-/// The edits that put a row of evenly spaced notches between two corners; and the notches.
+/// Plans to add a row of evenly spaced notches between two corners; returns the notches too.
 ///
 /// # Errors
-/// The panel, line or corners are not there; there are none to put or more than 100.
+/// The panel, line or corners are missing; the number of notches is 0 or above 100.
 pub fn add_notches(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -62,10 +61,10 @@ pub fn add_notches(
     add(evaluation, panel, row.line, (marks, kind))
 }
 
-/// The edits that put a notch elsewhere on its line or on another.
+/// Plans to move a notch along its line or to another line.
 ///
 /// # Errors
-/// The notch or line is not there, or the mark is not on the line.
+/// The notch or line is missing, or the mark is not on the line.
 pub fn move_notch(
     evaluation: &Evaluation,
     (panel, notch): (PanelId, NotchId),
@@ -79,10 +78,10 @@ pub fn move_notch(
     put(evaluation, changed, &[notch])
 }
 
-/// The edits that cut a notch in another shape.
+/// Plans to give a notch another shape.
 ///
 /// # Errors
-/// The notch is not there.
+/// The notch is missing.
 pub fn set_notch_kind(
     evaluation: &Evaluation,
     (panel, notch): (PanelId, NotchId),
@@ -93,10 +92,10 @@ pub fn set_notch_kind(
     Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
 }
 
-/// The edits that take a notch off a panel. What is marked by it waits for its return.
+/// Plans to remove a notch from a panel. Marks placed at it wait for its return.
 ///
 /// # Errors
-/// The notch is not there.
+/// The notch is missing.
 pub fn remove_notch(
     evaluation: &Evaluation,
     (panel, notch): (PanelId, NotchId),
@@ -106,7 +105,7 @@ pub fn remove_notch(
     Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
 }
 
-/// The panel, to be changed, and the notch's place in it.
+/// The panel, for changing, and the index of the notch in it.
 fn found(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -118,7 +117,7 @@ fn found(
     Ok(((**panel).clone(), at))
 }
 
-/// Refuses a line that is neither the panel's nor one of a panel it is a side of.
+/// Refuses a line that belongs neither to the panel nor to a panel that it is a side of.
 fn line_of(evaluation: &Evaluation, panel: &Panel, line: LineId) -> Result<(), EditError> {
     let owner = evaluation.pattern().owner_of(panel.id, line.into());
     let missing = || EditError::Missing(line.to_string());
@@ -162,7 +161,7 @@ fn add(
     Ok((put(evaluation, changed, &made)?, made))
 }
 
-/// The edit that puts a panel, refused if one of its notches has no place.
+/// The edit that puts a panel, refused if one of these notches has no position.
 fn put(evaluation: &Evaluation, panel: Panel, notches: &[NotchId]) -> Result<Vec<Edit>, EditError> {
     let (id, name) = (panel.id, panel.name.clone());
     let edits = vec![Edit::Put(Entity::Panel(Arc::new(panel)))];

@@ -8,13 +8,13 @@ use crate::{
     Code, Edit, EditError, Entity, Evaluation, Number, PartId, Pattern, Place, SizeId, VariableId,
 };
 
-/// The numbers of a part, in the order they are shown; none if it has none or is not there.
+/// The numbers of a part, in the order in which they are shown; empty if the part has none or is missing.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     let entity = evaluation.pattern().entity_with(part);
     entity.map_or_else(Vec::new, |entity| entity.number_entries(Some(part)))
 }
 
-/// The number at a place, with what is said of it; nothing if it is not there.
+/// The number at an address, with its label and quantity; none if it is missing.
 pub fn number_entry(pattern: &Pattern, place: &NumberAddress) -> Option<NumberEntry> {
     let entries = pattern
         .entity_with(place.part)?
@@ -22,12 +22,12 @@ pub fn number_entry(pattern: &Pattern, place: &NumberAddress) -> Option<NumberEn
     entries.into_iter().find(|entry| entry.place == *place)
 }
 
-/// The number at a place; nothing if it is not there or left out.
+/// The number at an address; none if it is missing or left out.
 pub fn number_at(pattern: &Pattern, place: &NumberAddress) -> Option<Number> {
     number_entry(pattern, place)?.number
 }
 
-/// Puts a number at a place of an entity; whether it is there.
+/// Sets the number at an address in an entity; returns whether the entity has such a number.
 pub(super) fn put_number(entity: &mut Entity, place: &NumberAddress, number: &Number) -> bool {
     let mut is_there = false;
     entity.change(&mut |part| {
@@ -39,10 +39,11 @@ pub(super) fn put_number(entity: &mut Entity, place: &NumberAddress, number: &Nu
     is_there
 }
 
-/// The edits that set the number at a place.
+/// Plans to set the number at an address.
 ///
 /// # Errors
-/// The place is not there; the number has no value there, the wrong dimension, or needs itself.
+/// The entity has no such number; the new number has no value there, has the wrong dimension, or depends
+/// on itself.
 pub fn set_number(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -57,11 +58,11 @@ pub fn set_number(
     Ok(edits)
 }
 
-/// The edits that bring the number at a place to a value (m), (rad) or plain for the measurements on
-/// show: a value is set, a formula stays and gets something added.
+/// Plans to bring the number at an address to a value (m), (rad) or plain for the current measurements: a
+/// value is set, a formula stays and gets an adjustment.
 ///
 /// # Errors
-/// The place is not there or has no number; the number has no value now; the new one has none.
+/// There is no number at the address; the number has no value now, or would have none.
 pub fn adjust_number(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -82,11 +83,11 @@ pub fn adjust_number(
     set_number(evaluation, place, added(&number, to - now))
 }
 
-/// The edits that give a number a value of its own in one size (m), (rad) or plain, or take it away
-/// again; in all other sizes it stays.
+/// Plans to give a number an own value in one size (m), (rad) or plain, or to remove that value; the number
+/// stays as it is in all other sizes.
 ///
 /// # Errors
-/// The size or the place is not there, or has no number; the value is not finite.
+/// The size is missing, or there is no number at the address; the value is not finite.
 pub fn set_number_in_size(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -119,11 +120,11 @@ pub fn set_number_in_size(
     set_number(evaluation, place, number)
 }
 
-/// The edits that leave a number out: an edge's allowance is then its panel's, a spline's handles
-/// are as they are drawn, a level is found by the program.
+/// Plans to leave a number out: an edge then has the allowance of its panel, a spline its handles as drawn, a
+/// panel a level that the program finds.
 ///
 /// # Errors
-/// The place is not there, or its number cannot be left out.
+/// There is no number at the address, or it cannot be left out.
 pub fn clear_number(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -163,8 +164,8 @@ fn missing(place: &NumberAddress) -> EditError {
     EditError::Missing(format!("the {key} of {}", place.part))
 }
 
-/// Refuses edits after which the number at a place has a fault of its own or needs itself. A
-/// number that waits for other parts is taken.
+/// Refuses edits that give the number at an address a fault of its own or make it depend on itself. A number
+/// that waits for other parts is accepted.
 pub(super) fn refuse_valueless(
     evaluation: &Evaluation,
     edits: &[Edit],

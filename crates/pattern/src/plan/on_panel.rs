@@ -1,4 +1,4 @@
-//! Draws on a panel as it is finished: sheets that lie on a stage, and curves to cut it along.
+//! Draws on a finished panel: sheets that lie on a stage, and curves to cut the panel along.
 
 use super::construct::add_curve;
 use super::lookup::{self, after};
@@ -12,11 +12,11 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// The edits that open a sheet on a panel as it is before it is unfolded, with a point at each of
-/// its corners; and the sheet. One that lies there already is taken.
+/// Plans to open a sheet on a panel as it is before it is unfolded, with a point at each of its corners;
+/// returns the sheet too. A sheet that already lies there is used.
 ///
 /// # Errors
-/// The panel is not there or cannot be drawn, or is split: its sides are drawn on.
+/// The panel is missing or cannot be drawn, or is split: then its sides are to be drawn on.
 pub fn open_sheet(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -32,7 +32,7 @@ pub fn open_sheet(
     let fold = |step: &Arc<Operation>| matches!(step.kind, OperationKind::Fold { .. });
     let count = owner.operations.iter().position(fold);
     let count = count.unwrap_or(owner.operations.len());
-    // Lines that were inserted move nothing: what was drawn before them lies there too.
+    // Inserted lines move nothing: a sheet drawn before them lies on this stage too.
     let steps = owner.operations[..count].iter();
     let last = steps.rev().find(|step| step.kind.sheet().is_none());
     let on = (panel, last.map(|step| step.id));
@@ -85,8 +85,8 @@ fn corners(stage: &Stage) -> Vec<(LineName, CornerName)> {
     edges.collect()
 }
 
-/// The operation of a panel that inserts a sheet which lies on a stage of it: the one it has, else
-/// a new one right after that stage.
+/// The operation of a panel that inserts a sheet which lies on one of its stages: the present one, else a new
+/// one right after that stage.
 pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> OperationId {
     let own = |step: &&Arc<Operation>| step.kind.sheet() == Some(sheet.id);
     if let Some(step) = panel.operations.iter().find(own) {
@@ -108,12 +108,12 @@ pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> Opera
     id
 }
 
-/// The edits that draw a straight curve from one place of a panel's line to another, with points
-/// that stay at these marks; and the curve. It is drawn on the panel's own sheet where both places
-/// lie as they were drawn, else on a sheet that lies on the finished panel.
+/// Plans to draw a straight curve between two places on a panel's line, with points that stay at these marks;
+/// returns the curve too. It is drawn on the panel's own sheet if no operation moved the two places, else on
+/// a sheet that lies on the finished panel.
 ///
 /// # Errors
-/// The panel is not there, cannot be drawn, or is split; the places are one.
+/// The panel is missing, cannot be drawn, or is split; the places are the same.
 pub fn line_across(
     evaluation: &Evaluation,
     panel: PanelId,

@@ -1,4 +1,4 @@
-//! Edges of a panel as it is finished: where they lie, and between which corners.
+//! Edges of a finished panel: their positions and their corners.
 
 use super::{impossible, lookup};
 use crate::stage::MarkValue;
@@ -8,12 +8,12 @@ use crate::{
 };
 use toile_geometry::{Curve, Path, Vec2};
 
-/// A place on an edge of a panel as it is finished.
+/// A position on an edge of a finished panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OnEdge {
     pub line: LineId,
     pub edge: EdgeName,
-    /// The corners the edge runs between: as drawn if it was drawn.
+    /// Corners of the whole edge: as drawn if the edge was drawn.
     pub ends: [CornerName; 2],
     /// Share of the edge's arc length.
     pub share: f64,
@@ -25,20 +25,20 @@ pub(super) struct OnEdge {
 /// A part of an edge of a panel's stage: one curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgePart {
-    /// The line it is on.
+    /// The line that the edge is on.
     pub line: LineId,
     /// The edge.
     pub edge: EdgeName,
-    /// The corners the whole edge runs between: as drawn if it was drawn.
+    /// Corners of the whole edge: as drawn if the edge was drawn.
     pub ends: [CornerName; 2],
-    /// Shares of the edge's arc length where the part starts and ends.
+    /// Shares of the edge's arc length at the start and the end of the part.
     pub shares: [f64; 2],
-    /// Its course (m).
+    /// The curve of the part (m).
     pub curve: Curve,
 }
 
-/// The edges of a stage of a panel, part by part; legs of darts and the other half of a fold are no
-/// edges here.
+/// The edges of a stage of a panel, part by part; legs of darts and the other half of a folded panel are
+/// left out.
 pub fn edge_parts(evaluation: &Evaluation, panel: &Panel, stage: &Stage) -> Vec<EdgePart> {
     let mut parts = Vec::new();
     for line in &stage.lines {
@@ -62,8 +62,8 @@ pub fn edge_parts(evaluation: &Evaluation, panel: &Panel, stage: &Stage) -> Vec<
 }
 
 impl EdgePart {
-    /// The place on it nearest to one (m), and its share of the whole edge's arc length; nothing if
-    /// it has no length.
+    /// The position on the part nearest to a point (m), and its share of the whole edge's arc length; none if
+    /// the part has no length.
     pub fn nearest(&self, near: Vec2) -> Option<(Vec2, f64)> {
         let path = Path::new(vec![self.curve]);
         let place = path.nearest(near)?;
@@ -74,8 +74,8 @@ impl EdgePart {
     }
 }
 
-/// The place nearest to one of a finished panel (m) on those of its edges that are asked for.
-/// Nothing if there is none.
+/// The position nearest to a point of a finished panel (m) on those of its edges that are wanted; none if
+/// there is no such edge.
 pub(super) fn nearest_edge(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -100,7 +100,7 @@ pub(super) fn nearest_edge(
     })
 }
 
-/// The corners between which the whole of an edge runs that covers one of a line.
+/// Corners of the whole edge that one edge of a stage line covers a part of.
 fn ends_of(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -115,7 +115,7 @@ fn ends_of(
     }
 }
 
-/// The corners where an edge of a line begins and ends on its stage.
+/// Corners at the start and the end of an edge of a line on its stage.
 fn corners_of(line: &StageLine, edge: EdgeName) -> Option<[CornerName; 2]> {
     let count = line.edges.len();
     let is_own = |k: usize| {
@@ -133,7 +133,7 @@ fn corners_of(line: &StageLine, edge: EdgeName) -> Option<[CornerName; 2]> {
     Some([line.edges[first].start?, end?])
 }
 
-/// A mark with its number.
+/// A mark with its number evaluated.
 pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<MarkValue> {
     let number = |number: &Number, want| evaluation.number(number, want);
     Some(match mark {
@@ -153,7 +153,7 @@ pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) ->
     })
 }
 
-/// Where a mark of a line lies on a panel as it is finished (m).
+/// Position of a mark of a line on the finished panel (m).
 pub(super) fn place_of(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -172,10 +172,10 @@ pub(super) fn place_of(
     Some(stage.at_spot(line, spot.ok()?)?.0)
 }
 
-/// The outline of a panel as it is finished.
+/// The outline of a finished panel.
 ///
 /// # Errors
-/// The panel is not there or has no outline that was drawn.
+/// The panel is missing or its outline cannot be drawn.
 pub fn outline_of(evaluation: &Evaluation, panel: PanelId) -> Result<LineName, EditError> {
     let panel = lookup::panel(evaluation.pattern(), panel)?;
     let stage = evaluation.last_stage(panel);
@@ -189,11 +189,11 @@ pub fn outline_of(evaluation: &Evaluation, panel: PanelId) -> Result<LineName, E
     })
 }
 
-/// The line of an edge of a panel, and the corners it has there: of an edge that a split divides,
-/// those of the part on that side.
+/// The line of an edge of a panel, and the corners of the edge there; for an edge that a split divides, the
+/// corners of its part on that side.
 ///
 /// # Errors
-/// The panel has no such edge, or none of it lies on that side.
+/// The panel has no such edge, or no part of the edge lies on that side.
 pub fn edge_ends(
     evaluation: &Evaluation,
     panel: &Panel,

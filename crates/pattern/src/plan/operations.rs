@@ -1,4 +1,4 @@
-//! Puts operations on panels; adjusts, reorders and removes them.
+//! Adds operations to panels; adjusts, reorders and removes them.
 
 use super::impossible;
 use super::lookup::{self, after, refuse_faults};
@@ -9,11 +9,11 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// The edits that put an operation on a panel; and the operation. It is called by what it is:
-/// `dart`, `dart 2`. It goes before the first fold, so that both halves have it; a fold comes last.
+/// Plans to add an operation to a panel; returns the operation too. It is named after its kind: `dart`,
+/// `dart 2`. It is inserted before the first fold, so that both halves have it; a fold comes last.
 ///
 /// # Errors
-/// The panel is not there or cannot be drawn; the operation cannot be done: its words say why.
+/// The panel is missing or cannot be drawn; the operation cannot be done, for the reason in the message.
 pub fn add_operation(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -42,11 +42,11 @@ pub fn add_operation(
     Ok((put(evaluation, changed, &[id])?, id))
 }
 
-/// The edits that do an operation otherwise: it keeps its id, name and place, so that what is
-/// named after it stays.
+/// Plans to change the settings of an operation: it keeps its id, name and place, so that parts named after
+/// it stay.
 ///
 /// # Errors
-/// The operation is not there, or cannot be done so: its words say why.
+/// The operation is missing, or cannot be done with these settings, for the reason in the message.
 pub fn set_operation(
     evaluation: &Evaluation,
     (panel, operation): (PanelId, OperationId),
@@ -58,11 +58,10 @@ pub fn set_operation(
     put(evaluation, changed, &[operation])
 }
 
-/// The edits that do an operation earlier or later: at that place among the panel's operations,
-/// counted from 0 and clamped.
+/// Plans to move an operation to another index among the panel's operations, counted from 0 and clamped.
 ///
 /// # Errors
-/// The operation is not there; one of the panel's operations could not be done then.
+/// The operation is missing; one of the panel's operations could then not be done.
 pub fn move_operation(
     evaluation: &Evaluation,
     (panel, operation): (PanelId, OperationId),
@@ -77,10 +76,10 @@ pub fn move_operation(
     put(evaluation, changed, &all)
 }
 
-/// The edits that take an operation off a panel. What is named after it waits for its return.
+/// Plans to remove an operation from a panel. References to parts that it made wait for its return.
 ///
 /// # Errors
-/// The operation is not there.
+/// The operation is missing.
 pub fn remove_operation(
     evaluation: &Evaluation,
     (panel, operation): (PanelId, OperationId),
@@ -112,7 +111,8 @@ fn put(
         .collect();
     let undone =
         |found: &Diagnostic| found.severity == Severity::Error && places.contains(&found.place);
-    // An adjusted operation is refused for a fault it had before, too, but not for one of others.
+    // An adjusted operation is also refused for a fault that it had before; faults of other operations count
+    // only if they are new.
     if let ([_], Some(found)) = (operations, after.diagnostics().into_iter().find(undone)) {
         return Err(impossible(found.message, found.hint));
     }
@@ -126,14 +126,14 @@ fn put(
     }
 }
 
-/// Operations use points and curves of the panel's own sheet, or of one that lies on the stage
-/// before them: those of others lie elsewhere.
+/// Refuses operations with points or curves of foreign sheets: they must be on the panel's own sheet, or on
+/// one that lies on the stage before the operation.
 fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), EditError> {
     let mut pattern = evaluation.pattern().clone();
     pattern.apply(&[Edit::Put(Entity::Panel(Arc::new(panel.clone())))])?;
     let own = pattern.sheet_of(panel);
     for (step, operation) in (1..).zip(&panel.operations) {
-        // A part that is gone is told where it is missed.
+        // A part that is gone is reported by the operation that lacks it.
         let points = fields::points(&operation.kind)
             .into_iter()
             .filter_map(|id| {
@@ -176,7 +176,7 @@ fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), Ed
     Ok(())
 }
 
-/// Whether the sheet of an insert lies on the stage before it now.
+/// Whether the sheet of an insert lies at present on the stage before it.
 fn was_laid(evaluation: &Evaluation, panel: PanelId, insert: &Operation) -> bool {
     let pattern = evaluation.pattern();
     let found = pattern.panel(panel).and_then(|panel| {

@@ -15,39 +15,39 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2};
 
-/// Room between parts and their duplicate (m).
+/// Distance between parts and their duplicate (m).
 const GAP: f64 = 0.05;
 
-/// Where a fragment goes.
+/// Destination of a pasted fragment.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct PasteTarget {
-    /// The sheet it is drawn on; nothing makes new sheets.
+    /// The sheet to paste onto; none makes new sheets.
     pub sheet: Option<SheetId>,
-    /// How far it is moved: on the sheet, or new sheets on the table (m).
+    /// Displacement of the parts on the sheet, or of new sheets on the table (m).
     pub offset: [f64; 2],
 }
 
-/// What pasting comes to.
+/// Result of pasting.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Pasted {
-    /// The edits.
+    /// The edits that paste the parts.
     pub edits: Vec<Edit>,
     /// The new points, curves, sheets, panels, seams and variables.
     pub parts: Vec<PartId>,
-    /// Numbers that speak of parts that are not here: they are values now, or wait for a number of
-    /// their own if they had no value.
+    /// Numbers that named parts missing here: they are values now, or wait for a new number if they had
+    /// no value.
     pub loosened: Vec<NumberAddress>,
-    /// Names of sizes that are not here: values of their own that numbers had for them are gone.
+    /// Names of sizes missing here: the own values of numbers for these sizes are dropped.
     pub lost_sizes: Vec<String>,
 }
 
-/// The edits that paste a fragment, with ids and names of its own. What its formulas say of parts
-/// outside it stays where this is the pattern it was copied from and has the part; else the number
-/// becomes the value it had, and is listed.
+/// Plans to paste a fragment, with ids and names of its own. A formula keeps a reference to a part outside
+/// the fragment if this is the pattern it was copied from and the part is there; otherwise the number becomes
+/// the value it had, and is listed.
 ///
 /// # Errors
-/// The sheet is not there; the offset is not finite; two parts of the fragment have one id, or one
-/// is none that a pattern takes.
+/// The sheet is missing; the offset is not finite; two parts of the fragment have the same id, or the pattern
+/// does not accept one of the parts.
 pub fn paste(
     evaluation: &Evaluation,
     fragment: &Fragment,
@@ -79,7 +79,7 @@ pub fn paste(
     }
 }
 
-/// Refuses data in which two parts have one id: references would mean two things.
+/// Refuses data in which two parts have the same id: references would be ambiguous.
 fn refuse_doubles(fragment: &Fragment) -> Result<(), EditError> {
     let mut seen = HashSet::new();
     let parts = fragment.as_pattern().parts().into_iter();
@@ -92,11 +92,11 @@ fn refuse_doubles(fragment: &Fragment) -> Result<(), EditError> {
     }
 }
 
-/// The edits that copy parts beside themselves: panels with a sheet of their own to the right on
-/// the table, points and curves to the right on their sheet.
+/// Plans to duplicate parts beside themselves: panels with a new sheet to the right on the table, points and
+/// curves to the right on their sheet.
 ///
 /// # Errors
-/// What [`copy`] and [`paste`] refuse.
+/// Any error of [`copy`] and [`paste`].
 pub fn duplicate(evaluation: &Evaluation, parts: &[PartId]) -> Result<Pasted, EditError> {
     let fragment = copy(evaluation, parts)?;
     let points = fragment.sheets.iter().flat_map(|sheet| &sheet.points);
@@ -120,19 +120,19 @@ pub fn duplicate(evaluation: &Evaluation, parts: &[PartId]) -> Result<Pasted, Ed
     paste(evaluation, &fragment, target)
 }
 
-/// The edits that insert all panels of another pattern, with its sheets, seams, variables and
-/// fabrics, moved on the table (m). Its sizes stay behind: it is drawn for those of this pattern; and
-/// its markers, as they were laid for those.
+/// Plans to insert all panels of another pattern, with its sheets, seams, variables and fabrics, at an offset
+/// on the table (m). Its sizes are left out, since it is drawn for the sizes of this pattern; so are its
+/// markers, which were laid for those sizes.
 ///
 /// # Errors
-/// The other pattern has nothing to insert; what [`paste`] refuses.
+/// The other pattern has nothing to insert; any error of [`paste`].
 pub fn insert_pattern(
     evaluation: &Evaluation,
     other: &Evaluation,
     offset: [f64; 2],
 ) -> Result<Pasted, EditError> {
     let mut fragment = copy_all(other)?;
-    // It is another pattern whatever it is called: nothing outside is meant.
+    // It is another pattern even if both have the same name: no reference leads to a part of this one.
     fragment
         .outside
         .iter_mut()
@@ -145,9 +145,9 @@ pub fn insert_pattern(
 }
 
 struct Pasting {
-    /// The pattern with what was pasted so far.
+    /// The pattern with everything pasted so far.
     work: Pattern,
-    /// The parts it had before.
+    /// The parts that the pattern had before.
     known: HashSet<PartId>,
     ids: Ids,
     remap: Remap,
@@ -155,7 +155,7 @@ struct Pasting {
 }
 
 impl Pasting {
-    /// The fragment with numbers that speak of what is not here made values.
+    /// The fragment with numbers replaced by their values if they name parts missing here.
     fn loosened(&mut self, fragment: &Fragment) -> Result<Fragment, EditError> {
         let mut own = fragment.as_pattern();
         let mine: HashSet<PartId> = own.parts().into_iter().map(|(id, _)| id).collect();
@@ -197,7 +197,7 @@ impl Pasting {
             variables: own.variables,
             ..fragment.clone()
         };
-        // What is lost gets an id that no part has, so that it is not taken for another part.
+        // A lost part gets a new id that no part has, so that it is not mistaken for another part.
         for entity in changed.entities() {
             for lost in entity.references().into_iter().filter(|id| !stays(id)) {
                 let ids = &mut self.ids;
@@ -210,7 +210,7 @@ impl Pasting {
         Ok(changed)
     }
 
-    /// Gives every part of a fragment an id of its own, but those that are here already.
+    /// Gives every part of a fragment a new id, except for parts that are here already.
     fn number(&mut self, fragment: &Fragment, sheet: Option<SheetId>) {
         for (part, _) in fragment.as_pattern().parts() {
             let known = match (part, sheet) {
@@ -242,7 +242,7 @@ impl Pasting {
         }
     }
 
-    /// A fabric here that is called the same.
+    /// The fabric here with the same name.
     fn same_fabric(&self, fabrics: &[Arc<Fabric>], part: PartId) -> Option<PartId> {
         let fabric = fabrics
             .iter()
@@ -252,7 +252,7 @@ impl Pasting {
             .map(|own| own.id.into())
     }
 
-    /// A variable here that is called the same and says the same of the body.
+    /// The variable here with the same name and the same number, if its formula names only measurements.
     fn same_variable(&self, variables: &[Arc<Variable>], part: PartId) -> Option<PartId> {
         let variable = variables.iter().find(|v| PartId::from(v.id) == part)?;
         let own = self.work.variable_named(&variable.name)?;
@@ -263,7 +263,7 @@ impl Pasting {
         (is_of_body && own.number == variable.number).then(|| own.id.into())
     }
 
-    /// Puts an entity of the fragment under its new id and a free name.
+    /// Puts an entity of the fragment into the pattern with its new id and a free name.
     fn put(&mut self, entity: Entity, target: PasteTarget) -> Result<(), EditError> {
         let mut entity = self.remap.entity(entity);
         let is_here = |id: PartId| self.known.contains(&id);
@@ -271,7 +271,7 @@ impl Pasting {
             return Ok(());
         }
         self.rename(&mut entity);
-        // Panels lie as far from their sheet as they did.
+        // Panels keep their displacement from their sheet.
         if let Entity::Sheet(head) = &mut entity {
             head.on_table[0] += target.offset[0];
             head.on_table[1] += target.offset[1];
@@ -326,7 +326,7 @@ impl Pasting {
         }
     }
 
-    /// The result, its places by the new ids.
+    /// The result, with addresses by the new ids.
     fn finished(mut self, fragment: &Fragment) -> Pasted {
         let places = fragment.values.iter().map(|value| &value.place);
         let loose: Vec<NumberAddress> = places
@@ -341,7 +341,8 @@ impl Pasting {
     }
 }
 
-/// A name for a pasted point: its own, else the next letter if it is one, else with a number.
+/// A name for a pasted point: its own; if that is taken, the next free letter for a letter name, else the
+/// name with a number.
 fn point_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.to_owned();
@@ -355,7 +356,7 @@ fn point_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     }
 }
 
-/// A length as variables hold one: a formula with a unit.
+/// A length in the form that variables need: a formula with a unit.
 fn length(value: f64) -> Number {
     let formula = Formula::of_measurements(&format!("{value:?}m"));
     formula.map_or(Number::Value(value), Number::Formula)
@@ -383,7 +384,7 @@ fn fresh(part: PartId, ids: &mut Ids) -> PartId {
     }
 }
 
-/// Puts a part into a pattern in which parts it refers to may still be missing.
+/// Puts a part into a pattern in which parts that it refers to may still be missing.
 fn put_unchecked(work: &mut Pattern, edit: &Edit) -> Result<(), EditError> {
     let ids = std::mem::replace(&mut work.ids, Ids { next: u32::MAX });
     let result = work.apply(std::slice::from_ref(edit));

@@ -11,11 +11,11 @@ use crate::{
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// The edits that remove a point: a corner of a panel's line joins its edges, any other point is
-/// taken off its sheet. What was constructed from it waits for its return.
+/// Plans to remove a point: at a corner of a panel's line its edges are joined, any other point is removed
+/// from its sheet. Parts constructed from it wait for its return.
 ///
 /// # Errors
-/// The point is not there, or its line would lose too many corners.
+/// The point is missing, or its line would have too few corners left.
 pub fn remove_point(
     evaluation: &Evaluation,
     (panel, point): (PanelId, PointId),
@@ -28,13 +28,12 @@ pub fn remove_point(
     Ok(vec![Edit::Remove(point.into())])
 }
 
-/// The edits that remove a selection of parts of any kinds. Corners of panels that stay join their
-/// edges first; an edge is taken off the end or out of the middle of an internal line. Whatever
-/// else depends on the parts waits for their return.
+/// Plans to remove a selection of parts of any kinds. At removed corners of panels that stay, edges are
+/// joined first; an edge is removed from the end or the middle of an internal line. All other parts that
+/// depend on removed ones wait for their return.
 ///
 /// # Errors
-/// A part is not there; a panel would lose its outline, or a closed line an edge or too many
-/// corners.
+/// A part is missing; a panel would lose its outline, or a closed line an edge or too many corners.
 pub fn remove_parts(evaluation: &Evaluation, parts: &[PartId]) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
     let known: HashSet<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
@@ -92,7 +91,7 @@ pub fn remove_parts(evaluation: &Evaluation, parts: &[PartId]) -> Result<Vec<Edi
     Ok(edits)
 }
 
-/// Whether a point or curve goes with its sheet.
+/// Whether a point or curve is removed together with its sheet.
 fn is_on_removed_sheet(pattern: &Pattern, gone: &HashSet<PartId>, part: PartId) -> bool {
     let sheet = match part {
         PartId::Point(id) => pattern.point(id).map(|found| found.0),
@@ -113,7 +112,7 @@ fn is_on_removed_sheet(pattern: &Pattern, gone: &HashSet<PartId>, part: PartId) 
     sheet.is_some_and(|sheet| gone.contains(&sheet.id.into()))
 }
 
-/// The panels that stay in which a point is a corner between two edges.
+/// The remaining panels in which a point is a corner between two edges.
 fn corners(pattern: &Pattern, gone: &HashSet<PartId>, point: PointId) -> Vec<(PanelId, PointId)> {
     let between = |line: &Line| {
         let ends_here = line.edges.iter().any(|edge| edge.ends[1] == point);
@@ -127,7 +126,7 @@ fn corners(pattern: &Pattern, gone: &HashSet<PartId>, point: PointId) -> Vec<(Pa
     with.map(|panel| (panel.id, point)).collect()
 }
 
-/// The edit that puts a panel without those of its own parts that go; nothing if it has none.
+/// The edit that puts a panel without its removed parts; none if none of its parts is removed.
 fn thinned(
     panel: &Arc<Panel>,
     gone: &HashSet<PartId>,

@@ -12,13 +12,13 @@ use crate::{
 use std::sync::Arc;
 use toile_measure::definition;
 
-/// The edits that give a part another name; none if it has that name. Formulas that speak of a part
-/// of the new name, and found none, mean it from now on.
+/// Plans to rename a part; no edits if it has that name already. Formulas that name a part with the new name,
+/// and found none, refer to it from now on.
 ///
 /// # Errors
-/// The part is not there; the name can be none, or another part in its scope has it: sizes,
-/// variables, fabrics, sheets, panels, seams and markers in the pattern, points and curves in their sheet,
-/// lines, edges, notches and operations in their panel.
+/// The part is missing; the name is not allowed, or another part in its scope has it: sizes, variables,
+/// fabrics, sheets, panels, seams and markers in the pattern, points and curves in their sheet, lines, edges,
+/// notches and operations in their panel.
 pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
     let parts = pattern.parts();
@@ -58,7 +58,7 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
     Ok(edits)
 }
 
-/// A sheet, a point, a curve or a panel by its new name; nothing for other parts.
+/// A sheet, a point, a curve or a panel with the new name; none for other parts.
 fn of_sheet(pattern: &Pattern, part: PartId, name: &str) -> Result<Option<Entity>, EditError> {
     Ok(Some(match part {
         PartId::Sheet(id) => {
@@ -109,7 +109,7 @@ fn of_sheet(pattern: &Pattern, part: PartId, name: &str) -> Result<Option<Entity
     }))
 }
 
-/// A size, a variable, a fabric, a seam or a marker by its new name.
+/// A size, a variable, a fabric, a seam or a marker with the new name.
 fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, EditError> {
     let missing = || EditError::Missing(part.to_string());
     Ok(match part {
@@ -156,8 +156,8 @@ fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, Edi
     })
 }
 
-/// The name a variable may have: free, and no measurement's, since formulas in files would then
-/// mean the variable.
+/// The name of a variable, refused if it is taken or is the name of a measurement: formulas in files would
+/// then refer to the variable.
 pub(super) fn variable_name(
     pattern: &Pattern,
     own: Option<&Variable>,
@@ -186,7 +186,7 @@ pub(super) fn variable_name(
     Ok(name)
 }
 
-/// The name, unless one of a kind has it.
+/// The name, refused if another part of the kind has it.
 fn free<'n>(
     name: &str,
     kind: &str,

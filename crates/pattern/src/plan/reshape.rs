@@ -1,4 +1,4 @@
-//! Pivots darts and spreads panels: what the operations need that a wish leaves open is chosen.
+//! Pivots darts, and spreads and pleats panels: chooses the settings that a request leaves open.
 
 use super::impossible;
 use super::lookup;
@@ -10,25 +10,25 @@ use crate::{
     OperationKind, Panel, PanelId, PleatKind, PleatLine, Pressed, Role, Side, SpreadCut, Turned,
 };
 
-/// A dart that is to be pivoted.
+/// Request to pivot a dart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PivotWish {
     /// The dart: a dart or a pivot of the panel.
     pub dart: OperationId,
-    /// The line and the place on it where the new mouth opens.
+    /// The line and the position on it where the new mouth opens.
     pub mouth: (LineName, Mark),
-    /// Plain share of the dart that is moved, from 0 to 1.
+    /// Plain share of the dart that is moved to the new one, from 0 to 1.
     pub share: Number,
-    /// How far the points of both darts are set back (m).
+    /// Distance from the pivot point at which both darts then end (m).
     pub back: Number,
-    /// Which part is turned; nothing for that without the fold, else the shorter one.
+    /// The part that is turned; none chooses the part without the fold, else the shorter one.
     pub turned: Option<Turned>,
 }
 
-/// The edits that pivot a dart; and the operation. The new dart is pressed as a dart is at first.
+/// Plans to pivot a dart; returns the operation too. The new dart is pressed in the default direction.
 ///
 /// # Errors
-/// The panel is not there or cannot be drawn; the dart cannot be pivoted so: the words say why.
+/// The panel is missing or cannot be drawn; the dart cannot be pivoted so, for the reason in the message.
 pub fn pivot_dart(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -52,7 +52,7 @@ pub fn pivot_dart(
     add_operation(evaluation, panel, kind)
 }
 
-/// The part of a panel without its fold, else the shorter one; nothing if they cannot be told.
+/// The part of a panel without its fold, else the shorter one; none if the parts cannot be found.
 fn freer_part(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -106,24 +106,24 @@ fn freer_part(
     })
 }
 
-/// A panel that is to be spread.
+/// Request to spread a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpreadWish {
-    /// The line it is cut from and to.
+    /// The line that the cuts start and end on.
     pub line: LineName,
-    /// Where each cut starts and ends, and how far it opens there (m).
+    /// Start and end of each cut, and its opening at both (m).
     pub cuts: Vec<([Mark; 2], [Number; 2])>,
-    /// A place that stays where it is; nothing for the start of the fold, else of the line.
+    /// A place that stays fixed; none chooses the start of the fold, else of the line.
     pub held: Option<Mark>,
-    /// How the outline goes across openings.
+    /// Shape of the outline across openings.
     pub bridge: Bridge,
 }
 
-/// The edits that spread a panel; and the operation.
+/// Plans to spread a panel; returns the operation too.
 ///
 /// # Errors
-/// The panel is not there or cannot be drawn; there is no cut; it cannot be spread so: the words
-/// say why.
+/// The panel is missing or cannot be drawn; there is no cut; the panel cannot be spread so, for the reason in
+/// the message.
 pub fn spread_panel(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -160,28 +160,28 @@ pub fn spread_panel(
     add_operation(evaluation, panel, kind)
 }
 
-/// A panel that is to be pleated.
+/// Request to pleat a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PleatWish {
-    /// The line it is pleated from and to.
+    /// The line that the pleats start and end on.
     pub line: LineName,
-    /// Where each pleat starts and ends.
+    /// Start and end of each pleat.
     pub lines: Vec<[Mark; 2]>,
-    /// How deep a fold goes under (m).
+    /// Depth of a fold under the cloth (m).
     pub depth: Number,
-    /// How it is folded.
+    /// Kind of pleat.
     pub kind: PleatKind,
-    /// The side of its line a knife pleat is pressed to.
+    /// The side of its line to which a knife pleat is pressed.
     pub pressed: Side,
-    /// A place that stays where it is; nothing for the start of the fold, else of the line.
+    /// A place that stays fixed; none chooses the start of the fold, else of the line.
     pub held: Option<Mark>,
 }
 
-/// The edits that pleat a panel; and the operation. The pleats are trued.
+/// Plans to pleat a panel; returns the operation too. The pleats are trued.
 ///
 /// # Errors
-/// The panel is not there or cannot be drawn; there is no line; it cannot be pleated so: the words
-/// say why.
+/// The panel is missing or cannot be drawn; there is no line; the panel cannot be pleated so, for the reason
+/// in the message.
 pub fn pleat_panel(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -229,11 +229,11 @@ fn usual_held(evaluation: &Evaluation, panel: &Panel, line: LineName) -> Option<
     fold.or_else(first)
 }
 
-/// Places for cuts from one edge of a panel to another, evenly: the panel falls into `count + 1`
-/// parts of equal width along both edges.
+/// Marks for evenly spaced cuts from one edge of a panel to another: the cuts divide both edges into
+/// `count + 1` equal parts.
 ///
 /// # Errors
-/// The panel or an edge is not there; the edges are of different lines, or one and the same.
+/// The panel or an edge is missing; the edges are on different lines, or are the same.
 pub fn even_cuts(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -253,7 +253,7 @@ pub fn even_cuts(
         ends,
         share: share.into(),
     };
-    // Across a closed line edges run against each other.
+    // Opposite edges of a closed line run against each other.
     let cuts = (1..=count).map(|k| {
         let share = f64::from(k) / f64::from(count + 1);
         [between(start, share), between(end, 1.0 - share)]

@@ -11,17 +11,17 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What is left of an edge that a dart takes in is shorter (m).
+/// An edge shorter than this has been taken in by a dart (m).
 const MIN_LENGTH: f64 = 1e-9;
 
-/// An edge of a copy and half of a panel, as it comes in a chain.
+/// An edge on a copy and half of a panel, as an item of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SewnEdge {
     /// The panel.
     pub panel: PanelId,
-    /// Its copy, from 0.
+    /// Number of the copy, from 0.
     pub copy: u32,
-    /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
+    /// Half of a folded panel: 0 as drawn; each fold has one bit, set for the half beyond that fold.
     pub half: u8,
     /// The edge.
     pub edge: EdgeId,
@@ -31,14 +31,14 @@ pub struct SewnEdge {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SeamSide {
-    /// The first.
+    /// The first side.
     First,
-    /// The second.
+    /// The second side.
     Second,
 }
 
 impl SeamSide {
-    /// Its place among a seam's sides.
+    /// Index among the sides of a seam.
     pub(super) fn index(self) -> usize {
         match self {
             Self::First => 0,
@@ -47,14 +47,13 @@ impl SeamSide {
     }
 }
 
-/// The edits that sew two chains of edges together, start to start; and the seam. Edges of one
-/// panel follow each other along its line, either way; which way tells where the chain starts. A
-/// chain of single edges is walked so that right sides lie together. Without a name the seam is
-/// called after its edges.
+/// Plans to sew two chains of edges together, start to start; returns the seam too. Edges of one panel follow
+/// each other along its line in either direction, and this direction tells where the chain starts. A chain of
+/// single edges is walked so that right sides lie together. Without a name the seam is named after its edges.
 ///
 /// # Errors
-/// A chain is empty; an edge, copy or half is not there, follows not upon the one before it, or is
-/// sewn to itself; the name is taken or can be none.
+/// A chain is empty; an edge, copy or half is missing, does not follow the edge before it, or is sewn to
+/// itself; the name is taken or not allowed.
 pub fn sew(
     evaluation: &Evaluation,
     sides: [&[SewnEdge]; 2],
@@ -93,10 +92,10 @@ pub fn sew(
     Ok((put(evaluation, seam)?, id))
 }
 
-/// The edits that walk one side of a seam from its other end, so that its ends change places.
+/// Plans to walk one side of a seam from its other end, so that its ends change places.
 ///
 /// # Errors
-/// The seam is not there, or would have no place.
+/// The seam is missing, or would have no position.
 pub fn flip_side(
     evaluation: &Evaluation,
     seam: SeamId,
@@ -109,48 +108,50 @@ pub fn flip_side(
     put(evaluation, changed)
 }
 
-/// The edits that take a seam away; its edges stay.
+/// Plans to remove a seam; its edges stay.
 ///
 /// # Errors
-/// The seam is not there.
+/// The seam is missing.
 pub fn remove_seam(evaluation: &Evaluation, seam: SeamId) -> Result<Vec<Edit>, EditError> {
     lookup::seam(evaluation.pattern(), seam)?;
     Ok(vec![Edit::Remove(seam.into())])
 }
 
-/// An edge as it lies on its panel.
+/// An edge on the stage of its panel.
 struct RunEdge<'p> {
     id: EdgeId,
     name: &'p str,
-    /// Its corners there.
+    /// Corners of the edge on that stage.
     ends: [CornerName; 2],
 }
 
-/// Edges of one copy and half of a panel that follow each other along one line.
+/// A run: consecutive edges of one line, on one copy and half of a panel.
 struct Run<'p> {
     panel: &'p Panel,
     line: LineId,
     first: SewnEdge,
     edges: Vec<RunEdge<'p>>,
-    /// Whether they are walked against the line; nothing if one edge does not tell.
+    /// Whether the run is walked against the line; none if it is a single edge, which tells no direction.
     backwards: Option<bool>,
 }
 
 impl Run<'_> {
-    /// Whether its cloth lies mirrored on the table: an odd copy of a pair, or beyond a fold.
+    /// Whether the cloth of the run lies mirrored on the table: an odd copy of a pair, or a half beyond
+    /// a fold.
     fn is_mirrored(&self) -> bool {
         let odd_copy = self.panel.cut.mirrored && self.first.copy % 2 == 1;
         let beyond = self.first.half.count_ones() % 2 == 1;
         odd_copy != beyond
     }
 
-    /// Whether it is walked clockwise round its cloth, seen from the right side.
+    /// Whether the run is walked clockwise round its cloth, seen from the right side; none if it tells
+    /// no direction.
     fn is_clockwise(&self) -> Option<bool> {
         let backwards = self.backwards?;
         Some(backwards != self.is_mirrored())
     }
 
-    /// The span, walked clockwise or not unless the run itself tells how.
+    /// The span of the run, walked in the given direction unless the run itself tells one.
     fn span(&self, clockwise: bool) -> Span {
         let backwards = self.backwards.unwrap_or(clockwise != self.is_mirrored());
         let (first, last) = (&self.edges[0], &self.edges[self.edges.len() - 1]);
@@ -190,7 +191,7 @@ fn located(evaluation: &Evaluation, sewn: SewnEdge) -> Result<Located<'_>, EditE
     Ok(Located { panel, line, edge })
 }
 
-/// The runs of a chain.
+/// Divides a chain into runs.
 fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p>>, EditError> {
     let mut runs: Vec<Run<'p>> = Vec::new();
     for (k, &sewn) in chain.iter().enumerate() {
@@ -244,8 +245,8 @@ fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p
     }
 }
 
-/// Whether an edge goes on into another as the panel is finished, with nothing between them but darts:
-/// one may have taken in a whole edge that lay there.
+/// Whether one edge meets another on the finished panel, with nothing between them but darts: a dart may have
+/// taken in a whole edge there.
 fn is_closed_between(evaluation: &Evaluation, panel: &Panel, edges: [EdgeId; 2]) -> bool {
     let Some(stage) = evaluation.last_stage(panel) else {
         return false;
@@ -261,8 +262,8 @@ fn is_closed_between(evaluation: &Evaluation, panel: &Panel, edges: [EdgeId; 2])
     })
 }
 
-/// Whether each side is walked clockwise. Right sides together, two plies lie face to face, so one
-/// is walked counter-clockwise round its cloth where the other is walked clockwise.
+/// Whether each side is walked clockwise. With right sides together the two plies lie face to face, so one
+/// side is walked counter-clockwise round its cloth where the other is walked clockwise.
 fn orientations(runs: &[Vec<Run<'_>>; 2]) -> [bool; 2] {
     let told = |side: usize| runs[side].iter().find_map(Run::is_clockwise);
     match (told(0), told(1)) {
@@ -270,14 +271,14 @@ fn orientations(runs: &[Vec<Run<'_>>; 2]) -> [bool; 2] {
         (Some(one), None) => [one, !one],
         (None, Some(two)) => [!two, two],
         (None, None) => {
-            // The first edge is walked as it is drawn.
+            // The first edge is walked in its drawn direction.
             let one = runs[0].first().is_some_and(Run::is_mirrored);
             [one, !one]
         }
     }
 }
 
-/// A name after the edges that are sewn.
+/// A name made from the names of the sewn edges.
 fn proposed(runs: &[Vec<Run<'_>>; 2]) -> String {
     let [one, two] = [0, 1].map(|side| runs[side].first());
     let (Some(one), Some(two)) = (one, two) else {
@@ -295,7 +296,7 @@ fn proposed(runs: &[Vec<Run<'_>>; 2]) -> String {
     }
 }
 
-/// The words that all names begin with: `side` of `side_low`, `side_high` and `side`.
+/// The words with which all names begin: `side` for `side_low`, `side_high` and `side`.
 fn common_words<'n>(names: &[&'n str]) -> &'n str {
     let is_between = |c: char| c == '_' || c == ' ';
     let Some((first, others)) = names.split_first() else {
@@ -314,7 +315,7 @@ fn common_words<'n>(names: &[&'n str]) -> &'n str {
     end.map_or("", |end| &first[..end])
 }
 
-/// The edit that puts a seam, refused if it has no place.
+/// The edit that puts a seam, refused if the seam has no position.
 fn put(evaluation: &Evaluation, seam: Seam) -> Result<Vec<Edit>, EditError> {
     let (id, name) = (seam.id, seam.name.clone());
     let edits = vec![Edit::Put(Entity::Seam(Arc::new(seam)))];

@@ -3,9 +3,9 @@
 use crate::{Evaluation, Panel, PartId, Pattern, PointId, fields};
 use std::collections::BTreeSet;
 
-/// The points that parts are drawn by, each once, in the order of their sheets: a point itself; the
-/// ends, handles and knots of a curve; those of the curves an edge, line or panel follows, and of
-/// the apexes in it; all of a sheet. Parts that have no points of their own give none.
+/// The points that define the shapes of parts, each once, in the order of their sheets: for a point itself;
+/// for a curve its ends, handles and knots; for an edge, line or panel the points of the curves it follows,
+/// and of the apexes in it; for a sheet all its points. Parts without points give none.
 pub fn points_of(evaluation: &Evaluation, parts: &[PartId]) -> Vec<PointId> {
     let pattern = evaluation.pattern();
     let mut found: BTreeSet<PointId> = BTreeSet::new();
@@ -68,7 +68,7 @@ fn collect(pattern: &Pattern, part: PartId, found: &mut BTreeSet<PointId>) {
     }
 }
 
-/// Points inside a panel that its operations end at.
+/// Points inside a panel that its operations use, such as the apexes of darts.
 fn apexes(panel: &Panel) -> Vec<PointId> {
     let kinds = panel.operations.iter().map(|operation| &operation.kind);
     kinds.flat_map(|kind| fields::points(kind)).collect()

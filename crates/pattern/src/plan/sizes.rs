@@ -1,4 +1,4 @@
-//! Sizes and their measurements, variables, and what a pattern has besides its parts.
+//! Sizes with their measurements, variables, and the name, unit and base size of a pattern.
 
 use super::bind::bound;
 use super::lookup::after;
@@ -13,11 +13,11 @@ use crate::{
 use std::sync::Arc;
 use toile_measure::{Measurements, Origin};
 
-/// The edits that add a size with measurements; and the size. Without a name it is called `size`,
+/// Plans to add a size with measurements; returns the size too. Without a name it is called `size`,
 /// `size 2`, ...
 ///
 /// # Errors
-/// The name is taken or can be none.
+/// The name is taken or not allowed.
 pub fn add_size(
     evaluation: &Evaluation,
     name: Option<&str>,
@@ -39,20 +39,20 @@ pub fn add_size(
     Ok((vec![Edit::Put(Entity::Size(size))], id))
 }
 
-/// The edits that take a size away; values that other parts have for it wait for its return. If it
-/// was the base size, the first of the others is.
+/// Plans to remove a size; the values of other parts for it wait for its return. If it was the base size, the
+/// first of the others becomes the base size.
 ///
 /// # Errors
-/// The size is not there.
+/// The size is missing.
 pub fn remove_size(evaluation: &Evaluation, size: SizeId) -> Result<Vec<Edit>, EditError> {
     remove::remove_parts(evaluation, &[size.into()])
 }
 
-/// The edits that set a measurement of a size (m) or (rad), or take it out of its table.
+/// Plans to set a measurement of a size (m) or (rad), or to remove it from the table of the size.
 ///
 /// # Errors
-/// The size is not there, or has no such measurement to take out; the name is no measurement's;
-/// the value is not finite.
+/// The size is missing, or has no such measurement to remove; the name is not that of a measurement; the
+/// value is not finite.
 pub fn set_measurement(
     evaluation: &Evaluation,
     size: SizeId,
@@ -82,11 +82,11 @@ pub fn set_measurement(
     Ok(vec![Edit::Put(Entity::Size(Arc::new(changed)))])
 }
 
-/// The edits that add a variable; and the variable. Without a name it is called `v1`, `v2`, ...
-/// Formulas that speak of a variable of that name, and found none, mean it from now on.
+/// Plans to add a variable; returns the variable too. Without a name it is called `v1`, `v2`, ... Formulas
+/// that name a variable with this name, and found none, refer to it from now on.
 ///
 /// # Errors
-/// The name is taken, that of a measurement or can be none; the number has no value.
+/// The name is taken, is the name of a measurement or is not allowed; the number has no value.
 pub fn add_variable(
     evaluation: &Evaluation,
     name: Option<&str>,
@@ -115,10 +115,10 @@ fn head(evaluation: &Evaluation) -> Head {
     }
 }
 
-/// The edits that make a size the base size, or the first one if nothing is chosen.
+/// Plans to make a size the base size; without a choice the first size is used.
 ///
 /// # Errors
-/// The size is not there.
+/// The size is missing.
 pub fn set_base_size(
     evaluation: &Evaluation,
     size: Option<SizeId>,
@@ -135,7 +135,7 @@ pub fn set_base_size(
     }))])
 }
 
-/// The edits that show lengths in another unit; no length changes.
+/// Plans to show lengths in another unit; no length changes.
 pub fn set_unit(evaluation: &Evaluation, unit: DisplayUnit) -> Vec<Edit> {
     vec![Edit::Put(Entity::Head(Head {
         unit,
@@ -143,10 +143,10 @@ pub fn set_unit(evaluation: &Evaluation, unit: DisplayUnit) -> Vec<Edit> {
     }))]
 }
 
-/// The edits that give the pattern another name.
+/// Plans to rename the pattern.
 ///
 /// # Errors
-/// It is none that a part may have.
+/// The name is not allowed.
 pub fn rename_pattern(evaluation: &Evaluation, name: &str) -> Result<Vec<Edit>, EditError> {
     Ok(vec![Edit::Put(Entity::Head(Head {
         name: wished(name, |_| None)?,

@@ -1,4 +1,4 @@
-//! Splits panels in two: the sides become panels of their own, and seams go over to them.
+//! Splits panels in two: the sides become panels of their own, which take over the seams.
 
 use super::impossible;
 use super::lookup::{self, after};
@@ -13,12 +13,12 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// A panel that is to be split.
+/// Request to split a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplitWish {
-    /// The line it is split at.
+    /// The line that the cut starts and ends on.
     pub line: LineName,
-    /// The curve, from the line to the line.
+    /// The curve of the cut, from the line to the line.
     pub curve: CurveId,
     /// Whether both sides are sewn together again.
     pub joined: Joined,
@@ -27,28 +27,28 @@ pub struct SplitWish {
 /// Whether both sides of a split are sewn together again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Joined {
-    /// By seams along the cut, one a copy and half.
+    /// Sewn by seams along the cut, one for each copy and half.
     #[default]
     Sewn,
-    /// Not yet.
+    /// Not sewn.
     Apart,
 }
 
-/// What splitting a panel gives.
+/// Parts made by splitting a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplitPanel {
-    /// The operation.
+    /// The split operation.
     pub operation: OperationId,
     /// The panels left and right of the curve.
     pub sides: [PanelId; 2],
 }
 
-/// The edits that split a panel: its sides are panels of its fabric, cut as often as it was and
-/// folded where it was; seams sew the sides in its place.
+/// Plans to split a panel: its sides are panels of its fabric, with its number of copies and its folds; its
+/// seams now sew the sides.
 ///
 /// # Errors
-/// The panel is not there or cannot be drawn; it cannot be split so; a seam goes along it in more
-/// than two stretches: the words say why.
+/// The panel is missing or cannot be drawn; it cannot be split so, or a seam follows it in more than two
+/// stretches: for the reason in the message.
 pub fn split_panel(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -122,7 +122,7 @@ fn cut_corner(by: OperationId, index: u16) -> CornerName {
     }
 }
 
-/// A side with the folds of its panel: of a fold that the cut divides, the stretch on that side.
+/// A side with the folds of its panel; of a fold that the cut divides, it gets the stretch on its side.
 fn with_folds(
     split: &Evaluation,
     (owner, by): (&Panel, OperationId),
@@ -163,16 +163,16 @@ fn with_folds(
     Ok(side)
 }
 
-/// Takes seams from a panel over to its sides.
+/// Transfers seams from a panel to its sides.
 struct Mover<'m> {
-    /// With the sides.
+    /// Evaluation of the pattern with the sides.
     evaluation: &'m Evaluation,
     split: &'m SplitPanel,
     panel: &'m Panel,
 }
 
 impl Mover<'_> {
-    /// A seam as it sews the sides; nothing if it does not sew the panel.
+    /// A seam transferred to the sides; none if it does not sew the panel.
     fn seam(&self, seam: &Seam) -> Result<Option<Seam>, EditError> {
         let mut changed = seam.clone();
         let mut is_moved = false;
@@ -200,7 +200,7 @@ impl Mover<'_> {
         Ok(is_moved.then_some(changed))
     }
 
-    /// The spans of the sides that lie where a span of the panel does.
+    /// The spans of the sides that together cover a span of the panel.
     fn span(&self, span: &Span) -> Option<Vec<Span>> {
         let whole = self.length(self.panel.id, span)?;
         let same = |length: f64| (length - whole).abs() <= 1e-8;
@@ -233,7 +233,7 @@ impl Mover<'_> {
         None
     }
 
-    /// Length of a span on its panel before that is folded (m); nothing if it has no place.
+    /// Length of a span on its panel before unfolding (m); none if it has no position.
     fn length(&self, panel: PanelId, span: &Span) -> Option<f64> {
         let pattern = self.evaluation.pattern();
         let owner = pattern.panel(panel)?;
@@ -257,7 +257,7 @@ impl Mover<'_> {
         Some(stage.stretch_length(0, &stretch))
     }
 
-    /// The seams along the cut, one a copy and half.
+    /// The seams along the cut, one for each copy and half.
     fn joined(&self, line: LineName, ids: &mut Ids) -> Vec<Edit> {
         let pattern = self.evaluation.pattern();
         let [left, right] = self.split.sides;

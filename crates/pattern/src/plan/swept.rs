@@ -1,13 +1,13 @@
-//! The angle an arc sweeps, by which it is shown and typed. The document keeps its bulge, the tangent of a
-//! quarter of the angle; a formula stays one.
+//! Swept angle of an arc, which is shown and typed in place of the bulge. The document stores the bulge, the
+//! tangent of a quarter of the angle; formulas are kept as formulas.
 
 use super::impossible;
 use super::typed::number_text;
 use crate::{EditError, Evaluation, Formula, Number, Want};
 
-/// What stands before and after the angle in the formula of a bulge.
+/// Text before and after the angle in the formula of a bulge.
 const AROUND: [&str; 2] = ["tan((", ") / 4)"];
-/// The same of a bulge in the formula of an angle.
+/// Text before and after the bulge in the formula of an angle.
 const AROUND_BULGE: [&str; 2] = ["4 * atan2(", ", 1)"];
 
 /// The bulge of an arc that sweeps an angle (rad), positive counter-clockwise.
@@ -47,7 +47,7 @@ pub fn angle_of(evaluation: &Evaluation, bulge: &Number) -> Number {
     formula(evaluation, &text).unwrap_or_else(|_| bulge.clone())
 }
 
-/// What a text has between a beginning and an end that belong together.
+/// The inner text between a prefix and a suffix whose parentheses match each other.
 fn between<'t>(text: &'t str, [start, end]: [&str; 2]) -> Option<&'t str> {
     let inner = text.strip_prefix(start)?.strip_suffix(end)?;
     let mut depth = 0_i32;
@@ -90,7 +90,7 @@ mod tests {
             assert!((value(&again) - value(&angle)).abs() < 1e-12);
             assert_eq!(again.as_formula(), angle.as_formula());
         }
-        // Two tangents multiplied are no tangent of one angle.
+        // A product of two tangents is not the tangent of a single angle.
         let product = read("tan((1) / 4) * tan((2) / 4)");
         let text = number_text(&evaluation, &angle_of(&evaluation, &product), Want::Angle);
         assert_eq!(text, "4 * atan2(tan((1) / 4) * tan((2) / 4), 1)");

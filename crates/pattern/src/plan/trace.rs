@@ -16,32 +16,32 @@ use toile_geometry::Vec2;
 /// Seam allowance of the first panel of a pattern (m): what most home patterns have.
 const ALLOWANCE: f64 = 0.01;
 
-/// What a new panel is to be called and cut from. Its seam allowance is that of the panel before it
-/// in the pattern, 1 cm if it is the first.
+/// Name and fabric of a new panel. It takes the seam allowance of the panel before it in the pattern, 1 cm if
+/// it is the first.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct NewPanel<'a> {
-    /// Its name; nothing proposes that of its sheet.
+    /// Name of the panel; none proposes the name of its sheet.
     pub name: Option<&'a str>,
-    /// Its fabric; nothing is the first of the pattern, or poplin if it has none.
+    /// Fabric of the panel; none takes the first fabric of the pattern, or poplin if it has no fabric.
     pub fabric: Option<FabricId>,
 }
 
-/// What becomes of closed lines inside a face.
+/// Treatment of closed lines inside a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Holes {
-    /// They are cut out.
+    /// The lines are cut out as holes.
     #[default]
     Cut,
-    /// They are left out.
+    /// The lines are ignored.
     Ignored,
 }
 
-/// The edits that trace a panel round a closed chain of a sheet; and the panel. Its outline runs
-/// counter-clockwise whatever the chain does; its edges are called after their curves.
+/// Plans to trace a panel round a closed chain of a sheet; returns the panel too. The outline runs
+/// counter-clockwise whatever the direction of the chain; edges are named after their curves.
 ///
 /// # Errors
-/// The chain is not there, is open, follows two curves at once or encloses nothing; the name is
-/// taken or can be none; the fabric is not there.
+/// The chain is missing, is open, follows two curves at once or encloses nothing; the name is taken or not
+/// allowed; the fabric is missing.
 pub fn trace_panel(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -53,12 +53,12 @@ pub fn trace_panel(
     traced(evaluation, sheet, &[outline], new)
 }
 
-/// The edits that trace the panel round a place of a sheet (m): the smallest closed line of curves
-/// about it, cut at the points that lie on them; and the panel.
+/// Plans to trace the panel round a point of a sheet (m): the smallest closed line of curves round it, cut at
+/// the points that lie on them; returns the panel too.
 ///
 /// # Errors
-/// Nothing goes round the place, or it lies on a curve; two curves cross there where no point is;
-/// the name is taken or can be none; the fabric is not there.
+/// No closed line goes round the point, or the point lies on a curve; two curves cross there without a point
+/// at the crossing; the name is taken or not allowed; the fabric is missing.
 pub fn trace_face(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -75,14 +75,14 @@ pub fn trace_face(
     traced(evaluation, sheet, &lines, new)
 }
 
-/// The edits that add a hole or an internal line to a panel, along a chain of its sheet; and the
-/// line. Holes run clockwise whatever the chain does. Without a name it is called by what it is.
-/// A chain of a sheet that lies on a stage of the panel comes in right after that stage, by an
-/// operation that inserts the sheet.
+/// Plans to add a hole or an internal line to a panel, along a chain of its sheet; returns the line too.
+/// Holes run clockwise whatever the direction of the chain. Without a name the line is named after its kind.
+/// A chain of a sheet that lies on a stage of the panel is inserted right after that stage, by an operation
+/// that inserts the sheet.
 ///
 /// # Errors
-/// The chain is not there or follows two curves at once; a hole is open or encloses nothing; an
-/// outline is asked for; the name is taken or can be none.
+/// The chain is missing or follows two curves at once; a hole is open or encloses nothing; the kind is an
+/// outline; the name is taken or not allowed.
 pub fn add_line(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -117,11 +117,11 @@ pub fn add_line(
     Ok((edits, id))
 }
 
-/// The edits that take a hole or an internal line off a panel; curves and points stay on the sheet.
-/// What is marked on the line waits for its return.
+/// Plans to remove a hole or an internal line from a panel; curves and points stay on the sheet. Marks on the
+/// line wait for its return.
 ///
 /// # Errors
-/// The line is not there, or is the outline.
+/// The line is missing, or is the outline.
 pub fn remove_line(
     evaluation: &Evaluation,
     (panel, line): (PanelId, LineId),
@@ -137,7 +137,7 @@ pub fn remove_line(
     Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
 }
 
-/// A panel with an outline and holes.
+/// Plans a panel with an outline and holes.
 fn traced(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -179,7 +179,7 @@ fn panel_name(
     }
 }
 
-/// The fabric a panel is cut from, and what adds it if there is none yet.
+/// The fabric of a new panel, with the edits that add it if the pattern has none yet.
 fn fabric(
     pattern: &Pattern,
     wish: Option<FabricId>,
@@ -226,7 +226,7 @@ fn line(
     })
 }
 
-/// Refuses edits after which a panel has faults it has not now.
+/// Refuses edits that give a panel new faults.
 fn refuse_undrawn(
     evaluation: &Evaluation,
     edits: &[Edit],

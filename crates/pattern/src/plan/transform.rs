@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// A point this near to where it should be is there (m).
+/// A point this near to its goal counts as being there (m).
 const THERE: f64 = 1e-9;
 
 /// An affine map of the plane.
@@ -29,7 +29,7 @@ impl Affine {
         }
     }
 
-    /// Moves by a vector (m).
+    /// Translation by a vector (m).
     pub fn translation(by: Vec2) -> Self {
         Self {
             axes: [Vec2::x(), Vec2::y()],
@@ -37,25 +37,25 @@ impl Affine {
         }
     }
 
-    /// Turns about a place (m) by an angle (rad), counter-clockwise.
+    /// Rotation about a point (m) by an angle (rad), counter-clockwise.
     pub fn rotation(about: Vec2, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self::about(about, [Vec2::new(cos, sin), Vec2::new(-sin, cos)])
     }
 
-    /// Mirrors in the line through two places (m). Its numbers are not finite if they are one.
+    /// Reflection in the line through two points (m). Not finite if the points are the same.
     pub fn reflection([a, b]: [Vec2; 2]) -> Self {
         let unit = (b - a) / (b - a).norm();
         let flip = |v: Vec2| unit * (2.0 * v.dot(&unit)) - v;
         Self::about(a, [flip(Vec2::x()), flip(Vec2::y())])
     }
 
-    /// Scales about a place (m), along x and along y by plain factors.
+    /// Scaling about a point (m), along x and along y by plain factors.
     pub fn scaling(about: Vec2, [x, y]: [f64; 2]) -> Self {
         Self::about(about, [Vec2::x() * x, Vec2::y() * y])
     }
 
-    /// First another map, then this one.
+    /// The composition: first another map, then this one.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         let turned = |v: Vec2| self.axes[0] * v.x + self.axes[1] * v.y;
@@ -65,7 +65,7 @@ impl Affine {
         }
     }
 
-    /// The place whose image is a place (m); its numbers are not finite if the map flattens the plane.
+    /// The point whose image is a given point (m); not finite if the map flattens the plane.
     pub fn source(&self, image: Vec2) -> Vec2 {
         let [x, y] = self.axes;
         let way = image - self.origin;
@@ -73,27 +73,27 @@ impl Affine {
         Vec2::new(way.perp(&y), x.perp(&way)) / area
     }
 
-    /// The image of a place (m).
+    /// The image of a point (m).
     pub fn apply(&self, place: Vec2) -> Vec2 {
         self.origin + self.axes[0] * place.x + self.axes[1] * place.y
     }
 }
 
-/// What moving many points comes to.
+/// Result of moving many points.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Moved {
     /// The edits.
     pub edits: Vec<Edit>,
-    /// Points that do not come to where they should: they follow from others, or are held to a
-    /// line or a curve and go as near as that lets them.
+    /// Points that do not reach their goals: they are determined by other points, or are held to a line or a
+    /// curve and move as near as it allows.
     pub held: Vec<PointId>,
 }
 
-/// The edits that map points by an affine map. A point that comes to its place because the points
-/// it is constructed from are moved too is left as it is.
+/// Plans to map points by an affine map. A point that reaches its goal because the points it is constructed
+/// from are moved too is left as it is.
 ///
 /// # Errors
-/// A point is not there or cannot be drawn; the map is not finite; no point can move.
+/// A point is missing or cannot be drawn; the map is not finite; no point can move.
 pub fn transform_points(
     evaluation: &Evaluation,
     points: &[PointId],
@@ -107,10 +107,10 @@ pub fn transform_points(
     move_points(evaluation, &goals?)
 }
 
-/// The edits that move points, each to a place of its own (m); see [`transform_points`].
+/// Plans to move points, each to its own goal (m); see [`transform_points`].
 ///
 /// # Errors
-/// A point is not there or cannot be drawn; a place is not finite; no point can move.
+/// A point is missing or cannot be drawn; a goal is not finite; no point can move.
 pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result<Moved, EditError> {
     let mut ordered: Vec<(Option<u32>, PointId, Vec2)> = Vec::new();
     for &(id, goal) in goals {
@@ -118,7 +118,7 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
         lookup::place(evaluation, id)?;
         ordered.push((evaluation.rank(Node::Point(id)), id, goal));
     }
-    // Points come after those they are constructed from.
+    // Points are sorted after those they are constructed from.
     ordered.sort_by_key(|(rank, id, _)| (*rank, *id));
     let points: Vec<PointId> = goals.iter().map(|goal| goal.0).collect();
     let mut pattern = evaluation.pattern().clone();
@@ -127,7 +127,7 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     let mut first_refusal = None;
     let mut pending = ordered;
     while !pending.is_empty() {
-        // Points that follow from others of these are moved after them.
+        // Points that depend on others of these are moved after them.
         let mut dependants = HashSet::new();
         let mut later = Vec::new();
         let mut edits = Vec::new();
@@ -162,7 +162,7 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     }
 }
 
-/// The edit that takes one point to its goal, or nothing if it is there.
+/// The edit that moves one point to its goal; none if it is there.
 fn step(work: &Evaluation, id: PointId, goal: Vec2) -> Result<Option<Edit>, EditError> {
     let (sheet, found) = lookup::point(work.pattern(), id)?;
     let now = lookup::place(work, id)?;

@@ -1,20 +1,20 @@
-//! Numbers as they are typed and shown: formulas, and bare numbers in the unit of the document.
+//! Numbers as typed and shown: formulas, and numbers without unit in the unit of the document.
 
 use super::bare::with_units;
 use super::impossible;
 use crate::formula::Operation;
 use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
 
-/// Decimals of a value, in its unit: less than any pattern needs, and few enough that rounding in the last
-/// bits of a value does not come to light.
+/// Decimals of a value, in its unit: finer than any pattern needs, and few enough that rounding errors in the
+/// last bits do not show.
 const DECIMALS: usize = 9;
-/// Most decimals of a value that someone typed, in its unit: they are shown as they were typed.
+/// Most decimals of a value that someone typed, in its unit: they are shown as typed.
 const TYPED: usize = 6;
-/// How far a value may be from its typed decimals (of its unit).
+/// Tolerance of a value from its typed decimals (of its unit).
 const SAME: f64 = 1e-9;
 
 impl DisplayUnit {
-    /// Its length (m).
+    /// Length of the unit (m).
     pub fn metres(self) -> f64 {
         match self {
             Self::Millimetre => 0.001,
@@ -24,7 +24,7 @@ impl DisplayUnit {
         }
     }
 
-    /// Its sign, as formulas write it.
+    /// Symbol of the unit, as formulas write it.
     pub fn sign(self) -> &'static str {
         match self {
             Self::Millimetre => "mm",
@@ -35,13 +35,13 @@ impl DisplayUnit {
     }
 }
 
-/// The number that a text means where something is wanted. Numbers without a unit mean the
-/// document's unit where a length is wanted, and degrees where an angle is; they become values. So
-/// does a single number with a unit; everything else stays a formula, in which a bare number beside
-/// a length or an angle gets its unit.
+/// The number that a text stands for where a quantity is wanted. A number without unit is in the document's
+/// unit if a length is wanted, and in degrees if an angle is; it becomes a value, as does a single number
+/// with a unit. Everything else stays a formula, in which a number without unit beside a length or an angle
+/// gets a unit.
 ///
 /// # Errors
-/// The text is no formula; it names what is not there.
+/// The text is not a formula; it names a part that is missing.
 pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Number, EditError> {
     let text = text.trim();
     let formula = Formula::parse(text, evaluation.names()).map_err(|error| {
@@ -81,7 +81,7 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
             .collect::<Vec<_>>()[..],
         [Operation::Constant(_)] | [Operation::Constant(_), Operation::Negate]
     );
-    // What has a unit stays a formula where anything may stand, since a value there is a plain number.
+    // In a field of any quantity a number with a unit stays a formula, since a value there is a plain number.
     let want = match want {
         Want::Any if !is_bare(text) => return Ok(number),
         Want::Any => Want::Plain,
@@ -91,7 +91,7 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
     Ok(value.map_or(number, Number::Value))
 }
 
-/// A length in the document's unit (m). Digits that stand alone are read with the unit as their
+/// A length in the document's unit, in metres (m). Digits that stand alone are read with the unit as their
 /// exponent, so that 12.3 cm is 0.123 m to the bit, as in files.
 fn in_metres(text: &str, value: f64, unit: DisplayUnit) -> f64 {
     let exponent = match unit {
@@ -104,7 +104,7 @@ fn in_metres(text: &str, value: f64, unit: DisplayUnit) -> f64 {
     shifted.unwrap_or(value * unit.metres())
 }
 
-/// Whether a text has neither units nor functions: its only letters are those of exponents.
+/// Whether a text has neither units nor functions: exponents are its only letters.
 fn is_bare(text: &str) -> bool {
     let mut before = ' ';
     text.chars().all(|c| {
@@ -114,7 +114,7 @@ fn is_bare(text: &str) -> bool {
     })
 }
 
-/// Refuses names of parts that are not there. Words may be measurements that some table has.
+/// Refuses names of missing parts. Words are accepted: they may be measurements of some table.
 fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
     let mut unknown = formula.tokens().iter().filter_map(|token| match token {
         Token::Part(PartReference::Unknown(text)) => Some(text),
@@ -129,19 +129,19 @@ fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
     }
 }
 
-/// A number as it may be typed again, and as formulas that are made of it have it: a formula with the
-/// names of the day, a value with its unit; that of the size on show where sizes have their own.
+/// The text of a number so that it can be typed again and used in formulas: a formula with current names, a
+/// value with its unit, the value for the current size if sizes have their own.
 pub fn number_text(evaluation: &Evaluation, number: &Number, want: Want) -> String {
     text(evaluation, (number, want), exact)
 }
 
-/// A number as it is shown: as [`number_text`], but of a value that was computed no more than a hundredth
-/// of a millimetre, or of a degree.
+/// The text of a number for display: as [`number_text`], but a computed value is rounded to a hundredth of a
+/// millimetre, or of a degree.
 pub fn number_shown(evaluation: &Evaluation, number: &Number, want: Want) -> String {
     text(evaluation, (number, want), shown)
 }
 
-/// Writes a value in its unit, of which so many decimals are needed.
+/// Function that writes a value in its unit, given the number of decimals needed.
 type Digits = fn(f64, usize) -> String;
 
 fn exact(value: f64, _: usize) -> String {
@@ -163,7 +163,7 @@ fn text(evaluation: &Evaluation, (number, want): (&Number, Want), digits: Digits
     match number {
         Number::Value(value) => value_text(evaluation, (*value, want), digits),
         Number::Formula(formula) => formula.text(names),
-        // Typed again, it is a formula: nothing of it is lost.
+        // An exact text: typed again it gives the same formula and adjustment.
         Number::Adjusted { formula, by } => {
             let sign = if *by < 0.0 { '-' } else { '+' };
             let by = value_text(evaluation, (by.abs(), want), exact);

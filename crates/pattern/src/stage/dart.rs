@@ -4,43 +4,42 @@ use super::{NOTHING, PlaceError, Placed, Spot, Stage, StageDart, StageEdge, Stag
 use crate::{EdgeCorner, LineKind, LineName, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
-/// A dart whose numbers are known.
+/// A dart with its numbers evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DartMouth {
     pub by: OperationId,
     pub line: LineName,
-    /// Middle of the mouth.
+    /// Position of the middle of the mouth.
     pub middle: Spot,
     /// Width of the mouth along the line (m).
     pub intake: f64,
     pub apex: DartApex,
     pub pressed: Pressed,
-    /// Whether the edge runs on smoothly across its mouth.
+    /// Whether the edge runs on smoothly across the mouth.
     pub trued: bool,
 }
 
-/// Where a dart ends.
+/// The end of a dart inside the panel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum DartApex {
-    /// So far from the middle of the mouth, square to it (m).
+    /// At this distance from the middle of the mouth, square to it (m).
     Depth(f64),
-    /// At a place (m).
+    /// At a point (m).
     Point(Vec2),
 }
 
-/// Why a dart cannot be taken out.
+/// Reason why a dart cannot be taken out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum DartError {
-    /// Its line is not there.
+    /// The line is missing.
     Place(PlaceError),
-    /// It is narrower than nothing, or does not fit on its edge.
+    /// The width is negative, or the dart does not fit on its edge.
     TooWide,
     /// Another dart is there.
     Overlaps,
 }
 
-/// Takes a dart out of a stage. One without a width takes nothing out: both ends of its mouth are
-/// one corner.
+/// Takes a dart out of a stage. A dart of width 0 takes nothing out: both ends of its mouth are one corner.
 pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartError> {
     let turn = stage.turn();
     let mut result = stage.clone();
@@ -58,7 +57,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     let pieces: Vec<usize> = (0..line.edges.len())
         .filter(|&k| line.edges[k].name == dart.middle.edge)
         .collect();
-    // The named edge's length, mouths of other darts included.
+    // Length of the named edge, mouths of other darts included.
     let covered = |k: &usize| (line.edges[*k].to - line.edges[*k].from).abs();
     let has_middle = |k: &usize| {
         let edge = &line.edges[*k];
@@ -152,7 +151,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     Ok(result)
 }
 
-/// Puts both ends of a mouth that takes nothing in at one place of a line (m).
+/// Puts both ends of a mouth of width 0 at one position on a line (m).
 pub(super) fn shut_mouth(line: &mut StageLine, by: OperationId, along: f64) {
     let at = line.divide(along);
     for end in 0..2 {
@@ -160,7 +159,7 @@ pub(super) fn shut_mouth(line: &mut StageLine, by: OperationId, along: f64) {
     }
 }
 
-/// An end of a dart's mouth.
+/// Name of an end of a dart's mouth.
 pub(super) fn mouth(by: OperationId, index: u16) -> crate::CornerName {
     Name::Made {
         by,

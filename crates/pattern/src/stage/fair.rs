@@ -1,9 +1,9 @@
-//! The row of an edge's stretches between darts, redrawn so that it is smooth once the darts are
-//! closed: straight where it can be, else with the least bending added.
+//! The stretches of an edge between darts, redrawn so that the edge is smooth once the darts are closed:
+//! straight if possible, else with the least additional bending.
 //!
-//! With w the displacement square to the edge as drawn, along its length s, the bending that is
-//! added is the integral of w''(s)^2. It is least for a cubic spline that is free at the darts but
-//! for the turn which takes the kink away (Holladay 1957).
+//! With w the displacement square to the edge as drawn, along its length s, the additional bending is the
+//! integral of w''(s)^2. It is least for a cubic spline that is free at the darts except for the turn which
+//! removes the kink (Holladay 1957).
 
 use super::motion::{Motion, turned};
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -12,47 +12,47 @@ use toile_geometry::{Curve, Vec2};
 /// A dart between two stretches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closing {
-    /// Its point (m).
+    /// Apex of the dart (m).
     pub apex: Vec2,
-    /// Ends of its legs: where the stretch before it ends and the one after it starts (m).
+    /// Ends of the legs: the end of the stretch before the dart and the start of the stretch after it (m).
     pub ends: [Vec2; 2],
 }
 
 /// Stretches of an edge, and the darts between them.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
-    /// Curves of each stretch, one more than darts.
+    /// Curves of each stretch; there is one stretch more than darts.
     pub stretches: Vec<Vec<Curve>>,
     pub closings: Vec<Closing>,
-    /// Whether the directions at its start and its end stay.
+    /// Whether the directions at the start and at the end of the row stay fixed.
     pub keeps: [bool; 2],
 }
 
 /// A row redrawn.
 #[derive(Clone, Debug)]
 pub(super) struct Redrawn {
-    /// A curve for each of the row's.
+    /// New curves, one for each curve of the row.
     pub stretches: Vec<Vec<Curve>>,
     /// Ends of each dart's legs (m).
     pub ends: Vec<[Vec2; 2]>,
 }
 
-/// Why a row is not redrawn.
+/// Reason why a row is not redrawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NotTrued {
-    /// No line leads across its darts.
+    /// No line leads across the darts.
     NoLine,
     /// Legs would become longer or shorter than [`MAX_GROWTH`] allows.
     TooFar,
 }
 
-/// A leg may become so many times as long, or as short. Where a dart's point lies near its edge the
-/// ends of its legs would run far along them, and the line that is smooth across it would have little
-/// to do with the edge as drawn.
+/// Greatest factor by which a leg may become longer or shorter (1). If the apex of a dart lies near its edge,
+/// the ends of its legs would move far along them, and the smooth line across the dart would have little in
+/// common with the edge as drawn.
 pub(crate) const MAX_GROWTH: f64 = 2.0;
-/// Angles and lengths that differ by less are the same (rad), (m).
+/// Angles and lengths that differ by less than this count as the same (rad), (m).
 const SAME: f64 = 1e-9;
-/// A handle is at least this share of the chord where the direction counts.
+/// Least length of a handle, as a share of the chord, at an end that is turned (1).
 const SHORTEST_HANDLE: f64 = 0.05;
 
 impl Closing {
@@ -62,12 +62,12 @@ impl Closing {
         Some((leg.try_normalize(1e-12)?, leg.norm()))
     }
 
-    /// The angle that lays the second leg on the first (rad).
+    /// The angle by which the second leg is turned onto the first (rad).
     fn angle(&self) -> Option<f64> {
         Some(between(self.leg(1)?.0, self.leg(0)?.0))
     }
 
-    /// By how much the edge turns where the dart is closed (rad).
+    /// Angle by which the edge turns at the closed dart (rad).
     pub fn kink(&self, before: &[Curve], after: &[Curve]) -> Option<f64> {
         Some(between(
             arriving(before)?,
@@ -77,7 +77,7 @@ impl Closing {
 }
 
 impl Row {
-    /// Whether it is smooth as it is.
+    /// Whether the row is smooth as drawn.
     pub fn is_smooth(&self) -> bool {
         self.closings.iter().enumerate().all(|(k, closing)| {
             let kink = closing.kink(&self.stretches[k], &self.stretches[k + 1]);
@@ -96,10 +96,10 @@ impl Row {
         })
     }
 
-    /// The row redrawn.
+    /// Redraws the row.
     ///
     /// # Errors
-    /// No line leads across its darts, or only one far from the edge as drawn.
+    /// No line leads across the darts, or only one far from the edge as drawn.
     pub fn redrawn(&self) -> Result<Redrawn, NotTrued> {
         let straight = match self.is_straight() && self.keeps == [false; 2] {
             true => self.straight(),
@@ -118,7 +118,7 @@ impl Row {
         }
     }
 
-    /// Along the straight line from one end to the other once all darts are closed.
+    /// Redraws the row along the straight line between its ends with all darts closed.
     fn straight(&self) -> Option<Redrawn> {
         let mut motion = Motion::NONE;
         let mut folds = Vec::with_capacity(self.closings.len());
@@ -163,7 +163,8 @@ impl Row {
         })
     }
 
-    /// With the least bending added. A straight row turns freely where its direction need not stay.
+    /// Redraws the row with the least additional bending. The end of a straight row turns freely unless its
+    /// direction is fixed.
     fn bent(&self) -> Option<Redrawn> {
         let is_straight = self.is_straight();
         let frees = self.keeps.map(|keeps| is_straight && !keeps);
@@ -196,14 +197,14 @@ impl Row {
 }
 
 impl Closing {
-    /// Both ends at a distance from the apex (m).
+    /// Both ends of the legs at a distance from the apex (m).
     fn at(&self, radius: f64) -> Option<[Vec2; 2]> {
         let [a, b] = [self.leg(0)?.0, self.leg(1)?.0];
         Some([a, b].map(|out| self.apex + out * radius))
     }
 }
 
-/// A number that depends on the unknowns: a constant, and some of them with their factors.
+/// A number that is an affine function of the unknowns: a constant, and factors of some unknowns.
 #[derive(Clone, Debug, Default)]
 struct Affine {
     constant: f64,
@@ -224,7 +225,7 @@ impl Affine {
     }
 }
 
-/// An end of a stretch: how far it is displaced (m) and turned (rad).
+/// An end of a stretch: its displacement (m) and its turn (rad).
 #[derive(Clone, Debug, Default)]
 struct Knot {
     height: Affine,
@@ -237,8 +238,8 @@ impl Knot {
     }
 }
 
-/// The bending of a row, by its unknowns: length of the legs and turn of the edge at each dart, then
-/// the turns of free ends.
+/// The bending of a row as a function of its unknowns: length of the legs and turn of the edge at each dart,
+/// then the turns of free ends.
 struct Beam {
     knots: Vec<[Knot; 2]>,
     lengths: Vec<f64>,
@@ -283,12 +284,12 @@ impl Beam {
         })
     }
 
-    /// The unknowns of least bending.
+    /// Solves for the unknowns of least bending.
     fn solve(&self) -> Option<DVector<f64>> {
         let mut matrix = DMatrix::zeros(self.unknowns, self.unknowns);
         let mut right = DVector::zeros(self.unknowns);
         for ([from, to], &l) in self.knots.iter().zip(&self.lengths) {
-            // Twice the energy of a cubic by its heights and slopes at both ends.
+            // Matrix of twice the bending energy of a cubic, by heights and slopes at both ends.
             let stiffness = [
                 [12.0, 6.0 * l, -12.0, 6.0 * l],
                 [6.0 * l, 4.0 * l * l, -6.0 * l, 2.0 * l * l],
@@ -312,17 +313,17 @@ impl Beam {
     }
 }
 
-/// A stretch displaced by a cubic with these heights (m) and turns (rad) at its ends.
+/// A stretch displaced by a cubic that has these heights (m) and turns (rad) at its ends.
 struct Bent<'r> {
     stretch: &'r [Curve],
     heights: [f64; 2],
     turns: [f64; 2],
-    /// Where it starts and ends at darts (m).
+    /// Start and end of the stretch if they are at darts (m).
     ends: [Option<Vec2>; 2],
 }
 
 impl Bent<'_> {
-    /// Height and turn at a share of the length.
+    /// Height and turn of the cubic at a share of the length.
     fn at(&self, share: f64, length: f64) -> (f64, f64) {
         let (t, u) = (share, 1.0 - share);
         let ([h, k], [a, b]) = (self.heights, self.turns.map(|turn| turn * length));
@@ -361,7 +362,7 @@ impl Bent<'_> {
     }
 }
 
-/// A curve with its ends at other places, its directions there turned.
+/// A curve moved to new ends, with its directions there turned.
 fn bent(curve: Curve, [(start, first), (end, second)]: [(Vec2, f64); 2]) -> Option<Curve> {
     let [near, far] = handles(curve);
     let chord = (curve.end() - curve.start()).norm();
@@ -387,11 +388,11 @@ fn bent(curve: Curve, [(start, first), (end, second)]: [(Vec2, f64); 2]) -> Opti
     })
 }
 
-/// From both ends to the control points of a cubic that is the curve; of an arc one with its ends,
-/// directions and middle (Goldapp 1991).
+/// Vectors from both ends to the control points of the cubic that equals the curve; for an arc, of the cubic
+/// with its ends, directions and middle (Goldapp 1991).
 fn handles(curve: Curve) -> [Vec2; 2] {
     let third = match curve {
-        // Of the arc that turns by four times atan(bulge).
+        // The arc turns by four times atan(bulge).
         Curve::Arc { bulge, .. } if bulge != 0.0 => bulge / (3.0 * bulge.atan()),
         Curve::Line { .. } | Curve::Arc { .. } | Curve::Quadratic { .. } | Curve::Cubic { .. } => {
             1.0 / 3.0
@@ -407,7 +408,7 @@ fn length(curves: &[Curve]) -> f64 {
     curves.iter().map(Curve::length).sum()
 }
 
-/// Length before each curve, and of all.
+/// Length before each curve, and the total length.
 fn lengths_before(curves: &[Curve]) -> Vec<f64> {
     let mut along = 0.0;
     let mut before = vec![0.0];
@@ -418,14 +419,14 @@ fn lengths_before(curves: &[Curve]) -> Vec<f64> {
     before
 }
 
-/// Unit direction in which a row of curves begins.
+/// Unit direction at the start of a row of curves.
 pub(super) fn leaving(curves: &[Curve]) -> Option<Vec2> {
     let first = curves.first()?;
     let own = first.derivative(0.0).try_normalize(1e-12);
     own.or_else(|| (first.point(1e-3) - first.start()).try_normalize(1e-15))
 }
 
-/// Unit direction in which a row of curves ends.
+/// Unit direction at the end of a row of curves.
 pub(super) fn arriving(curves: &[Curve]) -> Option<Vec2> {
     let last = curves.last()?;
     let own = last.derivative(1.0).try_normalize(1e-12);

@@ -1,4 +1,4 @@
-//! The other half of a panel that lies on the fold of the cloth.
+//! Unfolding: adds the mirror half of a panel that lies on the fold of the cloth.
 
 use super::{
     PlaceError, Placed, Stage, StageDart, StageEdge, StageLine, StageNotch, mirrored_edges,
@@ -7,17 +7,17 @@ use super::{
 use crate::{CornerName, LineKind, LineName, NotchId};
 use toile_geometry::{Curve, Vec2};
 
-/// Why a stage cannot be unfolded.
+/// Reason why a stage cannot be unfolded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum FoldError {
     /// The stretch is not on the outline.
     Place(PlaceError),
-    /// The stretch is not straight, has no length, or is all there is.
+    /// The stretch is not straight, has no length, or is the whole outline.
     NotStraight,
 }
 
-/// A stage and its mirror image in a straight stretch of its outline, and the notches that lay on
-/// the stretch and are gone with it.
+/// A stage joined with its mirror image in a straight stretch of its outline, and the notches that lay on the
+/// stretch and are lost with it.
 pub(crate) fn unfold(
     stage: &Stage,
     line: LineName,
@@ -73,8 +73,8 @@ fn is_on(folded: &[StageEdge], notch: &StageNotch) -> bool {
     notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge)
 }
 
-/// Gives a notch at an end of the fold to the edge that meets the fold there: the other edges of
-/// the outline run from the end of the fold to its start.
+/// Assigns a notch at an end of the fold to the edge that meets the fold there: the other edges of the
+/// outline run from the end of the fold to its start.
 fn move_off(notch: &mut StageNotch, edges: &[StageEdge], (start, end): (Vec2, Vec2)) {
     const SAME: f64 = 1e-9;
     let (Some(first), Some(last)) = (edges.first(), edges.last()) else {
@@ -88,7 +88,7 @@ fn move_off(notch: &mut StageNotch, edges: &[StageEdge], (start, end): (Vec2, Ve
     let Some(along) = edge.curve.derivative(at).try_normalize(1e-15) else {
         return;
     };
-    // The cloth is at the same side of both edges.
+    // The cloth lies on the same side of both edges.
     let (left, fold) = (Vec2::new(-along.y, along.x), end - start);
     let side = Vec2::new(-fold.y, fold.x).dot(&notch.inward);
     (notch.edge, notch.share) = (edge.name, share);

@@ -1,18 +1,19 @@
-//! Trued darts that take just their width from the finished edge: what truing takes besides is given back at
-//! the mouth, which is narrower by it.
+//! Trued darts that shorten the finished edge by their intake alone: the mouth is made narrower by the length
+//! that truing takes in addition.
 
 use super::dart::{DartMouth, cut_dart};
 use super::truing::true_darts;
 use super::{NOTHING, Stage};
 use crate::{CornerName, Role};
 
-/// Lengths that differ by less are one (m).
+/// Lengths that differ by less than this count as the same (m).
 const SAME: f64 = 1e-12;
-/// Most steps to the width: each has about 1.6 times the digits of the one before.
+/// Most steps of the iteration for the width: each gives about 1.6 times as many digits as the one before.
 const MAX_STEPS: usize = 40;
 
-/// The width of a mouth (m) with which a dart, trued, takes just the width that was asked for from the finished
-/// outline, by secants; nothing where none does. Of a dart that cannot be trued it is the width itself.
+/// The width of the mouth (m) with which a trued dart shortens the finished outline by just the wanted
+/// intake, by the secant method; none if there is no such width. For a dart that cannot be trued it is the
+/// intake itself.
 pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerName]) -> Option<f64> {
     let wanted = finished(stage) - mouth.intake;
     let untrued = stage.as_untrued();
@@ -26,7 +27,7 @@ pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerNam
     let Some(mut beyond_before) = beyond(before) else {
         return Some(mouth.intake);
     };
-    // A mouth that is wider takes about as much more.
+    // A wider mouth takes in about as much more.
     let mut width = before + beyond_before;
     for _ in 0..MAX_STEPS {
         if beyond_before.abs() <= SAME {
@@ -40,11 +41,11 @@ pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerNam
         (before, beyond_before) = (width, beyond_now);
         width -= beyond_now / slope;
     }
-    // As near as numbers of this size come.
+    // As near as floating-point numbers of this size allow.
     (beyond_before.abs() <= 1e3 * SAME).then_some(before)
 }
 
-/// Length of an outline once its darts are closed (m).
+/// Length of an outline with its darts closed (m).
 fn finished(stage: &Stage) -> f64 {
     let edges = stage.outline().iter();
     let sewn = edges.filter(|edge| edge.name.role() != Some(Role::Leg));

@@ -1,4 +1,4 @@
-//! Stages: a panel as it is drawn, and after each of its operations. Plain numbers.
+//! Stages: a panel as drawn, and after each of its operations. Plain numbers.
 
 mod dart;
 mod diamond;
@@ -33,86 +33,86 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2};
 
-/// Widths, depths and intakes up to this are nothing (m): what is left of a difference of two equal
-/// lengths.
+/// Widths, depths and intakes up to this count as zero (m): differences of two equal lengths leave
+/// rounding errors.
 pub(crate) const NOTHING: f64 = 1e-9;
 
 /// A panel after some of its operations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
-    /// Its lines: the outline first, then holes, then internal lines.
+    /// Lines of the stage: the outline first, then holes, then internal lines.
     pub lines: Vec<StageLine>,
-    /// Its notches.
+    /// Notches of the stage.
     pub notches: Vec<StageNotch>,
     /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: f64,
     /// Darts that were taken out, for their caps.
     pub darts: Vec<StageDart>,
-    /// Fold lines the stage was unfolded in: a point on each and its direction.
+    /// Fold lines along which the stage was unfolded: a point on each and its direction.
     pub folds: Vec<(Vec2, Vec2)>,
     /// Operations that were done, in order.
     pub done: Vec<OperationId>,
-    /// Those of them that left the panel as it was, since what they take in is nothing.
+    /// Done operations that left the panel as it was, since they take in nothing.
     pub idle: Vec<OperationId>,
-    /// Left and right side, if the last operation split it.
+    /// Left and right side, if the last operation split the stage.
     pub sides: Vec<Arc<Stage>>,
-    /// The outline's edges as they were before its darts were trued, by which they are trued anew
-    /// with the next one; none where no dart is, or the outline was cut apart since.
+    /// Edges of the outline before its darts were trued; from these they are trued again together with the
+    /// next dart. Empty if no dart is trued, or the outline was cut apart since.
     pub untrued: Vec<StageEdge>,
 }
 
 /// A line of a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageLine {
-    /// Its name.
+    /// Name of the line.
     pub name: LineName,
-    /// Which half it is on: a bit a fold.
+    /// Half of a folded panel that the line is on: one bit for each fold.
     pub half: u8,
-    /// What it is.
+    /// Kind of line.
     pub kind: LineKind,
-    /// Its edges, in order. An edge that is a spline is several.
+    /// Edges of the line, in order. An edge that is a spline has several entries.
     pub edges: Vec<StageEdge>,
-    /// The corner an open line ends at.
+    /// The corner at the end of an open line.
     pub end: Option<CornerName>,
-    /// Corners that lie where an edge starts that is called after another: the one, and the other.
+    /// Corners at the start of an edge whose start has another name: the corner, and that other name.
     pub twins: Vec<[CornerName; 2]>,
 }
 
 /// An edge of a stage: one curve, and the stretch of its named edge that it covers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageEdge {
-    /// The edge of the document or of an operation.
+    /// Name of the edge: drawn in the document or made by an operation.
     pub name: EdgeName,
-    /// Which half it is on: a bit a fold.
+    /// Half of a folded panel that the edge is on: one bit for each fold.
     pub half: u8,
-    /// The corner it starts at; nothing between two curves of one edge.
+    /// The corner at the start of the edge; none between two curves of one named edge.
     pub start: Option<CornerName>,
-    /// Share of the named edge's arc length where it starts.
+    /// Share of the named edge's arc length at the start.
     pub from: f64,
-    /// Share where it ends; less than `from` if it runs against the named edge.
+    /// Share at the end; less than `from` if the edge runs against the named edge.
     pub to: f64,
-    /// Its curve, in the direction of the line (m).
+    /// The curve of the edge, in the direction of the line (m).
     pub curve: Curve,
-    /// Width of cloth outside it (m).
+    /// Width of the seam allowance outside the edge (m).
     pub allowance: f64,
-    /// How the cut line turns the corner at its start.
+    /// Settings of the corner at the start of the edge.
     pub corner: EdgeCorner,
 }
 
 /// A notch of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageNotch {
-    /// Which notch of the panel it is.
+    /// The notch of the panel.
     pub id: NotchId,
     /// The edge it is on.
     pub edge: EdgeName,
-    /// Share of that edge's arc length where it is.
+    /// Share of that edge's arc length at the notch.
     pub share: f64,
-    /// Which half it is on.
+    /// Half of a folded panel that the notch is on.
     pub half: u8,
-    /// How it is cut.
+    /// Shape of the notch.
     pub kind: NotchKind,
-    /// Where (m).
+    /// Position of the notch (m).
     pub point: Vec2,
     /// Unit direction into the piece.
     pub inward: Vec2,
@@ -121,24 +121,24 @@ pub struct StageNotch {
 /// A dart of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageDart {
-    /// The operation that took it out.
+    /// The operation that took the dart out.
     pub by: OperationId,
-    /// Which half it is on.
+    /// Half of a folded panel that the dart is on.
     pub half: u8,
     /// Start and end of the mouth along the outline (m).
     pub mouth: [Vec2; 2],
-    /// Its point (m); of a diamond the first end.
+    /// Apex of the dart (m); for a dart with two points the first of them.
     pub apex: Vec2,
-    /// Where it is pivoted about (m): its point as it was before that was set back.
+    /// Point about which the dart is pivoted (m): its apex before that was set back.
     pub pivot: Vec2,
-    /// The leg it is pressed towards.
+    /// The leg towards which the dart is pressed.
     pub pressed: Pressed,
-    /// Whether the edge runs on smoothly across its mouth once it is closed.
+    /// Whether the edge runs on smoothly across the mouth of the closed dart.
     pub trued: bool,
 }
 
 impl Stage {
-    /// The outline's edges; none if there is no outline.
+    /// Edges of the outline; empty if there is no outline.
     pub fn outline(&self) -> &[StageEdge] {
         let found = self
             .lines
@@ -147,7 +147,7 @@ impl Stage {
         found.map_or(&[], |line| &line.edges)
     }
 
-    /// Each hole's edges.
+    /// Edges of each hole.
     pub fn holes(&self) -> impl Iterator<Item = &[StageEdge]> {
         let holes = self.lines.iter().filter(|line| line.kind == LineKind::Hole);
         holes.map(|line| line.edges.as_slice())
@@ -159,7 +159,7 @@ impl Stage {
         if swept < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Every number of the stage, for comparing to the bit.
+    /// Every number of the stage, for comparison to the bit.
     fn bits(&self) -> Vec<u64> {
         let mut numbers = vec![self.grain];
         let mut points: Vec<Vec2> = Vec::new();
@@ -189,7 +189,7 @@ impl Stage {
         self == other && self.bits() == other.bits() && sides.all(|(a, b)| a.is_same(b))
     }
 
-    /// The mirror image in the y axis: the other piece of a pair.
+    /// The mirror image in the y axis, for the other piece of a pair.
     #[must_use]
     pub fn mirror_image(&self) -> Self {
         let mirror = (Vec2::zeros(), Vec2::y());
@@ -234,7 +234,8 @@ impl Stage {
 }
 
 impl StageLine {
-    /// The mirror image in a line, wound as before if it is closed; `half` is added to its halves.
+    /// The mirror image of the line in another line, wound as before if it is closed; `half` is added to
+    /// its halves.
     pub(crate) fn mirrored(&self, mirror: (Vec2, Vec2), half: u8) -> Self {
         let mut edges: Vec<StageEdge> = self.edges.clone();
         if self.kind == LineKind::Internal {
@@ -253,8 +254,8 @@ impl StageLine {
     }
 }
 
-/// Edges mirrored in a line and walked the other way, so that a closed line is wound as before.
-/// Corners stay with their places: the corner at an edge's end becomes that at its start.
+/// Edges mirrored in a line and walked the other way, so that a closed line is wound as before. Corners stay
+/// at their positions: the corner at the end of an edge becomes the corner at its start.
 pub(crate) fn mirrored_edges(
     edges: &[StageEdge],
     mirror: (Vec2, Vec2),
@@ -283,7 +284,7 @@ pub(crate) fn mirrored_edges(
         .collect()
 }
 
-/// The curve with its ends put exactly where they belong.
+/// The curve with its ends moved exactly to the given points.
 pub(crate) fn with_ends(curve: Curve, start: Vec2, end: Vec2) -> Curve {
     match curve {
         Curve::Line { .. } => Curve::Line { start, end },

@@ -3,28 +3,28 @@
 use super::{StageDart, StageEdge, StageNotch};
 use toile_geometry::{Curve, Vec2};
 
-/// A vector turned counter-clockwise (rad).
+/// A vector turned counter-clockwise by an angle (rad).
 pub(super) fn turned(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
-/// A turn about the origin, then a shift.
+/// A rigid motion: a turn about the origin, then a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
-    /// Counter-clockwise (rad).
+    /// Angle, counter-clockwise (rad).
     angle: f64,
     shift: Vec2,
 }
 
 impl Motion {
-    /// What stays where it is, to the bit.
+    /// The identity: leaves points unchanged to the bit.
     pub const NONE: Self = Self {
         angle: 0.0,
         shift: Vec2::new(0.0, 0.0),
     };
 
-    /// The turn by an angle that takes one place to another.
+    /// The motion with this angle that takes one point to another.
     pub fn taking(from: Vec2, to: Vec2, angle: f64) -> Self {
         let turn = Self {
             angle,
@@ -36,12 +36,12 @@ impl Motion {
         }
     }
 
-    /// The turn about a place.
+    /// The turn about a point.
     pub fn about(centre: Vec2, angle: f64) -> Self {
         Self::taking(centre, centre, angle)
     }
 
-    /// First another motion, then this one.
+    /// The composition: first another motion, then this one.
     pub fn after(self, first: Self) -> Self {
         Self {
             angle: self.angle + first.angle,
@@ -89,7 +89,7 @@ impl Motion {
         }
     }
 
-    /// A dart of whose mouth the start moves with this and the end with another.
+    /// Moves a dart: the start of its mouth by this motion and the end by another.
     pub fn dart(self, other: Self, dart: StageDart) -> StageDart {
         let [start, end] = dart.mouth;
         StageDart {

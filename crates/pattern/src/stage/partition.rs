@@ -1,4 +1,4 @@
-//! A stage cut apart: which part each of its lines, notches and darts is in.
+//! A stage cut apart: assigns its lines, notches and darts to the parts.
 
 use super::dart::{parameter, part};
 use super::motion::Motion;
@@ -6,12 +6,12 @@ use super::{PlaceError, Stage, StageDart, StageEdge, StageLine, StageNotch};
 use crate::{CornerName, EdgeCorner, LineKind, LineName, Name, Role};
 use toile_geometry::{Path, Polygon, Vec2, closest_on_segment};
 
-/// Why a stage cannot be cut apart.
+/// Reason why a stage cannot be cut apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CutError {
     /// A place is not on the outline.
     Place(PlaceError),
-    /// The stage was unfolded: what is cut on one half were whole on the other.
+    /// The stage is already unfolded: a cut on one half would leave the other whole.
     Unfolded,
     /// A cut has no length.
     NoLength,
@@ -21,22 +21,22 @@ pub(crate) enum CutError {
     ThroughHole,
 }
 
-/// Places nearer than this are one (m).
+/// Positions closer than this count as the same (m).
 pub(super) const SAME: f64 = 1e-9;
-/// A cut may touch the outline this near to its ends (m).
+/// Distance from its ends within which a cut may touch the outline (m).
 const AT_END: f64 = 1e-6;
-/// How far chords may lie from curves where parts are told apart (m).
+/// Greatest distance of chords from curves when parts are distinguished (m).
 const FLATNESS: f64 = 1e-5;
 
-/// All of a stage but the outline that is cut, each with the number of its part.
+/// Everything of a stage except the outline that is cut, each with the index of its part.
 pub(super) struct Partition {
     pub lines: Vec<(StageLine, usize)>,
     pub notches: Vec<(StageNotch, usize)>,
-    /// With the parts the legs before and after the apex are in.
+    /// Darts, with the parts that hold the leg before and the leg after the apex.
     pub darts: Vec<(StageDart, [usize; 2])>,
 }
 
-/// The outline of a stage that is not unfolded, by its place among the lines.
+/// Index of an outline among the lines of a stage; refused if the stage is unfolded.
 pub(super) fn outline_of(stage: &Stage, name: LineName) -> Result<usize, CutError> {
     if !stage.folds.is_empty() {
         return Err(CutError::Unfolded);
@@ -47,8 +47,8 @@ pub(super) fn outline_of(stage: &Stage, name: LineName) -> Result<usize, CutErro
 }
 
 impl StageLine {
-    /// Divides the edge at an arc length from the start of a closed line (m), unless one starts
-    /// there; gives the number of the edge that starts there.
+    /// Divides the edge at an arc length from the start of a closed line (m), unless an edge starts there;
+    /// returns the index of the edge that starts there.
     pub(super) fn divide(&mut self, along: f64) -> usize {
         let mut before = 0.0;
         for k in 0..self.edges.len() {
@@ -76,7 +76,7 @@ impl StageLine {
         0
     }
 
-    /// Calls the corner where an edge starts: it is its twin where it has a name.
+    /// Names the corner at the start of an edge: a second name becomes a twin of the first.
     pub(super) fn call(&mut self, edge: usize, name: CornerName) {
         match self.edges[edge].start {
             Some(known) => self.twins.push([name, known]),
@@ -122,8 +122,8 @@ pub(super) fn check_cut(stage: &Stage, outline: usize, cut: &Path) -> Result<(),
     }
 }
 
-/// Tells what part everything is in: `edges` are those of the cut outline with their parts, `rings`
-/// the polygons of the parts. Internal lines are cut where cuts cross them.
+/// Assigns everything to parts: `edges` are the edges of the cut outline with their parts, `rings` the
+/// polygons of the parts. Internal lines are cut where cuts cross them.
 pub(super) fn partition(
     stage: &Stage,
     outline: usize,
@@ -219,7 +219,7 @@ fn parts_of_line(line: &StageLine, cuts: &[Path], rings: &[Vec<Vec2>]) -> Vec<(S
     parts
 }
 
-/// The part a place is in, else the nearest one.
+/// Index of the part that contains a point, else of the nearest one.
 fn part_at(rings: &[Vec<Vec2>], at: Vec2) -> usize {
     let inside = rings
         .iter()
@@ -238,7 +238,7 @@ fn part_at(rings: &[Vec<Vec2>], at: Vec2) -> usize {
 }
 
 impl Partition {
-    /// The stage with its new outline and everything else moved with its part.
+    /// The stage with its new outline, everything else moved with its part.
     pub fn moved(
         self,
         stage: &Stage,

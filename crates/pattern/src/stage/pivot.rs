@@ -1,4 +1,4 @@
-//! Darts pivoted: a part of what a dart takes in is taken in elsewhere.
+//! Pivoted darts: a part of a dart's intake is moved to another place of the outline.
 
 use super::dart::{legs, mouth, shut_mouth};
 use super::motion::Motion;
@@ -7,42 +7,42 @@ use super::{Placed, Stage, StageDart, StageEdge, StageLine, with_ends};
 use crate::{LineName, Name, OperationId, Pressed, Role, Turned};
 use toile_geometry::{Curve, Path, Vec2};
 
-/// A pivot whose numbers are known.
+/// A pivot with its numbers evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pivoting {
     pub by: OperationId,
     /// The dart.
     pub dart: OperationId,
     pub line: LineName,
-    /// Where the new mouth opens.
+    /// Position of the new mouth.
     pub mouth: Placed,
-    /// Share of the dart's angle that goes there.
+    /// Share of the dart's angle that is moved to the new dart.
     pub share: f64,
-    /// How far the points of both darts are set back from where the panel is turned about (m).
+    /// Distance by which the apexes of both darts are set back from the pivot point (m).
     pub back: f64,
     pub turned: Turned,
     pub pressed: Pressed,
 }
 
-/// Why a dart cannot be pivoted.
+/// Reason why a dart cannot be pivoted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PivotError {
     Cut(CutError),
     /// The dart has no mouth in the outline.
     NoMouth,
-    /// The share is not from 0 to 1.
+    /// The share is not between 0 and 1.
     Share,
     /// The new mouth is on the dart itself.
     OnDart,
-    /// Its legs differ, so that it does not close.
+    /// The legs differ in length, so that the dart does not close.
     LegsDiffer,
-    /// Both darts end in one point, where the panel would come apart.
+    /// Both darts end in the same point, where the panel would come apart.
     OnePoint,
-    /// Set back further than a leg is long, or by less than nothing.
+    /// The set-back is longer than a leg, or negative.
     TooFarBack,
 }
 
-/// Shares this near to 0 or 1 are that.
+/// Shares this near to 0 or 1 count as 0 or 1.
 const ROUNDING: f64 = 1e-12;
 
 fn leg(by: OperationId, index: u16) -> crate::EdgeName {
@@ -53,7 +53,7 @@ fn leg(by: OperationId, index: u16) -> crate::EdgeName {
     }
 }
 
-/// A stage with a dart pivoted.
+/// The stage with a dart pivoted.
 pub(crate) fn pivot_dart(stage: &Stage, wish: &Pivoting) -> Result<Stage, PivotError> {
     let outline = outline_of(stage, wish.line).map_err(PivotError::Cut)?;
     if !(-ROUNDING..=1.0 + ROUNDING).contains(&wish.share) {
@@ -88,7 +88,7 @@ pub(crate) fn pivot_dart(stage: &Stage, wish: &Pivoting) -> Result<Stage, PivotE
     if count < 4 || line.edges[1].name != leg(wish.dart, 1) {
         return Err(PivotError::NoMouth);
     }
-    // Legs at 0 and 1, then the part from the dart on to the new mouth, then the other.
+    // The legs are at 0 and 1, then follows the part from the dart on to the new mouth, then the other.
     let at = (at + count - first) % count;
     if at < 3 {
         return Err(PivotError::OnDart);
@@ -134,9 +134,9 @@ fn cut_to(edge: &StageEdge, pivot: Vec2) -> Path {
     }])
 }
 
-/// How both parts move, and where both darts are then.
+/// Motions of both parts, and the new positions of both darts.
 struct Turning {
-    /// Of the part from the dart on to the new mouth, and of the other.
+    /// Motion of the part from the dart on to the new mouth, and of the other part.
     motions: [Motion; 2],
     /// Mouth of the dart.
     old: [Vec2; 2],
@@ -187,8 +187,8 @@ impl Turning {
         })
     }
 
-    /// The outline of whose edges the first two are the dart's legs and the one at `at` starts
-    /// where the new mouth opens.
+    /// The outline after the pivot. In `line` the first two edges are the legs of the dart, and the edge `at`
+    /// starts at the new mouth.
     fn outline(&self, mut line: StageLine, at: usize, wish: &Pivoting) -> StageLine {
         line.call(at, mouth(wish.by, 1));
         let old_mouth = [0, 1].map(|k| mouth(wish.dart, k));
@@ -245,7 +245,7 @@ fn straight(start: Vec2, end: Vec2) -> Curve {
     Curve::Line { start, end }
 }
 
-/// Puts the ends of a row of edges exactly where they belong.
+/// Moves the ends of a row of edges exactly to the given points.
 fn join(edges: &mut [StageEdge], start: Vec2, end: Vec2) {
     if let Some(first) = edges.first_mut() {
         first.curve = with_ends(first.curve, start, first.curve.end());

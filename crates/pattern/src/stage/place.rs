@@ -1,10 +1,10 @@
-//! Places and stretches on the lines of a stage.
+//! Positions and stretches on the lines of a stage.
 
 use super::{Stage, StageEdge, StageLine};
 use crate::{CornerName, EdgeName, LineName, Role};
 use toile_geometry::Vec2;
 
-/// A mark whose number is known.
+/// A mark with its number evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarkValue {
     Corner(CornerName),
@@ -14,14 +14,14 @@ pub(crate) enum MarkValue {
     Between([CornerName; 2], f64),
 }
 
-/// A place on a line: by its corners, or found on an earlier stage.
+/// A position on a line: by its corners, or found on an earlier stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Placed {
     Mark(MarkValue),
     Spot(Spot),
 }
 
-/// A place on a named edge.
+/// A position on a named edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spot {
     pub edge: EdgeName,
@@ -34,22 +34,23 @@ pub(crate) struct Spot {
 /// Named edges in walking order, each with the shares between which it is walked.
 pub(crate) type Stretch = Vec<(EdgeName, f64, f64)>;
 
-/// Why a mark has no place.
+/// Reason why a mark has no position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PlaceError {
     /// The stage has no such line.
     NoLine,
     /// The line has no such corner.
     NoCorner(CornerName),
-    /// The place lies beyond the line, or the share is not from 0 to 1.
+    /// The position lies beyond the line, or the share is not between 0 and 1.
     Beyond,
 }
 
-/// How far a share or a distance may be beyond (1) or (m): rounding.
+/// Distance by which a share or a length may lie beyond its bounds (1) or (m): rounding.
 const SLACK: f64 = 1e-9;
 
 impl Stage {
-    /// What one of the lines of a name gives: a line that was cut is several.
+    /// Result of a function on the lines with a name: a line that was cut is several lines, and the first
+    /// that succeeds counts.
     fn of_line<T>(
         &self,
         name: LineName,
@@ -67,12 +68,12 @@ impl Stage {
         Err(error)
     }
 
-    /// Where a mark is on a line.
+    /// The spot of a mark on a line.
     pub(crate) fn spot(&self, line: LineName, mark: MarkValue) -> Result<Spot, PlaceError> {
         self.of_line(line, |line| Ok(line.at(line.along(mark)?, mark)))
     }
 
-    /// Where a mark of an earlier stage is on this one: a corner that is still there is itself.
+    /// Position on this stage of a mark from an earlier stage: a corner that is still there stays a corner.
     pub(crate) fn placed(
         &self,
         first: &Self,
@@ -88,7 +89,7 @@ impl Stage {
         }
     }
 
-    /// Place and direction of travel at a spot.
+    /// Position and direction of travel at a spot.
     pub(crate) fn at_spot(&self, line: LineName, spot: Spot) -> Option<(Vec2, Vec2)> {
         let own = |known: &&StageLine| known.name == line && known.half == 0;
         let edges = self.lines.iter().filter(own).flat_map(|line| &line.edges);
@@ -104,7 +105,7 @@ impl Stage {
         Some((edge.curve.point(t), direction))
     }
 
-    /// The edges between two places of a line, of which those are left out that are not asked for.
+    /// The edges between two positions of a line, without the edges that are not wanted.
     pub(crate) fn stretch(
         &self,
         line: LineName,
@@ -117,7 +118,7 @@ impl Stage {
         })
     }
 
-    /// Length of a stretch on a half (m).
+    /// Length of a stretch on one half (m).
     pub(crate) fn stretch_length(&self, half: u8, stretch: &Stretch) -> f64 {
         let parts = stretch.iter().map(|&(name, from, to)| {
             let (low, high) = (from.min(to), from.max(to));
@@ -134,8 +135,8 @@ impl Stage {
     }
 }
 
-/// Whether an edge is sewn by seams: legs are sewn by their dart, underlays lie folded under, and
-/// other halves are named by spans of their own.
+/// Whether an edge is sewn by seams: legs are sewn by their dart, underlays lie folded under, and the other
+/// halves are named by spans of their own.
 pub(crate) fn is_sewn(edge: &StageEdge) -> bool {
     edge.half == 0 && !matches!(edge.name.role(), Some(Role::Leg | Role::Underlay))
 }
@@ -172,7 +173,7 @@ impl StageLine {
         }
     }
 
-    /// What the corner is called that lies where a corner does.
+    /// The name under which a corner stands in the edges of the line: its own, or that of its twin.
     pub(super) fn called(&self, corner: CornerName) -> CornerName {
         let mut called = corner;
         // No chain of twins is longer than their list.
@@ -185,7 +186,7 @@ impl StageLine {
         called
     }
 
-    /// Arc length from the start of the line to a place (m).
+    /// Arc length from the start of the line to a position (m).
     pub(super) fn placed(&self, place: Placed) -> Result<f64, PlaceError> {
         match place {
             Placed::Mark(mark) => self.along(mark),
@@ -193,8 +194,8 @@ impl StageLine {
         }
     }
 
-    /// Arc length from the start of the line to a spot of an earlier stage (m); of one that lies in
-    /// a mouth by now, to the mouth.
+    /// Arc length from the start of the line to a spot of an earlier stage (m); if the spot now lies in a
+    /// mouth, to the mouth.
     fn along_spot(&self, spot: Spot) -> Result<f64, PlaceError> {
         let mut before = 0.0;
         let mut best: Option<(f64, f64)> = None;
@@ -245,8 +246,8 @@ impl StageLine {
         }
     }
 
-    /// The spot at an arc length. A mark given as a share of one edge keeps that edge, so that a
-    /// share of 1 is its end and not the start of the next.
+    /// The spot at an arc length. A mark given as a share of one edge keeps that edge, so that a share of 1
+    /// is its end and not the start of the next.
     fn at(&self, along: f64, mark: MarkValue) -> Spot {
         let length = self.length();
         let wrapped = match self.is_closed() && along > length {
@@ -289,7 +290,8 @@ impl StageLine {
         found.map(|edge| edge.name)
     }
 
-    /// The stretch from an arc length forwards to another; round the line where it is not beyond.
+    /// The stretch from an arc length forwards to another; on a closed line it goes round if the second does
+    /// not lie beyond the first.
     fn between(&self, start: f64, end: f64, wanted: impl Fn(&StageEdge) -> bool) -> Stretch {
         let length = self.length();
         let end = match self.is_closed() && end <= start + SLACK {

@@ -1,4 +1,5 @@
-//! Pleats: cloth put between the parts of a panel, shaped at its ends as what it is folded under.
+//! Pleats: cloth inserted between the parts of a panel, with ends shaped by the outline that they are
+//! folded under.
 
 use super::motion::Motion;
 use super::spread::{Chord, Crossed, CutOpen, Gap};
@@ -8,15 +9,15 @@ use crate::{
 };
 use toile_geometry::{Curve, Vec2};
 
-/// Pleats whose numbers are known: the spread that makes room for them, and how they are folded.
+/// Pleats with their numbers evaluated: the spread that makes room for them, and their kind and depth.
 #[derive(Clone, Debug)]
 pub(crate) struct Pleating {
     pub spread: Spreading,
-    /// How deep a fold goes under (m).
+    /// Depth of a fold under the cloth (m).
     pub depth: f64,
     pub kind: PleatKind,
     pub pressed: Side,
-    /// Whether what lies under is cut along the edge that it lies on.
+    /// Whether the underlay is cut along the edge that it lies on when folded.
     pub trued: bool,
 }
 
@@ -27,11 +28,11 @@ struct Piece {
     allowance: f64,
 }
 
-/// Depths may differ by this along a line that runs square to the pleat (m).
+/// Tolerance of the depth along a line that runs square to the pleat (m).
 const SAME_DEPTH: f64 = 1e-9;
 
-/// A stage with pleats: its parts moved aside, underlays between, and the lines to fold in. Pleats
-/// without a depth leave it as it was: the corners of each underlay are one.
+/// A stage with pleats: its parts moved aside, underlays between them, and the lines to fold. Pleats of depth
+/// 0 leave it as it was: the corners of each underlay are one.
 pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError> {
     if wish.depth < -NOTHING {
         return Err(SpreadError::NoDepth);
@@ -56,8 +57,7 @@ pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError
     Ok(result)
 }
 
-/// A stage with pleats that have no depth: every corner of an underlay lies where its line meets the
-/// outline.
+/// A stage with pleats of depth 0: every corner of an underlay lies where its line meets the outline.
 fn laid_flat(
     stage: &Stage,
     open: &CutOpen,
@@ -87,10 +87,10 @@ fn laid_flat(
     Ok(result)
 }
 
-/// The folds of a pleat from the part before it along the outline to the one after it, where it
-/// starts or ends: whether each lies under the part before.
+/// The folds of a pleat at one end of its line, from the part before it along the outline to the part after
+/// it: whether each fold lies under the part before.
 fn folds(wish: &Pleating, (turn, end): (f64, usize)) -> Vec<bool> {
-    // Counter-clockwise, the part left of the line comes before it where it starts.
+    // On a counter-clockwise outline, the part left of the line comes before the pleat at the line's start.
     let left_is_before = (turn > 0.0) == (end == 0);
     match wish.kind {
         PleatKind::Knife => vec![(wish.pressed == Side::Left) == left_is_before],
@@ -106,7 +106,7 @@ fn corner(by: OperationId, gap: (u16, usize), k: usize) -> CornerName {
     }
 }
 
-/// What the outline runs along across a pleat. Folded, it lies on the outline beside the pleat.
+/// The outline across a pleat. When folded, it lies on the outline beside the pleat.
 fn underlay(
     open: &CutOpen,
     gap: &Gap<'_>,
@@ -141,7 +141,7 @@ fn underlay(
         let way = motion.direction(way);
         let beside = beside(open, gap, (is_before, wish.depth))?;
         let twice = across * (2.0 * wish.depth);
-        // Where the part's own end of the outline lies now.
+        // Position of the part's own end of the outline after the spread.
         let at = if is_before { from } else { to };
         let near: Vec<Piece> = beside.iter().map(|p| moved(*p, motion)).collect();
         let back = |pieces: &[Piece]| -> Vec<Piece> {
@@ -171,7 +171,7 @@ fn underlay(
     Ok(crossed(gap, by, layers))
 }
 
-/// The layers of an underlay as edges, from the end of the edge before it to the start of the one after it.
+/// The layers of an underlay as edges, from the end of the edge before it to the start of the edge after it.
 fn crossed(gap: &Gap<'_>, by: OperationId, layers: Vec<Vec<Piece>>) -> Crossed {
     let number = gap.chord.number;
     let (from, to) = (gap.before.curve.end(), gap.after.curve.start());
@@ -215,7 +215,8 @@ fn moved(piece: Piece, motion: Motion) -> Piece {
     with(piece, motion.curve(piece.curve))
 }
 
-/// Puts the ends of a row of edges exactly where they belong, and each where the one before ends.
+/// Moves the ends of a row of edges exactly to the given points, and the start of each edge to the end of the
+/// one before.
 fn join(edges: &mut [StageEdge], [from, to]: [Vec2; 2]) {
     let count = edges.len();
     let mut start = from;
@@ -229,7 +230,7 @@ fn join(edges: &mut [StageEdge], [from, to]: [Vec2; 2]) {
     }
 }
 
-/// The outline beside a pleat, from where its line meets it to the depth of a fold, away from it.
+/// The outline beside a pleat, from its line as far away as a fold is deep.
 fn beside(
     open: &CutOpen,
     gap: &Gap<'_>,
@@ -255,7 +256,7 @@ fn beside(
             sign = away(curve.point(1e-3)).signum();
         }
         let far = |t: f64| sign * away(curve.point(t));
-        // It must lead away from the pleat all the time, or it would be folded over itself.
+        // The outline must lead away from the pleat all the way, or it would fold over itself.
         let leads = (0..=32).all(|k| {
             let t = f64::from(k) / 32.0;
             far(t) > depth || sign * way.perp(&curve.derivative(t)) > -SAME_DEPTH
@@ -286,7 +287,7 @@ fn beside(
     Err(SpreadError::TooDeep(gap.chord.number))
 }
 
-/// The lines a pleat is folded in, and that it is laid to, from its start to its end.
+/// The fold lines of a pleat, and the lines to which folds are laid, from its start to its end.
 fn creases(
     outline: Option<&StageLine>,
     (by, chord): (OperationId, &Chord),
@@ -294,7 +295,7 @@ fn creases(
 ) -> Vec<StageLine> {
     let edges = outline.map_or(&[][..], |line| &line.edges);
     let layers = 2 * folds.len();
-    // Each layer starts at a corner, and the last ends where the next edge starts.
+    // Each layer starts at a corner, and the last ends at the start of the next edge.
     let ends = |end: usize| -> Vec<Vec2> {
         let name = |k: usize| Name::Made {
             by,

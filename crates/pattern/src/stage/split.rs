@@ -7,18 +7,18 @@ use crate::{EdgeCorner, LineKind, LineName, Name, OperationId, Role};
 use std::sync::Arc;
 use toile_geometry::{Curve, Path};
 
-/// Why a panel cannot be split.
+/// Reason why a panel cannot be split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SplitError {
     Cut(CutError),
-    /// The curve meets the outline in so many places, not in two.
+    /// The curve meets the outline in this many places instead of two.
     Meets(usize),
 }
 
 /// An end of the curve this near to the outline lies on it (m).
 const ON_OUTLINE: f64 = 1e-6;
 
-/// The stage with both sides of it, left and right of the curve.
+/// The stage with its two sides, left and right of the curve.
 pub(crate) fn split(
     stage: &Stage,
     (by, line): (OperationId, LineName),
@@ -39,7 +39,7 @@ pub(crate) fn split(
     Ok(result)
 }
 
-/// Where the curve meets the outline first and last: lengths along both (m).
+/// The first and the last meeting of the curve with the outline: arc lengths along both (m).
 fn meetings(curve: &Path, outline: &Path) -> Result<[(f64, f64); 2], SplitError> {
     let length = curve.length();
     let end_at = |along: f64| {
@@ -50,7 +50,7 @@ fn meetings(curve: &Path, outline: &Path) -> Result<[(f64, f64); 2], SplitError>
     let ends = [end_at(0.0), end_at(length)];
     let crossings = curve.crossings(outline);
     let inner = crossings.iter().map(|c| (c.here.along, c.there.along));
-    // A crossing at an end that lies on the outline is that end.
+    // A crossing near an end of the curve that lies on the outline counts as that end.
     let inner = inner.filter(|(along, _)| {
         let near = |end: Option<(f64, f64)>, at: f64| end.is_some() && (along - at).abs() <= 1e-5;
         !near(ends[0], 0.0) && !near(ends[1], length)
@@ -109,7 +109,7 @@ fn cut_back(by: OperationId, edges: &[StageEdge]) -> Vec<StageEdge> {
     .collect()
 }
 
-/// Both sides of a stage whose outline is divided where the cut starts and ends.
+/// Both sides of a stage whose outline is divided at the start and the end of the cut.
 fn sides(
     stage: &Stage,
     (outline, line): (usize, StageLine),
@@ -123,7 +123,8 @@ fn sides(
             .map(|k| line.edges[(from + k) % count].clone())
             .collect()
     };
-    // The cut forwards and on along the outline to its start; and backwards to its end.
+    // One side: the cut forwards and on along the outline to its start. Other side: the cut backwards and on
+    // to its end.
     let rests = [walk(end, start), walk(start, end)];
     let forwards = cut_edges(by, cut);
     let cuts = [forwards.clone(), cut_back(by, &forwards)];
@@ -136,7 +137,7 @@ fn sides(
             edges: own,
             ..line.clone()
         };
-        // Where the forward cut ends, corner 1; where the other ends, corner 0.
+        // The forward cut ends at corner 1, the backward cut at corner 0.
         side.call(cut_count, name(by, k % 2));
         lines.push(side);
     }
@@ -172,14 +173,15 @@ fn sides(
             ..stage.clone()
         }));
     }
-    // Of an outline that runs clockwise the cut forwards bounds the right side.
+    // On a clockwise outline the forward cut bounds the right side.
     if stage.turn() < 0.0 {
         sides.reverse();
     }
     sides
 }
 
-/// Puts the ends of a cut exactly on the outline, which goes on from its end and comes to its start.
+/// Moves the ends of a cut exactly onto the outline, which continues from the end of the cut and returns to
+/// its start.
 fn fit(cut: &mut [StageEdge], rest: &[StageEdge]) {
     let (Some(next), Some(before)) = (rest.first(), rest.last()) else {
         return;

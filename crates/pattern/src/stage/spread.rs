@@ -6,57 +6,58 @@ use super::{PlaceError, Placed, Stage, StageEdge, StageLine, with_ends};
 use crate::{Bridge, CornerName, EdgeCorner, LineName, Name, OperationId, Role, SpreadCut};
 use toile_geometry::{Curve, Path, Vec2};
 
-/// A spread whose numbers are known.
+/// A spread with its numbers evaluated.
 #[derive(Clone, Debug)]
 pub(crate) struct Spreading {
     pub by: OperationId,
     pub line: LineName,
-    /// A place of the part that stays.
+    /// A position on the part that stays fixed.
     pub held: Placed,
     pub cuts: Vec<SpreadAlong>,
     pub bridge: Bridge,
 }
 
-/// A cut whose numbers are known.
+/// A cut with its numbers evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpreadAlong {
     pub number: u16,
     pub ends: [Placed; 2],
-    /// Opening at its start and its end (m).
+    /// Opening at the start and at the end of the cut (m).
     pub openings: [f64; 2],
 }
 
-/// Why a panel cannot be spread.
+/// Reason why a panel cannot be spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SpreadError {
-    /// Of the cut of that number.
+    /// The cut with this number cannot be made.
     Cut(u16, CutError),
-    /// The line or the place that stays is not there.
+    /// The line or the fixed place is missing.
     Line(CutError),
-    /// An opening is less than nothing.
+    /// An opening is negative.
     Negative(u16),
     /// The openings of a cut differ by more than twice its length.
     TooWide(u16),
     /// Two cuts cross, or lie on each other.
     Cross(u16, u16),
-    /// Two cuts open at one place.
+    /// Two cuts open at the same place.
     OneEnd(u16, u16),
-    /// Two cuts have one number.
+    /// Two cuts have the same number.
     Number(u16),
-    /// More cuts than are taken.
+    /// Too many cuts.
     TooMany,
-    /// A number is larger than what it makes can be counted from: the largest that may be.
+    /// The number of a cut or pleat is above the largest from which its parts can be numbered: the number,
+    /// and the largest.
     Large(u16, u16),
-    /// The depth of pleats is less than nothing.
+    /// The depth of pleats is negative.
     NoDepth,
     /// The outline beside the pleat of that number turns back within the depth of a fold.
     TooDeep(u16),
 }
 
-/// Most cuts of one operation: a part is named by a bit a cut.
+/// Most cuts of one operation: a part is identified by one bit for each cut.
 pub(crate) const MAX_CUTS: usize = 64;
 
-/// A cut between two places of the outline, each the number of an edge that starts there.
+/// A cut between two corners of the outline; `at` holds the indices of the edges that start there.
 pub(super) struct Chord {
     pub at: [usize; 2],
     pub points: [Vec2; 2],
@@ -64,7 +65,7 @@ pub(super) struct Chord {
     pub openings: [f64; 2],
 }
 
-/// A stage spread along cuts.
+/// The stage spread along cuts.
 pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadError> {
     let open = CutOpen::of(stage, wish, SpreadCut::LARGEST)?;
     open.moved(stage, |gap| {
@@ -95,36 +96,36 @@ pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadErr
     })
 }
 
-/// A stage cut along chords, and how its parts move.
+/// A stage cut along chords, with the motions of its parts.
 pub(super) struct CutOpen {
     outline: usize,
-    /// The outline, divided where cuts start and end.
+    /// The outline, divided at the ends of the cuts.
     pub line: StageLine,
     pub chords: Vec<Chord>,
     parts: Parts,
 }
 
-/// Where a cut starts or ends: what the outline runs across there.
+/// An end of a cut, where the outline has an opening.
 pub(super) struct Gap<'g> {
     pub chord: &'g Chord,
-    /// 0 where the cut starts, 1 where it ends.
+    /// 0 at the start of the cut, 1 at its end.
     pub end: usize,
-    /// The edge that starts there, as it was before.
+    /// Index of the edge that starts there in the divided outline.
     pub at: usize,
-    /// The edge before the opening and the one after it, as moved.
+    /// The moved edge before the opening and the moved edge after it.
     pub before: &'g StageEdge,
     pub after: &'g StageEdge,
 }
 
-/// What runs across an opening.
+/// The edges across an opening.
 pub(super) struct Crossed {
-    /// The corners it starts and ends at.
+    /// The corners at their start and end.
     pub corners: [CornerName; 2],
     pub edges: Vec<StageEdge>,
 }
 
 impl CutOpen {
-    /// `largest` is the largest number a cut may have.
+    /// Cuts a stage; `largest` is the largest number that a cut may have.
     pub fn of(stage: &Stage, wish: &Spreading, largest: u16) -> Result<Self, SpreadError> {
         if let Some(cut) = wish.cuts.iter().find(|cut| cut.number > largest) {
             return Err(SpreadError::Large(cut.number, largest));
@@ -171,12 +172,12 @@ impl CutOpen {
         })
     }
 
-    /// How the part moves that an edge is on.
+    /// Motion of the part that an edge is on.
     pub fn motion(&self, edge: usize) -> Motion {
         self.parts.motions[self.parts.of_edge[edge]]
     }
 
-    /// The stage with every part moved, and with what runs across openings.
+    /// The stage with every part moved, and with edges across the openings.
     pub fn moved(
         &self,
         stage: &Stage,
@@ -248,13 +249,13 @@ impl Chord {
         Path::new(vec![Curve::Line { start, end }])
     }
 
-    /// Whether an edge is in the part from the first of both ends along the outline to the other.
+    /// Whether an edge is in the part between the two ends of the cut, in the order of the outline's edges.
     fn is_between(&self, edge: usize) -> bool {
         let [a, b] = self.at;
         (a.min(b)..a.max(b)).contains(&edge)
     }
 
-    /// Whether the whole of another cut is there.
+    /// Whether the whole of another cut is in that part.
     fn has_between(&self, other: &Self) -> bool {
         let own = other.at.iter().find(|at| !self.at.contains(at));
         own.is_some_and(|at| self.is_between(*at))
@@ -270,14 +271,14 @@ impl Chord {
         free.is_empty() || free.len() == 2 && free[0] != free[1]
     }
 
-    /// How the part beyond it moves against the one before it; `left` says whether that lies left
-    /// of the cut.
+    /// Motion of the part beyond the cut relative to the part before it; `left` tells whether the part beyond
+    /// lies left of the cut.
     fn opened(&self, left: bool) -> Motion {
         let [start, end] = self.points;
         let way = end - start;
         let [a, b] = self.openings;
         let side = if left { 1.0 } else { -1.0 };
-        // An isosceles trapezoid: the cut twice, and both openings.
+        // The opened cut is an isosceles trapezoid: its legs are the cut, its bases the openings.
         let half = ((a - b) / (2.0 * way.norm())).clamp(-1.0, 1.0).asin();
         let axis = Motion::about(Vec2::zeros(), -side * half).direction(way.normalize());
         let across = Vec2::new(-axis.y, axis.x) * side;
@@ -320,9 +321,9 @@ fn check_chords(stage: &Stage, outline: usize, chords: &[Chord]) -> Result<(), S
 
 /// The parts between cuts.
 struct Parts {
-    /// Of each edge of the divided outline, its part.
+    /// Index of the part of each edge of the divided outline.
     of_edge: Vec<usize>,
-    /// How each part moves.
+    /// Motion of each part.
     motions: Vec<Motion>,
 }
 
@@ -363,7 +364,7 @@ impl Parts {
     }
 }
 
-/// How a part moves: over every cut between it and the part that stays, the nearest to that first.
+/// Motion of a part: across every cut between it and the fixed part, the cut nearest to the fixed part first.
 fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
     let is_far = |k: usize| own >> k & 1 == 1;
     let between: Vec<usize> = (0..chords.len())
@@ -378,14 +379,15 @@ fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
     order.sort_unstable();
     order.iter().fold(Motion::NONE, |so_far, &(_, k)| {
         let chord = &chords[k];
-        // Counter-clockwise, what lies between the start and the end is right of the cut.
+        // On a counter-clockwise outline, the part between the start and the end of the cut lies right of
+        // the cut.
         let forwards = chord.at[0] < chord.at[1];
         let left = (is_far(k) == forwards) != (turn > 0.0);
         so_far.after(chord.opened(left))
     })
 }
 
-/// From the end of an edge to the start of another.
+/// The curve from the end of one edge to the start of another.
 fn bridge(kind: Bridge, before: &StageEdge, after: &StageEdge) -> Curve {
     let (start, end) = (before.curve.end(), after.curve.start());
     let leaving = before.curve.derivative(1.0).try_normalize(1e-15);

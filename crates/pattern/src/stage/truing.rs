@@ -1,5 +1,5 @@
-//! Darts trued: the edge beside their mouths redrawn so that it runs on across them once they are
-//! closed, their legs equally long.
+//! Trued darts: the edges beside their mouths are redrawn so that they run on across the closed darts, and
+//! the legs of each dart become equally long.
 
 use super::dart::parameter;
 use super::fair::{Closing, NotTrued, Row, arriving, between, leaving};
@@ -8,26 +8,26 @@ use crate::{CornerName, EdgeCorner, LineKind, Name, OperationId, Role};
 use std::f64::consts::FRAC_PI_8;
 use toile_geometry::Curve;
 
-/// An edge that turns by more where it runs on has a kink there (rad): a centimetre from it the line
-/// is half a millimetre beside where it led.
+/// An edge that runs on and turns by more than this has a kink there (rad): a centimetre further the line is
+/// half a millimetre off its direction before.
 pub(crate) const KINK: f64 = 3.0 * std::f64::consts::PI / 180.0;
-/// Edges of two names that turn by more make a corner: neither runs on (rad).
+/// Edges with different names that turn by more than this make a corner: neither runs on (rad).
 pub(crate) const CORNER: f64 = std::f64::consts::PI / 6.0;
-/// Shares of an edge that differ by less are one.
+/// Shares of an edge that differ by less than this count as the same.
 const SAME_SHARE: f64 = 1e-9;
 
-/// Darts in one edge that follow each other, by numbers of the outline's edges.
+/// Consecutive darts in one edge, by indices of the outline's edges.
 struct DartRow {
-    /// Edges of each stretch, one more than darts.
+    /// Edges of each stretch; there is one stretch more than darts.
     stretches: Vec<Vec<usize>>,
     /// The first leg of each dart.
     legs: Vec<usize>,
-    /// The darts, by number in the stage.
+    /// Indices of the darts in the stage.
     darts: Vec<usize>,
 }
 
-/// The stage with the edges across its trued darts redrawn, and the darts that are not trued, with why.
-/// Edges keep their direction at the corners given, where they go on.
+/// The stage with the edges across its trued darts redrawn, and the darts that cannot be trued, with the
+/// reason. Edges keep their direction at the given corners, where they run on.
 pub(crate) fn true_darts(
     mut stage: Stage,
     going_on: &[CornerName],
@@ -60,8 +60,8 @@ pub(crate) fn true_darts(
 }
 
 impl Stage {
-    /// The edge that a dart is taken out of, and its length without mouths (m); nothing where the
-    /// dart lies between two edges.
+    /// The edge that a dart opens in, and its length without mouths (m); none if the dart lies between
+    /// two edges.
     pub fn edge_beside(&self, dart: OperationId) -> Option<(crate::EdgeName, f64)> {
         let edges = self.outline();
         let is_own = |edge: &&StageEdge| edge.half == 0;
@@ -78,7 +78,7 @@ impl Stage {
         (before.name == after.name).then_some((before.name, length))
     }
 
-    /// The stage before its darts were trued, as far as that is known.
+    /// The stage before its darts were trued, as far as that is recorded.
     pub(crate) fn as_untrued(&self) -> Self {
         let mut stage = self.clone();
         let outline = |line: &&mut super::StageLine| line.kind == LineKind::Outline;
@@ -92,7 +92,7 @@ impl Stage {
     }
 }
 
-/// Darts to be trued that take something in, but have no edge that runs on across their mouth.
+/// Darts to be trued that take cloth in, but have no edge that runs on across their mouth.
 fn beside_no_row(stage: &Stage, outline: usize, rows: &[DartRow]) -> Vec<OperationId> {
     let edges = &stage.lines[outline].edges;
     let is_open = |by: OperationId| edges.iter().any(|e| e.half == 0 && e.name == leg(by, 0));
@@ -104,7 +104,7 @@ fn beside_no_row(stage: &Stage, outline: usize, rows: &[DartRow]) -> Vec<Operati
     lone.map(|(_, dart)| dart.by).collect()
 }
 
-/// Divides arcs of edges that have trued darts, so that a cubic follows each part closely.
+/// Divides arcs of edges with trued darts, so that a cubic follows each part closely.
 fn divide_arcs(stage: &mut Stage, outline: usize) {
     let mut rows = rows(stage, outline);
     rows.retain(|row| !row.plain(stage, outline, &[]).is_smooth());
@@ -150,7 +150,7 @@ fn leg(by: OperationId, index: u16) -> crate::EdgeName {
 fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     let edges = &stage.lines[outline].edges;
     let count = edges.len();
-    // The first leg of every dart across whose mouth an edge runs on.
+    // Finds the first leg of each dart whose mouth lies within an edge that runs on.
     let within = |number: usize| -> Option<usize> {
         let dart = &stage.darts[number];
         let is_first = |edge: &StageEdge| edge.name == leg(dart.by, 0) && edge.half == 0;
@@ -179,7 +179,7 @@ fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     let mut rows: Vec<DartRow> = Vec::new();
     while let Some(&(mut first, mut number)) = darts.first() {
         let mut walked = vec![number];
-        // Back to the first dart of the edge.
+        // Go back to the first dart of the edge.
         while let Some(&(leg, before)) = darts
             .iter()
             .find(|(leg, _)| (leg + 2) % count == stretch_before(edges, first)[0])
@@ -206,7 +206,7 @@ fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     rows
 }
 
-/// Edges of one name, share after share, that end where an edge starts.
+/// Consecutive edges with one name that end at the start of the edge `end`.
 fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
     let count = edges.len();
     let mut stretch = vec![(end + count - 1) % count];
@@ -221,7 +221,7 @@ fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
     stretch
 }
 
-/// The same from the start of an edge on.
+/// Consecutive edges with one name from the edge `start` on.
 fn stretch_after(edges: &[StageEdge], start: usize) -> Vec<usize> {
     let count = edges.len();
     let mut stretch = vec![start];
@@ -248,7 +248,7 @@ impl DartRow {
         all.any(|k| !matches!(edges[*k].curve, Curve::Line { .. }))
     }
 
-    /// The row in plain numbers.
+    /// The row as plain curves and points.
     fn plain(&self, stage: &Stage, outline: usize, going_on: &[CornerName]) -> Row {
         let line = &stage.lines[outline];
         let edges = &line.edges;
@@ -285,7 +285,7 @@ impl DartRow {
         }
     }
 
-    /// Puts the redrawn edges and legs in their places.
+    /// Puts the redrawn edges and legs into the outline.
     fn put(&self, stage: &mut Stage, outline: usize, redrawn: super::fair::Redrawn) {
         let edges = &mut stage.lines[outline].edges;
         let count = edges.len();
@@ -302,7 +302,7 @@ impl DartRow {
     }
 }
 
-/// Lets the mouths of darts in rows, and notches beside them, follow the edges of the outline.
+/// Moves the mouths of darts in rows, and the notches beside them, along with the edges of the outline.
 fn follow(stage: &mut Stage, outline: usize, rows: &[DartRow]) {
     let edges = &stage.lines[outline].edges;
     let stretches = rows.iter().flat_map(|row| &row.stretches);

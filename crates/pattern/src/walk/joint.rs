@@ -1,60 +1,61 @@
-//! The ends of a seam: how the edges of both pieces that leave it there go on across it.
+//! The ends of a seam: continuation of the adjacent edges of both pieces across the seam.
 
 use super::{Run, Walk, cloth_is_left, rings};
 use crate::{Draft, EdgeOrigin, Pattern, Piece, PieceEdge, Role};
 use toile_geometry::{Curve, Vec2};
 
-/// A line that turns by no more than this across a seam is smooth (deg). The line a hand draws to
-/// smooth it, from a centimetre before the seam to a centimetre after, lies 1 cm tan(1 deg) =
-/// 0.17 mm beside it: less than the width of a pencil's line.
+/// Greatest turn of a smooth line across a seam (deg). The line that a hand draws to smooth it, from a
+/// centimetre before the seam to a centimetre after, deviates by 1 cm tan(1 deg) = 0.17 mm: less than the
+/// width of a pencil's line.
 pub const SMOOTH: f64 = 2.0;
-/// A line that turns by more than this has a kink that is seen when it is sewn (deg): smoothing it
-/// likewise takes 1 cm tan(3 deg) = 0.5 mm, by which the sides of a seam may differ too.
+/// Greatest turn of a slight kink (deg); a line that turns by more has a kink that is visible when sewn:
+/// smoothing it deviates by 1 cm tan(3 deg) = 0.5 mm, the tolerance of the sides of a seam.
 pub const SLIGHT_KINK: f64 = 6.0;
-/// A corner that differs less from a straight line is none (rad): the edge goes on past the seam.
+/// A corner that deviates less than this from a straight line is none (rad): the edge runs on past the end of
+/// the seam.
 const STRAIGHT_ON: f64 = std::f64::consts::PI / 6.0;
-/// Shares of an edge that differ by less are one.
+/// Shares of an edge that differ by less than this count as the same.
 const SAME_SHARE: f64 = 1e-9;
 
-/// What two edges come to that leave a seam at one of its ends, once the pieces are laid together
-/// there: a line that crosses the seam.
+/// A line that crosses a seam at one of its ends: the two edges that leave the seam there, with the pieces
+/// laid together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// The end of the seam: 0 its start, 1 its end.
+    /// End of the seam: 0 its start, 1 its end.
     pub end: usize,
-    /// The pieces, by their index in the draft.
+    /// Indices of the pieces in the draft.
     pub pieces: [usize; 2],
-    /// The edges that leave it, on the piece of the first side and on that of the second.
+    /// The edges that leave the seam, on the piece of the first side and on the piece of the second.
     pub edges: [EdgeOrigin; 2],
     /// The corners of the seam, each in the plane of its piece (m).
     pub corners: [Vec2; 2],
-    /// Unit directions in which the edges leave, each in the plane of its piece; darts between seam
-    /// and edge closed.
+    /// Unit directions in which the edges leave, each in the plane of its piece, with darts between seam and
+    /// edge closed.
     pub leaving: [Vec2; 2],
-    /// Angles of cloth between seam and edge (rad).
+    /// Angles between seam and edge, through the cloth (rad).
     pub angles: [f64; 2],
-    /// By how much the line turns across the seam (rad), -pi to pi: 0 smooth, above it a peak that
-    /// points out of the cloth, below it a dip into the cloth.
+    /// Turn of the line across the seam (rad), -pi to pi: 0 smooth, positive a peak that points out of the
+    /// cloth, negative a dip into the cloth.
     pub kink: f64,
-    /// How far the first piece reaches beyond the second when both are laid together at the start of
-    /// the seam and walked without stretching either (m): the difference of the sides that neither
-    /// ease nor gathers take in. 0 at the start.
+    /// Length by which the first piece extends beyond the second when both are laid together at the start of
+    /// the seam and walked without stretching either (m): the part of the difference of the sides that
+    /// neither ease nor gathers take in. 0 at the start.
     pub step: f64,
 }
 
-/// How smooth a line is across a seam.
+/// Smoothness of a line across a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Smoothness {
-    /// It turns by no more than [`SMOOTH`].
+    /// The line turns by no more than [`SMOOTH`].
     Smooth,
-    /// It turns by no more than [`SLIGHT_KINK`].
+    /// The line turns by no more than [`SLIGHT_KINK`].
     Slight,
-    /// It turns by more.
+    /// The line turns by more.
     Kink,
 }
 
 impl Joint {
-    /// How smooth the line is.
+    /// Smoothness of the line.
     pub fn smoothness(&self) -> Smoothness {
         let turn = self.kink.abs().to_degrees();
         match () {
@@ -73,7 +74,7 @@ impl Joint {
         })
     }
 
-    /// What the line is called: by the name of both edges if they share it, else by both names.
+    /// Name of the line: the name of both edges if they share it, else both names.
     pub fn line(&self, pattern: &Pattern, draft: &Draft) -> String {
         match self.names(pattern, draft) {
             [one, other] if one == other => one,
@@ -83,9 +84,9 @@ impl Joint {
 }
 
 impl Walk<'_> {
-    /// The lines that cross the seam at its start and at its end; `ease` is how much longer one side
-    /// may be (m). There is none where the edge of a side goes on past the end of the seam, by less
-    /// than 30 degrees from straight on, as where a slit begins or a third piece is sewn on.
+    /// The lines that cross the seam at its start and at its end; `ease` is the length by which one side may
+    /// exceed the other (m). None where the edge of a side runs on past the end of the seam within 30 degrees
+    /// of straight, as where a slit begins or a third piece is sewn on.
     pub fn joints(&self, ease: f64) -> [Option<Joint>; 2] {
         [0, 1].map(|end| self.joint(end, ease))
     }
@@ -118,7 +119,7 @@ impl Walk<'_> {
         })
     }
 
-    /// The corner of a side at an end of the seam; nothing if the seam ends within an edge.
+    /// The corner of a side at an end of the seam; none if the seam ends within an edge.
     fn corner(&self, side: usize, end: usize) -> Option<SeamCorner> {
         let runs = &self.sides.0[side].runs;
         let run = if end == 0 {
@@ -128,7 +129,7 @@ impl Walk<'_> {
         };
         let piece = self.draft.pieces.get(run.span.piece)?;
         let (into_seam, at) = into_run(run, end)?;
-        // The ring goes on from the seam forward or backward.
+        // Whether the ring continues from the seam forwards.
         let forward = (run.span.to > run.span.from) == (end == 1);
         let share = if end == 0 { run.span.from } else { run.span.to };
         let wanted = if forward { 1.0 } else { 0.0 };
@@ -162,7 +163,7 @@ struct SeamCorner {
     angle: f64,
 }
 
-/// Unit direction from an end of a run into it, and the place of that end.
+/// Unit direction from an end of a run into it, and the position of that end.
 fn into_run(run: &Run, end: usize) -> Option<(Vec2, Vec2)> {
     let curves = run.path.curves();
     Some(match end {
@@ -177,9 +178,9 @@ fn into_run(run: &Run, end: usize) -> Option<(Vec2, Vec2)> {
     })
 }
 
-/// The edge that comes next to another on its ring, and the unit direction in which it leaves.
-/// Darts between are closed: both legs are passed over, and what follows turned by their angle.
-/// Underlays of pleats lie folded under, with what follows parallel to what it was.
+/// The edge next to another on its ring, and the unit direction in which it leaves. Darts between the two are
+/// closed: both legs are passed over, and the direction is turned by the dart's angle. Underlays of pleats
+/// lie folded under, and the direction stays as it is.
 fn neighbour(piece: &Piece, edge: usize, forward: bool) -> Option<(&PieceEdge, Vec2)> {
     let mut before = 0;
     let ring = rings(piece).find(|ring| {
@@ -202,7 +203,7 @@ fn neighbour(piece: &Piece, edge: usize, forward: bool) -> Option<(&PieceEdge, V
             let way = leaving(&walked(found, forward));
             return Some((found, turned(way, closing)));
         };
-        // The second leg is laid on the first, about the point of the dart where both meet.
+        // The second leg is laid on the first by a turn about the apex, where both meet.
         let other = next(k, count, forward);
         let is_pair = ring[other].origin.leg().is_some_and(|(own, _)| own == by);
         if !is_pair || other == edge - before {
@@ -224,7 +225,7 @@ fn next(k: usize, count: usize, forward: bool) -> usize {
     }
 }
 
-/// The curve of an edge as it is walked, with its ring or against it.
+/// The curve of an edge in walking direction, with its ring or against it.
 fn walked(edge: &PieceEdge, forward: bool) -> Curve {
     match forward {
         true => edge.curve,
@@ -237,8 +238,8 @@ fn turned(v: Vec2, angle: f64) -> Vec2 {
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
-/// Unit direction in which a curve leaves its start; where it stands still there, towards a place a
-/// little further.
+/// Unit direction of a curve at its start; if its derivative vanishes there, towards a point a little
+/// further on.
 fn leaving(curve: &Curve) -> Vec2 {
     let own = curve.derivative(0.0).try_normalize(1e-12);
     let further = || (curve.point(1e-3) - curve.start()).try_normalize(1e-15);

@@ -1,9 +1,9 @@
-//! Walking a seam: the pieces of its second side laid on those of its first along the seam line, place
-//! by place, and how the edges beside the seam go on across it.
+//! Walking a seam: the pieces of its second side are laid on those of its first along the seam line, place by
+//! place, to compare lengths, notches and the edges that continue across the seam.
 //!
-//! At every place both seam lines touch and are tangent, the cloth of the two pieces on opposite sides
-//! of the line, as it lies when the seam is sewn and pressed open. Mouths of darts in the seam are
-//! passed over, from leg to leg, as if the dart were closed.
+//! At every place both seam lines touch and are tangent, with the cloth of the two pieces on opposite sides
+//! of the line, as when the seam is sewn and pressed open. Mouths of darts in the seam are passed over, from
+//! leg to leg, as if the dart were closed.
 
 mod joint;
 mod notches;
@@ -24,8 +24,8 @@ pub struct Walk<'d> {
     sides: WalkSides,
 }
 
-/// Both sides of a seam, measured: by them a walk is begun again without measuring anew, as long as the
-/// draft is the same.
+/// The measured sides of a seam: with them a walk can start again without measuring, as long as the draft is
+/// the same.
 #[derive(Clone, Debug)]
 pub struct WalkSides(Arc<[WalkedSide; 2]>);
 
@@ -42,36 +42,36 @@ struct WalkedSide {
 struct Run {
     span: DraftSpan,
     path: Path,
-    /// Arc length from the start of the side to its start (m).
+    /// Arc length from the start of the side to the start of the run (m).
     start: f64,
 }
 
-/// A place where both sides of a seam touch.
+/// A place at which both sides of a seam touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Arc length from the start of each side (m).
     pub along: [f64; 2],
-    /// The pieces that touch there, by their index in the draft.
+    /// Indices in the draft of the pieces that touch there.
     pub pieces: [usize; 2],
-    /// The place on each, in its own plane (m).
+    /// Position of the place on each piece, in the piece's plane (m).
     pub places: [Vec2; 2],
-    /// Lays the piece that is moved on the one that stays: from the plane of the one to that of the
-    /// other. It mirrors where the piece has to be turned over.
+    /// Map that lays the moving piece on the fixed one: from the plane of the one to the plane of the other.
+    /// It mirrors if the piece has to be turned over.
     pub laid: Affine,
 }
 
 /// The side of a seam whose piece is fixed while the other is laid against it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FixedSide {
-    /// The first.
+    /// The first side.
     #[default]
     First,
-    /// The second.
+    /// The second side.
     Second,
 }
 
 impl FixedSide {
-    /// The number of the fixed side, and of the side that moves.
+    /// Index of the fixed side, and of the side that moves.
     pub fn sides(self) -> [usize; 2] {
         match self {
             Self::First => [0, 1],
@@ -79,7 +79,7 @@ impl FixedSide {
         }
     }
 
-    /// The other.
+    /// The other side.
     #[must_use]
     pub fn other(self) -> Self {
         match self {
@@ -90,7 +90,7 @@ impl FixedSide {
 }
 
 impl Evaluation {
-    /// How much longer one side of a seam may be than the other (m).
+    /// Length by which one side of a seam may exceed the other (m).
     pub fn ease(&self, seam: SeamOrigin) -> f64 {
         match seam {
             SeamOrigin::Seam(id) => self.seam_value(id).map_or(0.0, |value| value.ease),
@@ -100,7 +100,7 @@ impl Evaluation {
 }
 
 impl<'d> Walk<'d> {
-    /// The walk of a seam of a draft; nothing if a span of it is not there or a side has no length.
+    /// The walk of a seam of a draft; none if a span is missing or a side has no length.
     pub fn new(draft: &'d Draft, seam: &'d DraftSeam) -> Option<Self> {
         let [first, second] = [0, 1].map(|k| WalkedSide::new(draft, &seam.sides[k]));
         Some(Self {
@@ -119,7 +119,7 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// Both sides, to begin the walk again by.
+    /// Both measured sides, for starting the walk again.
     pub fn sides(&self) -> WalkSides {
         self.sides.clone()
     }
@@ -129,8 +129,8 @@ impl<'d> Walk<'d> {
         [self.sides.0[0].length, self.sides.0[1].length]
     }
 
-    /// Where both sides touch at an arc length of the first (m), clamped to it. The second has its
-    /// place in proportion to its length, so that ease is spread evenly, as seams are sewn.
+    /// The place at which both sides touch at an arc length of the first (m), clamped to its range. The place
+    /// on the second side is in proportion to its length, so that ease is spread evenly, as in sewing.
     pub fn contact(&self, along: f64, fixed: FixedSide) -> Contact {
         let [first, second] = self.lengths();
         let along = along.clamp(0.0, first);
@@ -138,8 +138,8 @@ impl<'d> Walk<'d> {
         let at = [0, 1].map(|k| self.sides.0[k].at(along[k]));
         let places = at.map(|(_, place, _)| place);
         let directions = at.map(|(_, _, direction)| direction);
-        // The cloth lies to the left of the walk on one piece and to the right on the other, or the
-        // one that is moved is turned over.
+        // The cloth lies left of the walk on one piece and right of it on the other; otherwise the moving
+        // piece is turned over.
         let left = [0, 1].map(|k| self.cloth_is_left(at[k].0));
         let turned_over = left[0] == left[1];
         let [base, moved] = fixed.sides();
@@ -158,8 +158,8 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// The arc length of the first side at the place of a piece's seam line that is nearest to a
-    /// point of its plane (m); nothing if that side has no stretch on the piece.
+    /// Arc length of the first side at the place on a piece's seam line that is nearest to a point of its
+    /// plane (m); none if that side has no stretch on the piece.
     pub fn nearest(&self, side: usize, piece: usize, to: Vec2) -> Option<f64> {
         let own = self.sides.0[side].runs.iter();
         let own = own.filter(|run| run.span.piece == piece);
@@ -182,7 +182,7 @@ impl<'d> Walk<'d> {
         runs.map(|run| (run.span.piece, &run.path))
     }
 
-    /// Whether the cloth lies to the left of a run as it is walked.
+    /// Whether the cloth lies left of a run in walking direction.
     fn cloth_is_left(&self, run: &Run) -> bool {
         let is_forward = run.span.to > run.span.from;
         let is_left = self.draft.pieces.get(run.span.piece);
@@ -190,7 +190,7 @@ impl<'d> Walk<'d> {
     }
 }
 
-/// Whether cloth lies to the left of the rings of a piece: its outline is wound counter-clockwise.
+/// Whether cloth lies left of the rings of a piece: then its outline is wound counter-clockwise.
 fn cloth_is_left(piece: &Piece) -> bool {
     let edges = piece.outline.iter();
     edges.map(|edge| edge.curve.swept_area()).sum::<f64>() >= 0.0
@@ -208,7 +208,7 @@ fn edge_of<'d>(draft: &'d Draft, span: &DraftSpan) -> Option<&'d PieceEdge> {
     rings(piece).flatten().nth(span.edge)
 }
 
-/// The rigid map that lays one place and direction on another; turned over, left becomes right.
+/// The rigid map that takes one point and direction to another; turned over, left becomes right.
 fn laying([(to, along), (from, was)]: [(Vec2, Vec2); 2], turned_over: bool) -> Affine {
     let left = |v: Vec2| Vec2::new(-v.y, v.x);
     let side = if turned_over { -1.0 } else { 1.0 };
@@ -241,8 +241,8 @@ impl WalkedSide {
         can_be_walked.then_some(Self { runs, length })
     }
 
-    /// The run, place and direction at an arc length (m). Where two runs meet they are those of the
-    /// second.
+    /// Run, position and direction at an arc length (m). At the joint of two runs they are those of the
+    /// second run.
     fn at(&self, along: f64) -> (&Run, Vec2, Vec2) {
         let last = self.runs.len() - 1;
         let k = self.runs.partition_point(|run| run.start <= along);
@@ -250,7 +250,8 @@ impl WalkedSide {
         let place = run.path.at_length(along - run.start);
         let at = place.map_or_else(Vec2::zeros, |place| run.path.point(place));
         let own = place.and_then(|place| run.path.direction(place));
-        // Where the curve stands still, as with a handle at its end: the way of the whole run.
+        // If the derivative of the curve vanishes, as with a handle at its end, the chord of the run gives
+        // the direction.
         let chord = || {
             let ends = run.path.curves().first().zip(run.path.curves().last());
             ends.and_then(|(first, last)| (last.end() - first.start()).try_normalize(1e-15))

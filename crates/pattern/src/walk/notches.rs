@@ -1,12 +1,12 @@
-//! Notches along a seam, and their distances when it is sewn.
+//! Notches along a seam, and their distances once it is sewn.
 
 use super::{Run, Walk, WalkedSide};
 use crate::NotchId;
 use toile_geometry::{Curve, Vec2};
 
-/// A notch has its partner within this distance along the seam (m).
+/// Greatest distance along the seam between a notch and its partner (m).
 pub const NOTCH_REACH: f64 = 0.01;
-/// Notches that are no farther apart meet (m): the width of a notch as it is cut.
+/// Greatest distance at which notches meet (m): the width of a cut notch.
 pub const NOTCHES_MEET: f64 = 0.001;
 /// A notch this near to a seam line lies on it (m).
 const ON_LINE: f64 = 1e-6;
@@ -14,27 +14,27 @@ const ON_LINE: f64 = 1e-6;
 /// A notch on a side of a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkedNotch {
-    /// The side: 0 or 1.
+    /// Side of the seam: 0 or 1.
     pub side: usize,
-    /// The piece, by its index in the draft.
+    /// Index of the piece in the draft.
     pub piece: usize,
-    /// Which notch.
+    /// The notch of the panel.
     pub id: NotchId,
-    /// Where it lies in the plane of its piece (m).
+    /// Position in the plane of the piece (m).
     pub at: Vec2,
-    /// Arc length from the start of its side (m).
+    /// Arc length from the start of the side (m).
     pub along: f64,
-    /// How far its partner on the other side lies beyond the place opposite it, along that side (m);
-    /// nothing if none lies within [`NOTCH_REACH`] that is not nearer to another notch. Without a
-    /// notch the partner is an end of the other side that it meets, a dart that is closed there, or
-    /// where one piece of it ends and the next begins.
+    /// Distance along the other side from the place opposite this notch to its partner (m), positive beyond;
+    /// none if no partner lies within [`NOTCH_REACH`] that is not nearer to another notch. Without
+    /// such a notch the partner is an end of the other side that this notch meets, else a closed dart or a
+    /// joint between two pieces within that reach.
     pub partner: Option<f64>,
-    /// The piece of the notch that is its partner; nothing if that is no notch.
+    /// The piece of the partner, if the partner is a notch.
     pub partner_piece: Option<usize>,
 }
 
 impl WalkedNotch {
-    /// Whether it meets its partner.
+    /// Whether the notch meets its partner.
     pub fn meets(&self) -> bool {
         self.partner
             .is_some_and(|apart| apart.abs() <= NOTCHES_MEET)
@@ -42,7 +42,7 @@ impl WalkedNotch {
 }
 
 impl Walk<'_> {
-    /// The notches of both sides in walking order, those of the first side first.
+    /// The notches of both sides in walking order, the first side first.
     pub fn notches(&self) -> Vec<WalkedNotch> {
         let [first, second] = [0, 1].map(|side| self.notches_of(side));
         let lengths = self.lengths();
@@ -123,7 +123,7 @@ impl Walk<'_> {
 }
 
 impl WalkedSide {
-    /// Arc lengths at which darts in it are closed, or one piece ends and the next begins (m).
+    /// Arc lengths at which darts in the side are closed, or one piece ends and the next begins (m).
     fn joins(&self) -> Vec<f64> {
         let is_join = |pair: &&[Run]| {
             let [before, after] = [&pair[0], &pair[1]];
@@ -137,7 +137,7 @@ impl WalkedSide {
     }
 }
 
-/// How far the nearest of some places lies beyond a goal.
+/// Signed distance from a goal to the nearest of some positions.
 fn least(places: &[f64], goal: f64) -> Option<f64> {
     let away = places.iter().map(|place| place - goal);
     away.min_by(|a, b| a.abs().total_cmp(&b.abs()))

@@ -1,4 +1,4 @@
-//! Formulas that are read, and refusals of those that are none.
+//! Formulas that are read, and refusals of texts that are not formulas.
 
 use super::*;
 
