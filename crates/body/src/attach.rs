@@ -5,15 +5,15 @@ use crate::{Joint, JointFrames, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
 use toile_geometry::Vec3;
 
-/// A primitive that moves with a joint: rigidly, or changing with a reference joint besides.
+/// A primitive that moves with a joint, rigidly or also changing with the angle of a reference joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedPrimitive {
-    /// The joint it is fixed to: unless another was asked for, the nearer end, seen from the root,
-    /// of the bone it lies round.
+    /// The joint it is fixed to. By default this is the end nearer to the root of the bone that the primitive
+    /// lies round.
     pub joint: Joint,
     /// The primitive, its centre and rotation in the joint's frame.
     pub local: Primitive,
-    /// How it changes with a reference joint; a rigid one does not.
+    /// Change with the angle of a reference joint; `None` for a rigid primitive.
     pub deformation: Option<Deformation>,
 }
 
@@ -31,7 +31,7 @@ impl AttachedPrimitive {
         }
     }
 
-    /// The primitive in the body's frame, in a pose with these frames.
+    /// The primitive in the body's frame, in a pose with these joint frames.
     pub fn placed(&self, frames: &JointFrames, pose: &Pose) -> Primitive {
         let local = match &self.deformation {
             Some(deformation) => deformation.at(&self.local, deformation.angle(pose)),
@@ -40,7 +40,7 @@ impl AttachedPrimitive {
         let body_from_joint = frames.body_from_joint(self.joint);
         let centre = body_from_joint * nalgebra::Point3::from(local.centre);
         let turn = body_from_joint.rotation;
-        // At rest nothing is turned: the very numbers stay.
+        // At rest nothing is turned: the numbers stay exactly the same.
         let rotation = if turn == nalgebra::UnitQuaternion::identity() {
             local.rotation
         } else {

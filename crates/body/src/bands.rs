@@ -19,15 +19,15 @@ pub(crate) enum Near {
 }
 
 impl Near {
-    /// Round places of a body at some distance from the middle, between a least and a largest
-    /// sideways scale, and between heights of the template.
+    /// Near a range of distances from the middle of a body (m) that is scaled sideways by `least` to `most`,
+    /// between heights of the template (m).
     pub(crate) fn side(places: [f64; 2], [least, most]: [f64; 2], heights: [f64; 2]) -> Self {
         let [low, high] = [places[0].min(places[1]), places[0].max(places[1])];
         Self::Side([low / most - 0.025, high / least + 0.025], heights)
     }
 }
 
-/// The left half's triangles with the place of their first corner, in ascending order.
+/// The left half's triangles with the position of their first corner, in ascending order.
 pub(crate) struct Bands {
     level: Vec<(f64, u32)>,
     neck: Vec<(f64, u32)>,
@@ -35,12 +35,13 @@ pub(crate) struct Bands {
     side: Vec<(f64, u32)>,
     /// Heights of the first corners of triangles, in the order of `side`.
     side_level: Vec<f64>,
-    /// How many vertices the left half has with the middle: they come first.
+    /// Number of vertices of the left half and the middle: these come first.
     vertices: usize,
 }
 
 impl Bands {
-    /// Sorts the left half of a template's triangles; the arm's along its axis from the shoulder.
+    /// Sorts the left half of a template's triangles; arm triangles by distance along the arm from the
+    /// shoulder.
     pub(crate) fn new(mesh: &TriangleMesh, parts: &[Part], [shoulder, along]: [Vec3; 2]) -> Self {
         let half = mesh.triangles.len() / 2;
         let first = |t: usize| mesh.positions[mesh.triangles[t][0] as usize];
@@ -65,12 +66,12 @@ impl Bands {
         }
     }
 
-    /// How many vertices the left half has with the middle.
+    /// Number of vertices of the left half and the middle.
     pub(crate) fn vertices(&self) -> usize {
         self.vertices
     }
 
-    /// The triangles that begin near a place.
+    /// The triangles whose first corner lies in a range.
     pub(crate) fn of(&self, near: Near) -> impl Iterator<Item = usize> + '_ {
         let (rows, [from, to], heights) = match near {
             Near::Level(range) => (&self.level, range, None),
@@ -87,7 +88,7 @@ impl Bands {
     }
 }
 
-/// Height of a point square to a tape round the neck (m).
+/// Height of a point measured square to a tape round the neck (m).
 pub(crate) fn neck_height(p: Vec3) -> f64 {
     let (sin, cos) = NECK_TILT.sin_cos();
     p.y * cos + p.z * sin

@@ -1,11 +1,12 @@
-//! Where joints are on a template, on the body grown from it, and which of them carries what.
+//! Positions of joints on a template and on the body grown from it, and the joint that carries each
+//! primitive.
 
 use crate::template::{Joints, Template};
 use crate::warp::{Follow, Warp};
 use crate::{Joint, Part, Primitive, Skeleton};
 use toile_geometry::Vec3;
 
-/// The skeleton of the body a template is carried to.
+/// The skeleton of the body that a template is carried to.
 pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     let carried = |joint: Joint| {
         let follow = match joint {
@@ -18,7 +19,7 @@ pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     Skeleton::new(Joint::ALL.map(|joint| {
         let left = joint.min(joint.mirrored());
         let at = match joint {
-            // Between the hip joints of this body, which follow the legs and not the trunk.
+            // Half-way between the hip joints of this body, which follow the legs and not the trunk.
             Joint::HumanoidRoot => {
                 let hip = carried(Joint::LHip);
                 Vec3::new(0.0, hip.y, hip.z)
@@ -33,7 +34,7 @@ pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     }))
 }
 
-/// Where a joint of the middle or the left side is on a template (m).
+/// Position on a template of a joint of the middle or the left side (m).
 pub(crate) fn place(joints: &Joints, joint: Joint) -> Vec3 {
     let [hip, pelvis, chest, neck, head] = [
         joints.hip,
@@ -67,16 +68,16 @@ pub(crate) fn place(joints: &Joints, joint: Joint) -> Vec3 {
     }
 }
 
-/// Place of the lowest joint of the spine on the way from the pelvis to the chest's joint: it
-/// lies above the crests of the hips and below the waist.
+/// Position of the lowest joint of the spine, as a share of the way from the pelvis to the joint of the
+/// chest: above the crests of the hips and below the waist.
 const LUMBAR: f64 = 1.0 / 3.0;
-/// Place of the instep's joint on the way from the ankle to the toes, at half the ankle's height.
+/// Position of the instep's joint, as a share of the way from ankle to toes; its height is half the ankle's.
 const INSTEP: f64 = 0.4;
-/// Distance of a collar's inner end from the middle, over that of the shoulder joint.
+/// Distance of a collar's inner end from the middle, over the distance of the shoulder joint.
 const COLLAR: f64 = 0.15;
 
-/// The joint a primitive of a template is fixed to: of the bones that may carry its part, the one
-/// nearest to its centre; of equally near ones the one nearest to the root.
+/// The joint that a primitive of a template is fixed to: among the bones that may carry its part, the one
+/// nearest to its centre; of equally near ones, the one nearest to the root.
 pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
     if primitive.is_right() {
         return joint_of(template, &primitive.mirrored()).mirrored();
@@ -113,7 +114,7 @@ pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
     let centre = Vec3::from(primitive.centre);
     let mut best = (Joint::HumanoidRoot, f64::INFINITY);
     for (joint, end) in bones {
-        // The middle of the trunk goes with neither collar.
+        // A primitive in the middle of the trunk moves with neither collar.
         let middle = primitive.part == Part::Trunk && primitive.centre[0] == 0.0;
         if middle && joint.mirrored() != joint {
             continue;

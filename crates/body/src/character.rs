@@ -7,11 +7,11 @@ use toile_realtime::{
     Character, CharacterEllipsoid, CharacterJoint, Ellipsoids, Field, Group, KeyPose, KeyedClip,
 };
 
-/// Share of the skin nearest to an ellipsoid that lies within it. For all of it the ellipsoids
-/// beside a crease would swell.
+/// Share of the skin nearest to an ellipsoid that is to lie inside it. At a share of 1 the ellipsoids beside
+/// a crease would swell.
 const COVERED: f32 = 0.9;
 
-/// By how much an ellipsoid is enlarged at the most (m).
+/// Largest enlargement of an ellipsoid (m).
 const MAX_ENLARGED: f32 = 0.03;
 
 /// The name of a part's group.
@@ -31,13 +31,14 @@ fn single(v: Vec3) -> [f32; 3] {
 }
 
 impl Mannequin {
-    /// The body as a character with some named clips: an ellipsoid for every primitive, in groups by
-    /// part; the trunk touches all others, which touch nothing else. Primitives are visible beyond
-    /// their own ellipsoids where they blend: each ellipsoid is enlarged until most of the skin it
-    /// is nearest to lies within.
+    /// The body as a character with some named clips: an ellipsoid for every primitive, in groups by part.
+    /// All other groups touch the trunk, and nothing else. Where primitives blend, the skin lies outside
+    /// their own ellipsoids: each ellipsoid is enlarged until most of the skin that it is nearest to lies
+    /// within.
     ///
     /// # Errors
-    /// A primitive that changes with a reference joint: a character's ellipsoids are rigid.
+    /// [`BodyError::NotRigid`] for a primitive that changes with a reference joint: a character's ellipsoids
+    /// are rigid.
     pub fn character(&self, clips: &[(&str, &Clip)]) -> Result<Character, BodyError> {
         let skeleton = self.skeleton();
         if let Some(k) = self
@@ -80,7 +81,7 @@ impl Mannequin {
         Ok(character)
     }
 
-    /// Enlarges ellipsoids until they hold most of the skin at rest.
+    /// Enlarges the ellipsoids until they hold most of the skin at rest.
     fn cover(&self, character: &mut Character) {
         let Ok(ellipsoids) = Ellipsoids::new(character) else {
             return;
@@ -104,7 +105,7 @@ impl Mannequin {
     }
 }
 
-/// A clip by its poses, for a skeleton; of a loop the first pose comes again at the end.
+/// A clip as key poses of a skeleton; in a loop the first pose is repeated at the end.
 fn keyed(name: &str, clip: &Clip, skeleton: &Skeleton) -> KeyedClip {
     let again = clip.poses.first().filter(|_| clip.is_loop);
     let keys = clip.poses.iter().chain(again).enumerate();

@@ -1,37 +1,39 @@
 //! Clips without limbs in one another: shoulders and hips are turned outward, no further than it takes.
 //!
-//! Cloth between two walls of skin that cross has nowhere to be, so that clips are cleared before any cloth sees them.
+//! Cloth between two walls of skin that cross has no place to be, so clips are cleared before cloth is
+//! simulated on them.
 
 use crate::{Clip, Joint, Mannequin, Part, Pose};
 use nalgebra::UnitQuaternion;
 use rayon::prelude::*;
 use toile_geometry::{MovingSurface, TriangleMesh, Vec3};
 
-/// A clip in which limbs keep a gap, and what that took.
+/// A clip in which limbs keep a gap, and the turns that this took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cleared {
-    /// The clip; the one that was given to the bit where no limb had to be turned.
+    /// The clip; identical to the given one, bit by bit, where no limb had to be turned.
     pub clip: Clip,
     /// The largest turn of a shoulder and of a hip (rad).
     pub largest_turn: [f64; 2],
-    /// Times at which limbs come nearer all the same, for the largest turn is not enough (s).
+    /// Times at which limbs come nearer than the gap even with the largest turn (s).
     pub unclear: Vec<f64>,
 }
 
-/// Largest outward turns of shoulders and hips (rad): 25 and 8 degrees. Beyond them a figure no longer moves as the clip
-/// says.
+/// Largest outward turns of shoulders and hips (rad): 25 and 8 degrees. Beyond them a figure no longer moves
+/// as the clip shows.
 const MAX_SHOULDER: f64 = 25.0 * std::f64::consts::PI / 180.0;
 const MAX_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
-/// Skin nearer than this to where two parts join is left out, over stature: it touches in any pose.
+/// Distance over stature from the junction of two parts within which skin is left out: it touches in any
+/// pose.
 const JOINED: f64 = 0.075;
-/// Least number of poses a second that are looked at.
+/// Least number of poses checked per second.
 const LOOKS: f64 = 30.0;
-/// Time over which turns are held at their largest and then smoothed, to both sides (s).
+/// Time to both sides over which turns are held at their largest and then smoothed (s).
 const SPREAD: f64 = 0.1;
 /// Halvings in the search for the least turn: to 0.8 degrees of a shoulder.
 const HALVINGS: usize = 5;
-/// How far from the skin of another part it is looked for (m): deeper than any limb sinks in at a moment that is not
-/// preceded by one less deep.
+/// Largest distance at which the skin of another part is looked for (m). A limb that lies deeper in it went
+/// through a smaller depth at an earlier moment.
 const DEEPEST: f64 = 0.08;
 
 /// Limbs that are turned: the left arm, the right arm, both legs alike.
@@ -78,12 +80,12 @@ impl Channel {
     }
 }
 
-/// The skin of a limb off its joint, and the surface that it keeps away from.
+/// The skin of a limb away from its joint, and the surface that it keeps away from.
 struct Watched {
     channel: &'static Channel,
     vertices: Vec<u32>,
     others: MovingSurface,
-    /// Vertices of the skin by vertex of `others`.
+    /// Number in the skin of each vertex of `others`.
     of_skin: Vec<u32>,
 }
 
@@ -146,7 +148,8 @@ impl Watched {
         })
     }
 
-    /// The least outward turn (rad) at which the limb keeps a gap (m) in a pose; none where the largest is not enough.
+    /// Least outward turn (rad) with which the limb keeps a gap (m) in a pose; `None` if the largest is not
+    /// enough.
     fn least_turn(&self, body: &Mannequin, pose: &Pose, gap: f64) -> Option<f64> {
         let is_clear = |angle: f64| {
             let mut turned = pose.clone();
@@ -172,16 +175,17 @@ impl Watched {
 }
 
 impl Clip {
-    /// The clip with shoulders and hips turned outward, pose by pose, by the least angle at which arms keep a gap (m) from
-    /// all else and legs from each other, away from where they join; at most 25 degrees at shoulders and 8 at hips. Turns
-    /// are raised to their maximum over a tenth of a second and then smoothed, so that nothing jumps; a loop stays one.
+    /// The clip with shoulders and hips turned outward, pose by pose, by the least angle with which arms keep
+    /// a gap (m) from all other parts and legs from each other, away from their junctions; at most 25 degrees
+    /// at shoulders and 8 at hips. Turns are raised to their maximum over a tenth of a second to both sides
+    /// and then smoothed, so that nothing jumps; a loop stays a loop.
     pub fn cleared(&self, body: &Mannequin, gap: f64) -> Cleared {
         let every = ((1.0 / (LOOKS * self.step.max(1e-6))).floor() as usize).max(1);
         let looks: Vec<usize> = (0..self.poses.len()).step_by(every).collect();
         let mut clip = self.clone();
         let mut largest_turn = [0.0_f64; 2];
         let mut unclear: Vec<usize> = Vec::new();
-        // Hips first, as arms keep off the legs where they are then.
+        // Hips first, as arms keep away from the legs in their turned position.
         for channel in CHANNELS.iter().rev() {
             let watched = Watched::new(body, channel);
             let found: Vec<Option<f64>> = looks
@@ -218,8 +222,8 @@ impl Clip {
     }
 }
 
-/// Numbers raised to their maximum over so many neighbours to both sides, then averaged over as many, so that none is
-/// lower than before.
+/// Numbers raised to their maximum over `spread` neighbours to both sides, then averaged over as many, so
+/// that none becomes lower than before.
 fn smoothed(numbers: &[f64], spread: usize, is_loop: bool) -> Vec<f64> {
     let count = numbers.len() as isize;
     let near = |all: &[f64], k: isize, d: isize| {
@@ -240,7 +244,7 @@ fn smoothed(numbers: &[f64], spread: usize, is_loop: bool) -> Vec<f64> {
     (0..count).map(mean).collect()
 }
 
-/// The value at a place between numbers.
+/// Value at a position between numbers, linearly interpolated.
 fn between(numbers: &[f64], place: f64, is_loop: bool) -> f64 {
     let last = numbers.len() - 1;
     let low = (place.floor() as usize).min(last);

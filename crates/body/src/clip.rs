@@ -4,23 +4,23 @@ use crate::{Joint, Pose, Skeleton};
 use nalgebra::UnitQuaternion;
 use toile_geometry::Vec3;
 
-/// Poses at even steps of time. Distances of the root are in leg lengths (hip to floor), so that a
-/// motion fits every size.
+/// Poses at even time steps. Distances of the root are in leg lengths (hip to floor), so that a motion fits
+/// every size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     /// Time from one pose to the next (s).
     pub step: f64,
-    /// The poses; the root's place is over the leg length (1).
+    /// The poses; the root's position is over the leg length (1).
     pub poses: Vec<Pose>,
     /// Whether the first pose follows the last one.
     pub is_loop: bool,
-    /// How far a loop on the spot goes over the ground in one round, over the leg length (1): the standing foot then
-    /// stands still. Zero where the poses themselves move the root.
+    /// Distance over the ground in one round of a loop on the spot, over the leg length (1): moved by it, the
+    /// standing foot stands still. Zero where the poses themselves move the root.
     pub advance: Vec3,
 }
 
 impl Clip {
-    /// Length (s): of a loop with the way back to the first pose.
+    /// Duration (s); of a loop including the step back to the first pose.
     pub fn duration(&self) -> f64 {
         let gaps = match self.is_loop {
             true => self.poses.len(),
@@ -29,8 +29,8 @@ impl Clip {
         self.step * gaps as f64
     }
 
-    /// The pose at a time (s), slerped between frames: held before the start and after the end,
-    /// but for a loop. The root's place is over the leg length.
+    /// The pose at a time (s), slerped between frames. Before the start and after the end it is held, unless
+    /// the clip is a loop. The root's position is over the leg length.
     pub fn at(&self, time: f64) -> Pose {
         let count = self.poses.len();
         if count == 0 || !time.is_finite() || self.step <= 0.0 {
@@ -55,7 +55,7 @@ impl Clip {
         self.poses[low].blended(&self.poses[high], share)
     }
 
-    /// How far the figure has gone over the ground since the start of a loop at a time (s), over the leg length (1).
+    /// Distance over the ground from the start of a loop to a time (s), over the leg length (1).
     pub fn travelled(&self, time: f64) -> Vec3 {
         match self.duration() {
             duration if duration > 0.0 => self.advance * (time / duration),
@@ -63,15 +63,15 @@ impl Clip {
         }
     }
 
-    /// The pose at a time (s) for a skeleton: the root's place in metres.
+    /// The pose of a skeleton at a time (s), with the root's position in metres.
     pub fn pose_for(&self, skeleton: &Skeleton, time: f64) -> Pose {
         let mut pose = self.at(time);
         pose.shift *= skeleton.leg_length();
         pose
     }
 
-    /// A loop between two others, at the same share of their way round: 0 is this one. Matched
-    /// phases are needed, as [`Clip::walk`] and [`Clip::run`] have them; durations go along.
+    /// A loop between this one (`share` 0) and another (1), taken at the same share of their rounds. It needs
+    /// matched phases, such as those of [`Clip::walk`] and [`Clip::run`]; durations are interpolated too.
     pub fn between(&self, other: &Self, share: f64) -> Self {
         let share = share.clamp(0.0, 1.0);
         let count = self.poses.len().max(other.poses.len()).max(1);
@@ -93,9 +93,9 @@ impl Clip {
 }
 
 impl Pose {
-    /// The pose between this one (0) and another (1) as linear blending has it: each joint's
-    /// rotation vector evenly mixed, as frames and animations are in Rudomin et al. (2002). It
-    /// neither turns evenly nor the short way; for comparison with [`Pose::blended`] alone.
+    /// The pose between this one (0) and another (1) by linear blending: each joint's rotation vector is
+    /// evenly mixed, as between frames and animations in Rudomin et al. (2002). It turns neither evenly nor
+    /// the short way; only for comparison with [`Pose::blended`].
     #[must_use]
     pub fn blended_linearly(&self, other: &Self, share: f64) -> Self {
         let mut pose = Self::rest();
@@ -107,8 +107,8 @@ impl Pose {
         pose
     }
 
-    /// The pose between this one (0) and another (1): each joint the short way round
-    /// (Shoemake 1985), the root's place evenly.
+    /// The pose between this one (0) and another (1): each joint turns the short way round (Shoemake 1985),
+    /// the root moves evenly.
     #[must_use]
     pub fn blended(&self, other: &Self, share: f64) -> Self {
         let mut pose = Self::rest();

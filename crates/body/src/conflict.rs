@@ -8,19 +8,19 @@ use toile_measure::{Measurements, Origin};
 pub struct Conflict {
     /// The measurements, by their names.
     pub names: Vec<&'static str>,
-    /// By how much they disagree (m).
+    /// Size of the disagreement (m).
     pub gap: f64,
-    /// What does not fit, and what to change.
+    /// Reason, and what to change.
     pub why: &'static str,
 }
 
-/// A sum of measurements (m) that is at least a part of the stature on any body: names with their
-/// factors, the part, and what is wrong otherwise.
+/// A sum of measurements (m) that on any body is at least a share of the stature: names with their factors,
+/// the share, and the message if it is less.
 type Rule = (&'static [(&'static str, f64)], f64, &'static str);
 
-/// Rules of one body, by what the measurements mean and what people are like. The straight way over
-/// the front is no longer than the one over the bust where no belly stands farther out and the
-/// front falls no flatter than 45 degrees below the bust; a way along the skin is at least its fall.
+/// Rules that follow from the meaning of the measurements and from the shapes of people. The straight length
+/// of the front is no longer than the way over the bust if no belly stands farther out and the front falls no
+/// flatter than 45 degrees below the bust. A length along the skin is at least its drop in height.
 const RULES: &[Rule] = &[
     (
         &[("bust", 1.0), ("high_bust", -1.0)],
@@ -117,7 +117,7 @@ const RULES: &[Rule] = &[
     ),
 ];
 
-/// Two sums of lengths that are the same way of any body: names with signs.
+/// Lengths that add up to zero on any body: names with signs, and the message if they do not.
 type Loop = (&'static [(&'static str, f64)], &'static str);
 
 const LOOPS: &[Loop] = &[
@@ -183,26 +183,26 @@ const LOOPS: &[Loop] = &[
     ),
 ];
 
-/// Slack of an equality over stature: the tape's.
+/// Tolerance of an equality over stature: the accuracy of the tape.
 const SLACK: f64 = 5e-4;
 
-/// Whether a way over the bust contradicts the others: then it gives way to them and does not say
-/// where the bust lies.
+/// Whether `name` is [`UNDER_BUST`] and contradicts other measurements: it is then ignored and does not
+/// determine the position of the bust.
 pub(crate) fn gives_way(name: &str, conflicts: &[Conflict]) -> bool {
     let among = |c: &Conflict| c.names.contains(&UNDER_BUST);
     name == UNDER_BUST && conflicts.iter().any(among)
 }
 
-/// What goes over a belly.
+/// Measurement of the front that also passes over a belly.
 const OVER_BELLY: &str = "hps_to_waist_front";
 
-/// What gives way.
+/// Measurement that is ignored if it contradicts others.
 const UNDER_BUST: &str = "bust_to_underbust";
 
-/// Every rule broken by what was asked for.
+/// Every rule that the requested measurements break.
 pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
     let height = table.get("height").unwrap_or(1.7);
-    // Only what somebody asked for can contradict.
+    // Only requested measurements can contradict each other.
     let sum = |terms: &[(&'static str, f64)]| -> Option<f64> {
         terms.iter().try_fold(0.0, |sum, (name, sign)| {
             let measured = table.measured(name)?;
@@ -211,7 +211,7 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
     };
     let names = |terms: &[(&'static str, f64)]| terms.iter().map(|term| term.0).collect();
     let mut found = Vec::new();
-    // The straight way goes over a belly besides.
+    // The straight length of the front is longer over a belly.
     let belly = table.get("waist") > table.get("underbust");
     let over_belly = |terms: &[(&str, f64)]| belly && terms.iter().any(|t| t.0 == OVER_BELLY);
     for &(terms, share, why) in RULES {

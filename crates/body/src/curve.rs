@@ -1,8 +1,7 @@
-//! Smooth monotone interpolation of numbers over a level.
+//! Smooth monotone interpolation of a value along a coordinate.
 
-/// A piecewise cubic through given points that has no overshoot between them: where the data
-/// rise, the curve rises (Fritsch and Carlson 1980; slopes by Fritsch and Butland 1984). Linear
-/// beyond the ends.
+/// A piecewise cubic through given points that does not overshoot between them: where the data rise, the
+/// curve rises (Fritsch and Carlson 1980; slopes by Fritsch and Butland 1984). Linear beyond the ends.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Monotone {
     points: Vec<[f64; 2]>,
@@ -12,7 +11,7 @@ pub(crate) struct Monotone {
 }
 
 impl Monotone {
-    /// Through the points, which must be in ascending order and at least two.
+    /// The curve through these points, at least two, in ascending order.
     pub(crate) fn new(points: Vec<[f64; 2]>) -> Self {
         debug_assert!(points.len() > 1 && points.windows(2).all(|w| w[0][0] < w[1][0]));
         let chord: Vec<f64> = points
@@ -51,7 +50,7 @@ impl Monotone {
         }
     }
 
-    /// Place on a rising curve of a value, to rounding.
+    /// Position at which a rising curve has a value, to rounding.
     pub(crate) fn inverse(&self, value: f64) -> f64 {
         let last = self.points.len() - 1;
         for (end, slope) in [(0, self.slopes[0]), (last, self.slopes[last])] {
@@ -98,7 +97,7 @@ impl Monotone {
         if x >= self.points[last][0] {
             return self.points[last][1] + self.slopes[last] * (x - self.points[last][0]);
         }
-        // A handful of points: one after another is faster than halving.
+        // There are only a handful of points: a linear search is faster than bisection.
         let mut k = 0;
         while self.points[k + 1][0] <= x {
             k += 1;

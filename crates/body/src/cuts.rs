@@ -9,30 +9,30 @@ use crate::template_marks::{ARM_BEGINS, ARM_MIDDLES, ARM_STEP, TemplateMarks};
 use crate::warp::{Follow, Warp};
 use toile_geometry::Vec3;
 
-/// A part of a body, the plane across it as a point and a unit normal, and where on the template the
-/// triangles that cross it are to be looked for.
+/// A part of a body, the plane across it (a point and a unit normal), and the range of the template in which
+/// to search for triangles that cross the plane.
 pub(crate) struct CutPlane {
     pub(crate) part: Part,
     pub(crate) plane: [Vec3; 2],
     pub(crate) near: Near,
 }
 
-/// How far from a plane's height triangles that cross it may begin (m); by the thighs and shoulders,
-/// where heights are moved besides, farther.
+/// Largest difference in height between a plane and the first corner of a triangle that crosses it (m). `FAR`
+/// is for thighs and shoulders, where heights are moved as well.
 const REACH: f64 = 0.04;
 const FAR: f64 = 0.08;
-/// The same above the ears, where no row of the skin is farther from the next.
+/// `REACH` above the ears, where rows of the skin are no farther apart than this (m).
 const HEAD: f64 = 0.025;
-/// The same from a tape round the neck, square to it: round a thick one it lies askew on the template.
+/// `REACH` square to a tape round the neck (m): round a thick neck the tape lies askew on the template.
 const NECK: f64 = 0.045;
 
-/// The same from a tape across the arm, along it: a tilted one reaches farther than a ring.
+/// `REACH` along the arm for a tape across it (m): a tilted tape reaches farther than a ring.
 const ARM: f64 = 0.04;
 
-/// How far to both sides the way of an arm is taken from its middles (m).
+/// Half the length over which the direction of an arm is taken from the middles of its sections (m).
 const ARM_WAY: f64 = 0.065;
 
-/// The middle of the template's arm at a distance from the shoulder joint (m).
+/// Middle of the template's arm at a distance from the shoulder joint (m).
 fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
     let place = (distance / marks.arm.wrist - ARM_BEGINS) / ARM_STEP;
     let before = (place.floor().max(0.0) as usize).min(ARM_MIDDLES - 2);
@@ -41,7 +41,7 @@ fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
 }
 
 impl CutPlane {
-    /// A cut at a place (m).
+    /// The plane of a cut at a height, or a distance along an arm (m).
     pub(crate) fn of(cut: Cut, place: f64, marks: &TemplateMarks, warp: &Warp) -> Self {
         match cut {
             Cut::Trunk => Self::level(Part::Trunk, place, warp.near(place, REACH)),
@@ -79,7 +79,7 @@ impl CutPlane {
         }
     }
 
-    /// A girth whose place lengths alone say.
+    /// The plane of a girth whose position is given by lengths alone.
     pub(crate) fn placed(
         girth: Girth,
         marks: &TemplateMarks,
@@ -117,7 +117,7 @@ impl CutPlane {
         }
     }
 
-    /// Across the arm at a template distance from the shoulder joint.
+    /// Plane across the arm at a distance from the template's shoulder joint (m).
     fn across_arm(distance: f64, warp: &Warp) -> Self {
         Self {
             part: Part::LeftArm,

@@ -1,9 +1,9 @@
-//! What each girth is: where on a standing body it is taped. Our own bodies are solved, reported
-//! and, as anybody's mesh, measured by these.
+//! Definitions of the girths: where each is taped on a standing body. Our own bodies are solved and reported
+//! by them, and foreign meshes are measured by them.
 
 use crate::girths::Girth;
 
-/// What says where the girths of a standing body lie (m).
+/// Landmarks of a standing body that determine the positions of the girths (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BodyMarks {
     pub(crate) stature: f64,
@@ -13,11 +13,11 @@ pub(crate) struct BodyMarks {
     pub(crate) armpit: f64,
     /// Height of the middle of the knee over the floor.
     pub(crate) knee: f64,
-    /// Places of the armpit and of the finger tips along the arm.
+    /// Distances of the armpit and of the finger tips along the arm.
     pub(crate) arm: [f64; 2],
 }
 
-/// What a tape goes round.
+/// The section that a tape goes round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cut {
     /// Level round the trunk, at a height over the floor.
@@ -28,18 +28,18 @@ pub(crate) enum Cut {
     Neck,
     /// Level round one leg, at a height over the floor.
     Leg,
-    /// Across one arm, at a place along it.
+    /// Across one arm, at a distance along it.
     Arm,
 }
 
-/// Which of the places a girth may lie at is its own.
+/// Rule for the girth among all sections in its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     Largest,
     Smallest,
 }
 
-/// Where a girth is taped: what round, between which places (m), and which of them.
+/// Definition of a girth: the section, the range of positions (m), and the choice within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Taping {
     pub(crate) cut: Cut,
@@ -47,43 +47,43 @@ pub(crate) struct Taping {
     choice: Choice,
 }
 
-/// Tilt of a tape round the neck, lower in front (rad): about square to the axis of a neck, so that
-/// necks have their least girth within 2 mm of it.
+/// Tilt of a tape round the neck, lower in front (rad): about square to the axis of the neck, so that the
+/// least girths of necks lie within 2 mm of it.
 pub(crate) const NECK_TILT: f64 = 20.0 * std::f64::consts::PI / 180.0;
-/// How far from the middle of the neck its tape may lie, over stature.
+/// Largest distance of the tape from the middle of the neck, over stature.
 const NECK_REACH: f64 = 0.03;
 
-/// Shares of the way from crotch to crown.
+/// Heights as shares of the way from crotch to crown.
 const HIPS: [f64; 2] = [0.035, 0.11];
 const WAIST: [f64; 2] = [0.28, 0.35];
 const UNDERBUST: f64 = 0.415;
 const BUST: [f64; 2] = [0.44, 0.50];
-/// Least depth of the bust under the armpits, over stature.
+/// Least depth of the bust below the armpits, over stature.
 pub(crate) const BUST_DROP: f64 = 0.008;
 /// Depth below the crotch at which the thigh is taped, over stature.
 pub(crate) const THIGH_DROP: f64 = 0.012;
-/// Height of the knee over the crotch's, where nobody says it.
+/// Height of the knee over the height of the crotch, if it is not given.
 pub(crate) const KNEE: f64 = 0.58;
-/// Share of the way from knee to crotch.
+/// Height as a share of the way from knee to crotch.
 const LOWER_THIGH: f64 = 0.15;
-/// Shares of the knee's height.
+/// Heights over the height of the knee.
 const CALF: [f64; 2] = [0.55, 0.9];
 const ANKLE_MOST: f64 = 0.6;
 /// Least height of the ankle, and heights of the head's girth, over stature.
 const ANKLE_LEAST: f64 = 0.03;
 const HEAD: [f64; 2] = [0.94, 0.97];
-/// Shares of the way along the arm from the armpit to the finger tips.
+/// Distances as shares of the way along the arm from the armpit to the finger tips.
 const UPPER_ARM: [f64; 2] = [0.15, 0.28];
 const FOREARM: [f64; 2] = [0.38, 0.60];
 const WRIST: [f64; 2] = [0.60, 0.78];
 
-/// Even steps in which a range is searched first, and narrowings of the best one by the golden
-/// section (Kiefer 1953).
+/// Number of even steps in which a range is searched first, and number of narrowings round the best one by
+/// the golden section (Kiefer 1953).
 const STEPS: usize = 8;
 const NARROWINGS: usize = 5;
 
-/// Between which heights a girth round the trunk lies, over heights of crotch and crown (m); none
-/// where lengths alone say its level.
+/// Range of heights of a girth round the trunk, from the heights of crotch and crown (m); `None` where
+/// lengths alone give its level.
 pub(crate) fn trunk_range(girth: Girth, [crotch, crown]: [f64; 2]) -> Option<[f64; 2]> {
     let shares = match girth {
         Girth::Hips => HIPS,
@@ -96,13 +96,13 @@ pub(crate) fn trunk_range(girth: Girth, [crotch, crown]: [f64; 2]) -> Option<[f6
 }
 
 impl Taping {
-    /// Where a girth is taped on a body; none where lengths alone say it.
+    /// Definition of a girth on a body; `None` where lengths alone give its position.
     ///
-    /// Hips are the largest level girth from the crotch up, the waist is the smallest above them, the
-    /// bust the largest under the armpits, as ISO 8559-1 (2017) has them; the girth under the bust lies
-    /// at a share of the height from crotch to crown. Calf and ankle are the largest and smallest level girths
-    /// there, the neck the smallest girth about square to its axis, upper arm and forearm
-    /// the largest and the wrist the smallest girths across the arm.
+    /// Hips are the largest level girth from the crotch up, the waist is the smallest above them, the bust
+    /// the largest under the armpits, as in ISO 8559-1 (2017). The girth under the bust lies at a share of
+    /// the height from crotch to crown. Calf and ankle are the largest and smallest level girths of the lower
+    /// leg, the neck is the smallest girth about square to its axis, upper arm and forearm are the largest
+    /// and the wrist the smallest girth across the arm.
     pub(crate) fn of(girth: Girth, marks: &BodyMarks) -> Option<Self> {
         use Choice::{Largest, Smallest};
         let h = marks.stature;
@@ -135,8 +135,8 @@ impl Taping {
         Some(Self { cut, range, choice })
     }
 
-    /// The place of the girth by what a tape reads at each (m); none where nothing is round which it
-    /// could go.
+    /// Position of the girth (m), from the readings of a tape at each position; `None` where there is nothing
+    /// to tape.
     pub(crate) fn find(&self, around: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         let [low, high] = self.range;
         if high <= low {
@@ -173,12 +173,12 @@ impl Taping {
         found.map(|(_, at)| at)
     }
 
-    /// The place of a share of the range (m).
+    /// Position (m) at a share of the range.
     pub(crate) fn at(&self, share: f64) -> f64 {
         self.range[0] + share * (self.range[1] - self.range[0])
     }
 
-    /// The share of the range at which a place lies (1).
+    /// Share of the range at which a position lies (1).
     pub(crate) fn share(&self, place: f64) -> f64 {
         let wide = self.range[1] - self.range[0];
         if wide > 0.0 {
@@ -207,7 +207,7 @@ mod tests {
         let found = hips.find(|y| Some(1.0 - (y - 0.8567).powi(2))).unwrap();
         assert!((found - 0.8567).abs() < 1e-3, "{found}");
         assert!((hips.at(hips.share(found)) - found).abs() < 1e-12);
-        // One that goes on falling ends at the end of its range.
+        // A girth that keeps falling lies at the end of its range.
         let waist = Taping::of(Girth::Waist, &MARKS).unwrap();
         let found = waist.find(|y| Some(2.0 - y)).unwrap();
         assert!((found - waist.range[1]).abs() < 1e-12, "{found}");

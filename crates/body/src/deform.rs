@@ -6,32 +6,32 @@ use nalgebra::{Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// How a primitive changes with the angle of its reference joint: even between keys, held before
-/// the first and after the last; turns are slerped (Shoemake 1985).
+/// Change of a primitive with the angle of its reference joint: linear between keys, held before the first
+/// and after the last; turns are slerped (Shoemake 1985).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Deformation {
     /// The reference joint.
     pub joint: Joint,
-    /// The axis its angle is taken about, in the joint's frame: only the twist about it counts (1).
+    /// Axis of the angle, in the joint's frame: only the twist about it counts (1).
     pub axis: [f64; 3],
-    /// Keys by rising angle. At the angle zero, which is the rest pose, they change nothing.
+    /// Keys in ascending order of angle. At the angle zero, the rest pose, they change nothing.
     pub keys: Vec<DeformationKey>,
 }
 
-/// What a primitive has become at an angle of its reference joint.
+/// Changes of a primitive at one angle of its reference joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeformationKey {
     /// The joint's angle (rad).
     pub angle: f64,
-    /// How far the centre is moved, in the frame of the joint the primitive is fixed to (m).
+    /// Shift of the centre, in the frame of the joint that the primitive is fixed to (m).
     #[serde(default)]
     pub shift: [f64; 3],
     /// Semi-axes over those at rest (1).
     #[serde(default = "as_they_are")]
     pub stretch: [f64; 3],
-    /// Turn against that at rest, as axis times angle (rad).
+    /// Turn relative to the rest pose, as axis times angle (rad).
     #[serde(default)]
     pub turn: [f64; 3],
 }
@@ -40,11 +40,11 @@ fn as_they_are() -> [f64; 3] {
     [1.0; 3]
 }
 
-/// Most keys of a deformation: more than any joint's range needs.
+/// Largest number of keys of a deformation: more than any joint's range needs.
 const MAX_KEYS: usize = 16;
 
 impl Deformation {
-    /// The reference joint's angle in a pose: its twist about the axis, from -pi to pi (rad).
+    /// Angle of the reference joint in a pose: its twist about the axis, from -pi to pi (rad).
     pub fn angle(&self, pose: &Pose) -> f64 {
         let turn = pose.rotation(self.joint);
         let about = turn.imag().dot(&self.unit_axis());
@@ -98,7 +98,7 @@ impl Deformation {
         )
     }
 
-    /// The deformation of the mirror image.
+    /// The deformation of the mirrored primitive.
     pub fn mirrored(&self) -> Self {
         let [a, b, c] = self.axis;
         Self {
@@ -119,7 +119,7 @@ impl Deformation {
         }
     }
 
-    /// Refuses what means nothing.
+    /// Refuses values that make no sense.
     pub(crate) fn check(&self) -> Result<(), BodyError> {
         let bad = |what: &str| Err(BodyError::Description(format!("a deformation {what}")));
         if self.unit_axis() == Vec3::zeros() || !self.axis.iter().all(|x| x.is_finite()) {

@@ -8,23 +8,23 @@ use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 use toile_measure::Measurements;
 
-/// All a mannequin is made from: the same description gives the same body, bit by bit.
+/// All data of a mannequin: the same description gives the same body, bit by bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
-    /// Which template gives joints and levels.
+    /// The template that gives joints and levels.
     pub figure: Figure,
     /// Measurements asked for.
     pub measurements: Measurements,
-    /// The template's primitives of trunk, head, left arm and left leg, before any measurement is
-    /// applied: those off the middle stand for a pair. Empty for the figure's own.
+    /// The template's primitives of trunk, head, left arm and left leg, before any measurement is applied:
+    /// one off the middle stands for a pair. Empty for the figure's own primitives.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub primitives: Vec<Primitive>,
-    /// Levels and joints of a body fitted to a mesh, which stands as its primitives say; none for
-    /// a body grown from the figure's to its measurements.
+    /// Levels and joints of a body that was fitted to a mesh and is used as its primitives describe it;
+    /// `None` for a body grown from the figure's template to its measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<BodyFrame>,
-    /// What is particular about single primitives.
+    /// Attachments, deformations and joins of single primitives.
     #[serde(default, skip_serializing_if = "Rigging::is_empty")]
     pub rigging: Rigging,
 }
@@ -48,8 +48,8 @@ impl Mannequin {
         }
     }
 
-    /// The description of a figure's own primitives as they are, with their frame: what stands by
-    /// itself and can be scaled and edited.
+    /// Description of a figure's own primitives unchanged, with their frame: a body without measurements that
+    /// can be scaled and edited.
     ///
     /// # Errors
     /// As [`Mannequin::new`].
@@ -74,8 +74,8 @@ impl Mannequin {
     /// Grows the body of a description.
     ///
     /// # Errors
-    /// As [`Mannequin::new`]; and a primitive with numbers that are not finite, with an axis that
-    /// is not positive, or on the wrong side.
+    /// As [`Mannequin::new`]; also for a primitive with numbers that are not finite, with an axis that is not
+    /// positive, or on the wrong side.
     pub fn from_description(description: &Description) -> Result<Self, BodyError> {
         let mut template = Template::of(description.figure);
         if !description.primitives.is_empty() {
@@ -100,7 +100,7 @@ impl Mannequin {
     }
 }
 
-/// Refuses a frame no body has.
+/// Refuses a frame that no body has.
 fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
     let bad = |what: &str| Err(BodyError::Description(format!("the frame {what}")));
     let j = &frame.joints;
@@ -159,7 +159,7 @@ fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
     Ok(())
 }
 
-/// Refuses a primitive no body has.
+/// Refuses a primitive that no body has.
 pub(crate) fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     let bad = |what: &str| Err(BodyError::Description(format!("primitive {index} {what}")));
     let numbers = p.centre.iter().chain(&p.radii).chain(&p.rotation);

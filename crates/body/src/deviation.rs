@@ -7,37 +7,37 @@ use crate::measured::TapedSkin;
 use crate::tape::Skinned;
 use toile_measure::{Origin, UnitKind, definition};
 
-/// One measurement as asked for or predicted, and as taken from the skin by our own tape.
+/// A measurement as requested or predicted, and as taken from the skin by our own tape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// The measurement's name.
     pub name: &'static str,
-    /// Asked for or predicted (m) or (rad).
+    /// Requested or predicted value (m) or (rad).
     pub asked: f64,
-    /// Taken from the skin (m) or (rad).
+    /// Value taken from the skin (m) or (rad).
     pub got: f64,
-    /// Whether somebody asked for it or it was predicted from the others.
+    /// Whether the measurement was requested or predicted from others.
     pub origin: Origin,
 }
 
 impl Deviation {
-    /// Value taken from the skin minus value asked for (m) or (rad).
+    /// Value taken from the skin minus the requested or predicted value (m) or (rad).
     pub fn deviation(&self) -> f64 {
         self.got - self.asked
     }
 
-    /// Whether it is a girth by a closed tape.
+    /// Whether the measurement is a girth by a closed tape.
     pub fn is_girth(&self) -> bool {
         Girth::ALL.iter().any(|girth| girth.name() == self.name)
     }
 
-    /// Whether it is an angle.
+    /// Whether the measurement is an angle.
     pub fn is_angle(&self) -> bool {
         definition(self.name).is_some_and(|known| known.kind == UnitKind::Angle)
     }
 }
 
-/// Largest deviation of a length (m) over stature before it is reported: a millimetre of an adult.
+/// Largest deviation of a length over stature that is not reported: a millimetre of an adult.
 const NAMED: f64 = 5.7e-4;
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.
@@ -51,16 +51,16 @@ impl Mannequin {
         ))
     }
 
-    /// A measurement by its name in the catalogue, taken from the finished skin (m) or (rad); none
-    /// if the tape does not know it.
+    /// A measurement by its name in the catalogue, taken from the finished skin (m) or (rad); `None` if the
+    /// tape cannot take it.
     pub fn taken(&self, name: &str) -> Option<f64> {
         let name = definition(name).map_or(name, |known| known.name);
         self.with_tape(|tape| tape.value(name))
     }
 
-    /// Every measurement the body was made from, as asked or predicted and as the finished skin
-    /// has it: first what was asked for. Girths are the convex hull of a section: level round
-    /// trunk and legs, across arms and neck. Lengths over the body lie tight on it.
+    /// Every measurement that the body was made from, as requested or predicted and as the finished skin has
+    /// it; requested ones first. Girths are those of the convex hull of a section: level round trunk and
+    /// legs, across arms and neck. Lengths over the body lie tight on it.
     pub fn measure(&self) -> Vec<Deviation> {
         self.with_tape(|tape| {
             let mut rows = Vec::new();
@@ -83,7 +83,7 @@ impl Mannequin {
         })
     }
 
-    /// What was asked for and the tape does not know.
+    /// Names of requested measurements that the tape cannot take.
     pub fn untaken(&self) -> Vec<String> {
         let known: Vec<&str> = self.measure().iter().map(|gap| gap.name).collect();
         self.request
@@ -94,8 +94,8 @@ impl Mannequin {
             .collect()
     }
 
-    /// What was asked for and contradicts itself: broken rules of any body, and asked
-    /// measurements the solved body misses by more than a millimetre on an adult.
+    /// Contradictions among the requested measurements: broken rules of any body, and measurements that the
+    /// solved body misses by more than a millimetre on an adult.
     pub fn conflicts(&self) -> Vec<Conflict> {
         let mut found = self.request.conflicts.clone();
         let height = self.request.get("height");
@@ -132,7 +132,7 @@ mod tests {
     use crate::{Figure, Mannequin};
     use toile_measure::{Measurements, Origin};
 
-    /// What a tape that looks near its place reads less what it reads on the whole skin (m).
+    /// Reading of a tape that searches only near its position, minus its reading on the whole skin (m).
     fn gaps(body: &Mannequin) -> Vec<(&'static str, f64)> {
         let skin = &body.template_body.skin;
         let place = |v: usize| body.whole.positions[v];
@@ -157,7 +157,7 @@ mod tests {
     fn a_tape_that_looks_near_its_place_reads_what_it_reads_on_the_whole_skin() {
         let average = Mannequin::new(&Figure::Man.average(), Figure::Man).unwrap();
         let average = average.completed();
-        // Arms, necks and trunks at the ends of what people have.
+        // Arms, necks and trunks at the extremes of human sizes.
         for (figure, height, share) in [
             (Figure::Woman, 1.45, 0.8),
             (Figure::Woman, 1.85, 1.5),

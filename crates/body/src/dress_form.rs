@@ -9,18 +9,18 @@ use toile_geometry::{TriangleMesh, Vec3};
 pub(crate) struct DressForm {
     pub(crate) mesh: TriangleMesh,
     pub(crate) parts: Vec<Part>,
-    /// Height of its top (m).
+    /// Height of the top of the form (m).
     pub(crate) top: f64,
 }
 
-/// How near to the plane of the neck's end a vertex counts as in it, over stature.
+/// Largest distance from the plane of the neck's end of a vertex that counts as in it, over stature.
 const IN_PLANE: f64 = 3e-4;
-/// How far plates over neck and armholes bulge, over stature.
+/// Height by which plates over neck and armholes bulge, over stature.
 const BULGE: f64 = 0.006;
-/// Rings of a plate: shares of the way from its middle to its border.
+/// Rings of a plate: shares of the distance from its middle to its border.
 const PLATE: [f64; 3] = [0.85, 0.6, 0.3];
-/// Below the hips: depth under the lowest place of the border, over stature, and share of the
-/// border's distance from its middle.
+/// Rings below the hips: depth under the lowest point of the border, over stature, and share of the border's
+/// distance from its middle.
 const SKIRT: [[f64; 2]; 6] = [
     [0.015, 1.0],
     [0.03, 0.995],
@@ -29,7 +29,8 @@ const SKIRT: [[f64; 2]; 6] = [
     [0.06, 0.93],
     [0.061, 0.5],
 ];
-/// The stand: radius and height (m), from the form down. It is not scaled: a foot holds any of them.
+/// The stand: radius and height (m), from the form downwards. It is not scaled: the foot holds a form of any
+/// size.
 const STAND: [[f64; 2]; 5] = [
     [0.016, 0.06],
     [0.022, 0.045],
@@ -46,8 +47,8 @@ fn own(skin: &TriangleMesh, parts: &[Part], part: Part) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The plane in which the left arm ends, by a point and its outward normal: over the highest and the
-/// lowest place where arm and trunk meet, and beyond all of them.
+/// The plane in which the left arm ends, by a point and its outward normal: parallel to the line through the
+/// highest and the lowest point where arm and trunk meet, and outside all of these points.
 fn armhole(skin: &TriangleMesh, parts: &[Part]) -> [Vec3; 2] {
     let corners = |part: Part| -> BTreeSet<u32> {
         let own = own(skin, parts, part);
@@ -105,8 +106,8 @@ impl DressForm {
         form
     }
 
-    /// Keeps of a part what lies below a plane, a point and a normal, or all of it; what is nearer
-    /// to the plane than a distance (m) counts as in it.
+    /// Keeps the triangles of a part, or the part of them below a plane given by a point and a normal.
+    /// Vertices nearer to the plane than a distance (m) count as in it.
     fn keep(
         &mut self,
         (skin, parts): (&TriangleMesh, &[Part]),
@@ -119,12 +120,12 @@ impl DressForm {
             Some(if height.abs() < near { 0.0 } else { height })
         };
         let above = |v: u32| above(v).unwrap_or(-1.0);
-        // An arm's root is the form's shoulder.
+        // The root of an arm becomes the form's shoulder.
         let kept = match part {
             Part::Head => Part::Head,
             _ => Part::Trunk,
         };
-        // The vertex where an edge goes through the plane.
+        // The vertex at which each edge crosses the plane.
         let mut cut: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         for corners in own(skin, parts, part) {
             let mut rest: Vec<u32> = Vec::new();
@@ -134,7 +135,7 @@ impl DressForm {
                     rest.push(a);
                 }
                 if above(a) * above(b) < 0.0 {
-                    // By the lower number first, so that both triangles have the same.
+                    // The lower number first, so that both triangles at the edge get the same vertex.
                     let edge = [a.min(b), a.max(b)];
                     let [p, q] = edge.map(|v| skin.positions[v as usize]);
                     let [s, t] = edge.map(above);
@@ -156,7 +157,7 @@ impl DressForm {
         self.parts.push(part);
     }
 
-    /// The loops along which the surface is open, each the way its triangles go.
+    /// The loops along which the surface is open, in the direction of its triangles.
     fn borders(&self) -> Vec<Vec<u32>> {
         let edges = || {
             let around = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
@@ -188,7 +189,8 @@ impl DressForm {
         ring.iter().map(|&v| self.at(v)).sum::<Vec3>() / ring.len().max(1) as f64
     }
 
-    /// A band from an open border to a ring of as many new points, which is the border then.
+    /// Adds a band from an open border to a ring of as many new points, and returns the ring as the new
+    /// border.
     fn band(&mut self, border: &[u32], points: Vec<Vec3>, part: Part) -> Vec<u32> {
         let first = self.mesh.positions.len() as u32;
         let ring: Vec<u32> = (first..first + points.len() as u32).collect();
@@ -201,7 +203,7 @@ impl DressForm {
         ring
     }
 
-    /// Closes a border by a point.
+    /// Closes a border by a fan round a point.
     fn close(&mut self, border: &[u32], point: Vec3, part: Part) {
         let pole = self.mesh.positions.len() as u32;
         self.mesh.positions.push(point);
@@ -223,7 +225,7 @@ impl DressForm {
         self.close(&ring, middle + bulge, part);
     }
 
-    /// Ends the form under the hips and puts it on its stand.
+    /// Closes the form under the hips and puts it on its stand.
     fn stand(&mut self, border: &[u32], stature: f64) {
         let middle = self.middle(border);
         let edge: Vec<Vec3> = border.iter().map(|&v| self.at(v)).collect();
@@ -249,7 +251,7 @@ impl DressForm {
         self.close(&ring, Vec3::new(middle.x, 0.0, middle.z), Part::Trunk);
     }
 
-    /// Leaves out vertices of no triangle.
+    /// Removes vertices of no triangle.
     fn without_strays(&mut self) {
         let mut number = vec![u32::MAX; self.mesh.positions.len()];
         let mut positions = Vec::new();

@@ -1,6 +1,5 @@
-//! What can be done to the primitives of a body, as data (the primitive editor of Volino,
-//! Magnenat-Thalmann, Shen, Thalmann 1996). Values are absolute; whoever keeps the description from
-//! before can have it back.
+//! Edits of the primitives of a body, as data (the primitive editor of Volino, Magnenat-Thalmann, Shen,
+//! Thalmann 1996). Values are absolute; an edit is undone by keeping the description from before.
 
 use crate::deform::Deformation;
 use crate::describe::check;
@@ -10,103 +9,102 @@ use nalgebra::Rotation3;
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// One change of a body's primitives, which are counted from 0 in the order of
-/// [`Description::primitives`]: those of the left side and the middle; one off the middle stands
-/// for a pair.
+/// One change of a body's primitives. They are counted from 0 in the order of [`Description::primitives`]:
+/// those of the left side and the middle; one off the middle stands for a pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "edit", deny_unknown_fields)]
 pub enum PrimitiveEdit {
     /// Adds a primitive after the others.
     Create {
-        /// What is added.
+        /// The new primitive.
         new: Primitive,
     },
-    /// Takes a primitive away; later ones move up.
+    /// Removes a primitive; the numbers of later ones decrease by one.
     Delete {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
     },
-    /// Brings a centre to a place; what is joined goes along.
+    /// Moves the centre of a primitive to a point; primitives joined with it are moved along.
     Move {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
         /// The centre (m).
         centre: [f64; 3],
     },
-    /// Turns a primitive; what is joined goes round its centre.
+    /// Turns a primitive; primitives joined with it turn about its centre.
     Turn {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
         /// The rotation as axis times angle (rad).
         rotation: [f64; 3],
     },
     /// Gives a primitive other semi-axes.
     Scale {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
         /// The effective semi-axes (m).
         radii: [f64; 3],
     },
     /// Gives a primitive another weight.
     Weigh {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
-        /// What its density is multiplied by (1).
+        /// Factor of the density (1).
         weight: f64,
     },
-    /// Puts a primitive into a group, or into two.
+    /// Puts a primitive into one group, or into two.
     Group {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
-        /// Its own part: trunk, head, left arm or left leg.
+        /// The first part: trunk, head, left arm or left leg.
         part: Part,
-        /// A second one.
+        /// A second part.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         also: Option<Part>,
     },
     /// Makes a primitive blendable or unblendable.
     Blend {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
-        /// How it goes with the others.
+        /// Kind of blending with the others.
         blend: Blend,
     },
     /// Makes a primitive change with a reference joint, or makes it rigid.
     Deform {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
-        /// How; none makes it rigid.
+        /// The deformation; `None` makes the primitive rigid.
         deformation: Option<Deformation>,
     },
     /// Fixes a primitive to a joint.
     Attach {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
         /// The joint.
         joint: Joint,
     },
-    /// Fixes a primitive to the bone it lies round again.
+    /// Fixes a primitive again to the bone that it lies round.
     Detach {
-        /// Which.
+        /// Number of the primitive.
         primitive: usize,
     },
     /// Joins primitives: they are moved and turned together from then on.
     Join {
-        /// Which, two at least.
+        /// Numbers of the primitives, at least two.
         primitives: Vec<usize>,
     },
-    /// Takes primitives out of what they are joined in.
+    /// Takes primitives out of the set that they are joined in.
     Part {
-        /// Which.
+        /// Numbers of the primitives.
         primitives: Vec<usize>,
     },
 }
 
-/// Most primitives of the left side and the middle: five times those of a fitted body.
+/// Largest number of primitives of the left side and the middle: five times those of a fitted body.
 const MOST: usize = 400;
 
 impl Description {
-    /// The description with its primitives written out: the figure's own where it has none.
+    /// The description with its primitives written out: the figure's own if it lists none.
     pub fn with_primitives(&self) -> Self {
         let mut next = self.clone();
         if next.primitives.is_empty() {
@@ -119,11 +117,12 @@ impl Description {
         next
     }
 
-    /// This body with its primitives changed: by all edits, in order, or by none. Whether a skin
-    /// can still be cast on them is seen when a [`crate::Mannequin`] is made.
+    /// The description with all edits applied in order, or an error and none applied. Whether a skin can
+    /// still be cast on the primitives is only known when a [`crate::Mannequin`] is made.
     ///
     /// # Errors
-    /// A primitive that is not there, or values no primitive has: which, and the remedy.
+    /// [`BodyError::Description`] for a primitive that does not exist, or values that no primitive can have,
+    /// with the remedy.
     pub fn edited(&self, edits: &[PrimitiveEdit]) -> Result<Self, BodyError> {
         let mut next = self.with_primitives();
         for edit in edits {
@@ -155,7 +154,7 @@ impl Description {
                     let own = self.own(other)?;
                     own.centre = (Vec3::from(own.centre) + by).into();
                 }
-                // The very numbers asked for, without rounding.
+                // The exact numbers asked for, without rounding.
                 self.own(*primitive)?.centre = *centre;
             }
             PrimitiveEdit::Turn {

@@ -1,6 +1,6 @@
 //! Why a mannequin could not be made.
 
-/// Why a mannequin could not be made.
+/// Reason why a mannequin could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// A value no body has.
@@ -24,10 +24,10 @@ pub enum BodyError {
         first: &'static str,
         /// The second measurement.
         second: &'static str,
-        /// What to change.
+        /// Remedy: the change to make.
         remedy: &'static str,
     },
-    /// A primitive that changes with a joint where rigid ones are needed.
+    /// A primitive that changes with a joint where only rigid ones are allowed.
     #[error(
         "primitive {primitive} changes with a reference joint, and a character's ellipsoids are rigid: take its keys out"
     )]
@@ -47,12 +47,12 @@ pub enum BodyError {
         /// Place on the axis (m).
         z: f64,
     },
-    /// Landmarks of the skin that do not lie above each other as on a body.
+    /// Landmarks of the skin that are not in the order from floor to crown that bodies have.
     #[error(
         "the landmarks of the skin lie out of order at {level:.3} m on its template: give the primitives there back their places"
     )]
     Disordered {
-        /// Where: a height, or a way along the arm (m).
+        /// Height, or distance along the arm (m).
         level: f64,
     },
     /// A mesh that cannot be measured as a body.

@@ -2,18 +2,18 @@
 
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Passes of shrinking and swelling: bumps shorter than about six edges go, longer forms stay.
+/// Number of passes of shrinking and swelling: bumps shorter than about six edges vanish, longer forms stay.
 const PASSES: usize = 6;
 /// Share of the way to the neighbours' mean in the shrinking half of a pass.
 const SHRINK: f64 = 0.5;
-/// The same for the swelling half: slightly larger, so that the mesh keeps its volume
-/// (Taubin 1995, pass band 0.1).
+/// Share of that way in the swelling half: slightly larger, so that the mesh keeps its volume (Taubin 1995,
+/// pass band 0.1).
 const SWELL: f64 = -0.526;
 
-/// Fairs a closed oriented mesh in place. Vertices for which `fixed` holds stay.
+/// Fairs a closed oriented mesh in place. Vertices for which `fixed` is true do not move.
 pub(crate) fn fair(mesh: &mut TriangleMesh, fixed: impl Fn(usize, Vec3) -> bool) {
-    // Round a closed oriented mesh every neighbour comes exactly once as the end of an edge that
-    // starts at the vertex.
+    // In a closed oriented mesh every neighbour of a vertex is exactly once the end of an edge that starts at
+    // the vertex.
     let mut count = vec![0.0; mesh.positions.len()];
     for &v in mesh.triangles.iter().flatten() {
         count[v as usize] += 1.0;

@@ -48,7 +48,7 @@ impl Part {
     /// All parts, in order.
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// The same part of the other side; itself in the middle.
+    /// The corresponding part of the other side; trunk and head are their own.
     pub fn mirrored(self) -> Self {
         match self {
             Part::LeftArm => Part::RightArm,
@@ -72,14 +72,14 @@ impl Part {
     }
 }
 
-/// How a primitive goes with the others of its part (Volino et al. 1996).
+/// Blending of a primitive with the others of its part (Volino et al. 1996).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Blend {
-    /// Its density adds to those of the part's other blendable ones.
+    /// The density adds to those of the part's other blendable primitives.
     #[default]
     Blendable,
-    /// A plain ellipsoid: united with the rest of the part, it draws nothing towards itself.
+    /// A plain ellipsoid: united with the rest of the part, without blending.
     Unblendable,
 }
 
@@ -89,11 +89,11 @@ impl Blend {
     }
 }
 
-/// An ellipsoid: density `w (1 - q)^2` inside `q < 1`, with
-/// `q = |S^-1 R^T (x - c)|^2` (Murakami and Ichihara 1987, on an ellipsoid).
+/// An ellipsoid with the density `w (1 - q)^2` inside `q < 1`, where `q = |S^-1 R^T (x - c)|^2` (Murakami and
+/// Ichihara 1987, extended from a sphere to an ellipsoid).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Primitive {
-    /// The group it adds up with.
+    /// The group whose densities it adds to.
     pub part: Part,
     /// Centre c (m).
     pub centre: [f64; 3],
@@ -101,13 +101,13 @@ pub struct Primitive {
     pub radii: [f64; 3],
     /// Rotation R as axis times angle (rad).
     pub rotation: [f64; 3],
-    /// What the density is multiplied by (1).
+    /// Factor w of the density (1).
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub weight: f64,
-    /// Whether its density adds to others.
+    /// Whether the density adds to those of others.
     #[serde(default, skip_serializing_if = "Blend::is_default")]
     pub blend: Blend,
-    /// A second group it belongs to, as one near a shoulder or hip may.
+    /// A second group that it belongs to, for example near a shoulder or hip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub also: Option<Part>,
 }
@@ -135,7 +135,7 @@ impl Primitive {
         }
     }
 
-    /// Whether it belongs to a part, as its own or as a second group.
+    /// Whether the primitive belongs to a part, as its own or as its second group.
     pub fn belongs_to(&self, part: Part) -> bool {
         self.part == part || self.also == Some(part)
     }
@@ -165,8 +165,8 @@ impl Primitive {
         middle && self.rotation[1] == 0.0 && self.rotation[2] == 0.0
     }
 
-    /// Whether the primitive belongs to the wearer's right side: by its part, in trunk and head
-    /// by its centre. A limb's primitive may reach over the middle.
+    /// Whether the primitive belongs to the wearer's right side: by its part, or, in trunk and head, by its
+    /// centre. A limb's primitive may reach over the middle.
     pub fn is_right(&self) -> bool {
         match self.part {
             Part::RightArm | Part::RightLeg => true,
@@ -199,7 +199,7 @@ impl Density {
         self.weight * within * within
     }
 
-    /// Its gradient (1/m): `-4 w (1 - q) R S^-1 u`, `u = S^-1 R^T (x - c)`.
+    /// Gradient of the density at a point (1/m): `-4 w (1 - q) R S^-1 u`, `u = S^-1 R^T (x - c)`.
     fn gradient(&self, point: Vec3) -> Vec3 {
         let unit = self.unit_from_body * (point - self.centre);
         let within = (1.0 - unit.norm_squared()).max(0.0);
@@ -210,13 +210,13 @@ impl Density {
 /// The primitives of one part.
 #[derive(Clone, Debug, Default)]
 struct Group {
-    /// Those whose densities add up.
+    /// Blendable primitives, whose densities add up.
     blended: Vec<Density>,
-    /// Those that stand for themselves.
+    /// Unblendable primitives.
     plain: Vec<Density>,
 }
 
-/// Every part's field, for evaluation.
+/// The fields of all parts, ready for evaluation.
 #[derive(Clone, Debug)]
 pub struct Field {
     parts: [Group; 6],
@@ -247,8 +247,8 @@ impl Field {
         Self { parts }
     }
 
-    /// Density of one part at a point: the sum of its blendable primitives or, where one is
-    /// larger, that of an unblendable one.
+    /// Density of one part at a point: the sum of its blendable primitives or, if larger, the density of an
+    /// unblendable one.
     pub fn density(&self, part: Part, point: Vec3) -> f64 {
         let group = &self.parts[part as usize];
         let sum: f64 = group.blended.iter().map(|d| d.at(point)).sum();
@@ -272,7 +272,7 @@ impl Field {
         }
     }
 
-    /// Largest density of any part at a point: the body is where it is [`THRESHOLD`] or more.
+    /// Largest density of any part at a point: the body is the region where it is at least [`THRESHOLD`].
     pub fn strongest(&self, point: Vec3) -> f64 {
         Part::ALL
             .iter()
@@ -287,11 +287,10 @@ impl Field {
             .any(|&part| self.density(part, point) >= THRESHOLD)
     }
 
-    /// Distance (m) from `origin` along the unit vector `direction` to where the ray first leaves
-    /// the union of some parts, to 1e-9 m; nothing when `origin` is outside or the way is longer
-    /// than 0.6 m.
+    /// Distance (m) from `origin` along the unit vector `direction` to the first point where the ray leaves
+    /// the union of some parts, to 1e-9 m. `None` if `origin` is outside or the distance is more than 0.6 m.
     pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
-        /// No limb is thicker, nor is half a trunk (m).
+        /// Thicker than any limb and than half of any trunk (m).
         const REACH: f64 = 0.6;
         let along = self.along(parts, [origin, direction]);
         let mut distance = 0.0;
@@ -304,8 +303,8 @@ impl Field {
         (distance > 0.0).then(|| along.exit([distance - STEP, distance]))
     }
 
-    /// Distance (m) along a ray to where it last leaves one part on its way of `reach` (m), to
-    /// 1e-9 m: hollows inside are passed over. Nothing when the part is not met.
+    /// Distance (m) along a ray to the last point where it leaves one part within `reach` (m), to 1e-9 m:
+    /// hollows inside are passed over. `None` if the ray does not meet the part.
     pub fn last_exit(&self, part: Part, ray: [Vec3; 2], reach: f64) -> Option<f64> {
         let along = self.along(&[part], ray);
         let count = (reach / STEP).ceil() as usize;
@@ -338,7 +337,8 @@ impl Field {
 }
 
 impl Density {
-    /// q along a line as a quadratic in the distance, and the weight; none where it is not met.
+    /// Coefficients of q along a line as a quadratic in the distance, and the weight; `None` if the line
+    /// misses the primitive.
     fn along(&self, [origin, direction]: [Vec3; 2]) -> Option<[f64; 4]> {
         let offset = origin - self.centre;
         let towards = offset.dot(&direction);
@@ -354,17 +354,17 @@ impl Density {
             start.norm_squared(),
             self.weight,
         ];
-        // Least q on the whole line.
+        // Least value of q on the whole line.
         (row[2] - 0.25 * row[1] * row[1] / row[0] < 1.0).then_some(row)
     }
 }
 
-/// Densities along a ray: on a straight line the q of each primitive is a quadratic in the
-/// distance t, `q = a t^2 + b t + c`.
+/// Densities along a ray: on a straight line the q of each primitive is a quadratic in the distance t, `q = a
+/// t^2 + b t + c`.
 struct Along {
-    /// a, b, c and the weight of the primitives the line meets, sum after sum.
+    /// a, b, c and the weight of the primitives that the line meets, sum after sum.
     rows: Vec<[f64; 4]>,
-    /// Where the rows that add up end, one after another.
+    /// Ends in `rows` of the groups whose densities add up.
     ends: Vec<usize>,
 }
 
@@ -402,8 +402,8 @@ impl Along {
         })
     }
 
-    /// The change from inside to outside between two distances (m), to 1e-9 m: Newton's method
-    /// kept between the ends, by halves where it leaves them.
+    /// Distance (m) between two others at which the ray leaves the inside, to 1e-9 m: Newton's method kept
+    /// between the ends, bisection where it leaves them.
     fn exit(&self, [mut low, mut high]: [f64; 2]) -> f64 {
         let mut t = 0.5 * (low + high);
         for _ in 0..60 {
@@ -427,5 +427,5 @@ impl Along {
     }
 }
 
-/// Step of a march along a ray (m): thinner gaps than this are not seen.
+/// Step of a march along a ray (m): thinner gaps are not seen.
 const STEP: f64 = 0.004;

@@ -7,8 +7,8 @@ const GROOVE: f64 = 44.0 * PI / 180.0;
 /// Columns from one groove to the next.
 const COLUMNS: usize = 3;
 
-/// Even angles moved by a share of the way to where every third column round the middles of back
-/// and palm lies in a groove. The back's middle is at 0, the palm's at half a turn.
+/// Even angles moved by a share towards angles at which every third column round the middles of back and palm
+/// lies in a groove. The back's middle is at 0, the palm's at half a turn.
 pub(crate) fn gathered(even: &[f64], share: f64) -> Vec<f64> {
     let n = even.len();
     if share <= 0.0 || n < 6 * COLUMNS {

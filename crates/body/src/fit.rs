@@ -23,24 +23,24 @@ use toile_measure::Measurements;
 /// Our own body fitted to somebody's mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// All the body is made from: give it to [`crate::Mannequin::from_description`].
+    /// Data from which the body is made: give it to [`crate::Mannequin::from_description`].
     pub description: Description,
-    /// How far its skin lies from the mesh.
+    /// Distances of the body's skin from the mesh.
     pub misfit: FitMisfit,
-    /// How the mesh was moved to stand on y = 0 with its middle at x = 0 (m).
+    /// Shift that made the mesh stand on y = 0 with its middle at x = 0 (m).
     pub shift: Vec3,
-    /// Measurements that the tape found as no body has them: they are not in the description.
+    /// Measurements whose taped values no body has: they are not in the description.
     pub dropped: Vec<&'static str>,
 }
 
 impl Scan {
-    /// Fits a mannequin: joints from the sections of the limbs, then 150 primitives by least
-    /// squares of their densities on the surface, and anew five times with what the cast skin misses
-    /// the surface and a level tape round it by; the best is kept.
-    /// The mesh is taken as symmetric: both halves count for the one that is fitted.
+    /// Fits a mannequin. Joints come from the sections of the limbs. About 150 primitives are fitted by least
+    /// squares of their densities on the surface, and again five times, corrected by the distances of the
+    /// cast skin from the surface and of its girths from level tapes round the mesh; the best fit is kept.
+    /// The mesh is taken as symmetric: both halves count for the fitted one.
     ///
     /// # Errors
-    /// A landmark or a limb that cannot be found, and what to give.
+    /// [`BodyError::Mesh`] for a landmark or a limb that cannot be found, with the landmark to give.
     pub fn fit(&self, figure: Figure) -> Result<Fit, BodyError> {
         let shift = self.shift();
         if shift.norm() > 1e-9 {
@@ -74,7 +74,8 @@ impl Scan {
     }
 }
 
-/// The table without what no body has, a tape at a place that was found wrongly, and the names of that.
+/// The table without values that no body has, which come from tapes at wrong positions, and the names of the
+/// dropped measurements.
 fn sound(
     mut table: Measurements,
     figure: Figure,
@@ -97,7 +98,7 @@ fn sound(
     }
 }
 
-/// Primitives of both sides, and how far their skin lies from the mesh.
+/// Primitives of both sides, and distances of their skin from the mesh.
 fn fitted(scan: &Scan, found: &mut FoundFrame) -> Result<(Vec<Primitive>, FitMisfit), BodyError> {
     let own = Scan::new(template_skin(Figure::Woman)?, ScanLandmarks::default())?;
     let rows = start(scan, found, &own);
@@ -178,16 +179,16 @@ impl CandidateSkin {
     }
 }
 
-/// Casts the skin with the levels of armpits and crotch, one after the other, where it misses the
-/// mesh least round there: between a thick arm and a full trunk, and between thighs that touch,
-/// few places are free.
+/// Casts the skin. The levels of armpits and crotch are chosen one after the other so that the skin is
+/// nearest to the mesh there: few levels are free between a thick arm and a full trunk, and between thighs
+/// that touch.
 fn cast_best(
     scan: &Scan,
     found: &mut FoundFrame,
     primitives: &[Primitive],
 ) -> Result<(TemplateSkin, Scan), BodyError> {
-    /// Places tried for a level, nearest first, and how far round it the mesh is compared, over
-    /// stature.
+    /// Steps tried for a level, smallest first, and distance to both sides within which the mesh is compared,
+    /// over stature.
     const ELSEWHERE: [f64; 6] = [-0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
     const ROUND: f64 = 0.035;
     let height = found.frame.height;
@@ -219,17 +220,17 @@ fn cast_best(
 /// Rounds of casting the skin and moving the samples by its misfit; the result is the best of all rounds.
 const ROUNDS: usize = 5;
 
-/// The distance of the skin from a sample of the surface.
+/// Distance of the skin from a sample of the surface.
 struct SurfaceMiss {
     place: Vec3,
     normal: Vec3,
-    /// Along the normal (m).
+    /// Distance along the normal (m).
     miss: f64,
     weight: f64,
 }
 
-/// Moves the surface samples of a part by the distance of the skin from them, averaged over a
-/// neighbourhood: a cast skin's chords lie within the surface, and a fit has its bias.
+/// Moves the surface samples of a part by the distance of the skin from them, averaged over a neighbourhood:
+/// the chords of a cast skin lie inside the surface, and a fit has its own bias.
 fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
     let cell = 0.03 * height;
     let mut own = TriangleMesh {

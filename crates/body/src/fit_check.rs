@@ -6,35 +6,35 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use toile_geometry::{Vec2, closed_length, convex_hull};
 
-/// How far a fitted skin lies from the mesh, over level sections each 1 % of the height, from the
+/// Distances of a fitted skin from the mesh, over level sections at steps of 1 % of the height, from the
 /// ankles to the chin, without the hands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitMisfit {
     /// Root mean square of the distance along rays from the sections' middles (m).
     pub radial: f64,
-    /// Its largest (m).
+    /// Largest distance along these rays (m).
     pub radial_max: f64,
     /// Root mean square of the difference of girths by a tight tape (m).
     pub girth: f64,
-    /// Its largest (m).
+    /// Largest difference of girths (m).
     pub girth_max: f64,
-    /// Primitives of both sides.
+    /// Number of primitives of both sides.
     pub primitives: usize,
-    /// Sections compared.
+    /// Number of sections compared.
     pub sections: usize,
-    /// Radial root mean square of trunk with neck, legs and arms (m).
+    /// Root mean square of the distance along rays (m), for trunk with neck, legs, and arms.
     pub parts: [f64; 3],
-    /// Every section compared, from the floor up.
+    /// All sections compared, from the floor up.
     pub levels: Vec<LevelMisfit>,
-    /// Pairs of the skin's triangles that cross.
+    /// Number of pairs of the skin's triangles that cross.
     pub self_crossings: usize,
 }
 
-/// What a level tape compares.
+/// Part of the body that a level section goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LevelPart {
-    /// Trunk, neck and head; where the arms are one with the trunk in either body, all of it.
+    /// Trunk, neck and head; the whole section where the arms are joined with the trunk in either body.
     Trunk,
     /// The left leg.
     Leg,
@@ -42,18 +42,18 @@ pub enum LevelPart {
     Arm,
 }
 
-/// How far two level sections lie apart.
+/// Distances between two level sections.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LevelMisfit {
     /// Height of the section (m).
     #[serde(rename = "height_m")]
     pub height: f64,
-    /// What was cut.
+    /// Part that the section goes through.
     pub part: LevelPart,
     /// Girth of the mesh by a tight tape (m).
     #[serde(rename = "girth_m")]
     pub girth: f64,
-    /// The fitted skin's girth less the mesh's (m).
+    /// Girth of the fitted skin minus girth of the mesh (m).
     #[serde(rename = "gap_m")]
     pub gap: f64,
     /// Root mean square of the distance along rays (m).
@@ -61,14 +61,14 @@ pub struct LevelMisfit {
     pub radial: f64,
 }
 
-/// Rays of a section.
+/// Number of rays of a section.
 const RAYS: usize = 72;
 
 impl FitMisfit {
-    /// One number to choose by: the larger of what misses by radius and by girth, against what
-    /// either may miss by, over stature (1); a skin that crosses itself comes last.
+    /// One number to choose by: the larger of the radial and the girth misfit, each over its accepted value
+    /// and stature (1). A skin that crosses itself comes last.
     pub(crate) fn badness(&self, stature: f64) -> f64 {
-        /// What an adult's fit may miss by, over stature: 2 mm and 3 mm.
+        /// Accepted misfits of an adult's fit over stature: 2 mm radially and 3 mm in girth.
         const MAY: [f64; 2] = [2e-3 / 1.7, 3e-3 / 1.7];
         let over = (self.radial / MAY[0]).max(self.girth / MAY[1]) / stature;
         over + 100.0 * self.self_crossings as f64
@@ -122,8 +122,8 @@ pub(crate) fn misfit(
     found
 }
 
-/// The sections at a height that both have: of trunk, leg and arm. Where the arms are one with
-/// the trunk in one of them, all of it together.
+/// The sections at a height that both bodies have: trunk, leg and arm. Where the arms are joined with the
+/// trunk in one of the bodies only, the whole section counts as trunk.
 pub(crate) fn pairs(
     [mesh, skin]: [&Scan; 2],
     joints: &Joints,
@@ -163,7 +163,8 @@ pub(crate) fn tape(loops: &[Loop]) -> f64 {
     closed_length(&convex_hull(&points))
 }
 
-/// Distances along rays from the middle of the first to both: the outermost crossings (m).
+/// Differences along rays from the middle of the mesh's section between the outermost crossings of skin and
+/// mesh (m).
 fn distances([mesh, skin]: &[Vec<Loop>; 2]) -> Vec<f64> {
     let longest = mesh.iter().max_by(|a, b| a.length().total_cmp(&b.length()));
     let Some(centre) = longest.map(Loop::centre) else {
@@ -182,7 +183,7 @@ fn distances([mesh, skin]: &[Vec<Loop>; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// Distance along a ray to where it crosses a loop last (m).
+/// Distance along a ray to its last crossing of a loop (m).
 pub(crate) fn outermost(section: &Loop, centre: Vec2, ray: Vec2) -> Option<f64> {
     let points = &section.points;
     let mut best: Option<f64> = None;

@@ -8,16 +8,16 @@ use crate::{Part, Primitive, THRESHOLD};
 use nalgebra::{Cholesky, DMatrix, DVector, Rotation3};
 use toile_geometry::Vec3;
 
-/// Steps tried at the most.
+/// Largest number of steps tried.
 const STEPS: usize = 150;
-/// Of a stature: a residual from which on samples count less (Huber 1964).
+/// Residual, over stature, above which samples count less (Huber 1964).
 const FAR: f64 = 0.004;
-/// Room that densities keep from the threshold within and beyond the surface.
+/// Margins of the density from the threshold, inside and outside the surface.
 const ROOM: [f64; 2] = [0.05, 0.03];
-/// Limits of the weight.
+/// Limits of the weight of a primitive.
 const WEIGHT: [f64; 2] = [0.3, 3.0];
 
-/// What a part is fitted to.
+/// Samples and tapes that a part is fitted to.
 pub(crate) struct Goal<'a> {
     pub(crate) samples: &'a [Sample],
     pub(crate) girths: &'a [GirthResidual],
@@ -25,7 +25,7 @@ pub(crate) struct Goal<'a> {
     pub(crate) height: f64,
 }
 
-/// A sum of squares with its derivatives.
+/// Normal equations of a sum of squares, with the sum.
 struct System {
     normal: DMatrix<f64>,
     right: DVector<f64>,
@@ -72,7 +72,7 @@ pub(crate) fn fit(primitives: &mut [Primitive], goal: &Goal) {
     }
 }
 
-/// Takes a step, none larger than what the linear model may be trusted for.
+/// Takes a step, limited to the range in which the linear model can be trusted.
 fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
     let central = primitive.is_central();
     let far = 0.02 * height;
@@ -95,7 +95,7 @@ fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
     };
     let weight = primitive.weight * step[9].clamp(-0.3, 0.3).exp();
     primitive.weight = weight.clamp(WEIGHT[0], WEIGHT[1]);
-    // What is off the middle stays there: a pair that met would be one.
+    // A primitive off the middle stays there: a pair whose halves met would become one.
     if !central && matches!(primitive.part, Part::Trunk | Part::Head) {
         primitive.centre[0] = primitive.centre[0].max(0.004 * height);
     }
@@ -111,7 +111,7 @@ fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> Syst
         sum: 0.0,
     };
     let mut touched: Vec<Row> = Vec::new();
-    // Where the field is flat a residual counts as if it rose so (1/m).
+    // Least slope assumed where the field is flat (1/m).
     let least = 6.0 / height;
     for sample in goal.samples {
         let (value, gradient) = surface.at(sample.place, &mut touched);
@@ -140,7 +140,7 @@ fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> Syst
 }
 
 impl System {
-    /// Adds a residual (m) whose derivatives are those of the density over its slope.
+    /// Adds a residual (m). Its derivatives are those of the density divided by the slope.
     fn add(&mut self, touched: &[Row], miss: f64, steep: f64, (weight, far): (f64, f64)) {
         let size = miss.abs();
         let (cost, factor) = match size <= far {
@@ -164,8 +164,8 @@ impl System {
         }
     }
 
-    /// Adds the residual of a tape (m): what the surface's moves off its corners lengthen it by,
-    /// less what is wanted.
+    /// Adds the residual of a tape (m): the lengthening of the tape by the moves of the surface off its
+    /// corners, minus the wanted lengthening.
     fn tape(&mut self, surface: &Surface, girth: &GirthResidual) {
         let mut touched = Vec::new();
         let mut rows = vec![None; surface.count()];
@@ -188,10 +188,9 @@ impl System {
         self.add(&rows, long, 1.0, (girth.weight, f64::INFINITY));
     }
 
-    /// Holds the primitives weakly to where they started, so that none wanders where nothing
-    /// holds it.
+    /// Holds the primitives weakly at their start, so that none wanders where no sample determines it.
     fn hold(&mut self, primitives: &[Primitive], start: &[Primitive], height: f64) {
-        // A whole body's area times the square of a residual that matters little.
+        // The area of a whole body times the square of a residual that matters little.
         let weak = 2e-10 * height.powi(4);
         for (k, (p, s)) in primitives.iter().zip(start).enumerate() {
             let mut pull = |i: usize, gap: f64, scale: f64| {

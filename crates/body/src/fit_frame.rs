@@ -5,18 +5,18 @@ use crate::template::{BodyFrame, Joints};
 use crate::{BodyError, Scan};
 use toile_geometry::Vec3;
 
-/// A frame, with places of the arm and the chin that were found with it.
+/// A frame, with positions on the arm and of the chin that were found along with it.
 pub(crate) struct FoundFrame {
     pub(crate) frame: BodyFrame,
     /// The tip of the left hand (m).
     pub(crate) finger_tip: Vec3,
-    /// Where along the bone from the shoulder the arm's own sections begin (m).
+    /// Distance along the bone from the shoulder at which sections of the arm alone begin (m).
     pub(crate) arm_begins: f64,
-    /// Height below which there is no face (m).
+    /// Height of the lower end of the face (m).
     pub(crate) chin: f64,
 }
 
-/// The least from crotch to armpits, over stature, and the fewest sections from wrist to shoulder.
+/// Least distance from crotch to armpits, over stature, and least number of sections from wrist to shoulder.
 const MIN_TRUNK: f64 = 0.1;
 const MIN_ARM: usize = 4;
 
@@ -26,7 +26,7 @@ const JOINT_RISE: f64 = 0.037;
 /// Finds levels and joints on a mesh that stands on y = 0 with its middle at x = 0.
 ///
 /// # Errors
-/// A level or limb that could not be found, with the landmark to give.
+/// [`BodyError::Mesh`] for a level or limb that could not be found, with the landmark to give.
 pub(crate) fn find(scan: &Scan) -> Result<FoundFrame, BodyError> {
     let missing = |what: &str| BodyError::Mesh(format!("has no {what} that could be found"));
     let marks = scan.landmarks();
@@ -114,7 +114,7 @@ fn nearest(rings: &[Ring], p: Vec3) -> usize {
         .unwrap_or_default()
 }
 
-/// The wrist: the thinnest section at a hand's length from the tip.
+/// The wrist: the thinnest section about a hand's length from the tip.
 fn wrist_ring(rings: &[Ring], height: f64) -> usize {
     let tip = rings[0].0;
     let window = |k: &usize| (0.085..0.15).contains(&((rings[*k].0 - tip).norm() / height));
@@ -124,8 +124,8 @@ fn wrist_ring(rings: &[Ring], height: f64) -> usize {
         .unwrap_or(8.min(rings.len() - 1))
 }
 
-/// The elbow: the ring at which two straight bones lie nearest to the middles; near the middle of
-/// a straight arm.
+/// The elbow: the ring for which two straight bones fit the middles of the rings best; near the middle of a
+/// straight arm.
 fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
     let last = rings.len() - 1;
     let span = last - wrist;
@@ -136,7 +136,7 @@ fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
             distance(rings[i].0, bone.map(|j| rings[j].0)).powi(2)
         });
         let mean = (bones.sum::<f64>() / (span + 1) as f64).sqrt();
-        // Within the noise of the middles, the usual place decides.
+        // Within the noise of the middles, the usual position decides.
         let share = (k - wrist) as f64 / span as f64;
         mean + 0.02 * (share - 0.52).powi(2) * (rings[last].0 - rings[wrist].0).norm()
     };
@@ -146,8 +146,8 @@ fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
         .unwrap_or((wrist + last) / 2)
 }
 
-/// The shoulder joint: on the upper arm's line, so much above the armpit; as far out as usual for
-/// level arms.
+/// The shoulder joint: on the line of the upper arm, at the usual height above the armpit; for level arms, at
+/// the usual distance from the middle.
 fn shoulder_joint(rings: &[Ring], elbow: Vec3, armpit: f64, height: f64) -> Vec3 {
     let last = rings[rings.len() - 1].0;
     let along = (last - elbow).normalize();
@@ -171,7 +171,7 @@ fn leg(scan: &Scan, crotch: f64) -> Option<[Vec3; 4]> {
     let thigh = centre(crotch - 0.06 * height)?;
     let hip_y = crotch + 0.05 * height;
     let trunk = scan.trunk(hip_y)?;
-    // Thighs are fuller outside and behind than their bones are.
+    // The flesh of thighs extends farther outwards and backwards from the bone.
     let hip = Vec3::new(
         (0.06 * height).min(thigh.x),
         hip_y,
@@ -191,8 +191,8 @@ fn leg(scan: &Scan, crotch: f64) -> Option<[Vec3; 4]> {
     Some([hip, knee, ankle, toe])
 }
 
-/// The neck: height and depth of its base, a distance from the middle outside of it, and the
-/// height of its narrowest section (m).
+/// The neck: height and depth of its base, a distance from the middle that lies outside it, and the height of
+/// its narrowest section (m).
 struct Neck {
     base: f64,
     depth: f64,
@@ -211,7 +211,7 @@ fn neck(scan: &Scan, armpit: f64) -> Option<Neck> {
         .filter_map(|y| Some((y, scan.trunk(y)?)))
         .min_by(|a, b| a.1.girth().total_cmp(&b.1.girth()))?;
     let radius = 0.8 * least.extent()[0];
-    // Down to where the shoulder's slope is as wide as that.
+    // The base is the highest level at which the slope of the shoulders is as wide as twice the radius.
     let base = levels(armpit, narrowest)
         .filter(|&y| scan.trunk(y).is_some_and(|l| l.extent()[0] >= 2.0 * radius))
         .fold(armpit, f64::max);

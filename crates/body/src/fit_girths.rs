@@ -1,8 +1,8 @@
 //! Girth residuals of a fit: the convex hull of each section must be as long as the mesh's.
 //!
-//! A point of a convex hull that moves outward by d lengthens it by d times the angle the hull turns
-//! by there (to first order: the edges' directions t change by `(t_before - t_after) . dp`).
-//! So a girth is one more residual, linear in the surface's moves at the hull's corners.
+//! A point of a convex hull that moves outward by d lengthens the hull by d times the angle that the hull
+//! turns by there (to first order: the directions t of the edges change the length by `(t_before - t_after) .
+//! dp`). So a girth is one more residual, linear in the moves of the surface at the corners of the hull.
 
 use crate::fit_check::{LevelPart, pairs, tape};
 use crate::fit_frame::FoundFrame;
@@ -12,28 +12,28 @@ use crate::{Loop, Part, Primitive, Scan};
 use std::f64::consts::TAU;
 use toile_geometry::{Vec2, Vec3, convex_hull};
 
-/// The residual of one tape, of the hull corners that lie on one part.
+/// The residual of one tape, from the corners of the hull that lie on one part.
 pub(crate) struct GirthResidual {
-    /// Corners of the mesh's hull, folded to the left (m), and the angle it turns by there (rad).
+    /// Corners of the mesh's hull, folded to the left (m), and the angle that the hull turns by at each
+    /// (rad).
     pub(crate) corners: Vec<(Vec3, f64)>,
-    /// By how much the surface's moves off the corners should lengthen the tape (m).
+    /// Wanted lengthening of the tape by the moves of the surface off the corners (m).
     pub(crate) target: f64,
-    /// Its share of the sum of squares (m2).
+    /// Weight of the residual in the sum of squares (m2).
     pub(crate) weight: f64,
 }
 
-/// Distance between tapes, over stature. They lie between the levels a fit is judged by.
+/// Distance between tapes, over stature. They lie half-way between the levels that a fit is judged by.
 const SPACING: f64 = 0.005;
-/// How much more the mean of a section's misfit counts than the misfit itself, for each round.
+/// Weight of the mean misfit of a section over the weight of the misfit itself, for each round.
 const STRESS: f64 = 8.0;
-/// Corners of a hull are taken together up to this turn (rad).
+/// Corners of a hull are merged up to this turn (rad).
 const TURN: f64 = TAU / 64.0;
-/// The most a tape is asked to change by at a time, over stature.
+/// Largest change asked of a tape at a time, over stature.
 const FAR: f64 = 0.012;
 
-/// The tapes of each of [`PARTS`]: the difference of a skin cast from primitives and the mesh, as moves of
-/// the primitives' surface. Girths count for more from
-/// round to round.
+/// The tapes of each of [`PARTS`]: the difference in girth between a skin cast from primitives and the mesh,
+/// as moves of the primitives' surface. Girths get more weight from round to round.
 pub(crate) fn girths(
     [mesh, skin]: [&Scan; 2],
     found: &FoundFrame,
@@ -69,7 +69,7 @@ pub(crate) fn girths(
                 }
                 let share = turn / TAU;
                 let model = surfaces[k].lengthening(&own);
-                // A surface that is not met near the corners says nothing of a tape.
+                // A surface that does not pass near the corners gives no information about a tape.
                 if model.abs() > 4.0 * FAR * height {
                     continue;
                 }
@@ -84,7 +84,7 @@ pub(crate) fn girths(
     all
 }
 
-/// Corners of the hull of a section's loops, near ones taken together, with what it turns by.
+/// Corners of the hull of a section's loops, near ones merged, with the angle that the hull turns by.
 fn corners(loops: &[Loop], y: f64) -> Vec<(Vec3, f64)> {
     let points: Vec<Vec2> = loops.iter().flat_map(|l| &l.points).copied().collect();
     let hull = convex_hull(&points);
@@ -115,10 +115,10 @@ fn corners(loops: &[Loop], y: f64) -> Vec<(Vec3, f64)> {
     all
 }
 
-/// Which of [`PARTS`] a corner belongs to: of those whose surfaces the skin follows there, the one
-/// that lies farthest out.
+/// Number in [`PARTS`] of the part that a corner belongs to: of the parts whose surfaces the skin follows
+/// there, the one that lies farthest out.
 fn outermost(surfaces: &[Surface], level: LevelPart, p: Vec3, found: &FoundFrame) -> usize {
-    /// Over stature: over which rings two parts meet.
+    /// Distance within which two parts overlap, over stature.
     const MEET: f64 = 0.018;
     let frame = &found.frame;
     let (j, meet) = (&frame.joints, MEET * frame.height);
@@ -131,7 +131,7 @@ fn outermost(surfaces: &[Surface], level: LevelPart, p: Vec3, found: &FoundFrame
             }
         }
         LevelPart::Arm => parts.push(Part::LeftArm),
-        // Below, a trunk's section has no arms in it.
+        // Lower down, a section of the trunk contains no arms.
         LevelPart::Trunk => {
             let shoulder = Vec3::from(j.shoulder);
             let along = (Vec3::from(j.elbow) - shoulder).normalize();

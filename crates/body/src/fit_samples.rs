@@ -1,5 +1,5 @@
-//! Samples that the primitives of a part are fitted to: places of a foreign mesh where the part's surface is,
-//! and places within it or beyond it.
+//! Samples that the primitives of a part are fitted to: points of a foreign mesh on the surface of the part,
+//! and points inside and outside of it.
 
 use crate::curve::smooth_step;
 use crate::fit_check::outermost;
@@ -8,27 +8,27 @@ use crate::rings::FAN;
 use crate::{Part, Scan};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
-/// The value that the density should have at a sample.
+/// Condition on the density at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum DensityTarget {
     /// Equal to the threshold: the surface is here.
     Surface {
-        /// Its outward normal.
+        /// Outward normal of the surface.
         normal: Vec3,
-        /// The mesh's own place, wherever the sample has been drawn since (m).
+        /// Original point of the mesh, wherever the sample has been moved since (m).
         own: Vec3,
     },
-    /// Above the threshold by a margin.
+    /// Above the threshold by a margin: inside the part.
     Within,
-    /// Below the threshold by a margin.
+    /// Below the threshold by a margin: outside the part.
     Beyond,
-    /// Nearly 0: far beyond the surface.
+    /// Nearly 0: far outside the surface.
     Far,
     /// At most the threshold: another part's surface is here.
     Below,
 }
 
-/// A place of the left half with the target of the density there and its area (m2).
+/// A point of the left half with the condition on the density there and its area (m2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) place: Vec3,
@@ -36,7 +36,7 @@ pub(crate) struct Sample {
     pub(crate) weight: f64,
 }
 
-/// A place of the surface, folded to the left half.
+/// A point of the surface, folded to the left half.
 struct Spot {
     place: Vec3,
     normal: Vec3,
@@ -47,7 +47,7 @@ struct Spot {
 /// Parts that are fitted: the others are their mirror images.
 pub(crate) const PARTS: [Part; 4] = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg];
 
-/// Distances of the samples within and beyond the surface, over stature.
+/// Distances from the surface of the samples inside and outside, over stature.
 const DEPTH: [f64; 2] = [0.010, 0.007];
 
 /// The samples of each of [`PARTS`].
@@ -78,7 +78,7 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
                     normal: spot.normal,
                     own: spot.place,
                 };
-                // On a slope a level section sees a miss enlarged.
+                // On a slope, a level section sees the distance enlarged.
                 let level = spot.normal.x.hypot(spot.normal.z);
                 let seen = match part {
                     Part::Trunk => 1.0 / (0.2 + level * level),
@@ -87,7 +87,7 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
                 add(spot.place, surface, own * seen);
                 let [within, beyond] = DEPTH.map(|d| d * height);
                 let outer = spot.place + spot.normal * beyond;
-                // No hollows: rays leave from within.
+                // Keeps the inside free of hollows, as rays start there.
                 let depths: &[f64] = match part {
                     Part::Trunk | Part::Head => &[1.0, 2.5, 4.0],
                     _ => &[1.0],
@@ -125,8 +125,8 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
 /// Height over stature above which a head has no cavities.
 const TOP: f64 = 0.975;
 
-/// The outermost places of a head's level sections on the left: mouth, nose and ears have
-/// surfaces within that no skin of ours follows.
+/// The outermost points of a head's level sections on the left: mouth, nose and ears have inner surfaces that
+/// our skin does not follow.
 fn head_spots(
     scan: &Scan,
     tree: &SurfaceTree,
@@ -163,7 +163,7 @@ fn head_spots(
     all
 }
 
-/// Every triangle's middle, folded to the left, with whether it belongs to an arm.
+/// The middle of every triangle, folded to the left, and whether it belongs to an arm.
 fn spots(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<Spot> {
     let is_arm = arms(mesh, found);
     let normals = mesh.face_normals();
@@ -184,8 +184,8 @@ fn spots(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<Spot> {
         .collect()
 }
 
-/// The vertices of both arms: what hangs together with the finger tips beyond the plane across
-/// the arm where its own sections begin.
+/// Whether each vertex belongs to an arm: it is connected with the finger tips and lies beyond the plane
+/// across the arm at which sections of the arm alone begin.
 fn arms(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<bool> {
     let j = &found.frame.joints;
     let shoulder = Vec3::from(j.shoulder);
@@ -216,8 +216,8 @@ fn arms(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<bool> {
     }
 }
 
-/// One spot a cell of a grid, with the area of all in it: dense feet and hands count no more than
-/// their area.
+/// One spot for each cell of a grid, with the area of all spots in it, so that dense feet and hands count no
+/// more than their area.
 fn thinned(spots: Vec<Spot>, found: &FoundFrame) -> Vec<Spot> {
     let height = found.frame.height;
     let cell = 0.006 * height;
@@ -241,7 +241,7 @@ fn thinned(spots: Vec<Spot>, found: &FoundFrame) -> Vec<Spot> {
     cells.into_values().collect()
 }
 
-/// Which part's surface is where.
+/// The regions of the surface that belong to each part.
 struct Zones<'a> {
     found: &'a FoundFrame,
     focus: Vec3,
@@ -254,7 +254,7 @@ impl<'a> Zones<'a> {
         let f = &found.frame;
         let scale = f.height / 1.7;
         let shoulder = Vec3::from(f.joints.shoulder);
-        // As the skin's rays go over the shoulder.
+        // The same height as that of the skin's rays over the shoulder.
         let base = f.armpit - FAN * scale;
         Self {
             found,
@@ -263,8 +263,8 @@ impl<'a> Zones<'a> {
         }
     }
 
-    /// How far a spot lies within the block of the trunk's rays that is open for the arm, over its
-    /// margin: above 1 well within, below 0 well outside.
+    /// Distance of a point inside the opening for the arm in the trunk's rays, over its margin: above 1 well
+    /// inside, below 0 well outside.
     fn opening(&self, p: Vec3) -> f64 {
         let offset = p - self.focus;
         let azimuth = (offset.x.atan2(offset.z) - std::f64::consts::FRAC_PI_2).abs();
@@ -277,7 +277,7 @@ impl<'a> Zones<'a> {
         sides.min(above).min(below) + 0.5
     }
 
-    /// How much a spot counts as a part's surface, and how much as another's.
+    /// Weight of a spot as a point of a part's own surface, and as one of another part's.
     fn shares(&self, part: Part, spot: &Spot) -> [f64; 2] {
         let f = &self.found.frame;
         let (p, h) = (spot.place, f.height);
@@ -320,8 +320,8 @@ impl<'a> Zones<'a> {
         [own, if own > 0.0 { 0.0 } else { 1.0 }]
     }
 
-    /// Whether a place beyond a spot belongs to another limb or to the trunk, where the spot's
-    /// limb must not be.
+    /// Whether a point outside a spot belongs to another limb or to the trunk, where the spot's limb must not
+    /// be.
     fn is_alien(&self, part: Part, spot: &Spot, place: Vec3) -> bool {
         let f = &self.found.frame;
         match part {
@@ -331,7 +331,7 @@ impl<'a> Zones<'a> {
         }
     }
 
-    /// Places of a part's axis, which its skin is cast from: well within.
+    /// Points of a part's axis, from which its skin is cast: inside by a margin.
     fn axis(&self, part: Part) -> Vec<Sample> {
         let f = &self.found.frame;
         let j = &f.joints;
@@ -350,7 +350,7 @@ impl<'a> Zones<'a> {
             _ => vec![hip, knee, ankle, instep, foot],
         };
         let spacing = 0.01 * f.height;
-        // Behind the arms, where their first rings are cast from.
+        // Points behind the arms, from which the first rings of the arms are cast.
         let side = |y: f64| Vec3::new(0.75 * shoulder.x, y, shoulder.z);
         let low = shoulder.y - 0.07 * f.height;
         let inner = match part {

@@ -7,10 +7,10 @@ use crate::{Figure, Part, Primitive, Scan};
 use nalgebra::{Rotation3, UnitQuaternion};
 use toile_geometry::Vec3;
 
-/// Pairs of primitives along a leg: both sides of a body so have 150 in all.
+/// Pairs of primitives along a leg: with them both sides of a body have 150 in all.
 const PAIRS: usize = 9;
 
-/// A body to carry from or to.
+/// The body to carry from, or the one to carry to.
 struct Side<'a> {
     scan: &'a Scan,
     frame: &'a BodyFrame,
@@ -29,8 +29,8 @@ impl Side<'_> {
         }
     }
 
-    /// Half breadth, half depth and depth of the middle of the trunk at a height (m): from crotch
-    /// to armpit as they are, else those at the end.
+    /// Half breadth, half depth and depth of the middle of the trunk at a height (m); below the crotch and
+    /// above the armpit those at the end of the trunk.
     fn trunk(&self, y: f64) -> [f64; 3] {
         let f = self.frame;
         let armpit = f.joints.shoulder[1] - 0.05 * f.height;
@@ -42,7 +42,7 @@ impl Side<'_> {
         })
     }
 
-    /// Girth across a bone at a share of its way (m).
+    /// Girth across a bone at a share of its length (m).
     fn girth(&self, [from, to]: [Vec3; 2], share: f64) -> Option<f64> {
         let along = (to - from).try_normalize(1e-9)?;
         let first = along.cross(&Vec3::z()).try_normalize(1e-6)?;
@@ -54,7 +54,7 @@ impl Side<'_> {
         Some(near.girth())
     }
 
-    /// Heights that stand for one another: floor, crotch, shoulder, base of the neck, crown.
+    /// Heights that correspond on two bodies: floor, crotch, shoulder, base of the neck, crown.
     fn heights(&self) -> [f64; 5] {
         let f = self.frame;
         [
@@ -67,7 +67,7 @@ impl Side<'_> {
     }
 }
 
-/// The left side's and the middle's primitives of the woman's figure carried to a mesh.
+/// The primitives of the left side and the middle of the woman's figure, carried to a mesh.
 pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitive> {
     let template = Template::of(Figure::Woman);
     let frame = BodyFrame {
@@ -99,7 +99,7 @@ pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitiv
     all
 }
 
-/// Primitives of a hand: one behind another.
+/// Primitives of a hand, one behind another.
 fn hand(to: &Side) -> Vec<Primitive> {
     let bones = to.bones(Part::LeftArm);
     let [wrist, end] = [bones[2], bones[3]];
@@ -116,8 +116,8 @@ fn hand(to: &Side) -> Vec<Primitive> {
     .into()
 }
 
-/// Primitives of a leg: pairs along it, by turns before and behind and beside one another, and
-/// some for the foot.
+/// Primitives of a leg: pairs along it, alternately one before the other and side by side, and some for the
+/// foot.
 fn leg(to: &Side) -> Vec<Primitive> {
     let bones = to.bones(Part::LeftLeg);
     let height = to.frame.height;
@@ -157,14 +157,14 @@ fn leg(to: &Side) -> Vec<Primitive> {
     all
 }
 
-/// A height of one body on the other.
+/// Height on one body that corresponds to a height on another.
 fn level(y: f64, from: &[f64; 5], to: &[f64; 5]) -> f64 {
     let k = from.partition_point(|&h| h <= y).clamp(1, 4);
     let share = (y - from[k - 1]) / (from[k] - from[k - 1]);
     to[k - 1] + (to[k] - to[k - 1]) * share
 }
 
-/// A primitive of trunk or head.
+/// A primitive of trunk or head, carried to the other body.
 fn carried(p: &Primitive, from: &Side, to: &Side) -> Primitive {
     let c = Vec3::from(p.centre);
     let y = level(c.y, &from.heights(), &to.heights());
@@ -198,7 +198,7 @@ fn carried(p: &Primitive, from: &Side, to: &Side) -> Primitive {
     }
 }
 
-/// A primitive of a limb: as it lies beside its bone.
+/// A primitive of a limb, carried to the other body with its position beside the bone.
 fn along_bone(p: &Primitive, from: &Side, to: &Side) -> Primitive {
     let (old, new) = (from.bones(p.part), to.bones(p.part));
     let c = Vec3::from(p.centre);
@@ -217,7 +217,7 @@ fn along_bone(p: &Primitive, from: &Side, to: &Side) -> Primitive {
     let (bone, to_bone) = (old[k + 1] - old[k], new[k + 1] - new[k]);
     let turn = UnitQuaternion::rotation_between(&bone, &to_bone).unwrap_or_default();
     let inner = t.clamp(0.2, 1.0);
-    // A hand's and a foot's own sections say little.
+    // Sections of hands and feet are not reliable.
     let thick = match k {
         2 => to.frame.height / from.frame.height,
         _ => match (

@@ -1,4 +1,4 @@
-//! The implicit surface of one part with its derivatives by what its primitives are fitted by.
+//! The implicit surface of one part, with derivatives by the unknowns of its primitives.
 
 use crate::{Part, Primitive, THRESHOLD};
 use nalgebra::Matrix3;
@@ -7,16 +7,16 @@ use toile_geometry::Vec3;
 /// Unknowns of a primitive: centre, logarithms of the semi-axes, turn, logarithm of the weight.
 pub(crate) const UNKNOWNS: usize = 10;
 
-/// A primitive made ready.
+/// A primitive ready for evaluation.
 struct Ready {
     centre: Vec3,
     turn: Matrix3<f64>,
     inverse: Vec3,
     weight: f64,
     reach: f64,
-    /// Whether its mirror image adds to the same part.
+    /// Whether the mirror image of the primitive belongs to the same part.
     twin: bool,
-    /// Whether it is its own mirror image: then it neither goes nor turns sideways.
+    /// Whether the primitive is its own mirror image: it then neither moves nor turns sideways.
     central: bool,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct Surface {
     all: Vec<Ready>,
 }
 
-/// A primitive by its number with derivatives by its unknowns.
+/// Number of a primitive, and derivatives by its unknowns.
 pub(crate) type Row = (usize, [f64; UNKNOWNS]);
 
 fn ready(p: &Primitive) -> Ready {
@@ -40,8 +40,8 @@ fn ready(p: &Primitive) -> Ready {
     }
 }
 
-/// Density of a primitive at a place with its gradient by place and by the unknowns; the centre's
-/// derivative is the opposite of the place's.
+/// Density of a primitive at a point, with its gradient and its derivatives by the unknowns. The derivative
+/// by the centre is the negative gradient.
 fn density(p: &Ready, place: Vec3) -> Option<(f64, Vec3, [f64; UNKNOWNS])> {
     let offset = place - p.centre;
     if offset.norm_squared() >= p.reach {
@@ -81,13 +81,12 @@ impl Surface {
         }
     }
 
-    /// How many primitives it has.
+    /// Number of primitives.
     pub(crate) fn count(&self) -> usize {
         self.all.len()
     }
 
-    /// Density at a place and its gradient; the rows of the primitives that reach there are put
-    /// into `touched`.
+    /// Density at a point and its gradient; `touched` gets the rows of the primitives that reach the point.
     pub(crate) fn at(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, Vec3) {
         touched.clear();
         let (mut value, mut gradient) = (0.0, Vec3::zeros());
@@ -116,17 +115,17 @@ impl Surface {
         (value, gradient)
     }
 
-    /// How far the surface lies beyond a place in its level plane, to first order (m), and the
-    /// density's slope that way (1/m).
+    /// Distance of the surface outside a point in the level plane, to first order (m), and the slope of the
+    /// density in that plane (1/m).
     pub(crate) fn beyond(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, f64) {
-        /// Of the slope: under it a surface is as good as level.
+        /// Least share of the slope in the level plane: below it a surface counts as level.
         const LEVEL: f64 = 0.15;
         let (value, gradient) = self.at(place, touched);
         let steep = gradient.x.hypot(gradient.z).max(LEVEL * gradient.norm());
         ((value - THRESHOLD) / steep.max(1e-6), steep.max(1e-6))
     }
 
-    /// By how much a tape is longer for where the surface lies beyond its corners (m).
+    /// Lengthening of a tape because the surface lies outside its corners (m).
     pub(crate) fn lengthening(&self, corners: &[(Vec3, f64)]) -> f64 {
         let mut touched = Vec::new();
         corners

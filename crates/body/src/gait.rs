@@ -7,16 +7,16 @@ use nalgebra::UnitQuaternion;
 use std::f64::consts::{PI, TAU};
 use toile_geometry::Vec3;
 
-/// Poses of a stride: so many that a standing foot, slerped between two of them, stays where it stands.
+/// Number of poses of a stride: a standing foot, slerped between two of them, then stays in place.
 const FRAMES: usize = 48;
 
 impl Clip {
-    /// A walk of our own: one stride of 1.1 s, on the spot; the left heel strikes at phase 0.
+    /// Our own walk: one stride of 1.1 s, on the spot; the left heel strikes at phase 0.
     pub fn walk(skeleton: &Skeleton) -> Self {
         Self::cycle(skeleton, &WALK)
     }
 
-    /// A run of our own: one stride of 0.72 s, on the spot, the phase as of [`Clip::walk`].
+    /// Our own run: one stride of 0.72 s, on the spot, with the phase of [`Clip::walk`].
     pub fn run(skeleton: &Skeleton) -> Self {
         Self::cycle(skeleton, &RUN)
     }
@@ -37,7 +37,7 @@ impl Clip {
         Self::still(standing(skeleton, 0.7, 0.0))
     }
 
-    /// Standing astride: the feet apart, the arms held off.
+    /// Standing astride: the feet apart, the arms held away from the body.
     pub fn astride(skeleton: &Skeleton) -> Self {
         Self::still(standing(skeleton, 1.4, 0.35))
     }
@@ -52,8 +52,8 @@ impl Clip {
     }
 }
 
-/// A pose on both feet, 0 under the hips and 1 as far apart as at rest; the arms are held off by an angle (rad) from where
-/// they hang.
+/// A pose on both feet: `apart` is 0 with the feet under the hips, 1 as far apart as at rest; `raised` is the
+/// angle (rad) between the arms and hanging arms.
 fn standing(skeleton: &Skeleton, apart: f64, raised: f64) -> Pose {
     let scale = skeleton.leg_length();
     let mut pose = Pose::rest();
@@ -84,7 +84,8 @@ fn standing(skeleton: &Skeleton, apart: f64, raised: f64) -> Pose {
     pose
 }
 
-/// How far the root may be above its place at rest (m) for a leg to reach an ankle's place (m).
+/// Largest height of the root over its rest position (m) with which a leg reaches a position of the ankle
+/// (m).
 fn highest_hip(skeleton: &Skeleton, leg: [Joint; 4], ankle: Vec3) -> f64 {
     let hip = skeleton.centre(leg[0]);
     let reach = REACH * length(skeleton, leg);
@@ -98,7 +99,7 @@ struct Side {
     leg: [Joint; 4],
     arm: [Joint; 2],
     sign: f64,
-    /// By how much of a stride it is later than the left side.
+    /// Delay against the left side, as a share of a stride.
     later: f64,
 }
 
@@ -117,7 +118,7 @@ const SIDES: [Side; 2] = [
     },
 ];
 
-/// Angles of an arm (rad): swung forward, bent at the elbow, raised sideways from where it hangs.
+/// Angles of an arm (rad): swung forward, bent at the elbow, raised sideways from hanging.
 struct ArmAngles {
     forward: f64,
     bend: f64,
@@ -128,53 +129,56 @@ impl ArmAngles {
     fn set(&self, skeleton: &Skeleton, pose: &mut Pose, side: Side) {
         let about = |axis: Vec3, angle: f64| UnitQuaternion::new(axis * angle);
         let [shoulder, elbow] = side.arm;
-        // Arms hang from where they are held off at rest, but not against the trunk.
+        // Arms are lowered from their rest position until they hang, but not into the trunk.
         let arm = skeleton.centre(elbow) - skeleton.centre(shoulder);
         let down = (-arm.y).atan2(arm.x * side.sign);
         let lowered = (skeleton.hang() - down).max(0.0) - self.raised;
         let hang = about(Vec3::z(), -side.sign * lowered);
         pose.set(shoulder, about(Vec3::x(), -self.forward) * hang);
-        // The elbow bends about the axis across the hanging arm, as it lies in the arm at rest.
+        // The elbow bends about the axis across the hanging arm, expressed in the arm at rest.
         let across = hang.inverse() * Vec3::x();
         pose.set(elbow, about(across, -self.bend));
     }
 }
 
-/// A wave over a stride: mean, then cosine and sine of once and twice round (rad).
+/// A wave over a stride: mean, then cosine and sine at one and at two periods per stride (rad).
 type Wave = [f64; 5];
 
-/// A gait: a foot stands still on the ground for a share of the stride and swings forward in the other; arms and trunk
-/// follow waves. Lengths are over the leg length; the right side is half a stride later.
+/// A gait: a foot stands still on the ground for a share of the stride and swings forward in the rest; arms
+/// and trunk follow waves. Lengths are over the leg length; the right side is half a stride later.
 struct Gait {
-    /// Of a stride (s).
+    /// Duration of the stride (s).
     duration: f64,
-    /// Over the ground (1/s).
+    /// Speed over the ground (1/s).
     speed: f64,
     /// Share of the stride in which a foot is on the ground.
     duty: f64,
-    /// How far before the hips the ankle is where its foot touches the ground.
+    /// Distance of the ankle before the hip when its foot touches the ground.
     ahead: f64,
-    /// Heel over toes at strike (negative: toes up) and where the foot leaves the ground (rad).
+    /// Pitch of the foot at strike and when it leaves the ground (rad): positive with the heel above the
+    /// toes.
     pitch: [f64; 2],
-    /// Shares of the standing time at which the foot lies flat, and at which the heel leaves the ground.
+    /// Shares of the standing time at which the foot begins to lie flat, and at which the heel leaves the
+    /// ground.
     flat: [f64; 2],
-    /// How high the swinging ankle is lifted over the straight way, and where on it the most.
+    /// Height by which the swinging ankle is lifted above the straight path, and the share of the swing at
+    /// its highest.
     lift: [f64; 2],
-    /// Distance of the feet from the middle: 0 under the hips, 1 as far apart as they stand at rest.
+    /// Distance of the feet from the middle: 0 under the hips, 1 as far apart as at rest.
     apart: f64,
-    /// Half the rise and fall of the hips in a step, and the phase of their first lowest place.
+    /// Half the rise and fall of the hips in a step, and the phase of their first lowest position.
     bounce: [f64; 2],
-    /// Elbow and shoulder forward.
+    /// Angles of elbow and shoulder, forward.
     elbow: Wave,
     shoulder: Wave,
-    /// Turn of pelvis against chest, lean forward (rad).
+    /// Turn of the pelvis against the chest, and forward lean (rad).
     twist: f64,
     lean: f64,
 }
 
-/// Speed, step, time on the ground and the course of the foot are those of level walking (Winter 1991; Murray, Drought
-/// and Kory 1964): 1.15 m/s at a leg of 0.82 m, a foot on the ground for three fifths of the stride, the hips lowest
-/// while both feet are.
+/// Speed, step, time on the ground and motion of the foot are those of level walking (Winter 1991; Murray,
+/// Drought and Kory 1964): 1.15 m/s with a leg of 0.82 m, a foot on the ground for three fifths of the
+/// stride, the hips lowest while both feet are on the ground.
 const WALK: Gait = Gait {
     duration: 1.1,
     speed: 1.4,
@@ -191,8 +195,8 @@ const WALK: Gait = Gait {
     lean: 0.03,
 };
 
-/// A run of 2.2 m/s at a leg of 0.82 m: a foot is on the ground for a third of the stride, so that twice a stride
-/// neither is, and the hips are lowest over the standing foot (Novacheck 1998).
+/// A run of 2.2 m/s with a leg of 0.82 m: a foot is on the ground for a third of the stride, so that twice a
+/// stride neither foot is, and the hips are lowest over the standing foot (Novacheck 1998).
 const RUN: Gait = Gait {
     duration: 0.72,
     speed: 2.7,
@@ -215,13 +219,13 @@ fn wave(w: &Wave, phase: f64) -> f64 {
 }
 
 impl Gait {
-    /// Rise of the root over its place at rest, over the leg length, without its mean.
+    /// Rise of the root over its mean height, over the leg length.
     fn bob(&self, phase: f64) -> f64 {
         let [half, lowest] = self.bounce;
         -half * (2.0 * TAU * (phase - lowest)).cos()
     }
 
-    /// The mean height of the root over its place at rest (m): as high as the standing legs reach.
+    /// Mean height of the root over its rest position (m): as high as the standing legs reach.
     fn height(&self, skeleton: &Skeleton) -> f64 {
         let scale = skeleton.leg_length();
         let phases = (0..8 * FRAMES).map(|k| k as f64 / (8 * FRAMES) as f64);
@@ -232,7 +236,7 @@ impl Gait {
         highest.fold(0.0, f64::min)
     }
 
-    /// Heel over toes (rad) at a share of the standing time.
+    /// Pitch of the standing foot (rad), positive with the heel up, at a share of the standing time.
     fn standing_pitch(&self, share: f64) -> f64 {
         let ([strike, off], [flat, rise]) = (self.pitch, self.flat);
         match share {
@@ -245,13 +249,14 @@ impl Gait {
         }
     }
 
-    /// A foot on the ground at a phase since its strike; the root is at rest and the ground moves back.
+    /// A foot on the ground at a phase since its strike; the root stays at its rest position and the ground
+    /// moves back.
     fn standing_foot(&self, skeleton: &Skeleton, side: Side, phase: f64) -> FootPlace {
         let scale = skeleton.leg_length();
         let [hip, _, ankle, toes] = side.leg.map(|joint| skeleton.centre(joint));
         let (heel, ball) = ([-0.3, 1.0]).map(|share| share * (toes.z - ankle.z)).into();
         let pitch = self.standing_pitch(phase / self.duty);
-        // The foot rolls about the heel first, about the ball of the foot in the end.
+        // The foot first rolls about the heel, at the end about the ball of the foot.
         let pivot = Vec3::new(0.0, -ankle.y, if pitch < 0.0 { heel } else { ball });
         let turned = UnitQuaternion::new(Vec3::x() * pitch) * -pivot;
         let strike = hip.z + self.ahead * scale;
@@ -268,7 +273,7 @@ impl Gait {
         }
     }
 
-    /// Where a foot is at a phase since its strike, 0..1, with the root at its place at rest.
+    /// Position of a foot at a phase since its strike, 0 to 1, with the root at its rest position.
     fn foot(&self, skeleton: &Skeleton, side: Side, phase: f64) -> FootPlace {
         if phase < self.duty {
             return self.standing_foot(skeleton, side, phase);
@@ -276,13 +281,13 @@ impl Gait {
         let at = |phase: f64| self.standing_foot(skeleton, side, phase);
         let swing = 1.0 - self.duty;
         let share = (phase - self.duty) / swing;
-        // Both ends leave and meet the ground as fast as they move on it.
+        // The foot leaves and meets the ground at the speed at which the ground moves.
         let tiny = 1e-4;
         let [off, strike] = [at(self.duty), at(0.0)];
         let [before, after] = [at(self.duty - tiny), at(tiny)];
         let per = swing / tiny;
         let [height, top] = self.lift;
-        // A hump whose top is at the share told.
+        // A hump with its top at the given share.
         let bent = share.powf(0.5_f64.ln() / top.ln());
         let lift = height * skeleton.leg_length() * (PI * bent).sin().powi(2);
         let ankle = hermite(
@@ -333,7 +338,7 @@ impl Gait {
     }
 }
 
-/// The cubic between two values with given slopes per the whole way, at a share of it.
+/// Cubic (Hermite) interpolation between two values with given slopes per whole interval, at a share of it.
 fn hermite([from, to]: [Vec3; 2], [leaving, arriving]: [Vec3; 2], s: f64) -> Vec3 {
     let (s2, s3) = (s * s, s * s * s);
     let b = 3.0 * s2 - 2.0 * s3;

@@ -1,4 +1,4 @@
-//! Every girth a body is solved for, and what is kept for each.
+//! The girths that a body is solved for, and values stored by girth.
 
 use crate::landmark_level::Level;
 use std::ops::{Index, IndexMut};
@@ -54,7 +54,7 @@ impl Girth {
         }
     }
 
-    /// The level whose scale it sets, of girths round the trunk.
+    /// The level whose scale is set by a girth round the trunk.
     pub(crate) fn level(self) -> Option<Level> {
         match self {
             Girth::HighBust => Some(Level::HighBust),
@@ -73,12 +73,12 @@ impl Girth {
 pub(crate) struct PerGirth<T>([T; Girth::COUNT]);
 
 impl<T> PerGirth<T> {
-    /// The values a function gives for the girths.
+    /// The values that a function gives for each girth.
     pub(crate) fn of(value: impl FnMut(Girth) -> T) -> Self {
         Self(Girth::ALL.map(value))
     }
 
-    /// The values, to be changed, in the order of [`Girth::ALL`].
+    /// The values for modification, in the order of [`Girth::ALL`].
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.0.iter_mut()
     }

@@ -11,18 +11,19 @@ use toile_geometry::Vec3;
 
 /// Distance between rings of the hand and of the thumb, for a stature of 1.7 m (m).
 const SPACING: [f64; 2] = [0.0075, 0.0055];
-/// How flat a hand is, and over what share of its length it comes to that from a round wrist.
+/// Length of the first axis of a flat hand's rings over the second (1), and share of the hand's length over
+/// which the rings get from round at the wrist to flat.
 const FLAT: f64 = 0.45;
 const FLATTENED: f64 = 0.45;
-/// How much of the way to the thumb's axis a hand that is clear of it may take up.
+/// Largest extent of the fingers, over the distance to the thumb's axis, that counts as clear of the thumb.
 const CLEAR: f64 = 0.85;
-/// Where the last ring planes lie on the way from the last middle to a tip.
+/// Positions of the last ring planes, as shares of the way from the last full ring to the tip.
 const TIP: [f64; 2] = [0.45, 0.8];
-/// Ring planes and columns of the gap for the thumb.
+/// Number of ring planes and of columns of the gap for the thumb.
 const GAP: [usize; 2] = [5, 6];
 
 impl Half<'_> {
-    /// Ring planes of the hand from the wrist on, each about the middle of the hand there.
+    /// Ring planes of the hand from the wrist on, each centred in the hand.
     pub(crate) fn hand_frames(&self, [wrist, along]: [Vec3; 2]) -> Vec<Frame> {
         let length = self.template.hand;
         let scale = self.template.height / 1.7;
@@ -35,7 +36,7 @@ impl Half<'_> {
             let at = length * k as f64 / count as f64;
             let axes = [Vec3::z().cross(&along), Vec3::z()];
             let mut centre = wrist + along * at + offset;
-            // The thumb is no part of the breadth.
+            // Before the web the thumb must not count in the breadth.
             let passes: &[Vec3] = match at > web {
                 true => &[axes[1], axes[0], axes[1], axes[0]],
                 false => &[axes[0]],
@@ -59,7 +60,7 @@ impl Half<'_> {
         self.rounded(frames, along)
     }
 
-    /// Ring planes with some more towards a tip, so that it is round.
+    /// The ring planes with more of them towards the tip, so that it is round.
     fn rounded(&self, mut frames: Vec<Frame>, along: Vec3) -> Vec<Frame> {
         if let Some(&last) = frames.last()
             && let Some(rest) = (self.field).first_exit(&[Part::LeftArm], last.centre, along)
@@ -72,7 +73,7 @@ impl Half<'_> {
         frames
     }
 
-    /// How far the middle of the arm lies from a point along an axis (m).
+    /// Distance of the middle of the arm from a point along an axis (m).
     fn off_the_middle(&self, point: Vec3, axis: Vec3) -> f64 {
         let exit = |d: Vec3| self.field.first_exit(&[Part::LeftArm], point, d);
         match (exit(axis), exit(-axis)) {
@@ -81,8 +82,8 @@ impl Half<'_> {
         }
     }
 
-    /// Casts an arm whose frames from `wrist` on are those of the hand; without a thumb where the
-    /// primitives have none.
+    /// Casts an arm whose frames from `wrist` on are those of the hand; without a thumb if the primitives
+    /// have none.
     pub(crate) fn arm_with_thumb(
         &mut self,
         mut arm: Limb,
@@ -100,8 +101,8 @@ impl Half<'_> {
             self.thumb(&web, thumb)?;
             web.extend(first..first + web.len() as u32);
         }
-        // The hand has no small bumps to be taken away but where thumb and fingers part; the rings at
-        // the wrist lead over.
+        // The hand has no small bumps to smooth except where thumb and fingers part; the rings at the wrist
+        // are a transition.
         let from = rings.get(wrist + 2).and_then(|ring| ring.iter().min());
         let from = from.map_or(first, |&v| v as usize);
         self.held[from..].fill(true);
@@ -111,8 +112,8 @@ impl Half<'_> {
         Ok(())
     }
 
-    /// The gap for the thumb in the rings of the hand: it ends at the first ring plane on which
-    /// the thumb stands clear of the fingers.
+    /// The gap for the thumb in the rings of the hand: it ends at the first ring plane on which the thumb is
+    /// clear of the fingers.
     fn gap(&self, arm: &Limb, wrist: usize, [base, tip]: [Vec3; 2]) -> Option<Gap> {
         let is_inside = |share: f64| {
             let at = base + (tip - base) * share;
@@ -123,7 +124,8 @@ impl Half<'_> {
         }
         let n = arm.border.len();
         let even = self.angles(arm);
-        // The column that points to the thumb, first of the gap, and whether all of it are clear.
+        // The first column of the gap, centred on the direction of the thumb, if all columns of the gap are
+        // clear.
         let first_column = |frame: &Frame| {
             let way = on_plane([base, tip], frame, arm.tip) - frame.centre;
             let angles = gathered(&even, frame.gathering);
@@ -147,7 +149,7 @@ impl Half<'_> {
         })
     }
 
-    /// The thumb, from the border of its gap to its tip.
+    /// Casts the thumb, from the border of its gap to its tip.
     fn thumb(&mut self, border: &[u32], [base, tip]: [Vec3; 2]) -> Result<(), BodyError> {
         let points = border.iter().map(|&v| self.positions[v as usize]);
         let behind = points.sum::<Vec3>() / border.len() as f64;
@@ -180,10 +182,10 @@ impl Half<'_> {
     }
 }
 
-/// Number of rings from which on a limb follows its own joints alone.
+/// Ring number from which a limb follows only its own joints.
 const HELD: f64 = 100.0;
 
-/// Where a line meets the plane of a ring square to `along`.
+/// Intersection of a line with the plane of a ring square to `along`.
 fn on_plane([base, tip]: [Vec3; 2], frame: &Frame, along: Vec3) -> Vec3 {
     let way = tip - base;
     base + way * ((frame.centre - base).dot(&along) / way.dot(&along))

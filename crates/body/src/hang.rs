@@ -1,4 +1,4 @@
-//! How far straight arms can hang beside a body without touching it.
+//! The steepest angle at which straight arms hang beside a body without touching it.
 
 use toile_geometry::Vec3;
 
@@ -6,13 +6,13 @@ use toile_geometry::Vec3;
 pub(crate) const STEEPEST: f64 = 1.15;
 /// Least distance between arm and trunk, over stature: arms swing and trunks turn.
 const CLEAR: f64 = 0.012;
-/// Height of the bands in which the trunk's breadth is known, over stature.
+/// Height of the bands in which the breadth of the trunk is stored, over stature.
 const BAND: f64 = 0.01;
-/// Beside the shoulder skin folds; so much of the stature is left out.
+/// Distance from the shoulder joint within which the arm is left out, over stature: skin folds there.
 const SHOULDER: f64 = 0.075;
 
-/// The steepest angle below the horizontal (rad) at which the left arm, held `down` now, clears
-/// trunk and legs; `arm` says how far each vertex follows it.
+/// Steepest angle below the horizontal (rad) at which the left arm, now at the angle `down`, clears trunk and
+/// legs; `arm` is the share with which each vertex follows the arm.
 pub(crate) fn hang(positions: &[Vec3], arm: &[f64], (shoulder, down): (Vec3, f64)) -> f64 {
     let stature = positions.iter().map(|p| p.y).fold(0.0, f64::max);
     let band = |y: f64| (y / (BAND * stature)).max(0.0) as usize;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use strum::{EnumCount, VariantArray};
 
-/// A joint, named as by the H-Anim standard (ISO/IEC 19774): the eighteen of its lowest level of
+/// A joint, named as in the H-Anim standard (ISO/IEC 19774): the eighteen of its lowest level of
 /// articulation, and chest, neck and collars, which motions may leave out.
 #[derive(
     Clone,
@@ -67,8 +67,7 @@ pub enum Joint {
     RWrist,
 }
 
-/// Each joint with its name, the joint it hangs on and its mirror image, in the order of
-/// [`Joint::ALL`].
+/// Name, parent and mirror image of each joint, in the order of [`Joint::ALL`].
 const TABLE: [(&str, Option<Joint>, Joint); Joint::COUNT] = {
     use Joint::*;
     [
@@ -98,34 +97,34 @@ const TABLE: [(&str, Option<Joint>, Joint); Joint::COUNT] = {
 };
 
 impl Joint {
-    /// How many there are.
+    /// Number of joints.
     pub const COUNT: usize = <Self as EnumCount>::COUNT;
 
-    /// All joints, every one after the joint it hangs on.
+    /// All joints, each after its parent.
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// The name in H-Anim files.
+    /// Name in H-Anim files.
     pub fn name(self) -> &'static str {
         TABLE[self as usize].0
     }
 
-    /// The joint of an H-Anim name.
+    /// The joint with an H-Anim name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|joint| joint.name() == name)
     }
 
-    /// The joint it hangs on; none for the root.
+    /// The parent joint; `None` for the root.
     pub fn parent(self) -> Option<Self> {
         TABLE[self as usize].1
     }
 
-    /// The same joint of the other side; itself in the middle.
+    /// The corresponding joint of the other side; a joint of the middle is its own.
     pub fn mirrored(self) -> Self {
         TABLE[self as usize].2
     }
 
-    /// Whether the joint is beyond the lowest level of articulation: a motion may leave it out,
-    /// and it then goes rigidly with the joint it hangs on.
+    /// Whether the joint is beyond the lowest level of articulation: a motion may leave it out, and it then
+    /// moves rigidly with its parent.
     pub fn is_optional(self) -> bool {
         matches!(
             self,
@@ -133,8 +132,8 @@ impl Joint {
         )
     }
 
-    /// Whether turning `other` moves what is fixed to this joint: it is the joint itself or lies
-    /// between it and the root.
+    /// Whether a turn of `other` moves primitives that are fixed to this joint: `other` is the joint itself
+    /// or lies between it and the root.
     pub fn follows(self, other: Self) -> bool {
         let mut at = Some(self);
         while let Some(joint) = at {

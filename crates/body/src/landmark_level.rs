@@ -1,6 +1,6 @@
 //! The landmarks of a standing body that have a height.
 
-/// Landmarks a height is solved for, from the top down.
+/// Landmarks with a height to solve for, from the top down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Level {
     Crown,

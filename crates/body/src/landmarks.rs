@@ -8,18 +8,18 @@ use crate::template_marks::middle_depth;
 use crate::warp::{Follow, Warp};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
-/// Named points of a body (m), on its skin but for the middle of the trunk. Pairs are left, +X,
-/// then right. The joints are in [`crate::Mannequin::skeleton`].
+/// Named points of a body (m), on its skin except for the middle of the trunk. Pairs are left, +X, then
+/// right. The joints are in [`crate::Mannequin::skeleton`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmarks {
     /// Top of the head.
     pub crown: Vec3,
-    /// Under the chin: where the front middle has stepped forward from the throat to the chin by three
-    /// quarters.
+    /// Underside of the chin: the point of the front middle that lies three quarters of the way forward from
+    /// the throat to the foremost point of the chin.
     pub chin: Vec3,
     /// Base of the neck at the back, over the seventh neck vertebra.
     pub nape: Vec3,
-    /// Where neck and shoulder meet.
+    /// Points where neck and shoulder meet.
     pub neck_sides: [Vec3; 2],
     /// Outer ends of the shoulders.
     pub shoulder_tips: [Vec3; 2],
@@ -106,8 +106,8 @@ impl Landmarks {
     }
 }
 
-/// Under the chin: where an outline of neck and face, coming from the throat, has stepped forward
-/// by three quarters, between the neck's base and the mouth.
+/// Underside of the chin: the point of an outline of neck and face, between the neck's base and the mouth,
+/// that lies three quarters of the way forward from the throat to the chin.
 fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
     /// Share of the way from the neck's base to the crown at which the mouth begins.
     const MOUTH: f64 = 0.3;

@@ -1,16 +1,17 @@
-//! The way from one pose to another at rest at both ends, as slow as cloth on the skin can follow.
+//! The motion from one pose to another, at rest at both ends, slow enough for cloth on the skin to follow.
 
 use crate::{Clip, Joint, Mannequin, Pose};
 use toile_geometry::Vec3;
 
-/// Fastest skin of trunk, arms and legs on the way (m/s); hands, feet and head, on which no garment hangs, may be faster.
+/// Largest speed of the skin of trunk, arms and legs (m/s); hands, feet and head, which carry no garment, may
+/// be faster.
 const FASTEST_SKIN: f64 = 1.0;
-/// Shortest way (s).
+/// Shortest duration (s).
 const SHORTEST: f64 = 0.4;
-/// Poses a second.
+/// Poses per second.
 const RATE: f64 = 240.0;
 
-/// The share of a way that is gone at a share of its time, with the least jerk: no speed and no acceleration at both
+/// Share of the motion done at a share of its time, with the least jerk: no speed and no acceleration at both
 /// ends (Flash and Hogan 1985).
 pub(crate) fn least_jerk(share: f64) -> f64 {
     let s = share.clamp(0.0, 1.0);
@@ -18,8 +19,9 @@ pub(crate) fn least_jerk(share: f64) -> f64 {
 }
 
 impl Clip {
-    /// From a pose to another, each joint the short way round with the least jerk, in 0.4 s or as long as it takes for no
-    /// skin but that of hands, feet and head to be faster than 1 m/s. Roots are in leg lengths.
+    /// The motion from one pose to another, each joint turning the short way with the least jerk, in 0.4 s,
+    /// or longer if otherwise any skin except that of hands, feet and head moved faster than 1 m/s. Roots are
+    /// in leg lengths.
     pub fn lead_in(body: &Mannequin, from: &Pose, to: &Pose) -> Self {
         let skeleton = body.skeleton();
         let skin_at = |share: f64| {
@@ -40,7 +42,7 @@ impl Clip {
         let clad: Vec<usize> = (0..body.skin().positions.len())
             .filter(|v| !bare(v))
             .collect();
-        // The longest way of any skin over the way of the joints.
+        // Largest speed of clothed skin over the share of the joints' motion (m).
         const PARTS: usize = 16;
         let mut fastest = 0.0_f64;
         let mut before = skin_at(0.0);
@@ -50,7 +52,7 @@ impl Clip {
             fastest = clad.iter().map(way).fold(fastest, f64::max);
             before = now;
         }
-        // The least-jerk clock is 15/8 of the mean speed in the middle.
+        // The peak speed of a least-jerk motion is 15/8 of its mean speed.
         let duration = (1.875 * fastest / FASTEST_SKIN).max(SHORTEST);
         let count = (duration * RATE).ceil().max(1.0) as usize;
         let between = (1..count).map(|k| from.blended(to, least_jerk(k as f64 / count as f64)));

@@ -1,25 +1,25 @@
-//! A leg that reaches for the ground: hip, knee and ankle turned so that the foot stands where it is to stand.
+//! A leg that reaches for the ground: hip, knee and ankle turned so that the foot stands at a given place.
 
 use crate::{Joint, Pose, Skeleton};
 use nalgebra::UnitQuaternion;
 use toile_geometry::Vec3;
 
-/// Joints of one leg from the hip down.
+/// Joints of the left leg from the hip down.
 pub(crate) const LEFT_LEG: [Joint; 4] =
     [Joint::LHip, Joint::LKnee, Joint::LAnkle, Joint::LMidtarsal];
-/// The same of the other leg.
+/// Joints of the right leg from the hip down.
 pub(crate) const RIGHT_LEG: [Joint; 4] =
     [Joint::RHip, Joint::RKnee, Joint::RAnkle, Joint::RMidtarsal];
 
-/// Share of its whole length to which a leg stretches: beyond it the knee would lock and jump.
+/// Largest share of its length to which a leg stretches: beyond it the knee would lock and jump.
 pub(crate) const REACH: f64 = 0.997;
 
-/// Where a foot is to be: its ankle (m), and how far the heel is raised over the toes (rad).
+/// Position of a foot: its ankle (m), and the pitch by which the heel is raised above the toes (rad).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FootPlace {
     pub ankle: Vec3,
     pub pitch: f64,
-    /// How far the toes are bent up against the foot (rad).
+    /// Angle by which the toes are bent up against the foot (rad).
     pub toes: f64,
 }
 
@@ -29,8 +29,9 @@ pub(crate) fn length(skeleton: &Skeleton, leg: [Joint; 4]) -> f64 {
     (knee - hip).norm() + (ankle - knee).norm()
 }
 
-/// Turns the joints of a leg so that its ankle comes to a place, as near as the leg reaches, with the knee bent forward
-/// and the foot pointing straight ahead. The joints above are those of the pose.
+/// Turns the joints of a leg so that its ankle comes to a place, or as near to it as the leg reaches, with
+/// the knee bent forward and the foot pointing straight ahead. The joints above the leg are those of the
+/// pose.
 pub(crate) fn stand(skeleton: &Skeleton, pose: &mut Pose, leg: [Joint; 4], foot: &FootPlace) {
     let [hip, knee, ankle, toes] = leg;
     for joint in leg {
@@ -47,10 +48,10 @@ pub(crate) fn stand(skeleton: &Skeleton, pose: &mut Pose, leg: [Joint; 4], foot:
     let bend = knee_angle(thigh, shank, to.norm());
     let about = |axis: Vec3, angle: f64| UnitQuaternion::new(axis * angle);
     let reached = thigh + about(Vec3::x(), bend) * shank;
-    // First forward or back about x, by which the third coordinate is met, then sideways about z.
+    // First a turn about x that meets the third coordinate, then a sideways turn about z.
     let across = reached.y.hypot(reached.z);
     let swing = (to.z / across).clamp(-1.0, 1.0).asin() - (reached.z / across).asin();
-    // The leg points down: turning it forward about x is negative.
+    // The leg points down: a turn forward about x is negative.
     let swung = about(Vec3::x(), -swing) * reached;
     let aside = to.y.atan2(to.x) - swung.y.atan2(swung.x);
     pose.set(hip, about(Vec3::z(), aside) * about(Vec3::x(), -swing));
@@ -61,7 +62,7 @@ pub(crate) fn stand(skeleton: &Skeleton, pose: &mut Pose, leg: [Joint; 4], foot:
     pose.set(toes, about(Vec3::x(), -foot.toes));
 }
 
-/// The bend of the knee (rad) at which hip and ankle are a distance (m) apart.
+/// Bend of the knee (rad) with which hip and ankle are a distance (m) apart.
 fn knee_angle(thigh: Vec3, shank: Vec3, distance: f64) -> f64 {
     // |thigh + R shank|^2 = distance^2 with R a turn about x: p cos + q sin = s.
     let p = 2.0 * (thigh.y * shank.y + thigh.z * shank.z);

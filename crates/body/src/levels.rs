@@ -28,8 +28,9 @@ impl Levels {
         self.heights[level as usize]
     }
 
-    /// Whether a girth round the trunk is looked for on a body of these levels with its crotch and crown
-    /// at heights (m); else it is taped at its level, as a waist at the navel is. Hips always are.
+    /// Whether a girth round the trunk is searched for on a body with these levels and with crotch and crown
+    /// at these heights (m). Otherwise it is taped at its level, for example a waist at the navel. Hips are
+    /// always searched for.
     pub(crate) fn is_looked_for(&self, girth: Girth, [crotch, crown]: [f64; 2]) -> bool {
         let share = |level: Level| (self.at(level) - crotch) / (crown - crotch);
         let within = |level: Level, [low, high]: [f64; 2]| (low..=high).contains(&share(level));
@@ -45,26 +46,27 @@ impl Levels {
     }
 }
 
-/// Between which shares of the way from crotch to crown the level of a waist lies that is the smallest
-/// girth there: of a belly, and of a waist smaller than the girth under the bust.
+/// Range of a waist's level, as shares of the way from crotch to crown, in which it is the smallest girth: of
+/// a body with a belly, and of one whose waist is smaller than the girth under the bust.
 const WAIST_RANGE: [[f64; 2]; 2] = [[0.30, 0.37], [0.28, 0.37]];
-/// The same of the bust.
+/// Range of the bust's level in which it is the largest girth, as shares of the same way.
 const BUST_RANGE: [f64; 2] = [0.44, 0.56];
-/// Where the girth under the bust lies lower, the smallest girth below it is not the waist.
+/// Least level of the girth under the bust, as such a share: if it lies lower, the smallest girth below it is
+/// not the waist.
 const UNDERBUST_LEAST: f64 = 0.385;
 
-/// Differences of measurements on the skin from the differences of their levels (m).
+/// Differences between measurements on the skin and differences of their levels (m).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SkinOffsets {
-    /// Of the landmark on the skin over its level.
+    /// Height of the landmark on the skin above its level.
     pub(crate) level: [f64; COUNT],
-    /// From the side of the neck out to the end of the shoulder; none before it is known.
+    /// Horizontal distance from the side of the neck to the end of the shoulder; `None` until it is known.
     pub(crate) run: Option<f64>,
-    /// Of a way over the body over its fall, in the order of [`OVER`].
+    /// Length over the body minus its drop in height, in the order of [`OVER`].
     pub(crate) over: [f64; OVER.len()],
 }
 
-/// Straight upright lengths: name, upper and lower landmark; none is the floor.
+/// Straight upright lengths: name, upper and lower landmark (`None` is the floor).
 const UPRIGHT: [(&str, Level, Option<Level>); 20] = [
     ("height", Crown, None),
     ("nape_height", Nape, None),
@@ -88,8 +90,8 @@ const UPRIGHT: [(&str, Level, Option<Level>); 20] = [
     ("waist_to_knee", Waist, Some(Knee)),
 ];
 
-/// Ways over the body: name, upper and lower landmark, and the upright lengths beside which they
-/// do not decide the level.
+/// Lengths over the body: name, upper and lower landmark, and the upright lengths that determine the level
+/// instead if they are requested.
 pub(crate) const OVER: [(&str, Level, Option<Level>, &[&str]); 6] = [
     (
         "bust_line",
@@ -114,12 +116,12 @@ pub(crate) const OVER: [(&str, Level, Option<Level>, &[&str]); 6] = [
     ),
 ];
 
-/// Every upright length with its landmarks.
+/// All upright lengths with their landmarks.
 pub(crate) fn upright() -> impl Iterator<Item = (&'static str, Level, Option<Level>)> {
     UPRIGHT.into_iter()
 }
 
-/// Least squares of all lengths, weighted by how surely each is known.
+/// Least squares of all lengths, weighted by the certainty of each.
 struct System {
     normal: SMatrix<f64, COUNT, COUNT>,
     right: SVector<f64, COUNT>,
@@ -137,8 +139,8 @@ impl System {
     }
 }
 
-/// Deviations over stature: of an asked upright length, of an asked way over the body, of what
-/// was predicted, of the template's proportions, of a definition.
+/// Standard deviations over stature: of a requested upright length, a requested length over the body, a
+/// prediction, a proportion of the template, and a definition.
 const ASKED: f64 = 3e-5;
 const ASKED_OVER: f64 = 3e-4;
 const PREDICTED: f64 = 0.02;
@@ -147,8 +149,8 @@ const DEFINED: f64 = 3e-4;
 /// Height of the neck's side below the nape, over stature.
 const NECK_SIDE_DROP: f64 = 0.020;
 
-/// Heights that meet the lengths of a completed table in the sense of least squares: what is
-/// asked for weighs most, then what goes with the definitions, then predictions.
+/// Heights that meet the lengths of a completed table in the sense of least squares: requested lengths have
+/// the largest weight, then definitions, then predictions.
 pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffsets) -> Levels {
     let table = &request.table;
     let height = table.get("height").unwrap_or(1.7);
@@ -173,7 +175,7 @@ pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffs
         }
         let deviation = match name {
             _ if asked(name) => ASKED,
-            // The survey knows it better than the template's proportions do.
+            // The survey predicts it better than the template's proportions do.
             "armpit_height" => PROPORTION,
             _ => PREDICTED,
         };
@@ -216,7 +218,7 @@ pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffs
     }
 }
 
-/// What holds of any body: definitions, then the template's proportions.
+/// Equations that hold for any body: definitions, then the template's proportions.
 fn proportions(
     system: &mut System,
     table: &Measurements,
@@ -257,7 +259,7 @@ fn proportions(
         of_template(t.shoulder.tip.y - t.armpit.height),
         PREDICTED * h,
     );
-    // Weak ones, so that every level is determined.
+    // Weak equations, so that every level is determined.
     let weak = 0.05 * h;
     for (level, y) in [
         (Crown, t.crown),
@@ -272,7 +274,7 @@ fn proportions(
     }
 }
 
-/// Least heights of the landmarks over those below, over stature.
+/// Least distance of each landmark above the one before, over stature.
 const ROOM: [(Level, f64); 9] = [
     (Knee, 0.12),
     (Crotch, 0.10),
@@ -285,7 +287,7 @@ const ROOM: [(Level, f64); 9] = [
     (Crown, 0.08),
 ];
 
-/// Heights with the least room between them.
+/// Heights in order, with the least distances between them.
 fn in_order(mut heights: [f64; COUNT], height: f64) -> [f64; COUNT] {
     let mut floor = 0.0;
     for (level, room) in ROOM {
@@ -298,7 +300,7 @@ fn in_order(mut heights: [f64; COUNT], height: f64) -> [f64; COUNT] {
     let between = &mut heights[HighHips as usize];
     *between = between.clamp(hips + 0.008 * height, waist - 0.008 * height);
     let [bust, tip] = [heights[Bust as usize], heights[Tip as usize]];
-    // The bust is taken under the arms.
+    // The bust is taped below the armpits.
     let armpit = &mut heights[Armpit as usize];
     *armpit = armpit.clamp(bust + 0.008 * height, tip - 0.02 * height);
     let bust = heights[Bust as usize];

@@ -6,14 +6,14 @@ use crate::{BodyError, Part};
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_geometry::Vec3;
 
-/// Angle between the bones from which on an arm counts as bent (rad).
+/// Angle between the bones from which an arm counts as bent (rad).
 pub(crate) const BENT: f64 = 0.02;
 
-/// Which of the places where a ray leaves a limb a ring goes through.
+/// Choice among the points where a ray leaves a limb.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Exit {
     First,
-    /// Hollows are passed over.
+    /// The last one: hollows are passed over.
     Last,
 }
 
@@ -21,12 +21,12 @@ pub(crate) enum Exit {
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
     pub(crate) centre: Vec3,
-    /// Shorter than one where the limb is flat, so that its points lie even.
+    /// First axis: shorter than 1 where the limb is flat, so that points are evenly spaced.
     pub(crate) first: Vec3,
-    /// A unit vector.
+    /// Second axis, a unit vector.
     pub(crate) second: Vec3,
     pub(crate) exit: Exit,
-    /// How far columns gather at the grooves between the fingers, 0 to 1.
+    /// Share by which columns gather at the grooves between the fingers, 0 to 1.
     pub(crate) gathering: f64,
 }
 
@@ -42,10 +42,10 @@ impl Frame {
     }
 }
 
-/// Even angles all round, as near as they come to those of the points of a border.
+/// Even angles all round, as near as possible to the angles of the points of a border.
 fn even_angles(border: &[Vec3], frame: &Frame) -> Vec<f64> {
     let step = 2.0 * PI / border.len() as f64;
-    // Mean of the differences to even angles, as directions, so that nothing wraps.
+    // Mean of the differences to even angles, taken as directions, so that nothing wraps.
     let (sin, cos) = border
         .iter()
         .enumerate()
@@ -57,43 +57,43 @@ fn even_angles(border: &[Vec3], frame: &Frame) -> Vec<f64> {
         .collect()
 }
 
-/// What a limb's rings are cast on.
+/// The input for casting the rings of a limb.
 pub(crate) struct Limb<'a> {
     pub(crate) part: Part,
-    /// The limb's own part first, then those it grows from.
+    /// The limb's own part first, then the parts it grows from.
     pub(crate) parts: &'a [Part],
-    /// First ring.
+    /// Vertices of the first ring.
     pub(crate) border: &'a [u32],
-    /// A point inside the body behind the border.
+    /// A point inside the body, behind the border.
     pub(crate) behind: Vec3,
     pub(crate) frames: Vec<Frame>,
     /// Direction from the last frame's centre to the tip.
     pub(crate) tip: Vec3,
-    /// Number of the border's ring: how many lie between it and the trunk.
+    /// Number of the border's ring: count of rings between it and the trunk.
     pub(crate) number: f64,
-    /// Where another limb grows from this one.
+    /// Opening from which another limb grows.
     pub(crate) gap: Option<Gap>,
 }
 
-/// The block of a limb's rings left open for another one.
+/// The block of a limb's rings that is left open for another limb.
 #[derive(Clone, Copy)]
 pub(crate) struct Gap {
     /// The first and the last ring plane.
     pub(crate) frames: [usize; 2],
     /// The first column.
     pub(crate) column: usize,
-    /// How many columns on the last one is.
+    /// Number of columns from the first to the last.
     pub(crate) columns: usize,
 }
 
 impl Gap {
-    /// Whether a vertex lies strictly inside, in rings of `n`.
+    /// Whether a vertex lies strictly inside the gap, in rings of `n` columns.
     fn inside(&self, frame: usize, column: usize, n: usize) -> bool {
         let on = (column + n - self.column) % n;
         frame > self.frames[0] && frame < self.frames[1] && on > 0 && on < self.columns
     }
 
-    /// The vertices round it, walking round the limb that grows from it.
+    /// The vertices round the gap, in the direction of the rings of the limb that grows from it.
     pub(crate) fn border(&self, rings: &[Vec<u32>]) -> Vec<u32> {
         let [low, high] = self.frames;
         let at = |frame: usize, on: usize| {
@@ -109,7 +109,7 @@ impl Gap {
 }
 
 impl Half<'_> {
-    /// The left arm, from the border of the armhole to the finger tips.
+    /// Casts the left arm, from the border of the armhole to the finger tips.
     pub(crate) fn arm(&mut self, border: &[u32]) -> Result<(), BodyError> {
         let j = self.template.joints;
         let scale = self.template.height / 1.7;
@@ -166,10 +166,10 @@ impl Half<'_> {
         }
     }
 
-    /// Rings across a bent arm from a place along its bones (m): square to them, turning evenly
+    /// Ring planes of a bent arm from a distance along its bones (m): square to the bones, turning evenly
     /// round the elbow.
     fn bent_frames(&self, path: &[Vec3; 4], start: f64) -> Vec<Frame> {
-        /// Half the way over which the rings turn, for a stature of 1.7 m (m).
+        /// Half the length over which the planes turn, for a stature of 1.7 m (m).
         const TURN: f64 = 0.045;
         let scale = self.template.height / 1.7;
         let [upper, lower] = [path[1] - path[0], path[3] - path[1]];
@@ -197,7 +197,7 @@ impl Half<'_> {
             .collect()
     }
 
-    /// The left leg, from the lowest ring of the trunk to the toes.
+    /// Casts the left leg, from the lowest ring of the trunk to the toes.
     pub(crate) fn leg(&mut self, bottom: &[u32]) -> Result<(), BodyError> {
         let border = self.crotch_line(bottom)?;
         let j = self.template.joints;
@@ -243,8 +243,8 @@ impl Half<'_> {
         .map(|_| ())
     }
 
-    /// Frames of the foot: a fan from the level ring at `ankle` to an upright one over the instep,
-    /// then upright ones to the toes.
+    /// Ring planes of the foot: a fan from the level ring at `ankle` to an upright one over the instep, then
+    /// upright ones to the toes.
     fn foot(&self, ankle: Vec3) -> Vec<Frame> {
         let scale = self.template.height / 1.7;
         let toe = Vec3::from(self.template.joints.toe);
@@ -300,7 +300,7 @@ impl Half<'_> {
         let mut ring = bottom.to_vec();
         for k in 1..=CROTCH_POINTS {
             let turn = PI * k as f64 / (CROTCH_POINTS + 1) as f64;
-            // Flattened, so that the points spread along the shallow curve from front to back.
+            // Flattened, so that the points are spread along the shallow curve from front to back.
             let direction = Vec3::new(0.0, -0.35 * turn.sin(), turn.cos()).normalize();
             let position = self.hit(&[Part::Trunk], origin, direction)?;
             let vertex = self.add(position, true);
@@ -322,7 +322,7 @@ impl Half<'_> {
         even_angles(&points, &behind)
     }
 
-    /// Casts a limb from its border to its tip, and gives the rings of its planes.
+    /// Casts a limb from its border to its tip, and returns the rings of its planes.
     pub(crate) fn limb(&mut self, limb: &Limb) -> Result<Vec<Vec<u32>>, BodyError> {
         let points: Vec<Vec3> = limb
             .border
@@ -377,13 +377,13 @@ impl Half<'_> {
         Ok(rings)
     }
 
-    /// Where a ray of a ring leaves the limb.
+    /// Point where a ray of a ring leaves the limb.
     fn outermost(&self, part: Part, frame: &Frame, angle: f64) -> Result<Vec3, BodyError> {
-        /// Beyond any arm's and any leg's radius, short of the next limb, for a stature of
-        /// 1.7 m (m).
+        /// Larger than the radius of any arm and any leg, but short of the next limb, for a stature of 1.7 m
+        /// (m).
         const REACH: [f64; 2] = [0.11, 0.17];
         let (origin, direction) = (frame.centre, frame.direction(angle));
-        // Of what was fitted to a mesh, specks off the limb are not meant.
+        // In a field fitted to a mesh there are specks away from the limb, which are ignored.
         if (self.template.armpit.is_some() || frame.exit == Exit::First)
             && let Some(distance) = self.field.first_exit(&[part], origin, direction)
         {
@@ -396,7 +396,7 @@ impl Half<'_> {
         }
     }
 
-    /// A ring of vertices, joined to the one before; where it has no point it is left open.
+    /// Adds a ring of vertices, joined to the one before; where it has no point it is left open.
     fn ring(&mut self, part: Part, from: &[u32], points: &[Option<Vec3>], number: f64) -> Vec<u32> {
         let to: Vec<u32> = points
             .iter()

@@ -36,11 +36,11 @@ pub struct Mannequin {
     pub(crate) crotch: Vec<u32>,
     pub(crate) skeleton: Skeleton,
     pub(crate) landmarks: Landmarks,
-    /// With head, arms and legs; it is what a tape measures.
+    /// Skin of the whole body, with head, arms and legs: the tape measures this one.
     pub(crate) whole: TriangleMesh,
-    /// What is left of it on a dress form.
+    /// The dress form cut from it, if the figure is one.
     form: Option<DressForm>,
-    // The following fields are computed from the others when first asked for.
+    // The following fields are computed from the others when first used.
     tree: OnceLock<SurfaceTree>,
     skinning: OnceLock<Skinning>,
     primitives: OnceLock<Vec<AttachedPrimitive>>,
@@ -69,14 +69,14 @@ impl TemplateBody {
     }
 }
 
-/// The figures' own templates, cast when first needed.
+/// Templates of the figures, cast when first used.
 static TEMPLATE_BODIES: [OnceLock<Result<Arc<TemplateBody>, BodyError>>; 3] =
     [const { OnceLock::new() }; 3];
 
-/// The skin of a figure's own primitives, before any measurement is applied: cast anew (m).
+/// The skin of a figure's own primitives, before any measurement is applied, cast on each call (m).
 ///
 /// # Errors
-/// A part whose primitives leave its axis bare.
+/// [`BodyError::Open`] for a part whose primitives do not enclose its axis.
 pub fn template_skin(figure: Figure) -> Result<TriangleMesh, BodyError> {
     let template = Template::of(figure);
     let skin = rings::cast(&template, &Field::new(&template.primitives))?;
@@ -84,12 +84,12 @@ pub fn template_skin(figure: Figure) -> Result<TriangleMesh, BodyError> {
 }
 
 impl Mannequin {
-    /// Makes the body of a figure with the given measurements: any of the catalogue. What is
-    /// missing is predicted from them; what contradicts itself is met in the sense of least
-    /// squares and named by [`Mannequin::conflicts`].
+    /// Makes the body of a figure with the given measurements, which may be any of the catalogue. Missing
+    /// ones are predicted from them; contradictory ones are met in the sense of least squares and named by
+    /// [`Mannequin::conflicts`].
     ///
     /// # Errors
-    /// A measurement that no body has, or lengths that leave no room for a landmark.
+    /// [`BodyError`] for a measurement that no body has, or lengths that leave no room for a landmark.
     pub fn new(measurements: &Measurements, figure: Figure) -> Result<Self, BodyError> {
         let place = match figure {
             Figure::Woman | Figure::DressForm => 0,
@@ -110,14 +110,14 @@ impl Mannequin {
         Self::grown(measurements, figure, TemplateBody::of(template)?)
     }
 
-    /// The body of a template of its own frame as it is: nothing is solved for.
+    /// The body of a framed template without changes: nothing is solved for.
     pub(crate) fn still(
         measurements: &Measurements,
         figure: Figure,
         template: Template,
     ) -> Result<Self, BodyError> {
         let template_body = TemplateBody::of(template)?;
-        // Measurements that are not given are predicted from the frame.
+        // Missing measurements are predicted from the frame.
         let mut known = measurements.clone();
         let template = &template_body.template;
         for (name, value) in [
@@ -216,7 +216,7 @@ impl Mannequin {
         }
     }
 
-    /// The template's primitives carried by the map, scaled to lie on the skin, and fixed.
+    /// The template's primitives carried by the warp, scaled to lie on the skin, and fixed to joints.
     fn fitted_primitives(&self) -> Vec<AttachedPrimitive> {
         let template = &self.template_body.template;
         let own: Vec<Primitive> = template
@@ -263,7 +263,7 @@ impl Mannequin {
             .collect()
     }
 
-    /// How the skin hangs on the joints.
+    /// The weights with which the skin follows the joints.
     pub(crate) fn skinning(&self) -> &Skinning {
         self.skinning.get_or_init(|| {
             let positions = &self.skin().positions;
@@ -276,39 +276,39 @@ impl Mannequin {
         })
     }
 
-    /// The figure it was grown from.
+    /// The figure that the body was grown from.
     pub fn figure(&self) -> Figure {
         self.figure
     }
 
-    /// The measurements asked for.
+    /// The requested measurements.
     pub fn measurements(&self) -> &Measurements {
         &self.measurements
     }
 
-    /// The measurements asked for with predictions of the rest, each marked.
+    /// The requested measurements with predictions of the others, each marked.
     pub fn completed(&self) -> &Measurements {
         &self.request.table
     }
 
-    /// The skin: closed, outward, of whole bodies the same triangles for every set of measurements of a
-    /// figure. A dress form's has its stand.
+    /// The skin: closed, oriented outwards. For whole bodies of a figure its triangles are the same for every
+    /// set of measurements. The skin of a dress form includes its stand.
     pub fn skin(&self) -> &TriangleMesh {
         self.form.as_ref().map_or(&self.whole, |form| &form.mesh)
     }
 
-    /// What is left of the body where it is a dress form.
+    /// The dress form, if the body is one.
     pub(crate) fn form(&self) -> Option<&DressForm> {
         self.form.as_ref()
     }
 
-    /// The skin with its box tree, built when first asked for.
+    /// The skin with its box tree, built when first used.
     pub fn skin_tree(&self) -> &SurfaceTree {
         self.tree
             .get_or_init(|| SurfaceTree::new(self.skin().clone()))
     }
 
-    /// The part each triangle of the skin belongs to.
+    /// The part of each triangle of the skin.
     pub fn part_of_triangle(&self) -> &[Part] {
         match &self.form {
             Some(form) => &form.parts,
@@ -316,14 +316,14 @@ impl Mannequin {
         }
     }
 
-    /// The joints, where they are at rest.
+    /// The joints in their rest positions.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }
 
-    /// The ellipsoid primitives of the body, of a dress form those of the whole body, each in the frame of the joint it is fixed to: a
-    /// coarse description of the body, carried from the template's by the map of the skin and
-    /// scaled to lie on it.
+    /// The ellipsoid primitives of the body, each in the frame of the joint that it is fixed to: a coarse
+    /// description of the body, carried from the template's by the map of the skin and scaled to lie on it. A
+    /// dress form has those of the whole body.
     pub fn primitives(&self) -> &[AttachedPrimitive] {
         self.primitives.get_or_init(|| self.fitted_primitives())
     }
@@ -333,7 +333,7 @@ impl Mannequin {
         self.posed_ellipsoids(&Pose::rest())
     }
 
-    /// The primitives in the body's frame, in a pose: each goes rigidly with its joint.
+    /// The primitives in the body's frame, in a pose, each moved by its joint.
     pub fn posed_ellipsoids(&self, pose: &Pose) -> Vec<Primitive> {
         posed(self.primitives(), &self.skeleton, pose)
     }
@@ -353,14 +353,13 @@ impl Mannequin {
         self.skin_tree().contains(point)
     }
 
-    /// The closest point of the skin. Exact up to rounding; nothing for a point that is not
-    /// finite.
+    /// The closest point of the skin. Exact up to rounding; `None` for a point that is not finite.
     pub fn closest_point(&self, point: Vec3) -> Option<ClosestPoint> {
         self.skin_tree().closest_point(point, f64::INFINITY)
     }
 }
 
-/// A skeleton that knows how far its arms can hang.
+/// The skeleton with the steepest angle at which its arms can hang.
 fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
     let shoulder = skeleton.centre(Joint::LShoulder);
     let along = skeleton.centre(Joint::LWrist) - shoulder;
@@ -369,8 +368,8 @@ fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
     skeleton.hanging(steepest)
 }
 
-/// A primitive carried by the map: the ellipsoid through what becomes of its visible axes, whose
-/// singular vectors and values are the new ones.
+/// A primitive carried by the warp: its visible axes are carried, and the left singular vectors and the
+/// singular values of the result are the new axes.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let follow = match primitive.part {
         Part::LeftArm | Part::RightArm => Follow::ARM,
@@ -380,13 +379,13 @@ fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let centre = Vec3::from(primitive.centre);
     let old = *primitive.rotation().matrix();
     let scaled = old * nalgebra::Matrix3::from_diagonal(&Vec3::from(primitive.radii));
-    // Taken over the visible axes: the map differs across them.
+    // Taken over the visible axes, as the map varies across the primitive.
     let axes = warp.carried_axes(centre, scaled * VISIBLE_RATIO, follow) / VISIBLE_RATIO;
     let svd = axes.svd(true, false);
     let (Some(vectors), values) = (svd.u, svd.singular_values) else {
         return *primitive;
     };
-    // Each new axis takes the place of the old one it is nearest to.
+    // Each new axis replaces the old one that it is nearest to.
     let mut order = [
         [0, 1, 2],
         [0, 2, 1],

@@ -22,57 +22,57 @@ pub(crate) struct TapedSkin<'a> {
     pub(crate) marks: &'a TemplateMarks,
     pub(crate) levels: &'a Levels,
     pub(crate) warp: &'a Warp,
-    /// Vertices in the middle of the crotch.
+    /// Vertices of the crotch in the middle of the body.
     pub(crate) crotch: &'a [u32],
-    /// Shares of their ranges at which girths are known to lie; the others are looked for.
+    /// Known positions of girths, as shares of their ranges; other girths are searched for.
     shares: Shares,
     body: OnceCell<BodyMarks>,
-    /// Cache of places.
+    /// Cache of the positions of girths.
     places: RefCell<PerGirth<Option<f64>>>,
-    /// Cache of hulls.
+    /// Cache of the hulls of sections.
     hulls: RefCell<PerGirth<Option<Rc<[Vec2]>>>>,
-    /// Cache of lengths.
+    /// Cache of measured values by name.
     known: RefCell<Vec<(String, Option<f64>)>>,
     around: OnceCell<Option<Around>>,
     bust: OnceCell<Option<Vec3>>,
-    /// Cache of girths round the trunk where they are found.
+    /// Cache of girths round the trunk at the positions found for them.
     found: PerGirth<OnceCell<f64>>,
     through_neck: OnceCell<Vec<[Vec3; 2]>>,
-    /// Vertices in the left armpit from front to back.
+    /// Vertices of the left armpit from front to back.
     armpit: &'a [u32],
 }
 
-/// Shares of their ranges at which girths lie (1).
+/// Positions of girths, as shares of their ranges (1).
 pub(crate) type Shares = PerGirth<Option<f64>>;
 
-/// The tight way in the middle from the waist in front round the crotch to the waist behind.
+/// The tight line in the middle plane from the waist in front round the crotch to the waist behind.
 struct Around {
-    /// Its length (m).
+    /// Length of the line (m).
     length: f64,
-    /// Hull of the section under the waist: height, depth (m).
+    /// Hull of the section below the waist: height, depth (m).
     hull: Vec<Vec2>,
-    /// Depth of its front end (m).
+    /// Depth of the front end (m).
     front: f64,
 }
 
 impl Around {
-    /// The part before a depth (m).
+    /// Length of the part in front of a depth (m).
     fn before(&self, depth: f64) -> f64 {
         part_of(&self.hull, 1.0, depth) - (self.front - depth)
     }
 }
 
-/// What share of the hips' girth their level may lack: a tape set there finds them, a few millimetres
-/// up or down.
+/// Share of the hips' girth by which the girth at the hips' level may be smaller: a tape set at this level
+/// finds the hips a few millimetres higher or lower.
 const LEVEL_SLACK: f64 = 0.01;
 
-/// How far below their level hips lie there all the same, over stature: a centimetre.
+/// Distance below their level at which hips count as lying clearly below, over stature: a centimetre.
 const BELOW: f64 = 0.006;
 
-/// Halvings of a range: to a billionth of it.
+/// Halvings of a range in a bisection: to a billionth of it.
 const HALVINGS: usize = 30;
 
-/// The part of a hull on one side of a place of its second axis, without the chord (m).
+/// Length of the part of a hull on one side of a position on its second axis, without the chord (m).
 fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
     let moved: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.x, p.y - place)).collect();
     half_length(&moved, side)
@@ -81,7 +81,7 @@ fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
 const TORSO: &[Part] = &[Part::Trunk, Part::Head];
 
 impl<'a> TapedSkin<'a> {
-    /// The tape on a skin of a cast template.
+    /// The tape on a skin cast from a template.
     pub(crate) fn new(
         skinned: &'a Skinned<'a>,
         (marks, armpit): (&'a TemplateMarks, &'a [u32]),
@@ -107,12 +107,12 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The end of the left shoulder (m).
+    /// End of the left shoulder (m).
     pub(crate) fn tip(&self) -> Vec3 {
         self.marks.shoulder.tip_on.on(self.skinned)
     }
 
-    /// The left side of the neck (m).
+    /// Left side of the neck (m).
     pub(crate) fn neck_side(&self) -> Vec3 {
         self.marks.neck.side_on.on(self.skinned)
     }
@@ -132,12 +132,12 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The middle of the left armpit (m).
+    /// Middle of the left armpit (m).
     fn armpit_fold(&self) -> Vec3 {
         self.skinned.at(self.armpit[self.armpit.len() / 2])
     }
 
-    /// The hull of a girth's section: round the trunk at the level that lengths give it.
+    /// Hull of a girth's section; round the trunk, at the level given by lengths.
     pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
         if let Some(known) = &self.hulls.borrow()[girth] {
             return known.clone();
@@ -159,7 +159,7 @@ impl<'a> TapedSkin<'a> {
         self.skinned.hull(cut.part, cut.plane, Some(cut.near))
     }
 
-    /// What says where the girths lie.
+    /// Landmarks that determine the positions of the girths.
     pub(crate) fn body(&self) -> &BodyMarks {
         self.body.get_or_init(|| {
             let crotch = self.height(Level::Crotch);
@@ -179,18 +179,18 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Girth of a taping at a place (m).
+    /// Girth of a taping at a position (m).
     pub(crate) fn taped(&self, taping: &Taping, place: f64) -> f64 {
         closed_length(&self.taped_hull(taping, place))
     }
 
-    /// The hull of the section of a taping at a place.
+    /// Hull of the section of a taping at a position.
     fn taped_hull(&self, taping: &Taping, place: f64) -> Vec<Vec2> {
         let cut = CutPlane::of(taping.cut, place, self.marks, self.warp);
         self.skinned.hull(cut.part, cut.plane, Some(cut.near))
     }
 
-    /// How far a girth round the trunk lies to the side, and its height, where it is taped (m).
+    /// Half the breadth of a girth round the trunk, and its height, where it is taped (m).
     fn side_of(&self, girth: Girth, level: Level) -> [f64; 2] {
         match self.taping(girth).zip(self.place(girth)) {
             Some((taping, place)) => [0.5 * extent(&self.taped_hull(&taping, place))[0], place],
@@ -198,7 +198,8 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// Where a girth is looked for; none where lengths alone say its level, as they do round the trunk.
+    /// The definition by which a girth is searched for; `None` if lengths alone give its level, as is
+    /// possible round the trunk.
     fn taping(&self, girth: Girth) -> Option<Taping> {
         let body = self.body();
         let ends = [body.crotch, body.stature];
@@ -209,7 +210,7 @@ impl<'a> TapedSkin<'a> {
         Taping::of(girth, body)
     }
 
-    /// The place of a girth (m); none where lengths alone say it.
+    /// Position of a girth (m); `None` if it is given by lengths alone.
     fn place(&self, girth: Girth) -> Option<f64> {
         if let Some(known) = self.places.borrow()[girth] {
             return Some(known);
@@ -223,15 +224,15 @@ impl<'a> TapedSkin<'a> {
         Some(place)
     }
 
-    /// What a girth of the trunk that is looked for is at the level lengths give it (m).
+    /// Girth round the trunk, if it is searched for, at the level that lengths give it (m).
     pub(crate) fn at_level(&self, girth: Girth) -> Option<f64> {
         self.taping(girth)?;
         girth.level()?;
         Some(closed_length(&self.hull(girth)))
     }
 
-    /// What it is where its scale is set: at that level, or at the end of where it may lie that is
-    /// nearest to it (m).
+    /// Such a girth at the section that sets its scale (m): at that level, or at the nearest end of its
+    /// range.
     pub(crate) fn at_section(&self, girth: Girth) -> Option<f64> {
         let taping = self.taping(girth)?;
         let y = self.levels.at(girth.level()?);
@@ -242,13 +243,13 @@ impl<'a> TapedSkin<'a> {
         Some(self.taped(&taping, if y < low { low } else { high }))
     }
 
-    /// Whether the hips' girth lies clearly below the level that lengths give them.
+    /// Whether the hips' girth lies clearly below the level that lengths give it.
     pub(crate) fn hips_lie_below(&self) -> bool {
         let level = self.levels.at(Level::Hips) - BELOW * self.levels.at(Level::Crown);
         self.place(Girth::Hips).is_some_and(|place| place < level)
     }
 
-    /// Height of the hips: where lengths have them, if they are as large there (m).
+    /// Height of the hips (m): the level given by lengths, if the girth there is nearly as large.
     fn hip_height(&self) -> f64 {
         let level = self.levels.at(Level::Hips);
         let most = self.girth(Girth::Hips);
@@ -265,7 +266,7 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The shares of their ranges at which girths lie, for the next body that is much the same.
+    /// Positions of the girths as shares of their ranges, for use with the next, similar body.
     pub(crate) fn shares(&self) -> Shares {
         Shares::of(|girth| {
             let taping = self.taping(girth)?;
@@ -274,7 +275,7 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// The same tape where girths are known to lie.
+    /// The same tape with known positions of girths.
     pub(crate) fn knowing(mut self, shares: Shares) -> Self {
         self.shares = shares;
         self
@@ -291,7 +292,7 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The point of the bust on the left (m).
+    /// Left bust point (m).
     pub(crate) fn bust_point(&self) -> Option<Vec3> {
         *self.bust.get_or_init(|| self.taken_bust_point())
     }
@@ -310,12 +311,12 @@ impl<'a> TapedSkin<'a> {
         Some(Vec3::new(on.x, y, on.y))
     }
 
-    /// Where triangles that cross a height (m) lie.
+    /// Range of triangles of the template that cross a height (m).
     fn around(&self, height: f64) -> Option<Near> {
         Some(self.warp.near(height, 0.08))
     }
 
-    /// Heights of the template where triangles between two heights (m) lie.
+    /// Range of heights of the template with triangles between two heights (m).
     fn between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
         match (self.around(low)?, self.around(high)?) {
             (Near::Level([from, _]), Near::Level([_, to])) => Some([from, to]),
@@ -323,7 +324,7 @@ impl<'a> TapedSkin<'a> {
         }
     }
 
-    /// The upright section through a point, parallel to z and a direction, between two heights.
+    /// The upright section through a point, parallel to z and to a direction, between two heights.
     fn upright(
         &self,
         parts: &[Part],
@@ -344,7 +345,7 @@ impl<'a> TapedSkin<'a> {
         let down = Vec3::new(way.x, way.y, 0.0);
         let stretch = down.norm() / down.y.abs().max(1e-9);
         let section = self.upright(TORSO, [neck, down], [bust.y, neck.y]);
-        // Along the plane's own falling line, not along the upright.
+        // Lengths are along the plane's own line of slope, not along the vertical.
         let scaled: Vec<[Vec2; 2]> = section
             .iter()
             .map(|s| s.map(|p| Vec2::new(p.y * stretch, p.z)))
@@ -360,7 +361,7 @@ impl<'a> TapedSkin<'a> {
         fall(&section, bust, floor, Vec3::z())
     }
 
-    /// The way along the skin from the bust point straight down to the level under the bust (m).
+    /// Length along the skin from the bust point straight down to the level under the bust (m).
     fn under_bust(&self) -> Option<f64> {
         let bust = self.bust_point()?;
         let floor = self.levels.at(Level::Underbust);
@@ -401,7 +402,7 @@ impl<'a> TapedSkin<'a> {
         stretched(&flat, end(-tip.x), end(tip.x))
     }
 
-    /// The way round the crotch from waist to waist.
+    /// The tight line round the crotch from waist to waist.
     fn crotch_lengths(&self) -> Option<&Around> {
         self.around.get_or_init(|| self.taken_crotch()).as_ref()
     }
@@ -409,7 +410,7 @@ impl<'a> TapedSkin<'a> {
     fn taken_crotch(&self) -> Option<Around> {
         let waist = self.levels.at(Level::Waist);
         let parts = &[Part::Trunk, Part::LeftLeg];
-        // Just beside the middle, where the plane meets whole triangles.
+        // Just beside the middle, where the plane crosses whole triangles.
         let section = self.upright(
             parts,
             [Vec3::x() * 1e-6, Vec3::y()],
@@ -432,7 +433,7 @@ impl<'a> TapedSkin<'a> {
         points.push(Vec2::new(front.y, waist));
         points.push(Vec2::new(-back.y, waist));
         let hull = convex_hull(&points);
-        // The way without the edge at the waist, along the depth before which it lies.
+        // The hull with depth as its second axis, for lengths in front of a depth.
         let turned: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.y, p.x)).collect();
         Some(Around {
             length: closed_length(&hull) - (front.y + back.y),
@@ -441,7 +442,7 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Depth of the crotch point at which the part before it has a length (m).
+    /// Depth of the crotch point for which the part in front of it has a length (m).
     pub(crate) fn crotch_point_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
         let around = self.crotch_lengths()?;
         let (mut low, mut high) = (low, high);
@@ -455,12 +456,12 @@ impl<'a> TapedSkin<'a> {
         Some(0.5 * (low + high))
     }
 
-    /// The part of a girth before its sides or behind them (m).
+    /// Length of the part of a girth in front of its sides or behind them (m).
     fn part(&self, girth: Girth, side: f64) -> f64 {
         part_of(&self.hull(girth), side, self.warp.side_of(girth))
     }
 
-    /// Depth of the sides of a girth at which its part on one side has a length (m).
+    /// Depth of the sides of a girth for which its part on one side has a length (m).
     pub(crate) fn sides_of(&self, girth: Girth, side: f64, length: f64, limit: f64) -> f64 {
         let hull = self.hull(girth);
         let (mut low, mut high) = (-limit, limit);
@@ -475,8 +476,8 @@ impl<'a> TapedSkin<'a> {
         0.5 * (low + high)
     }
 
-    /// The tight way from the side of the neck straight down to the level of the waist, in front or
-    /// behind (m).
+    /// Length of the tight line from the side of the neck straight down to the level of the waist, in front
+    /// or behind (m).
     fn to_waist(&self, outward: Vec3) -> Option<f64> {
         let (neck, waist) = (self.neck_side(), self.levels.at(Level::Waist));
         let section = self
@@ -485,7 +486,7 @@ impl<'a> TapedSkin<'a> {
         hanging(section, neck, waist, outward)
     }
 
-    /// A measurement by its name in the catalogue (m) or (rad); none if the tape does not know it.
+    /// A measurement by its name in the catalogue (m) or (rad); `None` if the tape cannot take it.
     pub(crate) fn value(&self, name: &str) -> Option<f64> {
         let known = |row: &&(String, Option<f64>)| row.0 == name;
         if let Some(row) = self.known.borrow().iter().find(known) {
@@ -552,14 +553,14 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie (m):
-    /// before the muscles that run on into arm and back.
+    /// Breadth of the taped section of the bust at the depth of the front folds of the armpits (m): in front
+    /// of the muscles that run on into arm and back.
     pub(crate) fn between_folds(&self) -> Option<f64> {
         let fold = self.skinned.at(self.marks.armpit.front_fold);
         breadth_at(&self.hull(Girth::Bust), fold.z)
     }
 
-    /// The hindmost point of the left buttock (m).
+    /// The rearmost point of the left buttock (m).
     fn hindmost(&self) -> Option<Vec3> {
         let y = self.hip_height();
         self.skinned

@@ -7,7 +7,7 @@ use toile_geometry::Vec3;
 /// The axis of one part of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartAxis {
-    /// Which part.
+    /// The part.
     pub part: Part,
     /// Points from the root outward: trunk from the crotch to the neck, head from the neck to the
     /// crown, arm from the shoulder joint to the wrist, leg from the hip joint to the ankle (m).
@@ -34,8 +34,8 @@ pub struct BodyLevels {
 }
 
 impl Mannequin {
-    /// The axes of the parts it has, in the order of [`Part::ALL`]: all six, but of a dress form trunk and
-    /// the root of the neck.
+    /// The axes of the body's parts, in the order of [`Part::ALL`]: all six; of a dress form only the trunk
+    /// and the root of the neck.
     pub fn parts(&self) -> Vec<PartAxis> {
         let l = &self.landmarks;
         let form = self.form();
@@ -62,7 +62,7 @@ impl Mannequin {
             .collect()
     }
 
-    /// Heights of the levels garments hang on.
+    /// Heights of the levels that garments hang on.
     pub fn levels(&self) -> BodyLevels {
         let l = &self.landmarks;
         BodyLevels {

@@ -1,26 +1,26 @@
-//! The player of clips: one that is shown, another faded in, at a rate; nothing it shows jumps.
+//! The player of clips: it shows a clip at a rate and fades to another, without jumps.
 
 use crate::curve::smooth_step;
 use crate::{Clip, Joint, Pose};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// What a player is told.
+/// A command to a player.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum PlayCommand {
-    /// The clock goes on.
+    /// Starts the clock.
     Start,
-    /// The clock comes to rest; the figure keeps its pose.
+    /// Stops the clock; the figure keeps its pose.
     Stop,
-    /// Another clip is faded in within a time (s). While a fade lasts the last of such commands waits.
+    /// Fades to another clip within a time (s). During a fade the last of such commands waits.
     Change {
-        /// The number of the clip.
+        /// Number of the clip.
         clip: usize,
-        /// Length of the fade (s).
+        /// Duration of the fade (s).
         fade: f64,
     },
-    /// How fast the clock goes, from 0 to [`MAX_RATE`].
+    /// Sets the rate of the clock, from 0 to [`MAX_RATE`].
     Rate(f64),
 }
 
@@ -28,45 +28,45 @@ pub enum PlayCommand {
 pub const MAX_RATE: f64 = 2.0;
 /// Longest fade (s).
 pub const MAX_FADE: f64 = 60.0;
-/// Fastest turn of a joint that a player shows (rad/s); where a clip or a fade is faster its clock goes slower. Runners'
-/// knees turn at 20 rad/s (Novacheck 1998).
+/// Largest angular speed of a joint that a player shows (rad/s); where a clip or a fade is faster, its clock
+/// is slowed down. Runners' knees turn at 20 rad/s (Novacheck 1998).
 pub const FASTEST_TURN: f64 = 25.0;
-/// Time in which the clock comes from rest to a rate of 1 (s).
+/// Time that the clock takes from rest to a rate of 1 (s).
 const CLOCK_START: f64 = 0.2;
-/// Shortest fade (s): a shorter one is lengthened to it.
+/// Shortest fade (s): shorter ones are lengthened to it.
 const SHORTEST_FADE: f64 = 0.1;
-/// Halvings in the search for the longest step of the clock that is not too fast.
+/// Halvings in the search for the longest step of the clock without too fast a turn.
 const HALVINGS: usize = 12;
 
-/// Why a player does not do as it is told.
+/// Reason why a player refuses a command.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlayError {
     /// There is no such clip.
     #[error("clip {asked} is not there: there are {count}, counted from 0")]
     NoClip {
-        /// Its number.
+        /// Number of the clip asked for.
         asked: usize,
-        /// How many there are.
+        /// Number of clips.
         count: usize,
     },
-    /// A rate or a fade that is out of range or no number.
+    /// A rate or a fade is out of range or not a number.
     #[error("a {what} of {value} is out of range: give 0 to {most}")]
     OutOfRange {
-        /// What is out of range.
+        /// Name of the value.
         what: &'static str,
-        /// What was given.
+        /// Value given.
         value: f64,
-        /// The largest possible.
+        /// Largest value allowed.
         most: f64,
     },
 }
 
-/// A clip that is shown, and where in it.
+/// A clip that is shown, and the position in it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Shown {
     clip: usize,
-    /// Rounds gone, or the share of a clip that is no loop.
+    /// Number of rounds so far, or, if the clip is no loop, the share of it.
     phase: f64,
 }
 
@@ -75,12 +75,12 @@ struct Shown {
 #[serde(deny_unknown_fields)]
 struct Fade {
     to: Shown,
-    /// Its length and how much of it is over (s).
+    /// Duration of the fade, and time passed of it (s).
     length: f64,
     gone: f64,
 }
 
-/// Where a player is: plain data to save it and to go on.
+/// State of a player: plain data, to save it and to continue from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Playback {
@@ -88,16 +88,16 @@ pub struct Playback {
     fade: Option<Fade>,
     /// Clip and fade that wait for the end of the present fade.
     waiting: Option<(usize, f64)>,
-    /// The rate asked for, whether the clock goes, and its present rate.
+    /// Rate asked for, whether the clock runs, and its present rate.
     asked: f64,
     goes: bool,
     rate: f64,
-    /// Way over the ground so far, over the leg length.
+    /// Distance over the ground so far, over the leg length.
     travelled: Vec3,
 }
 
 impl Playback {
-    /// At the start of a clip, the clock at rest.
+    /// The state at the start of a clip, with the clock at rest.
     fn new(clip: usize) -> Self {
         Self {
             shown: Shown { clip, phase: 0.0 },
@@ -110,27 +110,27 @@ impl Playback {
         }
     }
 
-    /// Rounds of the clip that is shown, or faded in, so far.
+    /// Rounds so far of the clip that is shown or being faded in.
     pub fn rounds(&self) -> f64 {
         self.fade.map_or(self.shown, |fade| fade.to).phase
     }
 
-    /// The clip that is shown, or faded in.
+    /// Number of the clip that is shown or being faded in.
     pub fn clip(&self) -> usize {
         self.fade.map_or(self.shown, |fade| fade.to).clip
     }
 
-    /// Way over the ground so far, over the leg length (1).
+    /// Distance over the ground so far, over the leg length (1).
     pub fn travelled(&self) -> Vec3 {
         self.travelled
     }
 
-    /// Time of the clip that still goes by if the clock is stopped now (s).
+    /// Time of the clip that still passes if the clock is stopped now (s).
     pub fn coming_to_rest(&self) -> f64 {
         0.5 * CLOCK_START * self.rate * self.rate
     }
 
-    /// Rate of the clock now.
+    /// Present rate of the clock.
     pub fn rate(&self) -> f64 {
         self.rate
     }
@@ -144,10 +144,10 @@ pub struct Player {
 }
 
 impl Player {
-    /// A player at the start of a clip, its clock at rest.
+    /// A player at the start of a clip, with its clock at rest.
     ///
     /// # Errors
-    /// A clip that is not there.
+    /// [`PlayError::NoClip`] for a clip that does not exist.
     pub fn new(clips: Vec<Clip>, first: usize) -> Result<Self, PlayError> {
         let player = Self {
             clips,
@@ -157,10 +157,10 @@ impl Player {
         Ok(player)
     }
 
-    /// A player of the same clips where a saved one was.
+    /// A player of the same clips that continues from a saved state.
     ///
     /// # Errors
-    /// A clip that is not there, numbers out of range.
+    /// [`PlayError`] for a clip that does not exist, or numbers out of range.
     pub fn resumed(clips: Vec<Clip>, playback: Playback) -> Result<Self, PlayError> {
         let fade = playback.fade.map(|fade| fade.to.clip);
         let player = Self { clips, playback };
@@ -176,7 +176,7 @@ impl Player {
         Ok(player)
     }
 
-    /// Where it is.
+    /// State of the player.
     pub fn playback(&self) -> &Playback {
         &self.playback
     }
@@ -188,10 +188,11 @@ impl Player {
         }
     }
 
-    /// Does what it is told from the next step on.
+    /// Carries out a command, from the next step on.
     ///
     /// # Errors
-    /// A clip that is not there, a rate or a fade out of range; nothing is changed then.
+    /// [`PlayError`] for a clip that does not exist, or a rate or a fade out of range; nothing is changed
+    /// then.
     pub fn tell(&mut self, command: PlayCommand) -> Result<(), PlayError> {
         match command {
             PlayCommand::Start => self.playback.goes = true,
@@ -209,7 +210,8 @@ impl Player {
         Ok(())
     }
 
-    /// Begins to fade to a clip: of two loops at the same phase, else from its start.
+    /// Begins to fade to a clip: from a loop to a loop at the same phase, else from the start of the new
+    /// clip.
     fn begin_fade(&mut self, clip: usize, length: f64) {
         let Playback { shown, .. } = self.playback;
         let both_loop = [shown.clip, clip].iter().all(|&c| self.clips[c].is_loop);
@@ -221,8 +223,8 @@ impl Player {
         });
     }
 
-    /// Goes on by a time (s), in which no joint turns faster than [`FASTEST_TURN`]: where it would, the clocks of clip and
-    /// fade go slower.
+    /// Advances by a time (s) in which no joint turns faster than [`FASTEST_TURN`]: where one would, the
+    /// clocks of clip and fade are slowed down.
     pub fn advance(&mut self, time: f64) {
         let from = self.pose();
         let most = FASTEST_TURN * time;
@@ -253,7 +255,7 @@ impl Player {
         }
     }
 
-    /// Where it is after a time (s) in which the clocks of clip and fade go on by a share of it.
+    /// State after a time (s) in which the clocks of clip and fade advance by a share of it.
     fn later(&self, time: f64, share: f64) -> Playback {
         let mut next = self.playback.clone();
         let aim = if next.goes { next.asked } else { 0.0 };
@@ -270,7 +272,7 @@ impl Player {
         let mixed = fade.share();
         fade.gone += time * share;
         next.travelled += old.travelled(clock) * (1.0 - mixed) + new.travelled(clock) * mixed;
-        // Two loops go round together, so that their feet stay in step.
+        // Two loops run at the same phase, so that their feet stay in step.
         let [mut per_old, mut per_new] = [old, new].map(|clip| clock / clip.duration());
         if old.is_loop && new.is_loop {
             let round = old.duration() + (new.duration() - old.duration()) * mixed;
@@ -286,7 +288,7 @@ impl Player {
         next
     }
 
-    /// The pose now, without the way over the ground: the root's place is over the leg length.
+    /// The present pose, without the distance over the ground: the root's position is over the leg length.
     pub fn pose(&self) -> Pose {
         self.pose_of(&self.playback)
     }
@@ -304,13 +306,13 @@ impl Player {
 }
 
 impl Fade {
-    /// How much of the new clip is shown, 0..=1.
+    /// Share of the new clip in the pose, 0 to 1.
     fn share(&self) -> f64 {
         smooth_step(self.gone / self.length)
     }
 }
 
-/// The phase of a clip after some rounds more; one that is no loop ends at its last pose.
+/// Phase of a clip after some more rounds; a clip that is no loop ends at its last pose.
 fn moved(clip: &Clip, phase: f64, rounds: f64) -> f64 {
     match (clip.is_loop, rounds.is_finite()) {
         (_, false) => phase,

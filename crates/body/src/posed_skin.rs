@@ -13,13 +13,13 @@ struct Dual {
 }
 
 impl Mannequin {
-    /// The joints each vertex of the skin goes with and its shares, which add up to one.
+    /// The joints that a vertex of the skin follows, with weights that add up to one.
     pub fn shares(&self, vertex: usize) -> &[(Joint, f64)] {
         self.skinning().of(vertex)
     }
 
-    /// The skin in a pose: dual quaternions of the joints blended by each vertex's shares, which
-    /// keep a limb's thickness where it bends (Kavan, Collins, Zara, O'Sullivan 2008).
+    /// The skin in a pose. Dual quaternions of the joints are blended by the weights of each vertex, which
+    /// keeps a limb's thickness where it bends (Kavan, Collins, Zara, O'Sullivan 2008).
     pub fn posed_skin(&self, pose: &Pose) -> TriangleMesh {
         let frames = self.skeleton.frames(pose);
         let duals = Joint::ALL.map(|joint| self.motion_of(&frames, joint));
@@ -38,7 +38,7 @@ impl Mannequin {
         }
     }
 
-    /// How a joint moves what is fixed to it, from rest into a pose.
+    /// The motion of a joint from rest into a pose.
     fn motion_of(&self, frames: &JointFrames, joint: Joint) -> Dual {
         let frame = frames.body_from_joint(joint);
         let turn = frame.rotation;
@@ -50,9 +50,9 @@ impl Mannequin {
         }
     }
 
-    /// Whether a triangle of the skin lies where skin folds when joints bend, and may touch itself:
-    /// within 0.075 of the stature of the crotch or of a hip, knee, shoulder or elbow at rest, or
-    /// where the skin passes from the trunk to a limb.
+    /// Whether a triangle of the skin lies where skin folds when joints bend, and may touch itself: within
+    /// 0.075 of the stature of the crotch or of a hip, knee, shoulder or elbow at rest, or where the skin
+    /// passes from the trunk to a limb.
     pub fn is_crease(&self, triangle: usize) -> bool {
         const NEAR: f64 = 0.075;
         use Joint::{LElbow, LHip, LKnee, LShoulder, RElbow, RHip, RKnee, RShoulder};
@@ -77,7 +77,7 @@ impl Mannequin {
     }
 }
 
-/// A place moved by a blend of rigid motions.
+/// A point moved by a blend of rigid motions.
 fn blended(shares: &[(Joint, f64)], duals: &[Dual; Joint::COUNT], p: Vec3) -> Vec3 {
     let Some(&(first, _)) = shares.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return p;
@@ -87,7 +87,7 @@ fn blended(shares: &[(Joint, f64)], duals: &[Dual; Joint::COUNT], p: Vec3) -> Ve
     let (mut real, mut dual) = (zero, zero);
     for &(joint, share) in shares {
         let d = duals[joint as usize];
-        // Of a turn's two quaternions the one on the same side.
+        // Of the two quaternions of a turn, the one on the same side.
         let share = if d.real.dot(&base) < 0.0 {
             -share
         } else {

@@ -1,5 +1,5 @@
-//! The proportion box: a figure in head lengths from crown to chin (Volino, Magnenat-Thalmann,
-//! Shen, Thalmann 1996). The numbers are data; here is what they do to a body.
+//! The proportion box: a figure in head lengths from crown to chin (Volino, Magnenat-Thalmann, Shen, Thalmann
+//! 1996). The boxes are data; this module applies them to a body.
 
 use crate::curve::smooth_step;
 use crate::scaling::tags;
@@ -8,16 +8,16 @@ use crate::{BodyError, Description, Mannequin, Part, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// A figure's proportions. What is left out stays as the body has it.
+/// Proportions of a figure. Those left out stay as the body has them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProportionBox {
-    /// What it is chosen by.
+    /// Name to choose it by.
     pub name: String,
-    /// Whose it is; both sexes' where left out.
+    /// Sex of the figure; both if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sex: Option<Sex>,
-    /// Age (years); an adult's where left out.
+    /// Age (years); adult if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub age: Option<f64>,
     /// Stature in head lengths (1).
@@ -31,38 +31,38 @@ pub struct ProportionBox {
     /// Breadth of the hips in head lengths (1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hips: Option<f64>,
-    /// Where the numbers are from.
+    /// Source of the numbers.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
 }
 
-/// Of a proportion box.
+/// Sex of the figure of a proportion box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sex {
-    /// A woman's or a girl's.
+    /// Woman or girl.
     Female,
-    /// A man's or a boy's.
+    /// Man or boy.
     Male,
 }
 
-/// Head counts a body may be given: beyond those of any source (1).
+/// Range of head counts that a body may be given: wider than those of any source (1).
 const HEADS: [f64; 2] = [3.0, 10.0];
-/// Shares of the stature a crotch may lie at (1).
+/// Range of the crotch's height over stature (1).
 const CROTCH: [f64; 2] = [0.25, 0.6];
-/// Breadths in head lengths a body may have (1).
+/// Range of breadths in head lengths (1).
 const BREADTH: [f64; 2] = [0.5, 4.0];
-/// How near the measured box comes to the one asked for (1).
+/// Relative difference between measured and requested box at which the search ends (1).
 const NEAR: f64 = 5e-4;
-/// How far off the best may stay (1).
+/// Largest relative difference that is accepted (1).
 const MISS: f64 = 0.01;
-/// Rounds of measuring at the most: each leaves under a tenth of what was missed.
+/// Largest number of rounds of measuring: each leaves less than a tenth of the difference.
 const ROUNDS: usize = 12;
 
-/// One map of a body's places: heights by a broken line, breadths by two ratios, the head alike
-/// in all directions.
+/// A map of the points of a body: heights by a piecewise linear function, breadths by two ratios, the head
+/// evenly in all directions.
 struct Map {
-    /// Heights that are kept apart, and what becomes of them: floor, crotch, chin, crown (m).
+    /// Heights of floor, crotch, chin and crown, before and after (m).
     heights: [[f64; 2]; 4],
     /// Ratio of the head (1).
     head: f64,
@@ -74,8 +74,8 @@ struct Map {
 }
 
 impl ProportionBox {
-    /// The box of a head count: the rest between the boxes of a table next to it, the mean of
-    /// those of the same count.
+    /// The box of a head count: the crotch is interpolated between the next rows of a table, where rows of
+    /// the same head count are averaged.
     pub fn of_heads(heads: f64, table: &[ProportionBox]) -> Self {
         let mut known: Vec<[f64; 2]> = table
             .iter()
@@ -109,7 +109,7 @@ impl ProportionBox {
         }
     }
 
-    /// The proportions a body has, by its landmarks and its hips' section.
+    /// The proportions of a body, from its landmarks and the section of its hips.
     pub fn of_body(body: &Mannequin) -> Self {
         let marks = body.landmarks();
         let head = marks.crown.y - marks.chin.y;
@@ -126,10 +126,10 @@ impl ProportionBox {
         }
     }
 
-    /// What a body with proportions `got` misses of these by more than a hundredth of a head: its
-    /// name, asked and got in head lengths (1).
+    /// Proportions in which a body with proportions `got` misses these by more than a hundredth of a head:
+    /// name, requested and measured value in head lengths (1).
     pub fn missed_by(&self, got: &Self) -> Vec<(&'static str, f64, f64)> {
-        /// What no eye sees, and what words with two decimals do not show (1).
+        /// Difference that is not visible and not shown by two decimals (1).
         const SEEN: f64 = 0.01;
         let rows = [
             ("heads", Some(self.heads), Some(got.heads)),
@@ -144,11 +144,11 @@ impl ProportionBox {
             .collect()
     }
 
-    /// Brings a body to these proportions at the stature it has; girths of trunk and legs stay but
-    /// for the breadths asked for.
+    /// Brings a body to these proportions at its own stature; girths of trunk and legs stay, except for the
+    /// breadths asked for.
     ///
     /// # Errors
-    /// Numbers no body has, or a body without a frame of its own.
+    /// [`BodyError::Description`] for numbers that no body has, or a body without a frame of its own.
     pub fn apply(&self, body: &Description) -> Result<Description, BodyError> {
         self.check()?;
         let Some(frame) = body.frame else {
@@ -165,7 +165,7 @@ impl ProportionBox {
             let done = Map::new(&frame, (chin, head), low, across)?.description(body);
             let got = Self::of_body(&Mannequin::from_description(&done)?);
             let mut furthest = 0.0_f64;
-            // Rings move by steps with a chin: smaller corrections find a place between two.
+            // Rings move in steps as the chin moves: smaller corrections find a position between two steps.
             let share = if round < ROUNDS / 2 { 1.0 } else { 0.5 };
             let mut miss = |asked: Option<f64>, got: Option<f64>| -> f64 {
                 match (asked, got) {
@@ -195,7 +195,7 @@ impl ProportionBox {
 
     /// Height of the frame's crotch to begin with (m).
     fn wanted_crotch(&self, has: &Self, height: f64) -> f64 {
-        // Without one, the share of what lies below the chin.
+        // Without a requested crotch, it keeps its share of the height below the chin.
         let own = |b: &Self| b.crotch.unwrap_or_default() / (b.heads - 1.0);
         let share = match self.crotch {
             Some(crotch) => crotch / self.heads,
@@ -256,7 +256,8 @@ impl Map {
             arm: 1.0,
             frame: *frame,
         };
-        // An arm goes half with the trunk's length and half with the shoulder's height.
+        // The ratio of an arm is the geometric mean of the ratios of the trunk's length and of the shoulder's
+        // height.
         let shoulder = frame.joints.shoulder[1];
         map.arm = (map.steep(shoulder) * map.height(shoulder) / shoulder).sqrt();
         Ok(map)
@@ -267,7 +268,7 @@ impl Map {
         [self.heights[k], self.heights[k + 1]]
     }
 
-    /// What becomes of a height (m).
+    /// Height after the map (m).
     fn height(&self, y: f64) -> f64 {
         let [a, _] = self.segment(y);
         a[1] + (y - a[0]) * self.steep(y)
@@ -279,35 +280,34 @@ impl Map {
         (b[1] - a[1]) / (b[0] - a[0])
     }
 
-    /// Ratio of breadths at a height: the hips' up to the pelvis, the shoulders' from the
-    /// chest (1).
+    /// Ratio of breadths at a height (1): the hips' up to the pelvis, the shoulders' from the chest on.
     fn broad(&self, y: f64) -> f64 {
         let [low, high] = [self.frame.joints.pelvis[1], self.frame.joints.chest[1]];
         let share = smooth_step((y - low) / (high - low));
         self.across[0] + (self.across[1] - self.across[0]) * share
     }
 
-    /// Ratio of the neck's and head's breadth and depth at a height: the trunk's up to half the
-    /// neck, the head's from the chin on (1).
+    /// Ratio of breadth and depth of neck and head at a height (1): the trunk's up to half the neck, the
+    /// head's from the chin on.
     fn round(&self, y: f64) -> f64 {
         let chin = self.heights[2][0];
         let half = 0.5 * (self.frame.joints.neck[1] + chin);
         1.0 + (self.head - 1.0) * smooth_step((y - half) / (chin - half).max(1e-6))
     }
 
-    /// Depth of the axis of neck and head at a height (m): it stays where it is.
+    /// Depth of the axis of neck and head at a height (m): the map does not change it.
     fn axis(&self, y: f64) -> f64 {
         let [neck, head] = [self.frame.joints.neck, self.frame.joints.head];
         let share = ((y - neck[1]) / (head[1] - neck[1])).clamp(0.0, 1.0);
         neck[2] + (head[2] - neck[2]) * share
     }
 
-    /// A place of the trunk or a leg.
+    /// Maps a point of the trunk or a leg.
     fn trunk(&self, p: [f64; 3]) -> [f64; 3] {
         [p[0] * self.broad(p[1]), self.height(p[1]), p[2]]
     }
 
-    /// A place of neck or head.
+    /// Maps a point of neck or head.
     fn head(&self, p: [f64; 3]) -> [f64; 3] {
         let (ratio, axis) = (self.round(p[1]), self.axis(p[1]));
         [
@@ -317,7 +317,7 @@ impl Map {
         ]
     }
 
-    /// A place of an arm: as it lies about the shoulder joint.
+    /// Maps a point of an arm, relative to the shoulder joint.
     fn arm(&self, p: [f64; 3]) -> [f64; 3] {
         let joint = Vec3::from(self.frame.joints.shoulder);
         let there = Vec3::from(self.trunk(joint.into()));

@@ -5,14 +5,14 @@ use crate::{Blend, Part, Primitive, THRESHOLD};
 use nalgebra::Matrix3;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Sweeps over all points: the misfit falls by half in about five.
+/// Number of sweeps over all points: about five halve the error.
 const SWEEPS: usize = 12;
 
-/// Scales the primitives of the left side and the middle so that the skin's vertices have the
-/// threshold's density, and gives them with their mirror images. The scales solve the linearised
-/// least squares by simultaneous reconstruction (Gilbert 1972): `x += C A^T R (b - A x)`, where A
-/// holds `4 q (1 - q)`, the derivative of a density by the logarithm of its primitive's size, and
-/// R and C the inverse sums of its rows and columns.
+/// Scales the primitives of the left side and the middle so that the density at the skin's vertices is the
+/// threshold, and returns them with their mirror images. The scales solve the linearised least squares by
+/// simultaneous reconstruction (Gilbert 1972): `x += C A^T R (b - A x)`. A holds `4 q (1 - q)`, the
+/// derivative of a density by the logarithm of its primitive's size, R and C hold the inverse sums of its
+/// rows and columns.
 pub(crate) fn refitted(
     mut primitives: Vec<Primitive>,
     mesh: &TriangleMesh,
@@ -43,14 +43,14 @@ pub(crate) fn refitted(
     both_sides(primitives)
 }
 
-/// A primitive by its number, weight, centre, its image's centre and `S^-1 R^T`.
+/// Number of a primitive, weight, centre, centre of its mirror image, and `S^-1 R^T`.
 type Own = (usize, f64, [Vec3; 2], Matrix3<f64>);
 
-/// A point in the frames of a primitive and of its mirror image.
+/// Centres of a primitive and of its mirror image in the same part; infinite if there is none.
 fn sides(primitive: &Primitive) -> [Vec3; 2] {
     let centre = Vec3::from(primitive.centre);
     let twin = match primitive.part {
-        // A limb's image lies in the other limb.
+        // The mirror image of a limb's primitive lies in the other limb.
         Part::Trunk | Part::Head if !primitive.is_central() => {
             Vec3::new(-centre.x, centre.y, centre.z)
         }
@@ -65,7 +65,7 @@ fn inverse(primitive: &Primitive) -> Matrix3<f64> {
     inverse * primitive.rotation().matrix().transpose()
 }
 
-/// Adds what one point asks of the primitives.
+/// Adds the steps and weights of one point for the primitives.
 fn sweep(point: Vec3, own: &[Own], (step, weight): (&mut [f64], &mut [f64])) {
     let (mut density, mut row) = (0.0, 0.0);
     let mut touched: Vec<(usize, f64)> = Vec::new();
@@ -81,7 +81,7 @@ fn sweep(point: Vec3, own: &[Own], (step, weight): (&mut [f64], &mut [f64])) {
         add(point - centre);
         if twin.x.is_finite() {
             let offset = point - twin;
-            // The image's frame is the mirror image of the primitive's.
+            // The frame of the mirror image is the mirror image of the primitive's frame.
             add(Vec3::new(-offset.x, offset.y, offset.z));
         }
         if slope > 0.0 {

@@ -5,25 +5,26 @@ use crate::girths::Girth;
 use crate::{BodyError, Figure};
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 
-/// Everything asked of a body, with predictions for the rest.
+/// The requested measurements of a body, with predictions of the others.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Request {
-    /// Asked and predicted.
+    /// Requested and predicted measurements.
     pub(crate) table: Measurements,
-    /// What in it contradicts itself.
+    /// Contradictions among them.
     pub(crate) conflicts: Vec<Conflict>,
 }
 
-/// Limits of a length over stature and of an angle (rad): wider than any body, so that only slips
-/// of unit or typing are refused.
+/// Limits of a length over stature and of an angle (rad): wider than any body, so that only errors of unit or
+/// typing are refused.
 const LENGTH: [f64; 2] = [0.004, 2.2];
 const ANGLE: [f64; 2] = [-0.2, 1.3];
-/// Limits of the angle of the arms (rad): from straight out to the sides, as many programs hold them.
+/// Limits of the angle of the arms below the horizontal (rad): from 0, arms straight out to the sides, which
+/// many programs use.
 const ARM_POSE: [f64; 2] = [0.0, 1.4];
-/// Limits of the stature (m): dolls and giants.
+/// Limits of the stature (m): from dolls to giants.
 const STATURE: [f64; 2] = [0.12, 6.0];
 
-/// Closer limits over stature of what decides most.
+/// Narrower limits over stature of the most important measurements.
 const CLOSER: [(&str, [f64; 2]); 17] = [
     ("head_l", [0.09, 0.35]),
     ("neck_w", [0.05, 0.20]),
@@ -45,8 +46,8 @@ const CLOSER: [(&str, [f64; 2]); 17] = [
 ];
 
 impl Request {
-    /// Whether levels and ways over the bust are asked for, so that the way along the skin under
-    /// it says how far the bust stands out.
+    /// Whether levels and lengths over the bust are requested, so that the length along the skin below it
+    /// determines how far the bust stands out.
     pub(crate) fn follows_skin(&self) -> bool {
         let all = [
             "bust_to_underbust",
@@ -60,7 +61,7 @@ impl Request {
 
     /// Completes and checks a table.
     pub(crate) fn read(asked: &Measurements, figure: Figure) -> Result<Self, BodyError> {
-        // A value predicted for another body is not asked for.
+        // A value that was predicted for another body is not a request.
         let mut table = Measurements::new();
         for (name, measured) in asked.iter().filter(|(_, m)| m.origin == Origin::Asked) {
             table
@@ -113,14 +114,14 @@ impl Request {
         self.table.get(name).unwrap_or_default()
     }
 
-    /// Whether somebody asked for it.
+    /// Whether a measurement is requested.
     pub(crate) fn is_asked(&self, name: &str) -> bool {
         self.table
             .measured(name)
             .is_some_and(|m| m.origin == Origin::Asked)
     }
 
-    /// The girth asked for or predicted; none where the template's own is kept.
+    /// Requested or predicted girth (m); `None` where the template's own is kept.
     pub(crate) fn girth(&self, girth: Girth) -> Option<f64> {
         self.table.get(girth.name())
     }
@@ -138,7 +139,7 @@ fn check(
     let rounded = |x: f64| (x * 1e3).round() / 1e3;
     Err(BodyError::OutOfRange {
         name,
-        // Degrees as the file has them, without what the way through radians added.
+        // Degrees as the file has them, without the rounding error of the conversion to radians.
         value: (value * 1e9).round() / 1e9,
         low: rounded(low),
         high: rounded(high),

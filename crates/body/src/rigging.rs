@@ -5,39 +5,39 @@ use crate::deform::Deformation;
 use crate::{BodyError, Joint};
 use serde::{Deserialize, Serialize};
 
-/// What is particular about one primitive.
+/// Properties of one primitive that differ from the default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Particular {
-    /// Which, in the order of [`crate::Description::primitives`].
+    /// Number of the primitive, in the order of [`crate::Description::primitives`].
     pub primitive: usize,
-    /// The joint it is fixed to; none for that of the bone it lies round.
+    /// The joint it is fixed to; `None` for the joint of the bone that it lies round.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<Joint>,
-    /// How it changes with a reference joint; none for a rigid one.
+    /// Change with a reference joint; `None` for a rigid primitive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deformation: Option<Deformation>,
 }
 
-/// What is particular about the primitives of a body.
+/// Properties of the primitives of a body that differ from the default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rigging {
-    /// By rising number; those with nothing particular are left out.
+    /// Properties by rising number of the primitive; primitives with default properties are left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub particulars: Vec<Particular>,
-    /// Sets of primitives that are moved and turned together: numbers rise, no number twice.
+    /// Sets of primitives that are moved and turned together: numbers rise, and none occurs twice.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joined: Vec<Vec<usize>>,
 }
 
 impl Rigging {
-    /// Whether nothing is particular.
+    /// Whether all primitives have default properties and none are joined.
     pub fn is_empty(&self) -> bool {
         self.particulars.is_empty() && self.joined.is_empty()
     }
 
-    /// What is particular about a primitive.
+    /// The properties of a primitive that differ from the default.
     pub fn of(&self, primitive: usize) -> Option<&Particular> {
         let found = self
             .particulars
@@ -45,7 +45,7 @@ impl Rigging {
         found.ok().map(|k| &self.particulars[k])
     }
 
-    /// Changes what is particular about a primitive.
+    /// Changes the properties of a primitive.
     pub(crate) fn change(&mut self, primitive: usize, change: impl FnOnce(&mut Particular)) {
         let found = self
             .particulars
@@ -65,7 +65,7 @@ impl Rigging {
         }
     }
 
-    /// Forgets a primitive that is deleted; later ones move up.
+    /// Removes a deleted primitive; the numbers of later ones decrease by one.
     pub(crate) fn forget(&mut self, primitive: usize) {
         self.particulars.retain(|p| p.primitive != primitive);
         for own in &mut self.particulars {
@@ -77,7 +77,7 @@ impl Rigging {
         }
     }
 
-    /// Joins primitives, and what they were joined with before.
+    /// Joins primitives, together with those that they were joined with before.
     pub(crate) fn join(&mut self, primitives: &[usize]) {
         let (mut one, others): (Vec<Vec<usize>>, Vec<Vec<usize>>) =
             std::mem::take(&mut self.joined)
@@ -92,7 +92,7 @@ impl Rigging {
         self.joined.sort();
     }
 
-    /// Takes primitives out of the sets they are joined in.
+    /// Takes primitives out of the sets that they are joined in.
     pub(crate) fn part(&mut self, primitives: &[usize]) {
         for set in &mut self.joined {
             set.retain(|k| !primitives.contains(k));
@@ -100,13 +100,13 @@ impl Rigging {
         self.joined.retain(|set| set.len() > 1);
     }
 
-    /// A primitive with all it is joined with.
+    /// A primitive with all that it is joined with.
     pub(crate) fn together(&self, primitive: usize) -> Vec<usize> {
         let set = self.joined.iter().find(|set| set.contains(&primitive));
         set.cloned().unwrap_or_else(|| vec![primitive])
     }
 
-    /// Refuses what points nowhere or means nothing.
+    /// Refuses numbers of primitives that do not exist, repeated or unsorted numbers, and bad deformations.
     pub(crate) fn check(&self, count: usize) -> Result<(), BodyError> {
         let bad = |what: String| Err(BodyError::Description(what));
         let numbers = self

@@ -1,10 +1,10 @@
 //! Casts the skin of a template: rays from the axes of limbs and trunk meet the implicit surface in rings of
 //! vertices.
 //!
-//! Only the left half, x >= 0, is cast; the right half is its mirror image. Trunk, neck and head
-//! are one tube of half rings with a hole for the arm; the arm's first ring is the border of that
-//! hole, the leg's first ring is the lowest half ring closed along the crotch. Parts so share
-//! their border points, and the skin is a closed two-manifold by construction.
+//! Only the left half, x >= 0, is cast; the right half is its mirror image. Trunk, neck and head are one tube
+//! of half rings with a hole for the arm. The border of that hole is the arm's first ring; the lowest half
+//! ring, closed along the crotch, is the leg's first ring. So parts share the points of their borders, and
+//! the skin is a closed two-manifold by construction.
 
 use crate::bands::Bands;
 use crate::curve::smooth_step;
@@ -13,47 +13,47 @@ use crate::underarm::Underarm;
 use crate::{BodyError, Field, Part};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Steps of a half ring of the trunk, from the front middle round the left to the back middle.
-/// Even, so that one column runs down the side.
+/// Number of steps of a half ring of the trunk, from the front middle round the left to the back middle. It
+/// is even, so that one column runs down the side.
 const HALF: usize = 24;
 /// Points of the crotch line between front and back middle.
 pub(crate) const CROTCH_POINTS: usize = 7;
 /// Distance between rings of arms and legs (m).
 pub(crate) const SPACING: f64 = 0.0165;
-/// Rings that lead from a border to the first plane ring of a limb.
+/// Number of rings from a border to the first plane ring of a limb.
 pub(crate) const TRANSITION: usize = 5;
 
-/// Distance of the rows over the shoulder along the side, for a stature of 1.7 m (m).
+/// Distance along the side between rows of the fan over the shoulder, for a stature of 1.7 m (m).
 pub(crate) const FAN: f64 = 0.0145;
 
-/// Distance of the rows across the face, for a stature of 1.7 m (m).
+/// Distance between rows across the face, for a stature of 1.7 m (m).
 const FACE: f64 = 0.0055;
-/// Depth under the crown up to which they reach, for a stature of 1.7 m (m).
+/// Depth below the crown up to which these rows reach, for a stature of 1.7 m (m).
 const ABOVE_BROW: f64 = 0.08;
-/// How far rays gather at nose and ears (rad), and over how many rows they come to it.
+/// Largest angle by which rays gather at nose and ears (rad), and number of rows over which it grows to this.
 const GATHERING: f64 = 0.09;
 const GATHERED: usize = 4;
-/// The number of a vertex of a grid that is left open for a limb.
+/// Number that marks an open vertex of a grid, inside the hole for a limb.
 pub(crate) const OPEN: u32 = u32::MAX;
 
 /// A skin before any measurement is applied.
 pub(crate) struct TemplateSkin {
     pub(crate) mesh: TriangleMesh,
-    /// The part each triangle belongs to.
+    /// The part of each triangle.
     pub(crate) parts: Vec<Part>,
-    /// For each vertex, how far it follows the arm of its side instead of the trunk, 0 to 1.
+    /// Share with which each vertex follows the arm of its side instead of the trunk, 0 to 1.
     pub(crate) arm: Vec<f64>,
-    /// The same for the leg.
+    /// Share with which each vertex follows the leg, 0 to 1.
     pub(crate) leg: Vec<f64>,
-    /// The mirror image of each vertex; itself in the middle.
+    /// The mirror image of each vertex; a vertex in the middle is its own.
     pub(crate) mirror: Vec<u32>,
-    /// Vertices in the left armpit, where the trunk ends and the arm begins, from front to back.
+    /// Vertices of the left armpit, where the trunk ends and the arm begins, from front to back.
     pub(crate) armpit: Vec<u32>,
-    /// The vertex at the front fold of the left armpit: where the arm's border turns up.
+    /// The vertex at the front fold of the left armpit, where the arm's border turns upwards.
     pub(crate) fold: u32,
-    /// The left half's triangles by their place.
+    /// Index of the left half's triangles by position.
     pub(crate) bands: Bands,
-    /// The arm's first rings from below.
+    /// The arm's first rings on its underside.
     pub(crate) underarm: Underarm,
 }
 
@@ -64,13 +64,13 @@ struct Row {
     /// Angle of the rays above the horizontal (rad).
     elevation: f64,
     part: Part,
-    /// Of a row across the face, how far its rays gather at nose and ears (rad): it has twice
+    /// Angle by which the rays of a row across the face gather at nose and ears (rad); such a row has twice
     /// the columns.
     gathering: Option<f64>,
 }
 
 impl Row {
-    /// Steps from the front middle to the back middle.
+    /// Number of steps from the front middle to the back middle.
     fn columns(&self) -> usize {
         match self.gathering {
             Some(_) => 2 * HALF,
@@ -85,7 +85,7 @@ impl Row {
     }
 }
 
-/// The block of the trunk's grid left open for the arm: first and last row and column.
+/// The block of the trunk's grid that is left open for the arm: first and last row and column.
 #[derive(Clone, Copy)]
 struct Hole {
     rows: [usize; 2],
@@ -93,7 +93,7 @@ struct Hole {
 }
 
 impl Hole {
-    /// Whether a vertex lies strictly inside.
+    /// Whether a vertex lies strictly inside the hole.
     fn inside(&self, t: usize, i: usize) -> bool {
         let within = |[low, high]: [usize; 2], at: usize| at > low && at < high;
         within(self.rows, t) && within(self.columns, i)
@@ -116,7 +116,7 @@ pub(crate) struct Half<'a> {
     middle: Vec<bool>,
     pub(crate) arm: Vec<f64>,
     pub(crate) leg: Vec<f64>,
-    /// Vertices that fairing leaves where they are.
+    /// Vertices that fairing does not move.
     pub(crate) held: Vec<bool>,
     triangles: Vec<[u32; 3]>,
     parts: Vec<Part>,
@@ -141,8 +141,8 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
     Ok(half.mirrored(&border))
 }
 
-/// Casts the skin of a template of its own frame; a hand whose tip the primitives leave bare is
-/// made shorter, by half at the most.
+/// Casts the skin of a framed template. A hand whose tip is not enclosed by the primitives is shortened, at
+/// most to half.
 pub(crate) fn cast_framed(template: &mut Template) -> Result<TemplateSkin, BodyError> {
     let field = Field::new(&template.primitives);
     let least = 0.5 * template.hand;
@@ -158,8 +158,8 @@ pub(crate) fn cast_framed(template: &mut Template) -> Result<TemplateSkin, BodyE
     }
 }
 
-/// A skin that does not cross itself, as it is; else with its first rings under the arms drawn
-/// even, as on bodies grown to measurements, where that helps.
+/// The same skin if it does not cross itself. Otherwise the first rings under the arms are evened out, as on
+/// bodies grown to measurements, if that leaves fewer crossings.
 fn clear_under_the_arms(mut skin: TemplateSkin, stature: f64) -> TemplateSkin {
     let before = crossings(&skin.mesh);
     if before == 0 {
@@ -179,16 +179,16 @@ fn clear_under_the_arms(mut skin: TemplateSkin, stature: f64) -> TemplateSkin {
     skin
 }
 
-/// Pairs of triangles that cross.
+/// Number of pairs of triangles that cross.
 pub(crate) fn crossings(mesh: &TriangleMesh) -> usize {
     SurfaceTree::new(mesh.clone()).self_intersections().len()
 }
 
-/// Rings where limbs begin, in the limbs' own order of walking.
+/// Rings where limbs begin, in the order in which the limbs' rings run.
 struct Borders {
     armpit: Vec<u32>,
     fold: u32,
-    /// Columns of the trunk's side under the arm, front to back, each from below up to the hole.
+    /// Columns of the trunk's side under the arm, front to back, each from the lowest row up to the hole.
     side: Vec<Vec<u32>>,
     arm: Vec<u32>,
     bottom: Vec<u32>,
@@ -209,7 +209,7 @@ impl Half<'_> {
         self.parts.push(part);
     }
 
-    /// Where a ray from inside first leaves the union of some parts, named for the first of them.
+    /// Point where a ray from inside first leaves the union of some parts; an error names the first of them.
     pub(crate) fn hit(
         &self,
         parts: &[Part],
@@ -227,7 +227,7 @@ impl Half<'_> {
         }
     }
 
-    /// Height where the underside of the arm meets the side of the trunk (m).
+    /// Height at which the underside of the arm meets the side of the trunk (m).
     fn armpit(&self) -> f64 {
         let shoulder = Vec3::from(self.template.joints.shoulder);
         let step = 0.002;
@@ -263,7 +263,7 @@ impl Half<'_> {
         let mut rows = Vec::new();
         // Level rings up to the armpit.
         let bottom = t.crotch + 0.035 * scale;
-        // Below the armpit by a row where its place is known.
+        // A row below the armpit, if its height is known.
         let base = armpit - if t.armpit.is_some() { FAN } else { 0.02 } * scale;
         let count = ((base - bottom) / (0.016 * scale)).round() as usize;
         let focus = Vec3::new(0.0, base, self.middle_z(j.chest, base));
@@ -274,7 +274,7 @@ impl Half<'_> {
             let z = bottom_z + (focus.z - bottom_z) * u;
             rows.push(row(Vec3::new(0.0, y, z), 0.0, Part::Trunk));
         }
-        // A fan over the shoulders, even along the side.
+        // A fan over the shoulders, evenly spaced along the side.
         let tip = Vec3::new(j.shoulder[0] + 0.005, j.shoulder[1] + 0.045 * scale, 0.0);
         let foot_of_neck = Vec3::new(t.neck_radius, neck.y - 0.002 * scale, 0.0);
         let path = [Vec3::new(tip.x - 0.01, base, 0.0), tip, foot_of_neck];
@@ -304,7 +304,7 @@ impl Half<'_> {
         let above = Vec3::new(0.0, straight, focus.z + (neck_top.z - focus.z) * 0.45);
         let face = along(&[above, neck_top, centre], spacing * scale);
         for (k, &p) in face.iter().enumerate() {
-            // Even beside the rows with half the columns.
+            // No gathering next to the rows with half the columns.
             let share = k.min(face.len() - 1 - k) as f64 / GATHERED as f64;
             rows.push(Row {
                 gathering: t.features.map(|_| GATHERING * share.min(1.0)),
@@ -319,7 +319,7 @@ impl Half<'_> {
         rows
     }
 
-    /// Middle of the front and back surface of the trunk at a height, seen from a joint (m).
+    /// Depth half-way between the front and the back surface of the trunk at a height, seen from a joint (m).
     fn middle_z(&self, joint: [f64; 3], y: f64) -> f64 {
         let origin = Vec3::new(0.0, y, joint[2]);
         let front = self.field.first_exit(&[Part::Trunk], origin, Vec3::z());
@@ -406,7 +406,7 @@ impl Half<'_> {
         })
     }
 
-    /// The vertices of all rows, but for those inside the hole.
+    /// Casts the vertices of all rows, except those inside the hole.
     fn cast_rows(&mut self, rows: &[Row], hole: Hole) -> Result<Vec<Vec<u32>>, BodyError> {
         let mut grid: Vec<Vec<u32>> = (rows.iter())
             .map(|row| vec![OPEN; row.columns() + 1])
@@ -431,11 +431,11 @@ impl Half<'_> {
         Ok(grid)
     }
 
-    /// Where a tilted ray of the neck went on into a large chin, a level one from the neck's axis
-    /// takes its place, evenly between the rows below and the first level row.
+    /// Replaces tilted rays of the neck that ran on into a large chin by level ones from the axis of the
+    /// neck, evenly spaced between the rows below and the first level row.
     fn below_the_chin(&mut self, rows: &[Row], grid: &[Vec<u32>]) -> Result<(), BodyError> {
-        /// How far over the first level row a ray may end, over stature: less than half the way to
-        /// the next one.
+        /// Largest height of a ray's end above the first level row, over stature: less than half the distance
+        /// to the next row.
         const OVER: [f64; 2] = [0.006, 0.0016];
         let is_head = |t: &usize| rows[*t].part == Part::Head;
         let Some(neck) = (1..rows.len()).find(is_head) else {
@@ -498,7 +498,8 @@ impl Half<'_> {
                 part => part,
             });
         }
-        // The soles stay flat, the middle stays in the middle, and the right follows the left.
+        // The soles stay flat, the middle stays in the plane x = 0, and the right half stays the mirror image
+        // of the left.
         let is_held = |v: usize| held[v.min(mirror[v] as usize)];
         crate::fair::fair(&mut mesh, |v, p| p.y <= 0.0 || is_held(v));
         for (v, &image) in mirror.iter().enumerate() {
@@ -528,12 +529,13 @@ impl Half<'_> {
     }
 }
 
-/// Weight of the limb at a number of rings from its border, negative on the trunk's side.
+/// Share with which a vertex follows a limb, by its number of rings from the limb's border, negative on the
+/// trunk's side.
 pub(crate) fn follow(rings: f64) -> f64 {
     smooth_step((rings + 4.0) / 9.0)
 }
 
-/// Points about `spacing` apart along a polyline, without the first, with the last.
+/// Points about `spacing` apart along a polyline, without its first point and with its last.
 fn along(path: &[Vec3], spacing: f64) -> Vec<Vec3> {
     let length: f64 = path.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let count = (length / spacing).round().max(1.0) as usize;
@@ -554,7 +556,7 @@ pub(crate) fn at_length(path: &[Vec3], mut length: f64) -> Vec3 {
     path[path.len() - 1]
 }
 
-/// Parts a ray of a row may run through before it leaves the body.
+/// Parts that a ray of a row may run through before it leaves the body.
 fn reachable(part: Part) -> &'static [Part] {
     match part {
         Part::Head => &[Part::Head, Part::Trunk],

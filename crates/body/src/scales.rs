@@ -1,4 +1,4 @@
-//! The scales a body is solved by.
+//! The scales that a body is solved for.
 
 use crate::girths::PerGirth;
 use crate::shape::{BustForm, CrotchForm};
@@ -7,7 +7,7 @@ use crate::template_marks::TemplateMarks;
 /// Unknowns of the solution, by the parts of the body.
 #[derive(Clone, Debug)]
 pub(crate) struct Scales {
-    /// Of each girth.
+    /// Scale of each girth.
     pub(crate) girth: PerGirth<f64>,
     pub(crate) trunk: TrunkScales,
     pub(crate) neck: NeckScales,
@@ -20,12 +20,12 @@ pub(crate) struct Scales {
 /// Sections of the trunk at equal girth.
 #[derive(Clone, Debug)]
 pub(crate) struct TrunkScales {
-    /// Of girths round the trunk.
+    /// Form of the sections of girths round the trunk.
     pub(crate) section: PerGirth<SectionForm>,
-    /// How much fuller the front corners of the chest are, and how much less full the back ones (1).
+    /// Amount by which the front corners of the chest are fuller, and the back ones less full (1).
     pub(crate) chest_asymmetry: f64,
-    /// Scale at the crotch over that at the hips: less than 1 so that nothing there is larger round
-    /// than they are.
+    /// Scale at the crotch over the scale at the hips: less than 1, so that nothing below has a larger girth
+    /// than the hips.
     pub(crate) crotch_to_hips: f64,
 }
 
@@ -34,11 +34,11 @@ pub(crate) struct TrunkScales {
 pub(crate) struct SectionForm {
     /// Square of lateral over frontal scale.
     pub(crate) aspect: f64,
-    /// How much fuller the corners are (1).
+    /// Amount by which the corners are fuller (1).
     pub(crate) corner_fullness: f64,
-    /// The front's share of the frontal scale beyond one half.
+    /// The front's share of the frontal scale, minus one half.
     pub(crate) front_share: f64,
-    /// Depth of the sides, before which the front part of the girth lies (m).
+    /// Depth of the sides, which part the front of the girth from the back (m).
     pub(crate) side_depth: f64,
 }
 
@@ -47,16 +47,16 @@ pub(crate) struct SectionForm {
 pub(crate) struct NeckScales {
     /// Lateral scale at the sides of the neck.
     pub(crate) breadth: f64,
-    /// How far it stands forward of the template's (m).
+    /// Distance by which the neck stands forward of the template's (m).
     pub(crate) forward: f64,
 }
 
 /// The shoulders.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShoulderScales {
-    /// Lateral scale at their outer ends.
+    /// Lateral scale at the outer ends of the shoulders.
     pub(crate) breadth: f64,
-    /// Rise of the armpits over what the levels say (m).
+    /// Rise of the armpits above the height given by the levels (m).
     pub(crate) armpit_rise: f64,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct ArmScales {
 }
 
 impl Scales {
-    /// All the template's own, at a ratio of statures.
+    /// The template's own scales, at a ratio of statures.
     pub(crate) fn new(stature_ratio: f64, marks: &TemplateMarks) -> Self {
         let section = SectionForm {
             aspect: 1.0,
@@ -100,7 +100,7 @@ impl Scales {
         }
     }
 
-    /// What goes to its place together, slowest where one pulls at another.
+    /// Unknowns that converge together, slowly where they influence one another.
     pub(crate) fn coupled(&mut self) -> impl Iterator<Item = &mut f64> {
         let single = [
             &mut self.shoulder.breadth,

@@ -5,22 +5,20 @@ use crate::template::{BodyFrame, Features};
 use crate::{BodyError, Description, Part, Primitive};
 use toile_geometry::Vec3;
 
-/// Ratios to a body, in the order they are applied. Principal directions of the ellipsoids keep
-/// their orientation; the length along each goes with the ratio of the global direction it is
-/// nearest to, its tag.
+/// Ratios applied to a body, in this order. Principal directions of the ellipsoids keep their orientation;
+/// the length along each is scaled with the ratio of the global direction that it is nearest to, its tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
     /// Global: all three directions (1).
     pub global: f64,
     /// Frontal: depth (1).
     pub frontal: f64,
-    /// High lateral: breadth of arms, head and what of the trunk lies above the spine's
-    /// origin (1).
+    /// High lateral: breadth of arms and head, and of the trunk above the spine's origin (1).
     pub high_lateral: f64,
-    /// Spine origin: how much higher it lies at the same stature; trunk and legs are stretched
-    /// against each other (1).
+    /// Spine origin: ratio of its heights at the same stature; trunk and legs are stretched against each
+    /// other (1).
     pub spine_origin: f64,
-    /// Low lateral: breadth of legs and what of the trunk lies below (1).
+    /// Low lateral: breadth of legs, and of the trunk below the spine's origin (1).
     pub low_lateral: f64,
 }
 
@@ -36,7 +34,7 @@ impl Default for Scaling {
     }
 }
 
-/// One of the five, for one body.
+/// One of the five ratios.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Global(f64),
@@ -46,11 +44,11 @@ enum Step {
     LowLateral(f64),
 }
 
-/// Limits of every ratio: wider than any body against another.
+/// Limits of every ratio: wider than between any two bodies.
 const LIMITS: [f64; 2] = [0.1, 10.0];
 
 impl Scaling {
-    /// The scaling that brings a body to a stature (mm), all else in proportion.
+    /// The scaling that brings a body to a stature (mm), everything in proportion.
     pub fn to_stature(frame: &BodyFrame, millimetres: f64) -> Self {
         Self {
             global: millimetres * 1e-3 / frame.height,
@@ -68,15 +66,16 @@ impl Scaling {
         ]
     }
 
-    /// Applies the five in their order.
+    /// Applies the five ratios in order.
     ///
     /// # Errors
-    /// A ratio that is not between 0.1 and 10, or a spine's origin that leaves no trunk or legs.
+    /// [`BodyError::Description`] for a ratio that is not between 0.1 and 10, a position of the spine's
+    /// origin that leaves no trunk or legs, or a body without a frame.
     pub fn apply(&self, body: &Description) -> Result<Description, BodyError> {
         self.applied(body, self.steps().into())
     }
 
-    /// Takes the five back, in the opposite order.
+    /// Undoes the five ratios, in reverse order.
     ///
     /// # Errors
     /// As [`Scaling::apply`].
@@ -134,7 +133,7 @@ impl Step {
         }
     }
 
-    /// Ratios of the three directions for what lies high, or low.
+    /// Ratios of the three directions, for parts above or below the spine's origin.
     fn ratios(self, is_high: bool, origin: f64, height: f64) -> Vec3 {
         match self {
             Self::Global(r) => Vec3::repeat(r),
@@ -149,7 +148,7 @@ impl Step {
         }
     }
 
-    /// A place: heights above the spine's origin count from the crown down.
+    /// A point after the step: heights above the spine's origin are measured from the crown down.
     fn place(self, p: [f64; 3], is_high: bool, [origin, height]: [f64; 2]) -> [f64; 3] {
         let ratio = self.ratios(is_high, origin, height);
         let y = match self {
@@ -171,7 +170,7 @@ impl Step {
             Part::LeftLeg | Part::RightLeg => false,
             Part::Trunk => p.centre[1] > origin,
         };
-        // What stretches with height goes by where it lies.
+        // A stretch in height depends on the height of the primitive, not on its part.
         let along = match self {
             Self::SpineOrigin(_) => self.ratios(p.centre[1] > origin, origin, height),
             _ => self.ratios(is_high, origin, height),
@@ -210,7 +209,7 @@ impl Step {
     }
 }
 
-/// Tag of each principal direction: the global component it has most of, 0 lateral, 1 height,
+/// Tag of each principal direction: the global axis it has its largest component along, 0 lateral, 1 height,
 /// 2 frontal.
 pub fn tags(primitive: &Primitive) -> [usize; 3] {
     let turn = *primitive.rotation().matrix();

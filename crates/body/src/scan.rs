@@ -12,7 +12,7 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 /// One closed loop of a section of a mesh by a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// Its corners in order, in the plane's coordinates; of a level plane (x, z) (m).
+    /// Corners in order, in the plane's coordinates; for a level plane (x, z) (m).
     pub points: Vec<Vec2>,
 }
 
@@ -22,17 +22,17 @@ impl Loop {
         closed_length(&self.points)
     }
 
-    /// Length of a tight tape round it: its convex hull's (m).
+    /// Length of a tight tape round the loop: of its convex hull (m).
     pub fn girth(&self) -> f64 {
         closed_length(&convex_hull(&self.points))
     }
 
-    /// Its extent along both axes of the plane (m).
+    /// Extent along both axes of the plane (m).
     pub fn extent(&self) -> [f64; 2] {
         extent(&self.points)
     }
 
-    /// The middle of its extent (m).
+    /// Middle of the extent (m).
     pub fn centre(&self) -> Vec2 {
         let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
             self.points.iter().map(|p| p[k]).fold(start, pick)
@@ -44,8 +44,8 @@ impl Loop {
     }
 }
 
-/// Where landmarks of a mesh lie: heights above its lowest point, and points (m). What is left out
-/// is found, or goes unmeasured where it cannot be.
+/// Landmarks of a mesh: heights above its lowest point, and points (m). Those left out are searched for, or
+/// not measured if they cannot be found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScanLandmarks {
@@ -82,27 +82,28 @@ pub struct Scan {
     landmarks: ScanLandmarks,
 }
 
-/// Steps in which crotch and armpits are looked for, over stature, and halvings of the one they lie in.
+/// Steps of the search for crotch and armpits, over stature, and halvings of the step that they lie in.
 const CROTCH_STEP: f64 = 0.001;
 const ARMPIT_STEP: f64 = 0.002;
 const HALVINGS: usize = 8;
-/// What a trunk is broader at once where arms join in, over stature.
+/// Sudden increase in the trunk's breadth where arms join it, over stature.
 const ARM_BREADTH: f64 = 0.05;
-/// Where levels of an upright person are looked for, or taken to be where they cannot be found,
-/// over stature: crotch, waist and armpits.
+/// Levels of an upright person over stature, used as start of a search or where none is found: crotch, waist
+/// and armpits.
 const CROTCH: f64 = 0.46;
 const WAIST: f64 = 0.6;
 const ARMPIT: f64 = 0.74;
-/// No armpit is higher, over stature.
+/// Highest armpit, over stature.
 const ARMPIT_MOST: f64 = 0.85;
-/// A shorter loop is a finger or a toe, over stature.
+/// Length of a loop over stature below which it is a finger or a toe.
 const LIMB: f64 = 0.03;
 
 impl Scan {
-    /// Takes a mesh in metres, Y up, with landmarks; finds those that are left out.
+    /// Takes a mesh in metres, Y up, with landmarks, and searches for those that are left out.
     ///
     /// # Errors
-    /// A mesh that is not closed and outward, or no larger than a doll, or a landmark outside it.
+    /// [`BodyError::Mesh`] for a mesh that is not closed and outward, or smaller than a doll or larger than a
+    /// giant, or a landmark outside it.
     pub fn new(mesh: TriangleMesh, landmarks: ScanLandmarks) -> Result<Self, BodyError> {
         let bad = |what: &str| Err(BodyError::Mesh(what.to_owned()));
         if mesh.check().is_err() {
@@ -149,12 +150,12 @@ impl Scan {
         Ok(scan)
     }
 
-    /// What moves it to stand on y = 0 with its middle at x = 0 (m).
+    /// Shift that makes the mesh stand on y = 0 with its middle at x = 0 (m).
     pub(crate) fn shift(&self) -> Vec3 {
         -Vec3::new(self.middle, self.floor, 0.0)
     }
 
-    /// The same mesh elsewhere (m).
+    /// The mesh shifted (m), with its landmarks.
     pub(crate) fn moved(&self, shift: Vec3) -> Result<Self, BodyError> {
         let mut mesh = self.mesh.clone();
         for p in &mut mesh.positions {
@@ -177,7 +178,7 @@ impl Scan {
         &self.mesh
     }
 
-    /// Floor to crown (m).
+    /// Height from floor to crown (m).
     pub fn height(&self) -> f64 {
         self.height
     }
@@ -197,7 +198,7 @@ impl Scan {
     pub fn section(&self, origin: Vec3, [first, second]: [Vec3; 2]) -> Vec<Loop> {
         let normal = second.cross(&first);
         let side = |v: u32| (self.mesh.positions[v as usize] - origin).dot(&normal);
-        // From the edge at which a triangle's segment begins to the one where it ends.
+        // For each triangle: the edge where its segment begins, and the edge where it ends.
         let mut next: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
         for triangle in &self.mesh.triangles {
             let heights = triangle.map(side);
@@ -236,12 +237,12 @@ impl Scan {
         loops
     }
 
-    /// The trunk's loop at a height: the one that holds the middle, the largest if several do.
+    /// The trunk's loop at a height: the one on both sides of the middle; the longest if there are several.
     pub fn trunk(&self, height: f64) -> Option<Loop> {
         self.trunk_of(&self.level(height)).cloned()
     }
 
-    /// The left leg's loop at a height: of those on the left below the crotch, the innermost.
+    /// The left leg's loop at a height: the innermost on the left, below the crotch.
     pub fn leg(&self, height: f64) -> Option<Loop> {
         self.leg_of(&self.level(height)).cloned()
     }
@@ -251,7 +252,7 @@ impl Scan {
         self.arm_of(&self.level(height)).cloned()
     }
 
-    /// The trunk's of the loops of a level.
+    /// The loop of the trunk among the loops of a level.
     pub(crate) fn trunk_of<'a>(&self, loops: &'a [Loop]) -> Option<&'a Loop> {
         let holds = |l: &&Loop| {
             let left = l.points.iter().any(|p| p.x < self.middle);
@@ -263,7 +264,7 @@ impl Scan {
             .max_by(|a, b| a.length().total_cmp(&b.length()))
     }
 
-    /// The left leg's of the loops of a level.
+    /// The loop of the left leg among the loops of a level.
     pub(crate) fn leg_of<'a>(&self, loops: &'a [Loop]) -> Option<&'a Loop> {
         loops
             .iter()
@@ -271,7 +272,7 @@ impl Scan {
             .min_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
     }
 
-    /// The left arm's of the loops of a level.
+    /// The loop of the left arm among the loops of a level.
     pub(crate) fn arm_of<'a>(&self, loops: &'a [Loop]) -> Option<&'a Loop> {
         let trunk = self.trunk_of(loops)?;
         let side = trunk.centre().x + 0.5 * trunk.extent()[0];
@@ -281,7 +282,7 @@ impl Scan {
             .max_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
     }
 
-    /// Finds the heights that were not given.
+    /// Searches for the heights that were not given.
     fn find(&mut self) {
         if self.landmarks.crotch.is_none() {
             self.landmarks.crotch = self.lowest_trunk();
@@ -307,7 +308,7 @@ impl Scan {
         };
     }
 
-    /// What says where its girths lie, but for those of the arm.
+    /// Landmarks that determine the positions of the girths, except for those of the arm.
     pub(crate) fn body(&self) -> BodyMarks {
         let (h, l) = (self.height, &self.landmarks);
         let crotch = l.crotch.unwrap_or(CROTCH * h);
@@ -320,7 +321,8 @@ impl Scan {
         }
     }
 
-    /// From the hips down, the last level at which one loop as large as a trunk's holds the middle.
+    /// The crotch: from the waist down, the last level at which one loop as long as a trunk's holds the
+    /// middle.
     fn lowest_trunk(&self) -> Option<f64> {
         let h = self.height;
         let is_trunk = |y: f64| self.trunk(y).is_some_and(|l| l.length() > 0.2 * h);
@@ -331,8 +333,8 @@ impl Scan {
         (y > 0.3 * h).then(|| between([y, y + CROTCH_STEP * h], is_trunk))
     }
 
-    /// From the waist up, the first level with no arm beside the trunk; of arms that are held level, the
-    /// one over which the trunk is broader at once.
+    /// The armpit: from the waist up, the first level with no arm beside the trunk, or, for arms held level,
+    /// the level at which the trunk is suddenly broader.
     fn under_the_arm(&self) -> Option<f64> {
         let h = self.height;
         let broad = |y: f64| self.trunk(y).map_or(0.0, |l| l.extent()[0]);
@@ -354,7 +356,8 @@ impl Scan {
     }
 }
 
-/// The place between two at which what does not hold of the first and holds of the second begins to.
+/// Position between two others at which a condition begins to hold: it is false at the first and true at the
+/// second.
 fn between([mut without, mut with]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (without + with);

@@ -7,24 +7,24 @@ use crate::{Loop, Scan};
 use toile_geometry::Vec3;
 use toile_measure::{Measurements, Origin};
 
-/// Between which heights the narrowest level of the neck lies: over the armpits, and under the
-/// crown, over stature.
+/// Range of the narrowest level of the neck: least height above the armpits and least depth below the crown,
+/// over stature.
 const NECK: [f64; 2] = [0.03, 0.07];
 const NECK_STEP: f64 = 0.0025;
-/// A shorter loop is a finger's or an ear's, over stature.
+/// Length of a loop over stature below which it is a finger or an ear.
 const LIMB: f64 = 0.04;
-/// A shorter loop of a neck is of the mouth, over stature.
+/// Length of a loop of the neck over stature below which it belongs to the mouth.
 const MIN_NECK: f64 = 0.12;
 
-/// The middle of the left arm from the shoulder to the finger tips (m).
+/// Middle line of the left arm from the shoulder to the finger tips (m).
 struct ArmPath {
     middles: Vec<Vec3>,
-    /// Distance of each from the first along the arm (m).
+    /// Distance of each point from the first along the arm (m).
     along: Vec<f64>,
 }
 
 impl ArmPath {
-    /// None where no arm can be told from the trunk.
+    /// `None` if no arm can be separated from the trunk.
     fn of(scan: &Scan, armpit: f64) -> Option<Self> {
         let tip = finger_tip(scan);
         let mut middles: Vec<Vec3> = arm_rings(scan, tip, armpit).iter().map(|r| r.0).collect();
@@ -40,19 +40,19 @@ impl ArmPath {
         Some(Self { middles, along })
     }
 
-    /// The place and the direction at a distance along it.
+    /// Point and direction at a distance along the arm.
     fn at(&self, distance: f64) -> [Vec3; 2] {
         let last = self.middles.len() - 1;
         let next = self.along.partition_point(|d| *d < distance).clamp(1, last);
         let [a, b] = [next - 1, next].map(|k| self.middles[k]);
         let share = (distance - self.along[next - 1]) / (self.along[next] - self.along[next - 1]);
-        // Over some sections: the middle of one alone wavers.
+        // Over several sections: the middle of a single one wavers.
         let [from, to] = [next.saturating_sub(4), (next + 3).min(last)];
         let way = self.middles[to] - self.middles[from];
         [a + (b - a) * share, way.normalize()]
     }
 
-    /// Where along it a point lies: beyond its beginning on its straight continuation.
+    /// Distance along the arm of a point near its beginning, also on the straight line before it.
     fn along(&self, p: Vec3) -> f64 {
         let [start, way] = self.at(0.0);
         (p - start).dot(&way)
@@ -60,8 +60,8 @@ impl ArmPath {
 }
 
 impl Scan {
-    /// Every measurement the landmarks allow, as a table to make a body from or to draft a
-    /// pattern to (m): girths as on our own bodies.
+    /// Every measurement that the landmarks allow, as a table to make a body from or to draft a pattern to
+    /// (m). Girths are taped as on our own bodies.
     pub fn measurements(&self) -> Measurements {
         let mut table = Measurements::new();
         let mut put = |name: &str, value: Option<f64>| {
@@ -101,7 +101,7 @@ impl Scan {
         table
     }
 
-    /// Every girth the tape knows (m).
+    /// Every girth that the tape can take (m).
     fn girths(&self) -> Vec<(Girth, Option<f64>)> {
         let mut body = self.body();
         let l = self.landmarks();
@@ -131,7 +131,7 @@ impl Scan {
         found.collect()
     }
 
-    /// The fold between the left arm and the trunk (m).
+    /// Fold between the left arm and the trunk (m).
     fn fold(&self, body: &BodyMarks) -> Vec3 {
         let beside = self.trunk(body.armpit - 0.002 * body.stature);
         let side = beside.map_or(0.1 * body.stature, |l| {
@@ -140,7 +140,7 @@ impl Scan {
         Vec3::new(self.middle + side, self.floor + body.armpit, 0.0)
     }
 
-    /// The middle of the narrowest level section between shoulders and head (m).
+    /// Middle of the narrowest level section between shoulders and head (m).
     fn neck_middle(&self, body: &BodyMarks) -> Option<Vec3> {
         let h = body.stature;
         let [low, high] = [body.armpit + NECK[0] * h, (1.0 - NECK[1]) * h];
@@ -153,21 +153,21 @@ impl Scan {
         Some(Vec3::new(self.middle, self.floor + y, middle.y))
     }
 
-    /// Girth of a neck through a place in its middle (m).
+    /// Girth of a neck through a point in its middle (m).
     fn around_neck(&self, middle: Vec3) -> Option<f64> {
         let (sin, cos) = NECK_TILT.sin_cos();
         let loops = self.section(middle, [Vec3::x(), Vec3::new(0.0, -sin, cos)]);
         self.round_the_middle(loops, MIN_NECK)
     }
 
-    /// Girth across the arm through a place in its middle (m).
+    /// Girth across the arm through a point in its middle (m).
     fn across_arm(&self, [middle, along]: [Vec3; 2]) -> Option<f64> {
         let first = along.cross(&Vec3::z()).try_normalize(1e-9)?;
         self.round_the_middle(self.section(middle, [first, first.cross(&along)]), LIMB)
     }
 
-    /// Girth of the loop whose middle lies nearest to a section's origin, of those of a least length
-    /// over stature (m).
+    /// Girth of the loop with its middle nearest to a section's origin, among loops of at least a length over
+    /// stature (m).
     fn round_the_middle(&self, loops: Vec<Loop>, least: f64) -> Option<f64> {
         let far = |l: &Loop| l.centre().norm();
         let nearest = loops

@@ -1,14 +1,14 @@
-//! What the shape of a body depends on, all for one template.
+//! The shape of a body relative to its template: all parameters of the warp.
 
 use crate::BodyError;
 use crate::girths::PerGirth;
 use crate::template_marks::TemplateMarks;
 use std::cmp::Ordering;
 
-/// Points of a curve from below: a place on the template (m) and the value there.
+/// Points of a curve from below: a position on the template (m) and the value there.
 pub(crate) type Curve = Vec<[f64; 2]>;
 
-/// A body over its template, by its parts.
+/// The shape of a body relative to its template, by parts.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shape {
     /// Ratio of statures, body to template.
@@ -30,45 +30,45 @@ pub(crate) struct TrunkShape {
     pub(crate) lateral: Curve,
     /// Frontal scale before the plane z = 0 (1).
     pub(crate) front: Curve,
-    /// The same behind it.
+    /// Frontal scale behind this plane (1).
     pub(crate) back: Curve,
-    /// How much farther out the corners of a section lie at equal breadth and depth (1).
+    /// Amount by which the corners of a section lie farther out at equal breadth and depth (1).
     pub(crate) corner_fullness: Curve,
-    /// By how much the corners before the middle are fuller than that, and those behind less full (1).
+    /// Amount by which front corners are fuller than that, and back corners less full (1).
     pub(crate) corner_asymmetry: Curve,
     /// Depth on the template about which sections are scaled (m).
     pub(crate) middle_on_template: Curve,
-    /// The same on the body.
+    /// Depth on the body about which sections are scaled (m).
     pub(crate) middle_on_body: Curve,
-    /// Depth of the sides before which the front part of a girth lies (m).
+    /// Depth of the sides, which part the front of a girth from the back (m).
     pub(crate) side_depth: PerGirth<f64>,
 }
 
-/// What rises at the shoulders over what the levels say.
+/// Rises at the shoulders above the heights given by the levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ShoulderShape {
-    /// Of the outer ends of the shoulders (m).
+    /// Rise of the outer ends of the shoulders (m).
     pub(crate) tip_rise: f64,
-    /// Of the armpits (m).
+    /// Rise of the armpits (m).
     pub(crate) armpit_rise: f64,
 }
 
-/// The bust over what the sections of the trunk say.
+/// Form of the bust in addition to the sections of the trunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BustForm {
-    /// By what share the bust points are farther apart (1).
+    /// Share by which the bust points are farther apart (1).
     pub(crate) spread: f64,
-    /// How far the bust points stand forward (m).
+    /// Distance by which the bust points stand forward (m).
     pub(crate) projection: f64,
 }
 
-/// The crotch over what the levels say.
+/// Form of the crotch in addition to the levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CrotchForm {
-    /// How flat it lies from front to back: 0 is as on the template, 1 is level.
+    /// Flatness from front to back: 0 is as on the template, 1 is level.
     pub(crate) flatness: f64,
-    /// How far before its lowest place the crotch point lies, where the crotch length is parted
-    /// into front and back (m).
+    /// Distance of the crotch point in front of the lowest point: it divides the crotch length into front and
+    /// back (m).
     pub(crate) point_offset: f64,
 }
 
@@ -79,7 +79,7 @@ pub(crate) struct ArmShape {
     pub(crate) scale: Curve,
     /// Distance from the shoulder joint on the body (m).
     pub(crate) length: Curve,
-    /// Angle below the horizontal (rad).
+    /// Angle of the arm below the horizontal (rad).
     pub(crate) angle: f64,
 }
 
@@ -88,14 +88,14 @@ pub(crate) struct ArmShape {
 pub(crate) struct LegShape {
     /// Scale about the axis over template height (1).
     pub(crate) scale: Curve,
-    /// Sideways scale of where the axis stands (1).
+    /// Sideways scale of the position of the axis (1).
     pub(crate) stance: f64,
-    /// How much broader the top is, and how much less deep (1).
+    /// Factor by which the top is broader and less deep (1).
     pub(crate) top_breadth: f64,
 }
 
 impl Shape {
-    /// The template's own, with an arm of a length (m) at an angle below the horizontal (rad).
+    /// The template's own shape, with an arm of a length (m) at an angle below the horizontal (rad).
     pub(crate) fn of_template(marks: &TemplateMarks, [length, angle]: [f64; 2]) -> Self {
         let even = |value: f64| vec![[0.0, value], [marks.crown, value]];
         let same = |end: f64| vec![[0.0, 0.0], [end, end]];
@@ -128,8 +128,8 @@ impl Shape {
         }
     }
 
-    /// Refuses a shape in which the places of a curve do not lie one above the other: landmarks of
-    /// a skin whose primitives were moved or deleted may not.
+    /// Refuses a shape in which the positions of a curve do not rise: the landmarks of a skin can be out of
+    /// order if its primitives were moved or deleted.
     pub(crate) fn in_order(self) -> Result<Self, BodyError> {
         let (trunk, arm) = (&self.trunk, &self.arm);
         for curve in [
@@ -152,7 +152,7 @@ impl Shape {
     }
 }
 
-/// Whether a number is less than another, as no number is that is none.
+/// Whether a number is less than another; false if either is NaN.
 pub(crate) fn below(low: f64, high: f64) -> bool {
     low.partial_cmp(&high) == Some(Ordering::Less)
 }

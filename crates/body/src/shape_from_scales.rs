@@ -10,16 +10,16 @@ use crate::shape::{ArmShape, Curve, LegShape, Shape, ShoulderShape, TrunkShape, 
 use crate::solve_input::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 
-/// How far apart the legs stand at least, over the scale of the thighs: thicker ones would meet.
+/// Least sideways scale of the legs' stance, over the scale of the thighs: thicker thighs would meet.
 const ASTRIDE: f64 = 0.75;
 
 /// Scales at one level of the trunk: height on the template (m), lateral, front, back.
 type Section = [f64; 4];
 
-/// Least distance between sections that are scaled apart, over stature.
+/// Least distance between sections with scales of their own, over stature.
 const APART: f64 = 0.006;
 
-/// The shape of given scales and levels.
+/// The shape that belongs to given scales and levels.
 pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
     let (m, q) = (&input.marks, &input.request);
     let heights = heights(input, levels)?;
@@ -55,7 +55,7 @@ pub(crate) fn shape(input: &SolveInput, s: &Scales, levels: &Levels) -> Result<S
         leg: LegShape {
             scale: leg(input, s, levels, &on_template),
             stance: (s.girth[Girth::Hips] * breadth).max(ASTRIDE * s.girth[Girth::Thigh]),
-            // An asked crotch length says how deep the seat is.
+            // A requested crotch length already determines the depth of the seat.
             top_breadth: match q.is_asked("crotch_length") {
                 true => 1.0,
                 false => breadth,
@@ -123,8 +123,7 @@ fn middles(input: &SolveInput, s: &Scales) -> [Curve; 2] {
     ]
 }
 
-/// Sections of trunk, neck and head from below. Of two that lie too close, the more important
-/// one stands.
+/// Sections of trunk, neck and head from below. Of two that lie too close, the more important one is kept.
 fn trunk(
     input: &SolveInput,
     s: &Scales,
@@ -157,7 +156,7 @@ fn trunk(
         Girth::HighHips,
     ] {
         if let (Some(_), Some(level)) = (input.request.girth(girth), girth.level()) {
-            // Hips have their girth wherever lengths put their level.
+            // Hips keep their girth whatever level the lengths give them.
             let range = match girth {
                 Girth::Hips => trunk_range(girth, ends),
                 _ => None,
@@ -187,7 +186,7 @@ fn trunk(
     rows
 }
 
-/// How much fuller the corners of the sections are over template height: nothing at the shoulders.
+/// Fullness of the corners of the sections over template height: none at the shoulders.
 fn corner_fullness(
     input: &SolveInput,
     s: &Scales,
@@ -213,8 +212,8 @@ fn corner_fullness(
     rows
 }
 
-/// How much fuller the front corners of the sections are than the back ones, over template height:
-/// nothing at the waist and at the shoulders.
+/// Amount by which the front corners of the sections are fuller than the back ones, over template height:
+/// none at the waist and at the shoulders.
 fn corner_asymmetry(
     s: &Scales,
     m: &TemplateMarks,
@@ -231,8 +230,8 @@ fn corner_asymmetry(
     ]
 }
 
-/// At the armpits the trunk is as broad in proportion as at its highest section below, so that a
-/// broad chest does not lie under the arms like a ledge.
+/// Section at the armpits, at least as broad as the highest section below them, so that a broad chest does
+/// not form a ledge under the arms.
 fn under_the_arm(rows: &[Section], tip: Section, armpit: f64, apart: f64) -> Option<Section> {
     let below = rows.iter().rev().find(|row| row[0] < armpit - apart)?;
     let between = rows

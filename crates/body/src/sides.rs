@@ -2,7 +2,7 @@
 
 use crate::Primitive;
 
-/// Primitives with the mirror images of those off the middle after them.
+/// Primitives, followed by the mirror images of those off the middle.
 pub(crate) fn both_sides(mut primitives: Vec<Primitive>) -> Vec<Primitive> {
     let mirrored: Vec<Primitive> = primitives
         .iter()
@@ -13,8 +13,8 @@ pub(crate) fn both_sides(mut primitives: Vec<Primitive>) -> Vec<Primitive> {
     primitives
 }
 
-/// For the primitives of both sides, in the order of [`both_sides`]: which of the
-/// left and the middle each stands for, and whether it is the mirror image.
+/// For each primitive of both sides, in the order of [`both_sides`]: number of the primitive of the left side
+/// and the middle that it comes from, and whether it is the mirror image.
 pub(crate) fn sources(left: &[Primitive]) -> Vec<(usize, bool)> {
     let images = (0..left.len()).filter(|&k| !left[k].is_central());
     (0..left.len())

@@ -5,21 +5,20 @@ use crate::Joint;
 use nalgebra::{Translation3, UnitQuaternion};
 use toile_geometry::{Rigid, Vec3};
 
-/// The joints of one body where they are at rest. A joint's frame at rest has its origin in the
-/// joint and axes parallel to the body's, as in H-Anim; what is fixed to a joint is given in that
-/// frame.
+/// The joints of one body in their rest positions. A joint's frame at rest has its origin in the joint and
+/// axes parallel to the body's, as in H-Anim; data fixed to a joint are given in that frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     rest: [Vec3; Joint::COUNT],
     hang: f64,
 }
 
-/// A rotation of every joint about its own centre, in its own frame. The identity is the rest
-/// pose: arms held off at the angle asked for, legs apart.
+/// A rotation of every joint about its own centre, in its own frame. The identity is the rest pose: arms held
+/// off at the requested angle, legs apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     rotations: [UnitQuaternion<f64>; Joint::COUNT],
-    /// How far the root is moved from its place at rest (m).
+    /// Shift of the root from its rest position (m).
     pub shift: Vec3,
 }
 
@@ -38,30 +37,30 @@ impl Pose {
         Self::default()
     }
 
-    /// Whether it is the rest pose.
+    /// Whether the pose is the rest pose.
     pub fn is_rest(&self) -> bool {
         *self == Self::rest()
     }
 
-    /// The same pose with one joint turned so.
+    /// The pose with the rotation of one joint replaced.
     #[must_use]
     pub fn with(mut self, joint: Joint, rotation: UnitQuaternion<f64>) -> Self {
         self.rotations[joint as usize] = rotation;
         self
     }
 
-    /// Turns one joint so.
+    /// Sets the rotation of one joint.
     pub fn set(&mut self, joint: Joint, rotation: UnitQuaternion<f64>) {
         self.rotations[joint as usize] = rotation;
     }
 
-    /// How a joint is turned.
+    /// Rotation of a joint.
     pub fn rotation(&self, joint: Joint) -> UnitQuaternion<f64> {
         self.rotations[joint as usize]
     }
 }
 
-/// Where every joint's frame is in one pose.
+/// The frames of all joints in one pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointFrames {
     body_from_joint: [Rigid; Joint::COUNT],
@@ -73,7 +72,7 @@ impl JointFrames {
         &self.body_from_joint[joint as usize]
     }
 
-    /// The joint's centre (m).
+    /// Centre of the joint (m).
     pub fn centre(&self, joint: Joint) -> Vec3 {
         self.body_from_joint[joint as usize].translation.vector
     }
@@ -85,7 +84,7 @@ impl Skeleton {
         Self { rest, hang }
     }
 
-    /// The same with the angle at which straight arms hang (rad).
+    /// The skeleton with the angle at which straight arms hang (rad).
     pub(crate) fn hanging(self, hang: f64) -> Self {
         Self { hang, ..self }
     }
@@ -95,7 +94,7 @@ impl Skeleton {
         self.hang
     }
 
-    /// The joints, every one after the joint it hangs on.
+    /// The joints with their rest positions (m), each after its parent.
     pub fn joints(&self) -> impl Iterator<Item = (Joint, Vec3)> + '_ {
         Joint::ALL.into_iter().zip(self.rest)
     }
@@ -105,8 +104,8 @@ impl Skeleton {
         self.rest[joint as usize]
     }
 
-    /// From the centre of the joint it hangs on to a joint's centre, at rest (m); for the root
-    /// from the body's origin.
+    /// Vector from the centre of the parent joint to a joint's centre, at rest (m); for the root from the
+    /// body's origin.
     pub fn offset(&self, joint: Joint) -> Vec3 {
         let parent = joint.parent().map(|parent| self.centre(parent));
         self.centre(joint) - parent.unwrap_or_default()

@@ -4,26 +4,26 @@ use crate::curve::smooth_step;
 use crate::{Joint, Skeleton};
 use toile_geometry::Vec3;
 
-/// How much of a vertex goes with each of some joints; the shares add up to one.
+/// Weight of each joint that a vertex follows; the weights add up to one.
 pub(crate) type Shares = Vec<(Joint, f64)>;
 
-/// How the skin hangs on the joints.
+/// The weights of all vertices of the skin.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Skinning {
     shares: Vec<Shares>,
 }
 
-/// Half the way over which skin passes from one bone to the next, over stature: at elbows, wrists
-/// and ankles, at knees, and in the trunk.
+/// Half the length over which skin passes from one bone to the next, over stature: at elbows, wrists and
+/// ankles, at knees, and in the trunk.
 const SMALL: f64 = 0.026;
 const KNEE: f64 = 0.035;
 const SPINE: f64 = 0.04;
 
-/// A chain of joints with the place of each along it (m) and half the width of its passage (m).
+/// A chain of joints with the position of each along it (m) and half the length of its passage (m).
 struct Chain(Vec<(Joint, f64, f64)>);
 
 impl Chain {
-    /// Shares at a place along the chain: everything beyond a joint's passage goes with it.
+    /// Weights at a position along the chain: a vertex beyond a joint's passage follows that joint.
     fn shares(&self, place: f64, weight: f64, into: &mut Shares) {
         let mut rest = weight;
         for (k, &(joint, _, _)) in self.0.iter().enumerate() {
@@ -41,14 +41,14 @@ impl Chain {
 }
 
 impl Skinning {
-    /// So many vertices that go with the root, as those of a dress form, which does not bend.
+    /// Weights of vertices that all follow the root: for a dress form, which does not bend.
     pub(crate) fn rigid(count: usize) -> Self {
         let shares = vec![vec![(Joint::HumanoidRoot, 1.0)]; count];
         Self { shares }
     }
 
-    /// Hangs the skin at rest of a body of a height (m) on the joints: along the bones by the place
-    /// of the vertex beside them, at shoulders and hips by how far it follows arm and leg.
+    /// Weights of the skin at rest of a body of a height (m): along the bones by the position of the vertex
+    /// beside them, at shoulders and hips by the shares with which it follows arm and leg.
     pub(crate) fn new(
         (skeleton, height): (&Skeleton, f64),
         skin: &[Vec3],
@@ -100,7 +100,7 @@ impl Skinning {
                 arms.shares((q - shoulder).dot(&along), arm, &mut shares);
                 let first = shares.len();
                 legs.shares(-q.y, leg, &mut shares);
-                // The toes go with the instep.
+                // The toes follow the instep.
                 let toes = smooth_step(0.5 + 0.5 * (q.z - toe.z) / half);
                 let foot = shares[first..]
                     .iter()
@@ -125,13 +125,13 @@ impl Skinning {
         Self { shares }
     }
 
-    /// The joints a vertex goes with.
+    /// Joints and weights of a vertex.
     pub(crate) fn of(&self, vertex: usize) -> &[(Joint, f64)] {
         &self.shares[vertex]
     }
 }
 
-/// Shares of a vertex in the middle: what goes with a left limb goes half with the right one.
+/// Weights of a vertex in the middle: the weight of a left limb is divided between both sides.
 fn on_both_sides(shares: &[(Joint, f64)]) -> Shares {
     let half = |&(joint, share): &(Joint, f64)| match joint.mirrored() == joint {
         true => vec![(joint, share)],

@@ -19,23 +19,24 @@ pub(crate) struct Solved {
     pub(crate) mesh: TriangleMesh,
 }
 
-/// Rounds between two extrapolations of the unknowns to their limit.
+/// Number of rounds between two extrapolations of the unknowns to their limit.
 const EXTRAPOLATION_INTERVAL: usize = 8;
-/// Rounds in which posture and form are still corrected, where a bust's form pulls at everything
-/// else and where not; most bodies need 8 to 15.
+/// Number of rounds in which posture and form are still corrected: if the form of a bust is solved for, which
+/// influences all other unknowns, and if not. Most bodies need 8 to 15.
 const FORMING: [usize; 2] = [32, 24];
-/// Rounds after that: the girths have the last word.
+/// Number of rounds after these, in which only girths and levels are corrected, and number of first rounds in
+/// which the form of sections is corrected.
 const LAST: usize = 16;
 const SHAPING: usize = 12;
-/// Rounds between two in which it is looked for where girths lie.
+/// Number of rounds between two searches for the positions of girths.
 const LOOKS: usize = 4;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
 
 impl SolveInput<'_> {
-    /// Finds the shape by fixed-point iteration: each scale is multiplied by asked over got, each
-    /// level moved by what its landmark misses. Only the rings the tape meets are placed until
-    /// the last round is over.
+    /// Finds the shape by fixed-point iteration: each scale is multiplied by the ratio of requested to
+    /// measured girth, each level moved by the error of its landmark. Until the last round is over, only the
+    /// rings that the tape meets are placed.
     pub(crate) fn solve(&self) -> Result<Solved, BodyError> {
         let height = self.request.get("height");
         let mut scales = Scales::new(self.stature_ratio(), &self.marks);
@@ -122,7 +123,7 @@ impl SolveInput<'_> {
             }
         }
         let (tip, neck) = (taken.tip(), taken.neck_side());
-        // Shoulders by their width, else by the ways over them.
+        // Shoulders are set by their width, else by the lengths over them.
         let over = ["shoulder_w", "shoulder_to_shoulder", "shoulder_length"];
         let name = over
             .into_iter()
@@ -175,7 +176,8 @@ impl SolveInput<'_> {
             {
                 let lower = lower.map_or(0.0, |level| taken.levels.at(level));
                 let found = got - (taken.levels.at(upper) - lower);
-                // Half steps: a way over the body moves what it is taken over.
+                // Half steps, because a change in a length over the body moves the points that it passes
+                // over.
                 let step = 0.5 * (found - offsets.over[k]);
                 miss = miss.max(step.abs());
                 offsets.over[k] += step;
@@ -197,8 +199,8 @@ impl SolveInput<'_> {
             let form = &mut scales.trunk.section[girth];
             let aspect = form.aspect * ratio(q.get(breadth) * z, q.get(depth) * x);
             form.aspect = aspect.clamp(ASPECT[0], ASPECT[1]);
-            // The girth over breadth and depth: how full the corners are. The survey's waist is
-            // the navel's.
+            // The girth over breadth and depth determines the fullness of the corners. The survey's waist is
+            // taped at the navel.
             let around = match girth {
                 Girth::Waist if !asked => q.get("navel_girth"),
                 _ => q.girth(girth).unwrap_or_default(),
@@ -208,13 +210,13 @@ impl SolveInput<'_> {
             let fullness = form.corner_fullness + 2.0 * ratio(wanted, found).ln();
             form.corner_fullness = fullness.clamp(CORNERS[0], CORNERS[1]);
         }
-        // The chest's breadth is taken between the front folds of the armpits: at its girth and
-        // depth the front corners against the back ones decide it.
+        // The breadth of the chest is taken between the front folds of the armpits: at given girth and depth
+        // it is determined by the front corners relative to the back ones.
         let [_, z] = extent(&taken.hull(Girth::Bust));
         let form = &mut scales.trunk.section[Girth::Bust];
         let aspect = form.aspect * ratio(z, q.get("chest_depth"));
         form.aspect = aspect.clamp(ASPECT[0], ASPECT[1]);
-        // Asked widths of front or back have said that already.
+        // Requested widths of front or back already determine it.
         let is_said = ["front_width", "back_width"]
             .iter()
             .any(|name| q.is_asked(name));
@@ -239,9 +241,9 @@ impl SolveInput<'_> {
         }
     }
 
-    /// Corrects where the neck stands between front and back lengths, where side lines, armpits and
-    /// the crotch point lie, how flat the crotch is, and how far the bust points stand out and are
-    /// apart. Returns the largest miss that can still be corrected (m).
+    /// Corrects the position of the neck between front and back lengths, the positions of side lines, armpits
+    /// and crotch point, the flatness of the crotch, and the projection and distance of the bust points.
+    /// Returns the largest error that can still be corrected (m).
     fn posture(&self, scales: &mut Scales, taken: &TapedSkin, round: usize) -> f64 {
         let q = &self.request;
         let height = q.get("height");
@@ -250,7 +252,7 @@ impl SolveInput<'_> {
             let asked = q.is_asked(name).then(|| q.get(name))?;
             Some(asked - taken.value(name)?)
         };
-        // Moves an unknown by a step between limits, each worth so much (m).
+        // Moves an unknown by a step between limits; `worth` converts the step to a length (m).
         let mut step = |unknown: &mut f64, by: f64, [low, high]: [f64; 2], worth: f64| {
             let before = *unknown;
             *unknown = (before + by).clamp(low, high);
@@ -275,7 +277,7 @@ impl SolveInput<'_> {
             let more = longer / (LEVELLED * height);
             let flatness = &mut scales.crotch.flatness;
             step(flatness, 0.6 * more, FLATNESS, LEVELLED * height);
-            // Where a level one is not enough hips nobody gave a form are deeper.
+            // If a level crotch is not enough, hips without a requested form are made deeper.
             let is_said = q.is_asked("hip_depth") || q.is_asked("hip_breadth");
             if *flatness == FLATNESS[1] && round >= SHAPING && !is_said {
                 let aspect = &mut scales.trunk.section[Girth::Hips].aspect;
@@ -299,7 +301,7 @@ impl SolveInput<'_> {
             step(&mut scales.neck.forward, by, limits, 1.0);
         }
         if let Some(asked) = q.girth(Girth::Hips) {
-            // Nothing below the hips is larger round than they are at their level.
+            // Nothing below the hips may have a larger girth than the hips at their level.
             let most = taken.girth(Girth::Hips);
             let share = match taken.at_level(Girth::Hips) {
                 Some(there) if taken.hips_lie_below() => (there / most + AS_LARGE).min(1.0),
@@ -325,7 +327,7 @@ impl SolveInput<'_> {
         miss
     }
 
-    /// Where a vertex of the template is on a body of a height (m); the left half and the middle only.
+    /// Position of a vertex of the template on a body of a height (m); only for the left half and the middle.
     fn place(&self, warp: &Warp, height: f64, v: usize) -> Vec3 {
         let follow = Follow {
             arm: self.skin.arm[v],
@@ -361,7 +363,7 @@ impl SolveInput<'_> {
     }
 }
 
-/// Extrapolates unknowns whose steps shrink evenly to their limit: each by its own ratio of steps (Aitken
+/// Extrapolates unknowns with evenly shrinking steps to their limit, each by its own ratio of steps (Aitken
 /// 1926), by at most eight more steps.
 fn extrapolate(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
     let history = older.coupled().zip(old.coupled());
@@ -374,7 +376,7 @@ fn extrapolate(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
     }
 }
 
-/// Parts of girths that lie on one side of z: +1 before, -1 behind.
+/// Parts of girths on one side of the side lines: +1 in front, -1 behind.
 const PARTS: [(Girth, &str, f64); 5] = [
     (Girth::Bust, "front_width", 1.0),
     (Girth::Bust, "back_width", -1.0),
@@ -383,53 +385,54 @@ const PARTS: [(Girth, &str, f64); 5] = [
     (Girth::Hips, "hip_back_width", -1.0),
 ];
 
-/// Square of lateral over frontal scale, and how full corners may be: people differ by less.
+/// Range of the square of lateral over frontal scale, and of the fullness of corners: people differ by less.
 const ASPECT: [f64; 2] = [0.7, 1.3];
 const CORNERS: [f64; 2] = [-0.3, 0.3];
 
-/// How much fuller a chest's front corners may be than the mean of front and back.
+/// Range of the fullness of a chest's front corners relative to the mean of front and back.
 const ASYMMETRY: [f64; 2] = [-0.25, 0.25];
 
-/// How far a neck may stand from the template's place, over stature.
+/// Largest distance of a neck from the template's position, over stature.
 const NECK_FORWARD: f64 = 0.05;
 
-/// What a girth of the trunk may be where its scale is set, over itself where its tape lies.
+/// Range of a girth of the trunk at the section that sets its scale, over the girth where it is taped.
 const BESIDE: [f64; 2] = [0.7, 1.5];
 
-/// How much narrower the trunk may be at the crotch than at the hips.
+/// Range of the trunk's scale at the crotch over the scale at the hips.
 const CROTCH_TO_HIPS: [f64; 2] = [0.85, 1.0];
 
-/// What share of the hips' girth their level may lack.
+/// Share of the hips' girth by which the girth at their level may be smaller.
 const AS_LARGE: f64 = 0.002;
 
-/// How much more than in proportion it is made narrower there: it is the section above that is meant.
+/// Exponent by which the crotch is narrowed more than in proportion, as the correction is meant for the
+/// section above it.
 const CROTCH_GAIN: f64 = 1.7;
 
-/// How far an armpit may lie from the template's place, over stature.
+/// Largest distance of an armpit from the template's position, over stature.
 const ARMPIT: f64 = 0.035;
 
-/// How far the front may be scaled apart from the back; the rest of a part of a girth is where its
-/// sides are taken to lie.
+/// Largest deviation of the front's share of the frontal scale from one half; the rest of a requested part of
+/// a girth is met by the positions of its sides.
 const FRONT_SHARE: f64 = 0.05;
 
-/// How far from the middle the sides of a girth may lie, and the crotch point from the
-/// crotch's lowest place, over stature.
+/// Largest distance of the sides of a girth from the middle, and of the crotch point from the lowest point of
+/// the crotch, over stature.
 const SIDES: f64 = 0.045;
 
-/// How much farther apart the bust points may lie than the sections have them, less one.
+/// Range of the share by which the bust points may be farther apart than in the scaled sections.
 const SPREAD: [f64; 2] = [-0.4, 1.0];
 
-/// How far the bust points may stand out or lie back, over stature.
+/// Range of the projection of the bust points, over stature.
 const PROJECTION: [f64; 2] = [-0.02, 0.085];
 
-/// How flat a crotch may lie, and how much longer a level one makes the way round it, over stature.
+/// Range of the flatness of a crotch, and lengthening of the crotch length by a level one, over stature.
 const FLATNESS: [f64; 2] = [-0.3, 0.97];
 const LEVELLED: f64 = 0.05;
 
 /// Half the least gap between the legs, over stature: cloth must pass.
 const LEG_GAP: f64 = 0.0018;
 
-/// Least distance of what is not in the middle from it, over stature.
+/// Least distance from the middle of points that are not in it, over stature.
 const SIDE_GAP: f64 = 0.0006;
 
 fn ratio(asked: f64, got: f64) -> f64 {

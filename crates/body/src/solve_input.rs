@@ -1,11 +1,11 @@
-//! What a body is solved from.
+//! The input from which a body is solved.
 
 use crate::request::Request;
 use crate::rings::TemplateSkin;
 use crate::template::Template;
 use crate::template_marks::TemplateMarks;
 
-/// Input of the solution: a template with its skin and marks, and the measurements asked for.
+/// Input of the solution: a template with its skin and marks, and the requested measurements.
 pub(crate) struct SolveInput<'a> {
     pub(crate) template: &'a Template,
     pub(crate) skin: &'a TemplateSkin,
@@ -19,7 +19,7 @@ impl SolveInput<'_> {
         self.request.get("height") / self.template.height
     }
 
-    /// Middle vertices where the crotch may be lowest.
+    /// Vertices of the middle among which the crotch may have its lowest point.
     pub(crate) fn crotch_vertices(&self) -> Vec<u32> {
         (0..self.skin.mirror.len() as u32)
             .filter(|&v| {

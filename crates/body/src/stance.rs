@@ -1,5 +1,5 @@
-//! How a foreign mesh of a person stands in its file: which axis is up, where it faces, and its unit, found from
-//! two legs, a trunk and a head.
+//! The stance of a foreign mesh of a person in its file: the axis that is up, the axis it faces along, and
+//! its unit, found from two legs, a trunk and a head.
 
 use crate::BodyError;
 use std::collections::HashMap;
@@ -8,7 +8,7 @@ use std::str::FromStr;
 use strum::{EnumCount, VariantArray};
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// An axis of a mesh's file, either way.
+/// An axis of a mesh's file, in positive or negative direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
     index: usize,
@@ -68,7 +68,7 @@ pub enum MeshUnit {
 impl MeshUnit {
     const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// Its length (m).
+    /// Length of the unit (m).
     pub fn metres(self) -> f64 {
         match self {
             Self::Metre => 1.0,
@@ -79,12 +79,12 @@ impl MeshUnit {
         }
     }
 
-    /// The unit in which somebody so many units tall is a person; metres where they may be, as of a doll.
+    /// The unit in which a height has the size of a person; metres if they are possible, also for a doll.
     fn of_height(height: f64) -> Result<Self, BodyError> {
         let fits = |unit: &Self| PERSON.contains(&(height * unit.metres()));
         let fitting: Vec<Self> = Self::ALL.into_iter().filter(fits).collect();
         match fitting[..] {
-            // Inches alone could be those of a child, or centimetres of a doll.
+            // Inches alone could be a child's, or the centimetres of a doll.
             [unit] if unit != Self::Inch => Ok(unit),
             [Self::Metre, ..] => Ok(Self::Metre),
             [] if DOLL.contains(&height) => Ok(Self::Metre),
@@ -134,11 +134,11 @@ impl FromStr for MeshUnit {
     }
 }
 
-/// Statures of persons, and of dolls in metres (m).
+/// Statures of persons, and statures of dolls (m); dolls are accepted only in metres.
 const PERSON: std::ops::RangeInclusive<f64> = 0.45..=2.5;
 const DOLL: std::ops::Range<f64> = 0.12..0.45;
 
-/// What is said of a mesh's stance; what is left out is found.
+/// Requested values of a mesh's stance; those left out are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AskedStance {
     /// The axis that is up.
@@ -149,7 +149,7 @@ pub struct AskedStance {
     pub unit: Option<MeshUnit>,
 }
 
-/// How a mesh of a person stands in its file.
+/// The stance of a person's mesh in its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stance {
     up: Axis,
@@ -174,17 +174,18 @@ impl fmt::Display for Stance {
 }
 
 impl Stance {
-    /// Ours: metres, Y up, facing +Z.
+    /// Our own stance: metres, Y up, facing +Z.
     const OURS: Self = Self {
         up: Axis::Y,
         forward: Axis::Z,
         unit: MeshUnit::Metre,
     };
 
-    /// The stance of a person's mesh: as it is asked for, else as it is seen, else ours.
+    /// The stance of a person's mesh: as requested, else as recognized, else our own.
     ///
     /// # Errors
-    /// A mesh that seems to lie down, of a unit that cannot be told, or of axes that do not go together.
+    /// [`BodyError::Mesh`] for a mesh that seems to lie down, whose unit is not clear, or with two axes that
+    /// do not go together.
     pub fn of(mesh: &TriangleMesh, asked: &AskedStance) -> Result<Self, BodyError> {
         if let Some(stance) = Self::seen(mesh, asked)? {
             return Ok(stance);
@@ -205,12 +206,13 @@ impl Stance {
         .checked()
     }
 
-    /// Whether points stay where they are.
+    /// Whether points keep their coordinates.
     pub fn is_ours(&self) -> bool {
         *self == Self::OURS
     }
 
-    /// The same axes and unit for meshes that are not to be turned about the vertical.
+    /// The same axis up and unit, with the usual forward axis: for meshes that are not to be turned about the
+    /// vertical.
     #[must_use]
     pub fn facing_anywhere(self) -> Self {
         Self {
@@ -219,10 +221,11 @@ impl Stance {
         }
     }
 
-    /// The stance of a mesh in which a person is seen to stand, but for what is asked; none where none is.
+    /// The stance of a mesh in which a standing person is recognized, with requested values as given; `None`
+    /// if no person is recognized.
     ///
     /// # Errors
-    /// A person of a height that could be in several units, or in none.
+    /// [`BodyError::Mesh`] for a person whose height is possible in several units or in none.
     pub fn seen(mesh: &TriangleMesh, asked: &AskedStance) -> Result<Option<Self>, BodyError> {
         let mut axes = Axis::all().filter(|axis| asked.up.is_none_or(|up| up == *axis));
         let Some(found) = axes.find_map(|up| Standing::along(mesh, up)) else {
@@ -252,7 +255,7 @@ impl Stance {
         }
     }
 
-    /// A point of the file as it stands here: metres, Y up, facing +Z.
+    /// A point of the file in our own stance: metres, Y up, facing +Z.
     pub fn place(&self, point: Vec3) -> Vec3 {
         let (up, forward) = (self.up.direction(), self.forward.direction());
         let left = up.cross(&forward);
@@ -260,7 +263,7 @@ impl Stance {
     }
 }
 
-/// Where a person faces, as programs with this axis up have it.
+/// The axis that a person usually faces along in programs with this axis up.
 fn usual_forward(up: Axis) -> Axis {
     match (up.index, up.is_negative) {
         (2, _) => Axis::new(1, true),
@@ -268,9 +271,9 @@ fn usual_forward(up: Axis) -> Axis {
     }
 }
 
-/// A mesh whose height is less than this share of its longest side does not stand.
+/// Least height of a standing mesh over its longest side; a lower one lies down.
 const LYING: f64 = 0.45;
-/// A person is at least this tall over its broadest: arms held level reach a little farther.
+/// Least height of a person over its longest side: arms held level reach a little farther.
 const STANDING: f64 = 0.85;
 
 fn extent(mesh: &TriangleMesh) -> Vec3 {
@@ -285,26 +288,26 @@ fn lies_along(mesh: &TriangleMesh) -> Option<Axis> {
     (sides.y < LYING * sides[longest]).then_some(Axis::new(longest, false))
 }
 
-/// A person seen to stand along an axis.
+/// A person recognized as standing along an axis.
 struct Standing {
     up: Axis,
     forward: Option<Axis>,
-    /// In units of the file.
+    /// Height (units of the file).
     height: f64,
 }
 
-/// Levels over stature at which there are two legs, a trunk, a head, and an ankle with a foot below it.
+/// Levels over stature at which two legs, a trunk, a head, an ankle and the foot below it are looked for.
 const LEGS: [f64; 3] = [0.14, 0.22, 0.3];
 const TRUNK: f64 = 0.58;
 const HEAD: f64 = 0.94;
 const ANKLE: f64 = 0.08;
 const FOOT: f64 = 0.02;
-/// Lengths of outlines over stature: no leg is thinner, no head thicker.
+/// Least length of the outline of a leg and largest of a head, over stature.
 const LEG_LEAST: f64 = 0.06;
 const HEAD_MOST: f64 = 0.9;
-/// The thinner of two legs has at least this of the other's outline.
+/// Least length of the outline of the thinner leg over that of the other.
 const ALIKE: f64 = 0.6;
-/// The middle of a foot lies at least this over stature before the ankle.
+/// Least distance of the middle of a foot in front of the ankle, over stature.
 const FOOT_AHEAD: f64 = 0.01;
 
 impl Standing {
@@ -343,7 +346,7 @@ impl Standing {
             && head.length < trunk.length
             && is_over(&trunk)
             && is_over(&head);
-        // Legs stand side by side along an axis, and the person faces along the third.
+        // Legs stand side by side along an axis, and the person faces along the third axis.
         let depth = 3 - up.index - across.iamax();
         let ahead = || {
             let foot = level(FOOT).map(|o| o.middle()[depth]);
@@ -361,7 +364,7 @@ impl Standing {
     }
 }
 
-/// The two longest outlines of a level, where they are alike and no third is near as long.
+/// The two longest outlines of a level, if they are about equal and no third is nearly as long.
 fn pair(mut outlines: Vec<Outline>) -> Option<[Outline; 2]> {
     outlines.sort_by(|a, b| b.length.total_cmp(&a.length));
     let (two, more) = outlines.split_at_checked(2)?;
@@ -383,14 +386,14 @@ impl Outline {
         0.5 * (self.low + self.high)
     }
 
-    /// Its extent along the axis that a direction is nearest to.
+    /// Extent along the axis that a direction is nearest to.
     fn side(&self, direction: Vec3) -> f64 {
         let axis = direction.iamax();
         self.high[axis] - self.low[axis]
     }
 }
 
-/// The outlines of a level section: segments that hang together at edges of the mesh, which need not be closed.
+/// The outlines of a level section: segments connected at edges of the mesh, which need not be closed.
 fn outlines(mesh: &TriangleMesh, up: Vec3, level: f64) -> Vec<Outline> {
     let above = |v: u32| mesh.positions[v as usize].dot(&up) - level;
     let mut found: Vec<Option<Outline>> = Vec::new();

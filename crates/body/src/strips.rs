@@ -5,8 +5,8 @@ use crate::rings::{Half, OPEN};
 use std::cmp::Ordering;
 
 impl Half<'_> {
-    /// The triangles between two half rows, of which one may have twice the columns; none at
-    /// vertices that are left open.
+    /// Adds the triangles between two half rows, of which one may have twice the columns; none at open
+    /// vertices.
     pub(crate) fn strip(&mut self, part: Part, [lower, upper]: [&[u32]; 2]) {
         let open = |corners: &[u32]| corners.contains(&OPEN);
         match lower.len().cmp(&upper.len()) {
@@ -36,7 +36,7 @@ impl Half<'_> {
         }
     }
 
-    /// Two triangles, split along the shorter diagonal.
+    /// Adds two triangles, split along the shorter diagonal.
     fn quad(&mut self, part: Part, [a, b, c, d]: [u32; 4]) {
         let at = |v: u32| self.positions[v as usize];
         if (at(a) - at(c)).norm() <= (at(b) - at(d)).norm() {
@@ -48,8 +48,8 @@ impl Half<'_> {
         }
     }
 
-    /// A band between two rings of the same length, the second one farther out on the limb; none
-    /// at vertices that are left open.
+    /// Adds a band between two rings of the same length, the second one farther out on the limb; none at open
+    /// vertices.
     pub(crate) fn band(&mut self, part: Part, from: &[u32], to: &[u32]) {
         let n = from.len();
         for k in 0..n {

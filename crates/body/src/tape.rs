@@ -6,14 +6,14 @@ use crate::bands::{Bands, Near};
 use std::cell::Cell;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 
-/// A skin whose vertices are placed when first needed. Its first half of triangles is the left
-/// side, the other half the mirror image.
+/// A skin whose vertices are placed when first needed. The first half of its triangles is the left side, the
+/// other half the mirror image.
 pub(crate) struct Skinned<'a> {
     triangles: &'a [[u32; 3]],
     parts: &'a [Part],
     placed: Vec<Cell<Vec3>>,
     place: Option<&'a dyn Fn(usize) -> Vec3>,
-    /// Triangles by their place on the template, to leave out early what lies far away.
+    /// Index of the triangles by their position on the template, to skip those far away.
     bands: Option<&'a Bands>,
 }
 
@@ -29,7 +29,7 @@ impl<'a> Skinned<'a> {
         }
     }
 
-    /// A skin in the making.
+    /// A skin whose vertices are placed on demand.
     pub(crate) fn lazy(
         (template, bands): (&'a TriangleMesh, &'a Bands),
         parts: &'a [Part],
@@ -44,7 +44,7 @@ impl<'a> Skinned<'a> {
         }
     }
 
-    /// Where a vertex is (m).
+    /// Position of a vertex (m).
     #[inline]
     pub(crate) fn at(&self, vertex: u32) -> Vec3 {
         let known = self.placed[vertex as usize].get();
@@ -61,8 +61,7 @@ impl<'a> Skinned<'a> {
         p
     }
 
-    /// Segments in which the left half of some parts crosses the plane through a point with a
-    /// unit normal.
+    /// Segments in which the left half of some parts crosses the plane through a point with a unit normal.
     pub(crate) fn section(
         &self,
         parts: &[Part],
@@ -107,14 +106,13 @@ impl<'a> Skinned<'a> {
         (count == 2).then_some(ends)
     }
 
-    /// A closed polygon round a section: its hull, in the plane's own coordinates, first axis
-    /// sideways.
+    /// Convex hull of a section, in the plane's own coordinates, first axis sideways.
     pub(crate) fn hull(&self, part: Part, plane: [Vec3; 2], near: Option<Near>) -> Vec<Vec2> {
         let [origin, normal] = plane;
-        // The trunk ends in the legs' first rings.
+        // The trunk ends in the first rings of the legs.
         let parts: &[Part] = match part {
             Part::Trunk => &[Part::Trunk, Part::LeftLeg],
-            // The neck's root is the trunk's.
+            // The root of the neck belongs to the trunk.
             Part::Head => &[Part::Head, Part::Trunk],
             _ => &[part],
         };
@@ -144,7 +142,7 @@ pub(crate) fn girth(skinned: &Skinned, part: Part, plane: [Vec3; 2], near: Optio
     closed_length(&skinned.hull(part, plane, near))
 }
 
-/// The part of a closed hull with `side * y >= 0`, without the chord (m).
+/// Length of the part of a closed hull with `side * y >= 0`, without the chord (m).
 pub(crate) fn half_length(hull: &[Vec2], side: f64) -> f64 {
     let mut sum = 0.0;
     for (k, &a) in hull.iter().enumerate() {
@@ -170,7 +168,7 @@ pub(crate) fn extent(hull: &[Vec2]) -> [f64; 2] {
     })
 }
 
-/// Breadth of a hull along its first axis at a place of the second (m); none beyond its ends.
+/// Breadth of a hull along its first axis at a position on the second (m); `None` beyond its ends.
 pub(crate) fn breadth_at(hull: &[Vec2], place: f64) -> Option<f64> {
     let mut ends: Option<[f64; 2]> = None;
     for (k, a) in hull.iter().enumerate() {
@@ -184,8 +182,8 @@ pub(crate) fn breadth_at(hull: &[Vec2], place: f64) -> Option<f64> {
     ends.map(|[low, high]| high - low)
 }
 
-/// Length of a tight tape from a point over segments of an upright section down to a level, on
-/// the side of the unit vector `outward` (m): the hull of what lies between.
+/// Length of a tight tape from a point over segments of an upright section down to a level, on the side of
+/// the unit vector `outward` (m): along the hull of the points between.
 pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3) -> Option<f64> {
     let flat = |p: Vec3| Vec2::new(p.y, p.dot(&outward));
     let flat: Vec<[Vec2; 2]> = segments.iter().map(|s| s.map(flat)).collect();
@@ -193,8 +191,7 @@ pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3
     Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
 }
 
-/// Length of a tape from a point over segments of an upright section down to a level, on the side
-/// of the unit vector `outward`, that hangs straight down from the outermost place (m).
+/// Length of such a tape that hangs straight down from the outermost point (m).
 pub(crate) fn hanging(
     segments: &[[Vec3; 2]],
     from: Vec3,
@@ -210,13 +207,13 @@ pub(crate) fn hanging(
     Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
 }
 
-/// Length of the front of an upright section between two heights, along the skin (m).
+/// Length along the skin of the front of an upright section between two heights (m).
 pub(crate) fn along(segments: &[[Vec3; 2]], [low, high]: [f64; 2]) -> f64 {
     let front = |s: &&[Vec3; 2]| s[0].z + s[1].z > 0.0;
     let length = |[a, b]: &[Vec3; 2]| {
         let [bottom, top] = [a.y.min(b.y), a.y.max(b.y)];
         let within = (top.min(high) - bottom.max(low)).max(0.0);
-        // A level piece lies within or not.
+        // A level segment lies either inside or outside the range.
         let level = if bottom >= low && top <= high {
             1.0
         } else {
@@ -232,7 +229,7 @@ pub(crate) fn along(segments: &[[Vec3; 2]], [low, high]: [f64; 2]) -> f64 {
     segments.iter().filter(front).map(length).sum()
 }
 
-/// The outermost point (place along, outward) of a section at a place along.
+/// The outermost point (position along, outward) of a section at a position along.
 pub(crate) fn outermost(segments: &[[Vec2; 2]], along: f64) -> Option<Vec2> {
     segments
         .iter()
@@ -241,8 +238,8 @@ pub(crate) fn outermost(segments: &[[Vec2; 2]], along: f64) -> Option<Vec2> {
         .max_by(|a, b| a.y.total_cmp(&b.y))
 }
 
-/// Length of a tight tape from one point to another over a section on its outward side (m).
-/// Points are (place along, outward), the first end before the second.
+/// Length of a tight tape from one point to another over a section on its outward side (m). Points are
+/// (position along, outward), the first end before the second.
 pub(crate) fn stretched(segments: &[[Vec2; 2]], from: Vec2, to: Vec2) -> f64 {
     let between = |p: &&Vec2| p.x > from.x && p.x < to.x;
     let mut points: Vec<Vec2> = segments.iter().flatten().filter(between).copied().collect();
@@ -263,7 +260,7 @@ pub(crate) fn stretched(segments: &[[Vec2; 2]], from: Vec2, to: Vec2) -> f64 {
     chain.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
 }
 
-/// A point of a skin's surface on one of its edges, which goes with the skin.
+/// A point on an edge of a skin, which moves with the skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OnEdge {
     ends: [u32; 2],
@@ -271,21 +268,21 @@ pub(crate) struct OnEdge {
 }
 
 impl OnEdge {
-    /// Where it is (m).
+    /// Position of the point on a skin (m).
     pub(crate) fn on(&self, skinned: &Skinned) -> Vec3 {
         let [a, b] = self.ends.map(|v| skinned.at(v));
         a + (b - a) * self.share
     }
 
-    /// Where it is on a mesh (m).
+    /// Position of the point on a mesh (m).
     pub(crate) fn at(&self, positions: &[Vec3]) -> Vec3 {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
         a + (b - a) * self.share
     }
 }
 
-/// The highest point of the skin over a place on the left side, searched along z at fixed `x`
-/// above height `from` (m), leaving out the head above `to` (m).
+/// The highest point of the left side of the skin at a fixed `x`, above the height `from` (m); points of the
+/// head, above `to` (m), are left out.
 pub(crate) fn ridge(mesh: &TriangleMesh, x: f64, [from, to]: [f64; 2]) -> Option<OnEdge> {
     let mut best: Option<(f64, OnEdge)> = None;
     for triangle in &mesh.triangles {
@@ -312,11 +309,11 @@ mod tests {
     #[test]
     fn a_tape_falls_straight_over_a_hollow_and_round_a_bulge() {
         let at = |y: f64, z: f64| Vec3::new(0.0, y, z);
-        // Down a wall with a hollow: straight.
+        // Down a wall with a hollow: the tape is straight.
         let hollow = [[at(1.0, 0.1), at(0.5, 0.0)], [at(0.5, 0.0), at(-0.5, 0.2)]];
         let straight = fall(&hollow, at(1.0, 0.1), 0.0, Vec3::z()).unwrap();
         assert!((straight - 1.0).abs() < 1e-12, "{straight}");
-        // Over a bulge: along it.
+        // Over a bulge: the tape follows it.
         let bulge = [[at(1.0, 0.1), at(0.5, 0.6)], [at(0.5, 0.6), at(-0.5, -0.4)]];
         let over = fall(&bulge, at(1.0, 0.1), 0.0, Vec3::z()).unwrap();
         assert!((over - 2f64.sqrt()).abs() < 1e-12, "{over}");

@@ -16,20 +16,20 @@ use toile_measure::{Build, Measurements};
 /// The figures with their names on the command line and in files, each declared once.
 macro_rules! figures {
     ($($(#[$docs:meta])* $figure:ident = $name:literal,)*) => {
-        /// Which template a mannequin is grown from.
+        /// The template that a mannequin is grown from.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum Figure {
             $($(#[$docs])* #[serde(rename = $name)] $figure,)*
         }
 
         impl Figure {
-            /// How many there are.
+            /// Number of figures.
             pub const COUNT: usize = [$($name),*].len();
 
             /// All figures, the adults first.
             pub const ALL: [Figure; Self::COUNT] = [$(Figure::$figure),*];
 
-            /// The name on the command line and in files.
+            /// Name on the command line and in files.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Figure::$figure => $name,)*
@@ -44,7 +44,7 @@ figures! {
     Woman = "woman",
     /// An adult man.
     Man = "man",
-    /// The mean of both.
+    /// The mean of woman and man.
     Mean = "mean",
     /// A woman's trunk without head, arms and legs, on a stand.
     DressForm = "dress-form",
@@ -65,7 +65,7 @@ figures! {
 }
 
 impl Figure {
-    /// Age of a child (years); none for an adult.
+    /// Age of a child (years); `None` for an adult.
     pub fn age(self) -> Option<u8> {
         match self {
             Figure::Woman | Figure::Man | Figure::Mean | Figure::DressForm => None,
@@ -73,12 +73,12 @@ impl Figure {
         }
     }
 
-    /// The average body of the figure: the measurements a garment is drawn from.
+    /// The average body of the figure, for which garments are drafted.
     pub fn average(self) -> Measurements {
         Measurements::average(self.build())
     }
 
-    /// Whose statistics predict what was not measured.
+    /// The build whose statistics predict missing measurements.
     pub fn build(self) -> Build {
         match self {
             Figure::Woman | Figure::DressForm => Build::Woman,
@@ -117,49 +117,49 @@ pub struct Joints {
     pub head: [f64; 3],
 }
 
-/// What the skin is cast about, besides the primitives: levels, joints and a few lengths.
+/// Levels, joints and lengths that are needed besides the primitives to cast the skin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyFrame {
-    /// Floor to crown (m).
+    /// Height from floor to crown (m).
     pub height: f64,
     /// Height of the crotch (m).
     pub crotch: f64,
     /// Height of the armpits (m).
     pub armpit: f64,
-    /// From the wrist to where the last ring of the hand is cast (m).
+    /// Distance from the wrist to the last ring of the hand (m).
     pub hand: f64,
-    /// A distance from the middle outside the neck and under the shoulder's slope (m).
+    /// A distance from the middle that lies outside the neck and below the shoulder's slope (m).
     pub neck_radius: f64,
     /// Joint centres.
     pub joints: Joints,
-    /// Face and thumbs, where the body has any.
+    /// Positions of fine features, if the body has face and thumbs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub features: Option<Features>,
 }
 
-/// What a body with nose, ears and thumbs has: its head and hands are cast finely.
+/// Features of a body with nose, ears and thumbs: its head and hands are cast finely.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Features {
-    /// Middle of the left thumb where it stands clear of the palm, and near its tip (m).
+    /// Middle of the left thumb where it is clear of the palm, and near its tip (m).
     pub thumb: [[f64; 3]; 2],
 }
 
-/// A template as it is stored. Rows: centre, effective semi-axes (m), rotation vector (rad). Rows
-/// of trunk and head off the middle stand for a pair; arm and leg are the left ones.
+/// A template as it is stored. Rows: centre, effective semi-axes (m), rotation vector (rad). Rows of trunk
+/// and head off the middle stand for a pair; arm and leg are the left ones.
 pub(crate) struct Table {
     height: f64,
     crotch: f64,
     joints: Joints,
-    /// Middle of the thumb where it stands clear of the palm, and near its tip (m).
+    /// Middle of the thumb where it is clear of the palm, and near its tip (m).
     thumb: [[f64; 3]; 2],
     trunk: &'static [[f64; 9]],
     /// Neck and skull.
     head: &'static [[f64; 9]],
-    /// What stands out of it: nose, brow, lids, cheeks, mouth, chin, jaw, ears.
+    /// Protruding parts: nose, brow, lids, cheeks, mouth, chin, jaw, ears.
     face: &'static [[f64; 9]],
-    /// Down to the wrist.
+    /// Arm down to the wrist.
     arm: &'static [[f64; 9]],
     /// Palm, fingers, thumb.
     hand: &'static [[f64; 9]],
@@ -168,27 +168,27 @@ pub(crate) struct Table {
 
 /// A template figure.
 pub(crate) struct Template {
-    /// Floor to crown (m).
+    /// Height from floor to crown (m).
     pub(crate) height: f64,
     /// Height of the crotch (m).
     pub(crate) crotch: f64,
     pub(crate) joints: Joints,
-    /// Height of the armpits (m); none where they are found on the primitives.
+    /// Height of the armpits (m); `None` if they are found on the primitives.
     pub(crate) armpit: Option<f64>,
-    /// From the wrist to where the last ring of the hand is cast (m).
+    /// Distance from the wrist to the last ring of the hand (m).
     pub(crate) hand: f64,
-    /// A distance from the middle outside the neck and under the shoulder's slope: the rays of
-    /// shoulders and neck cross beyond it (m).
+    /// A distance from the middle that lies outside the neck and below the shoulder's slope (m): the rays of
+    /// shoulders and neck cross outside it.
     pub(crate) neck_radius: f64,
-    /// Face and thumbs, where it has any.
+    /// Positions of fine features, if the body has face and thumbs.
     pub(crate) features: Option<Features>,
     /// Primitives of both sides.
     pub(crate) primitives: Vec<Primitive>,
-    /// What is particular about those of the left side and the middle.
+    /// Properties of the primitives of the left side and the middle that differ from the default.
     pub(crate) rigging: Rigging,
 }
 
-/// Of a body of 1.7 m: from the wrist to the last ring of the hand, and the neck's radius (m).
+/// Distance from the wrist to the last ring of the hand, and radius of the neck, of a body of 1.7 m (m).
 pub(crate) const HAND: f64 = 0.176;
 pub(crate) const NECK_RADIUS: f64 = 0.082;
 
@@ -197,14 +197,14 @@ impl Table {
         match figure {
             Figure::Woman | Figure::DressForm => &woman::TABLE,
             Figure::Man => &man::TABLE,
-            // A child has the adult's form at its own proportions.
+            // A child has the form of the mean adult with its own proportions.
             _ => &mean::TABLE,
         }
     }
 }
 
-/// The left side's and the middle's primitives of a figure's trunk, neck and skull, and of its arm down
-/// to the wrist: without what is fine.
+/// Primitives of the left side and the middle of a figure's trunk, neck and skull, and of its arm down to the
+/// wrist: without face and hands.
 pub(crate) fn plain_primitives(figure: Figure) -> Vec<Primitive> {
     let table = Table::of(figure);
     let rows = [
@@ -247,7 +247,7 @@ impl Template {
         }
     }
 
-    /// A template of given frame and primitives of both sides.
+    /// A template with a given frame and primitives of both sides.
     pub(crate) fn framed(frame: &BodyFrame, primitives: Vec<Primitive>) -> Self {
         Self {
             height: frame.height,
@@ -262,7 +262,7 @@ impl Template {
         }
     }
 
-    /// Its frame, if it is no figure's own.
+    /// The frame of the template; `None` for a figure's own template.
     pub(crate) fn frame(&self) -> Option<BodyFrame> {
         Some(BodyFrame {
             height: self.height,

@@ -11,7 +11,7 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 /// Three points of a plane of a template (m).
 pub(crate) type Plane = [Vec3; 3];
 
-/// Places of a template by the parts of its body (m): of pairs the left one.
+/// Landmarks of a template by part of the body (m): of pairs the left one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TemplateMarks {
     /// Height of the top of the head.
@@ -29,36 +29,36 @@ pub(crate) struct TemplateMarks {
 /// The neck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NeckMarks {
-    /// Its middle (m).
+    /// Middle of the neck (m).
     pub(crate) middle: Vec3,
-    /// Where it meets the shoulder (m).
+    /// Point where the neck meets the shoulder (m).
     pub(crate) side: Vec3,
-    /// The same on the skin.
+    /// The same point on the skin.
     pub(crate) side_on: OnEdge,
 }
 
 /// The shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShoulderMarks {
-    /// Its outer end (m).
+    /// Outer end of the shoulder (m).
     pub(crate) tip: Vec3,
-    /// The same on the skin.
+    /// The same point on the skin.
     pub(crate) tip_on: OnEdge,
 }
 
 /// The armpit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ArmpitMarks {
-    /// Its height (m).
+    /// Height of the armpit (m).
     pub(crate) height: f64,
-    /// Vertex of the skin at its front fold.
+    /// Vertex of the skin at the front fold of the armpit.
     pub(crate) front_fold: u32,
 }
 
 /// The bust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BustMarks {
-    /// Its height (m).
+    /// Height of the bust (m).
     pub(crate) height: f64,
     /// The bust point (m).
     pub(crate) point: Vec3,
@@ -67,27 +67,29 @@ pub(crate) struct BustMarks {
 /// The trunk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TrunkMarks {
-    /// Depth of its middle (m).
+    /// Depth of the middle of the trunk (m).
     pub(crate) middle_depth: f64,
-    /// Sections from crotch to bust: height, half the breadth, depth before and behind the middle (m).
+    /// Sections from crotch to bust: height, half the breadth, depths in front of and behind the middle (m).
     pub(crate) sections: [[f64; 4]; SECTIONS],
 }
 
 /// The crotch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CrotchMarks {
-    /// Its height (m).
+    /// Height of the crotch (m).
     pub(crate) height: f64,
-    /// Rise of the body's middle over it, at [`CROTCH_PLACES`] even depths from back to front (m).
+    /// Rise of the body's middle line above this height, at [`CROTCH_PLACES`] even depths from back to front
+    /// (m).
     pub(crate) rise: [f64; CROTCH_PLACES],
-    /// Depth of the hindmost of them (m).
+    /// Depth of the rearmost of these points (m).
     pub(crate) hindmost: f64,
 }
 
-/// The arm: distances from the shoulder joint along it (m).
+/// The arm: distances along it from the shoulder joint (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ArmMarks {
-    /// Middles at even distances from the shoulder joint, from [`ARM_BEGINS`] of the wrist's on (m).
+    /// Middles of the arm at even distances from the shoulder joint, from [`ARM_BEGINS`] of the wrist's
+    /// distance on (m).
     pub(crate) middles: [Vec3; ARM_MIDDLES],
     pub(crate) upper_arm: f64,
     pub(crate) elbow: f64,
@@ -104,30 +106,30 @@ pub(crate) struct LegMarks {
     pub(crate) knee: f64,
     pub(crate) calf: f64,
     pub(crate) ankle: f64,
-    /// Plane of the heel's girth, over heel and instep.
+    /// Plane of the girth over heel and instep.
     pub(crate) heel: Plane,
 }
 
-/// Middles of the arm that are kept: the first, and how far they are apart, over the wrist's distance
-/// from the shoulder joint.
+/// Number of stored middles of the arm, distance of the first from the shoulder joint, and distance between
+/// them, over the wrist's distance from the shoulder joint.
 pub(crate) const ARM_MIDDLES: usize = 24;
 pub(crate) const ARM_BEGINS: f64 = 0.2;
 pub(crate) const ARM_STEP: f64 = 0.05;
 
-/// Places of the crotch's line that are kept.
+/// Number of stored points of the crotch's line.
 pub(crate) const CROTCH_PLACES: usize = 21;
 
-/// Distance of these places, and the largest rise that is kept, over stature.
+/// Distance between these points, and largest stored rise, over stature.
 const CROTCH_STEP: f64 = 0.01;
 const CROTCH_RISE: f64 = 0.045;
 
-/// Sections of the trunk that are kept.
+/// Number of stored sections of the trunk.
 pub(crate) const SECTIONS: usize = 9;
 
 /// Distance of the end of the shoulder beyond the shoulder joint, over stature.
 const TIP: f64 = 0.003;
 
-/// Share of the way from the neck's base to the skull's that lies below any chin.
+/// Share of the way from the neck's base to the base of the skull that lies below any chin.
 const BELOW_CHIN: f64 = 0.4;
 
 /// Share of that way at which the middle of the neck lies.
@@ -135,7 +137,7 @@ const NECK: f64 = 0.42;
 
 /// Distance of the underbust below the bust, over stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
-/// Between which heights the calf is looked for, over the knee's.
+/// Range of the calf's height, over the knee's.
 const CALF: [f64; 2] = [0.55, 0.9];
 
 impl TemplateMarks {
@@ -151,7 +153,7 @@ impl TemplateMarks {
         let [x, y, z] = j.shoulder;
         let part = "shoulder";
         let open = BodyError::Open { part, x, y, z };
-        // A head may be large against the shoulders: on a frame of its own it begins lower.
+        // A head may be large relative to the shoulders: with a frame of its own the search ends lower.
         let top = match template.armpit {
             Some(_) => j.neck[1] + BELOW_CHIN * (j.head[1] - j.neck[1]),
             None => j.head[1] - 0.02 * h,
@@ -172,7 +174,7 @@ impl TemplateMarks {
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         let finger_tip = finger_tip(skin, [shoulder, along]);
         let armpit = lowest(&skin.mesh, &skin.armpit);
-        // The forearm's scale is set where it is taped, off the elbow.
+        // The scale of the forearm is set where the forearm is taped, away from the elbow.
         let ends = [skin.armpit[skin.armpit.len() / 2], finger_tip];
         let body = BodyMarks {
             stature: h,
@@ -221,7 +223,7 @@ impl TemplateMarks {
         })
     }
 
-    /// Depth of one of the [`CROTCH_PLACES`] (m).
+    /// Depth of one of the [`CROTCH_PLACES`] points (m).
     pub(crate) fn crotch_depth(&self, k: usize) -> f64 {
         self.crotch.hindmost + k as f64 * CROTCH_STEP * self.crown
     }
@@ -238,11 +240,11 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
         .sum()
 }
 
-/// How far out a point of the bust lies, over the end of the shoulder's distance.
+/// Range of the distance of a bust point from the middle, over the distance of the end of the shoulder.
 const BUST_POINT: [f64; 2] = [0.45, 0.6];
 
-/// The point of the bust at a height on the left (m): the foremost one, but on a flat chest no
-/// nearer to the middle than the points of others.
+/// The left bust point at a height (m): the foremost point, but on a flat chest no nearer to the middle than
+/// usual.
 fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
     let section = horizontal_section(&skin.mesh, trunk, y);
@@ -256,7 +258,7 @@ fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     Vec3::new(x, y, near.map_or(0.0, |p| p.y))
 }
 
-/// How the body's middle rises behind and before a crotch at a height, on a body of a stature (m).
+/// Rise of the body's middle line behind and in front of a crotch at a height, on a body of a stature (m).
 fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
     let most = CROTCH_RISE * stature;
     let is_middle = |v: u32| skin.mirror[v as usize] == v;
@@ -286,7 +288,7 @@ fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
     }
 }
 
-/// Extents of the trunk at even heights about a depth (m).
+/// Extents of the trunk at even heights, relative to a depth (m).
 fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]; SECTIONS] {
     std::array::from_fn(|k| {
         let y = low + (high - low) * k as f64 / (SECTIONS - 1) as f64;
@@ -299,11 +301,11 @@ fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]
     })
 }
 
-/// The plane through the lower end of the heel and over the instep.
+/// Plane through the lower end of the heel and over the instep.
 fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
     let ankle = Vec3::from(template.joints.ankle);
     let low = Vec3::new(ankle.x, 0.012, ankle.z);
-    // The heel's hindmost point at a finger's breadth over the floor.
+    // The heel's rearmost point at a finger's breadth above the floor.
     let hull = skinned.hull(Part::LeftLeg, [Vec3::y() * low.y, Vec3::y()], None);
     let [_, length] = extent(&hull);
     let back = hull.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -312,7 +314,7 @@ fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
     [heel, instep, heel + Vec3::x()]
 }
 
-/// Middles of the left arm along its axis from the shoulder; on the axis where it has no section.
+/// Middles of the left arm along its axis from the shoulder; points of the axis where the arm has no section.
 fn arm_middles(skinned: &Skinned, [shoulder, along]: [Vec3; 2], wrist: f64) -> [Vec3; ARM_MIDDLES] {
     std::array::from_fn(|k| {
         let on_axis = shoulder + along * ((ARM_BEGINS + ARM_STEP * k as f64) * wrist);
@@ -328,7 +330,7 @@ fn arm_middles(skinned: &Skinned, [shoulder, along]: [Vec3; 2], wrist: f64) -> [
     })
 }
 
-/// The vertex of the left arm that lies farthest along it from the shoulder.
+/// The vertex of the left arm that is farthest along it from the shoulder.
 fn finger_tip(skin: &TemplateSkin, [shoulder, along]: [Vec3; 2]) -> u32 {
     let far = |v: u32| (skin.mesh.positions[v as usize] - shoulder).dot(&along);
     let of_arm = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::LeftArm);
@@ -352,7 +354,7 @@ fn crotch(skin: &TemplateSkin) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Middle between the foremost and the hindmost point of a section (m).
+/// Depth half-way between the foremost and the rearmost point of a section (m).
 pub(crate) fn middle_depth(section: &[Vec2]) -> f64 {
     let low = section.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     let high = section
@@ -376,8 +378,8 @@ fn extreme([low, high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
     best[1]
 }
 
-/// Where the shoulder becomes the steep side of the neck: walking inward along the ridge from the
-/// middle of the shoulder, the first place where it rises by more than 35 degrees over 6 mm.
+/// The point where the shoulder becomes the steep side of the neck: inward along the ridge from the middle of
+/// the shoulder, the first point from which it rises by more than 35 degrees over 6 mm.
 fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<OnEdge> {
     let height = |x: f64| Some(ridge(mesh, x, window)?.at(&mesh.positions).y);
     let step = 0.002;

@@ -3,26 +3,26 @@
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Passes of drawing every vertex to the middle of its neighbours; so many where the arm presses
-/// against the trunk, whose rings lie close there.
+/// Number of smoothing passes, in which every vertex moves towards the mean of its neighbours, and number of
+/// passes if the arm presses against the trunk, where rings lie close.
 const PASSES: usize = 10;
 const PRESSED: usize = 80;
 
-/// Least distance of the arm from the side of the trunk: so much (1/m of stature) and so much for
-/// each metre below the armpit (1).
+/// Least distance of the arm from the side of the trunk: a share of the stature (1), and an increase for each
+/// metre below the armpit (1).
 const CLEAR: [f64; 2] = [0.0016, 0.1];
 
 /// Vertices under the left arm.
 pub(crate) struct Underarm {
     rows: Vec<Row>,
-    /// Those of the arm that may come near the trunk.
+    /// Vertices of the arm that may come near the trunk.
     near: Vec<u32>,
-    /// Columns of the trunk's side under the arm, from its front to its back, each from below up
-    /// to the arm's border.
+    /// Columns of the trunk's side under the arm, from front to back, each from the lowest row up to the
+    /// arm's border.
     side: Vec<Vec<u32>>,
 }
 
-/// A vertex with how far it is drawn and its neighbours.
+/// A vertex with its share of smoothing and its neighbours.
 struct Row {
     vertex: u32,
     share: f64,
@@ -30,12 +30,13 @@ struct Row {
 }
 
 impl Underarm {
-    /// Finds them on a template: of the arm's first rings, which follow the arm in part, what lies
-    /// lower than the shoulder, less and less towards it (m).
+    /// Selects vertices on a template with the shoulder at a height (m): those of the arm's first rings,
+    /// which follow the arm in part, below the shoulder. Smoothing decreases towards the shoulder.
     pub(crate) fn of(mesh: &TriangleMesh, arm: &[f64], side: &[Vec<u32>], shoulder: f64) -> Self {
-        /// Shares of following of the rings meant: the border and the trunk follow less.
+        /// Range of the share with which vertices of these rings follow the arm: those of the border and of
+        /// the trunk follow it less.
         const FOLLOW: [f64; 2] = [0.5, 0.999];
-        /// How far below the armpit an arm may lie against the trunk (m).
+        /// Depth below the armpit down to which an arm may press against the trunk (m).
         const BELOW: f64 = 0.12;
         let top_of = |column: &Vec<u32>| column.last().map(|&v| mesh.positions[v as usize].y);
         let armpit = side.iter().filter_map(top_of).fold(0.0, f64::max);
@@ -61,7 +62,7 @@ impl Underarm {
             .enumerate()
             .map(|(k, row): (usize, &Row)| (row.vertex, k))
             .collect();
-        // On a closed oriented mesh every neighbour ends exactly one edge that starts here.
+        // In a closed oriented mesh every neighbour is the end of exactly one edge that starts here.
         for triangle in &mesh.triangles {
             for k in 0..3 {
                 if let Some(&row) = place.get(&triangle[k]) {
@@ -76,7 +77,7 @@ impl Underarm {
         }
     }
 
-    /// Draws them even on a body of a stature (m), clear of the trunk.
+    /// Smooths the vertices on a body of a stature (m), clear of the trunk.
     pub(crate) fn draw(&self, positions: &mut [Vec3], stature: f64) {
         let mut moved = vec![Vec3::zeros(); self.rows.len()];
         let mut presses = true;
@@ -97,7 +98,7 @@ impl Underarm {
         }
     }
 
-    /// Moves what lies below the armpit out of the trunk's side; whether anything lay there.
+    /// Moves vertices below the armpit out of the trunk's side. Returns whether any lay inside.
     fn clear(&self, positions: &mut [Vec3], stature: f64) -> bool {
         let side: Vec<Vec<Vec3>> = self
             .side
@@ -133,7 +134,7 @@ impl Underarm {
     }
 }
 
-/// Where a column is at a height, at its top where it ends lower; nowhere below its foot.
+/// Point of a column at a height; the top of the column if that is lower; `None` below its foot.
 fn at_height(column: &[Vec3], y: f64) -> Option<Vec3> {
     let next = column.partition_point(|p| p.y <= y);
     match (next.checked_sub(1), column.get(next)) {

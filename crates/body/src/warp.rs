@@ -11,7 +11,7 @@ use crate::warp_trunk::TrunkWarp;
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
-/// How far a point follows a limb instead of the trunk.
+/// Shares with which a point follows a limb instead of the trunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Follow {
     pub(crate) arm: f64,
@@ -19,9 +19,9 @@ pub(crate) struct Follow {
 }
 
 impl Follow {
-    /// Wholly the arm.
+    /// Follows only the arm.
     pub(crate) const ARM: Self = Self { arm: 1.0, leg: 0.0 };
-    /// Wholly the leg.
+    /// Follows only the leg.
     pub(crate) const LEG: Self = Self { arm: 0.0, leg: 1.0 };
 }
 
@@ -31,9 +31,9 @@ pub(crate) struct Warp {
     trunk: TrunkWarp,
     arm: ArmWarp,
     leg: LegWarp,
-    /// Shoulder, elbow and wrist, where the map leaves everything as it is.
+    /// Shoulder, elbow and wrist, if the map is the identity.
     still: Option<[Vec3; 3]>,
-    /// The lowest place of the crotch on the template (m).
+    /// Lowest point of the crotch on the template (m).
     crotch: Vec3,
 }
 
@@ -50,7 +50,7 @@ impl Warp {
         }
     }
 
-    /// The map that leaves everything as it is.
+    /// The identity map.
     pub(crate) fn still(template: &Template, marks: &TemplateMarks) -> Self {
         let j = template.joints;
         let [shoulder, elbow, wrist] = [j.shoulder, j.elbow, j.wrist].map(Vec3::from);
@@ -62,12 +62,12 @@ impl Warp {
         }
     }
 
-    /// Whether it leaves everything as it is.
+    /// Whether the map is the identity.
     pub(crate) fn is_still(&self) -> bool {
         self.still.is_some()
     }
 
-    /// The place on the body of a place on the template.
+    /// Point of the body that a point of the template is mapped to.
     pub(crate) fn apply(&self, p: Vec3, follow: Follow) -> Vec3 {
         if self.is_still() {
             return p;
@@ -82,7 +82,7 @@ impl Warp {
         mapped
     }
 
-    /// Depth of the sides of a girth, before which its front part lies (m).
+    /// Depth of the sides of a girth, which part its front from its back (m).
     pub(crate) fn side_of(&self, girth: Girth) -> f64 {
         self.trunk.shape().trunk.side_depth[girth]
     }
@@ -93,7 +93,7 @@ impl Warp {
         self.apply(self.crotch, Follow::default()).z + offset
     }
 
-    /// Least and largest sideways scale of any place of trunk and head (1).
+    /// Least and largest sideways scale of any point of trunk and head (1).
     pub(crate) fn sideways(&self) -> [f64; 2] {
         match self.is_still() {
             true => [1.0; 2],
@@ -101,12 +101,12 @@ impl Warp {
         }
     }
 
-    /// The template's height of a height of the body (m).
+    /// Height on the template of a height on the body (m).
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.trunk.template_level(height)
     }
 
-    /// Where on the template lies what may cross a height of the body (m), within a reach.
+    /// Range of the template that may cross a height of the body (m), within a reach.
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         self.trunk.near(height, reach)
     }
@@ -116,11 +116,12 @@ impl Warp {
         self.trunk.apply(self.arm.shoulder)
     }
 
-    /// The plane across the arm at a template distance from the shoulder joint: a point of the
-    /// axis and its direction.
+    /// The plane across the arm at a template distance from the shoulder joint: a point of the axis and the
+    /// axis's direction.
     pub(crate) fn arm_plane(&self, distance: f64) -> [Vec3; 2] {
         if let Some([shoulder, elbow, wrist]) = self.still {
-            // Across the bone at the place whose distance along the straight line is this.
+            // Across the bone, at the point with this distance along the straight line from shoulder to
+            // wrist.
             let straight = (wrist - shoulder).normalize();
             let at = (elbow - shoulder).dot(&straight);
             let (from, to, before) = match distance < at {
@@ -135,7 +136,7 @@ impl Warp {
         [self.shoulder() + along, self.arm.to[0]]
     }
 
-    /// The template distance of a distance along the body's arm from the shoulder joint (m).
+    /// Distance along the template's arm of a distance along the body's arm from the shoulder joint (m).
     pub(crate) fn arm_distance(&self, along: f64) -> f64 {
         match self.is_still() {
             true => along,
@@ -143,7 +144,7 @@ impl Warp {
         }
     }
 
-    /// The distance along the body's arm from the shoulder joint at which a point lies (m).
+    /// Distance of a point along the body's arm from the shoulder joint (m).
     pub(crate) fn along_arm(&self, p: Vec3) -> f64 {
         let [shoulder, along] = match self.still {
             Some([shoulder, _, wrist]) => [shoulder, (wrist - shoulder).normalize()],
@@ -152,8 +153,7 @@ impl Warp {
         (p - shoulder).dot(&along)
     }
 
-    /// What the map makes of three axes laid through a place: half the way between the images of
-    /// their two ends.
+    /// Images of three axes through a point: half the vector between the images of their two ends.
     pub(crate) fn carried_axes(&self, p: Vec3, axes: Matrix3<f64>, follow: Follow) -> Matrix3<f64> {
         let column = |k: usize| {
             let axis = axes.column(k).into_owned();

@@ -6,7 +6,7 @@ use crate::template::Joints;
 use crate::template_marks::TemplateMarks;
 use toile_geometry::Vec3;
 
-/// Way down the thigh on which the form of the leg's top goes out, over stature.
+/// Length down the thigh over which the form of the leg's top fades out, over stature.
 const LEG_TOP: f64 = 0.09;
 
 /// The map of the left arm.
@@ -18,9 +18,9 @@ pub(crate) struct ArmWarp {
     pub(crate) length: Monotone,
     /// The shoulder joint of the template (m).
     pub(crate) shoulder: Vec3,
-    /// On the template, unit vectors along the arm and across it upward.
+    /// Unit vectors on the template along the arm, and upwards across it.
     from: [Vec3; 2],
-    /// The same on the body.
+    /// Unit vectors on the body along the arm, and upwards across it.
     pub(crate) to: [Vec3; 2],
 }
 
@@ -39,7 +39,7 @@ impl ArmWarp {
         }
     }
 
-    /// Where a place of the template comes to on a body with its shoulder joint at a place (m).
+    /// Point that a point of the template is mapped to on a body with its shoulder joint at `shoulder` (m).
     pub(crate) fn apply(&self, p: Vec3, shoulder: Vec3) -> Vec3 {
         let offset = p - self.shoulder;
         let distance = offset.dot(&self.from[0]);
@@ -58,9 +58,9 @@ pub(crate) struct LegWarp {
     scale: Monotone,
     /// Joints of hip, knee and ankle of the template (m).
     axis: [Vec3; 3],
-    /// Sideways scale of where the axis stands (1).
+    /// Sideways scale of the position of the axis (1).
     stance: f64,
-    /// How much broader the top is, and how much less deep (1).
+    /// Factor by which the top is broader and less deep (1).
     top_breadth: f64,
     /// Ratio of statures, body to template.
     stature_ratio: f64,
@@ -92,12 +92,12 @@ impl LegWarp {
         }
     }
 
-    /// Where a place of the template comes to whose height on the body is given (m).
+    /// Point that a point of the template is mapped to; its height on the body is given (m).
     pub(crate) fn apply(&self, p: Vec3, height: f64) -> Vec3 {
         let m = &self.marks;
         let axis = self.axis_at(p.y);
         let scale = self.scale.at(p.y);
-        // From the hips' form at the crotch to none.
+        // The form of the hips at the crotch fades out downwards.
         let top = smooth_step(1.0 - (m.crotch.height - p.y) / (LEG_TOP * m.crown));
         let breadth = 1.0 + (self.top_breadth - 1.0) * top;
         Vec3::new(

@@ -8,10 +8,10 @@ use crate::shape::Shape;
 use crate::template_marks::{CROTCH_PLACES, TemplateMarks};
 use toile_geometry::Vec3;
 
-/// How far sideways, up and down a bust reaches from its point, over stature.
+/// Extents of a bust sideways, up and down from its point, over stature.
 const BUST_REACH: [f64; 3] = [0.06, 0.10, 0.045];
 
-/// How far sideways, up and down a crotch that lies flat is felt, over stature.
+/// Distances sideways, up and down over which a flat crotch changes the body, over stature.
 const CROTCH_REACH: [f64; 3] = [0.06, 0.15, 0.10];
 
 /// The map, for points of the left half, x >= 0. Curves are over template height.
@@ -19,24 +19,24 @@ const CROTCH_REACH: [f64; 3] = [0.06, 0.15, 0.10];
 pub(crate) struct TrunkWarp {
     /// Height on the body (m).
     height: Monotone,
-    /// Scales of sections, and how their corners differ from the template's (1).
+    /// Scales of sections, and changes of the fullness of their corners (1).
     lateral: Monotone,
     front: Monotone,
     back: Monotone,
     corner_fullness: Monotone,
     corner_asymmetry: Monotone,
-    /// Half the breadth, and depth before and behind the middle, on the template (m).
+    /// Half the breadth, and depths in front of and behind the middle, on the template (m).
     extents: [Monotone; 3],
     /// Depth about which sections are scaled (m).
     middle_on_template: Monotone,
     middle_on_body: Monotone,
-    /// Rise of the body's middle over the crotch, over its depth on the template (m).
+    /// Rise of the body's middle line above the crotch by depth on the template (m).
     crotch_rise: Monotone,
     marks: TemplateMarks,
     shape: Shape,
 }
 
-/// Rises of the body's middle over the crotch by their depth (m).
+/// Rises of the body's middle line above the crotch, by depth (m).
 fn crotch_rise(marks: &TemplateMarks) -> Vec<[f64; 2]> {
     (0..CROTCH_PLACES)
         .map(|k| [marks.crotch_depth(k), marks.crotch.rise[k]])
@@ -63,19 +63,19 @@ impl TrunkWarp {
         }
     }
 
-    /// The shape it was made from.
+    /// The shape that the map was made from.
     pub(crate) fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// Where a place of the template comes to.
+    /// Point that a point of the template is mapped to.
     pub(crate) fn apply(&self, p: Vec3) -> Vec3 {
         let [shoulder, armpit] = self.rise(p);
-        // What rises with the armpit has the scale of where it comes to.
+        // Points that rise with the armpit get the scale of the height that they rise to.
         let y = p.y + armpit / self.shape.stature_ratio;
         let fuller = self.fuller(Vec3::new(p.x, y, p.z));
         let depth = (p.z - self.middle_on_template.at(y)) * fuller;
-        // From the back's scale to the front's over the middle of the body.
+        // The scale changes from the back's to the front's across the middle of the body.
         let before = smooth_step(0.5 + depth / (0.09 * self.marks.crown));
         let [front, back] = [self.front.at(y), self.back.at(y)];
         let frontal = back + (front - back) * before;
@@ -86,13 +86,12 @@ impl TrunkWarp {
         )
     }
 
-    /// Height on the body of a place of the template, without what shoulder and armpit raise it by
-    /// (m).
+    /// Height on the body of a point of the template, without the rise of shoulder and armpit (m).
     pub(crate) fn height(&self, p: Vec3) -> f64 {
         self.height.at(p.y - self.sunk(p))
     }
 
-    /// How far a place stands forward with its bust point (m): all of it there, nothing beyond the
+    /// Distance by which a point is moved forward with the bust point (m): all of it there, none outside the
     /// bust.
     fn projection(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
@@ -108,7 +107,7 @@ impl TrunkWarp {
             return 0.0;
         }
         let before = smooth_step(depth / (0.04 * m.crown));
-        // Round above, evenly back to the fold below.
+        // Round above the bust point, evenly back to the fold below it.
         let upright = match high > 0.0 {
             true => (1.0 - (high / up).powi(4)).powi(2),
             false => 1.0 - (-high / down).powf(1.3),
@@ -117,9 +116,9 @@ impl TrunkWarp {
         self.shape.bust.projection * full * before
     }
 
-    /// By how much a place of the trunk lies farther out from the middle of its section: with its
-    /// direction t in a section brought to breadth and depth one, `1 + c sin^2(2 t)`, so that
-    /// breadth and depth stay and the corners between them fill.
+    /// Factor by which a point of the trunk lies farther out from the middle of its section. With the point's
+    /// direction t in a section scaled to breadth and depth 1 it is `1 + c sin^2(2 t)`, so that breadth and
+    /// depth stay and the corners between them are filled.
     fn fuller(&self, p: Vec3) -> f64 {
         let depth = p.z - self.marks.trunk.middle_depth;
         let [fullness, asymmetry] =
@@ -128,7 +127,7 @@ impl TrunkWarp {
         if fullness == 0.0 {
             return 1.0;
         }
-        // Below and above the sections that are known, those at the ends.
+        // Below and above the known sections, those at the ends are used.
         let [first, last] = [self.marks.trunk.sections[0][0], self.marks.bust.height];
         let y = p.y.clamp(first, last);
         let [breadth, front, back] = [0, 1, 2].map(|k| self.extents[k].at(y));
@@ -137,8 +136,8 @@ impl TrunkWarp {
         1.0 + fullness * 4.0 * u * v / (u + v).max(0.5).powi(2)
     }
 
-    /// Share by which a place in front of the chest goes sideways with the bust points: all of it
-    /// there, nothing at the sides, above and below.
+    /// Share by which a point in front of the chest moves sideways with the bust points: all of it there,
+    /// none at the sides, above and below.
     fn spread(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
         let half = 1.02 * m.shoulder.tip.x;
@@ -151,12 +150,12 @@ impl TrunkWarp {
         self.shape.bust.spread * ((1.0 - u) * (1.0 - v)).powi(2) * before
     }
 
-    /// Rise of a place with the end of the shoulder and with the armpit (m): all of it there, nothing
-    /// at the neck and at the bust.
+    /// Rises of a point with the end of the shoulder and with the armpit (m): all of it there, none at the
+    /// neck and at the bust.
     fn rise(&self, p: Vec3) -> [f64; 2] {
         let m = &self.marks;
         let inner = 0.92 * m.neck.side.x;
-        // Almost straight from the neck, level at the end.
+        // Almost straight from the neck, level at the end of the shoulder.
         let out = ((p.x - inner) / (m.shoulder.tip.x - inner)).clamp(0.0, 1.0);
         let out = out * (1.5 - 0.5 * out * out);
         let up = smooth_step((p.y - m.bust.height) / (m.shoulder.tip.y - m.bust.height));
@@ -167,8 +166,8 @@ impl TrunkWarp {
         [self.shape.shoulder.tip_rise * up * out, armpit * out]
     }
 
-    /// How much lower on the template a place comes from where the crotch lies flatter (m): the
-    /// body's middle sinks by a share of its rise over the crotch, what is beside it less.
+    /// Depth by which a point of the template is lowered where the crotch is flatter (m): the body's middle
+    /// sinks by a share of its rise above the crotch, points beside it by less.
     fn sunk(&self, p: Vec3) -> f64 {
         let m = &self.marks;
         let [side, up, down] = CROTCH_REACH.map(|reach| reach * m.crown);
@@ -177,7 +176,7 @@ impl TrunkWarp {
             return 0.0;
         }
         let beside = smooth_step(1.0 - p.x / side);
-        // What sinks deepest goes on from there.
+        // Up to this height above the crotch points sink as far as at the crotch.
         let top = 0.3 * up;
         let far = match high > 0.0 {
             true => smooth_step((up - high) / (up - top)),
@@ -187,7 +186,7 @@ impl TrunkWarp {
         self.shape.crotch.flatness * self.crotch_rise.at(p.z.clamp(ends[0], ends[1])) * beside * far
     }
 
-    /// Least and largest sideways scale of any place of trunk and head (1).
+    /// Least and largest sideways scale of any point of trunk and head (1).
     pub(crate) fn sideways(&self) -> [f64; 2] {
         let s = &self.shape;
         let most = |rows: &[[f64; 2]]| rows.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
@@ -202,13 +201,13 @@ impl TrunkWarp {
         ]
     }
 
-    /// The template's height of a height of the body (m).
+    /// Height on the template of a height on the body (m).
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.height.inverse(height)
     }
 
-    /// Where on the template lies what may cross a height of the body (m), within a reach: what
-    /// rises or sinks with shoulders and armpits comes from farther off.
+    /// Range of the template that may cross a height of the body (m), within a reach: points that rise or
+    /// sink with shoulders, armpits and crotch come from farther away.
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         let (m, s) = (&self.marks, &self.shape);
         let moved =

@@ -1,9 +1,10 @@
-//! The outline of the cloth before it is cleaned: one closed chain round the sum of all pieces.
+//! The outline of the cloth before it is cleaned: one closed chain round the sum of all patches of cloth.
 //!
-//! Every chord has a rectangle, every outer bend a wedge, all counter-clockwise. Laid beside each
-//! other and the seam line they share most sides, once in each direction; what is left of their
-//! boundaries is a single chain. Its winding number at a point is the number of pieces that hold
-//! the point, so its non-zero region is the union of them all, from a third of the segments.
+//! Every chord has a rectangle, every outer bend a wedge, all counter-clockwise. Laid beside each other and
+//! beside the seam line, these patches share most sides, each run through once in either direction. Without
+//! the shared sides their boundaries are a single chain. The winding number of the chain at a point is the
+//! number of patches that hold the point, so the region where it is not 0 is the union of all patches; the
+//! chain has a third of their segments.
 
 use crate::chain::{Chain, Tag, corner_edge, corner_tag};
 use crate::corner::{CornerCloth, HalfPlane, Outcome, STRAIGHT, corner_cloth};
@@ -12,32 +13,32 @@ use crate::ring::{Chord, FLATNESS, Ring};
 use crate::{Finding, SegmentKind};
 use toile_geometry::Vec2;
 
-/// The cloth of one ring: its chain with the loops of its corners, and findings.
+/// The cloth of one ring: the chain along the ring, the loops of its corners and dart caps, and findings.
 pub(crate) struct Cloth {
     pub chains: Vec<Chain>,
-    /// Which edges of the ring are legs of darts, without allowance of their own.
+    /// Whether each edge of the ring is a leg of a dart, which has no allowance of its own.
     pub is_leg: Vec<bool>,
     pub findings: Vec<Finding>,
 }
 
-/// The corners of a ring, by the edge that starts there.
+/// The cloth at each corner of a ring, by the edge that starts at the corner.
 struct Corners {
     cloth: Vec<Option<CornerCloth>>,
 }
 
-/// The cloth that the corner at the start of an edge cuts away.
+/// A cut that the corner at the start of the edge `corner` makes in an allowance.
 struct Trim {
     plane: HalfPlane,
     corner: usize,
 }
 
-/// Largest bend (rad) with a single tip: where tangents of an arc of radius w meet at an angle t,
-/// their tip is w t^2 / 8 beyond it, here no more than [`FLATNESS`].
+/// Largest bend (rad) that a wedge with a single tip covers: where tangents of an arc of radius w meet at an
+/// angle t, their tip lies w t^2 / 8 beyond the arc, here no more than [`FLATNESS`].
 fn wedge_step(width: f64) -> f64 {
     (8.0 * FLATNESS / width).sqrt().min(1.0)
 }
 
-/// Tips of the wedge outside a bend, relative to it: corners of tangents to the arc.
+/// Tips of the wedge outside a bend, relative to the bend: points where tangents of the arc meet.
 fn wedge(normals: [Vec2; 2], width: f64) -> Vec<Vec2> {
     let [n, m] = normals;
     let turn = n.perp(&m).atan2(n.dot(&m)).max(0.0);
@@ -70,7 +71,7 @@ impl Corners {
         Self { cloth }
     }
 
-    /// The cloth beside a chord that is cut away by the corners at the ends of its edge.
+    /// The cuts that the corners at the ends of an edge make in the allowance of chord `k`.
     fn trims(&self, ring: &Ring, k: usize) -> Vec<Trim> {
         let chord = &ring.chords[k];
         let edge = &ring.edges[chord.edge];
@@ -92,7 +93,7 @@ impl Corners {
         if edge.length - chord.at - chord.length < reach(after, after) {
             trims.extend(trim(after, 0));
         }
-        // A curved edge may bend back over the line: its seam line is not cut.
+        // A curved edge may bend back over the line of the cut: cloth inside the seam line is not cut away.
         let outer = [chord.from + ring.out(k, 0), chord.to + ring.out(k, 1)];
         let beyond = |p: &Vec2, plane: &HalfPlane| plane.normal.dot(p) - plane.limit;
         trims.retain(|Trim { plane, .. }| {
@@ -104,20 +105,20 @@ impl Corners {
     }
 }
 
-/// How the chain passes the start of a chord.
+/// Shape of the chain at the start of a chord.
 #[derive(Clone, Copy, PartialEq)]
 enum Joint {
-    /// In to the seam line and out again.
+    /// Runs in to the seam line and out again.
     Spike,
-    /// Straight on, or by a step between two widths.
+    /// Runs straight on, or by a step between two widths.
     Flat,
-    /// Round an outer bend.
+    /// Runs round an outer bend.
     Wedge,
-    /// At a slight bend: both allowances end here, on the line half-way between their normals.
+    /// At a slight bend: both allowances end at this point, on the line half-way between their normals.
     Meet(Vec2),
 }
 
-/// Inner bends with a greater cosine are a curve's, and its normals are taken to turn evenly there.
+/// Inner bends with a greater cosine belong to a curve, whose normal is taken to turn evenly there.
 const SLIGHT: f64 = 0.9;
 
 fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint {
@@ -175,7 +176,7 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
     let mut chains = Vec::new();
     for (k, chord) in ring.chords.iter().enumerate() {
         if is_leg[chord.edge] {
-            // The whole dart is passed at its first leg.
+            // The cap replaces both legs at the start of the first one.
             let cap = caps.iter().find(|cap| cap.legs[0] == chord.edge);
             if let Some(cap) = cap.filter(|_| k == ring.edges[chord.edge].chords.start) {
                 cap.roof
@@ -229,7 +230,7 @@ fn corner_finding(ring: &Ring, edge: usize, outcome: Outcome) -> Option<Finding>
     }
 }
 
-/// The way of the chain beside chord `k`, up to the joint with the next.
+/// Adds the part of the chain beside chord `k`, up to the joint with the next chord.
 fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trims: [&[Trim]; 2]) {
     let chord = &ring.chords[k];
     let width = ring.edges[chord.edge].width;
@@ -259,8 +260,8 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
     }
     let crossing = crossed(chord, outer);
     if let Some(x) = crossing {
-        // Normals that cross: cloth up to the crossing, and beyond it the other way round, where
-        // the cut line is not this chord's but the end of a swallowed stretch.
+        // The normals at the ends cross: the cloth runs up to the crossing, and beyond it the other way
+        // round. There the cut line is not this chord's own, but the end of a swallowed stretch.
         chain.side(outer[0], end_tag);
         chain.side(x, end_tag);
         chain.side(outer[1], edge_tag(None));
@@ -270,7 +271,7 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
         chain.side(outer[0], edge_tag(Some((k, [0.0, 1.0]))));
     }
     match joints[1] {
-        // The next chord starts there.
+        // The next chord starts at this point.
         Joint::Meet(_) if !next_trimmed => {}
         Joint::Meet(_) | Joint::Spike | Joint::Flat => chain.side(outer[1], end_tag),
         Joint::Wedge => {
@@ -283,7 +284,7 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
     }
 }
 
-/// Where the allowance beside a chord ends, at its start and its end.
+/// The outer ends of the allowance beside a chord, at the chord's start and at its end.
 fn outer_ends(ring: &Ring, k: usize, joints: [Joint; 2]) -> [Vec2; 2] {
     let chord = &ring.chords[k];
     let end = |end: usize, p: Vec2| match joints[end] {
@@ -293,7 +294,7 @@ fn outer_ends(ring: &Ring, k: usize, joints: [Joint; 2]) -> [Vec2; 2] {
     [end(0, chord.from), end(1, chord.to)]
 }
 
-/// Where the ends of an allowance cross, if they do: the curve is tighter than the allowance.
+/// Crossing of the two ends of a chord's allowance, if they cross: the curve is tighter than the allowance.
 fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
     if (end - start).dot(&chord.along()) >= 0.0 {
         return None;
@@ -303,12 +304,12 @@ fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
     (share > 0.0 && share < 1.0).then(|| chord.from + a * share)
 }
 
-/// The outer way round what the corners leave of a chord's rectangle.
+/// Adds the outer boundary of a chord's rectangle after the corners have cut it.
 fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2; 2], &[Trim])) {
     let chord = &ring.chords[k];
     let outer = ends;
     chain.side(chord.from, corner_tag(ring, chord.edge));
-    // Clockwise from the chord's start: clipping keeps whatever order it is given.
+    // Clockwise from the chord's start: clipping keeps the order of the points.
     let mut cloth = match crossed(chord, ends) {
         None => vec![chord.from, outer[0], outer[1], chord.to],
         Some(x) => vec![chord.from, x, chord.to],
@@ -356,7 +357,7 @@ fn trimmed_beyond(ring: &Ring, k: usize, ends: [Vec2; 2], trims: &[Trim]) -> Opt
     (cloth.len() > 2).then(|| Chain::patch(cloth, corner_tag(ring, corner)))
 }
 
-/// The wedge at the outer bend at chord `k`'s end, where a corner cuts some of it away.
+/// The wedge at the outer bend at the end of chord `k`, where a corner cuts some of it away.
 fn trimmed_wedge(ring: &Ring, k: usize, trims: [&Vec<Trim>; 2]) -> Option<Chain> {
     let (chord, next) = (&ring.chords[k], &ring.chords[(k + 1) % ring.chords.len()]);
     let width = ring.edges[chord.edge].width;

@@ -4,13 +4,14 @@ use crate::SegmentKind;
 use crate::ring::Ring;
 use toile_geometry::Vec2;
 
-/// The origin of a side of the chain.
+/// The edge that a side of a chain comes from, and the kind of cloth it bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tag {
     /// Edge of the ring.
     pub edge: usize,
     pub kind: SegmentKind,
-    /// The chord it runs along, and where on it the side starts and ends (shares of its length).
+    /// The chord that the side runs along, with the side's start and end on it (shares of the chord's
+    /// length).
     pub beside: Option<(usize, [f64; 2])>,
 }
 
@@ -33,8 +34,8 @@ impl Chain {
     }
 }
 
-/// Tag of the sides that belong to the corner at an edge's start. In a ring walked backwards the corner is
-/// named after the edge before, which starts there as given.
+/// Tag of the sides that belong to the corner at an edge's start. In a ring that is walked backwards the
+/// corner is named after the edge before, which starts there as given.
 pub(crate) fn corner_tag(ring: &Ring, edge: usize) -> Tag {
     Tag {
         edge: corner_edge(ring, edge),

@@ -1,47 +1,47 @@
-//! How the cut line turns at an outer corner of the seam line.
+//! Shapes of the cut line at an outer corner of the seam line.
 //!
-//! At a corner `p` the edge before it has direction `d`, outward normal `n` and width `a`; the
-//! edge after it `e`, `m` and `b`. The seam line turns left by the angle φ, 0 < φ < π:
+//! At a corner `p` the edge before it has direction `d`, outward normal `n` and width `a`; the edge after it
+//! has direction `e`, normal `m` and width `b`. The seam line turns left by the angle φ, 0 < φ < π:
 //! `n x m = sin φ`, `n . m = cos φ`. Everything below is relative to `p`.
 
 use toile_geometry::{Vec2, ring_area};
 use toile_pattern::MitreLimit;
 
-/// How the cut line turns at a corner where the piece is convex. At an inner corner the two cut
-/// lines meet on their own, whatever is asked: no cloth is added there and none taken away.
+/// Shape of the cut line at a corner where the piece is convex. At an inner corner the two cut lines meet on
+/// their own, whatever shape is asked: no cloth is added there and none taken away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Corner {
-    /// Both cut lines run on until they meet, in `p + r` with `n.r = a`, `m.r = b`; a tip
-    /// farther than the corner's limit is cut off there, square to `r`.
+    /// Both cut lines run on until they meet, in `p + r` with `n.r = a`, `m.r = b`. A tip farther out than
+    /// the corner's limit is cut off at the limit, square to `r`.
     #[default]
     Mitre,
-    /// Straight across from the end of one allowance to that of the other.
+    /// Straight across from the end of one allowance to the end of the other.
     Bevel,
-    /// The edge before is sewn first: its seam line runs on to the cut line of the edge after,
-    /// and there its allowance ends square.
+    /// The edge before is sewn first: its seam line runs on to the cut line of the edge after, and there the
+    /// allowance of the edge before ends square.
     SquareToPrevious,
-    /// The edge after is sewn first: its seam line runs back to the cut line of the edge before,
-    /// and there its allowance ends square.
+    /// The edge after is sewn first: its seam line runs back to the cut line of the edge before, and there
+    /// the allowance of the edge after ends square.
     SquareToNext,
-    /// Each cut line runs to the other edge's extended seam line; straight across between the two.
+    /// Each cut line runs to the other edge's extended seam line; the ends are joined by a straight line.
     Extended,
-    /// The edge before is a hem: its allowance ends on the mirror image in it of the other cut
-    /// line, so that both lie flush once it is turned up.
+    /// The edge before is a hem: its allowance ends on the mirror image, in the hem's seam line, of the other
+    /// cut line, so that both lie flush once the hem is turned up.
     MirroredInPrevious,
-    /// The same of the edge after.
+    /// As `MirroredInPrevious`, but the edge after is the hem.
     MirroredInNext,
 }
 
-/// No corner reaches farther than this times the wider of its allowances unless it is asked to:
-/// beyond, a point of cloth is in the way of the sewing. 2.5 keeps mitres down to 47 degrees whole.
+/// Usual limit of a corner's reach, over the wider of its allowances (1): farther out, a point of cloth is in
+/// the way of the sewing. 2.5 keeps mitres down to 47 degrees whole.
 pub const MITRE_LIMIT: f64 = MitreLimit::USUAL;
 
-/// Corners that turn by less are none (sine of the angle): the ends of two allowances of 40 mm
-/// are then 0.4 um apart, and wedges between them would be lost on the union's grid.
+/// Sine of the smallest turn that counts as a corner (1): at this turn the ends of two allowances of 40 mm
+/// are 0.4 um apart, and wedges between them would be lost on the union's grid.
 pub(crate) const STRAIGHT: f64 = 1e-5;
 
 impl Corner {
-    /// The same corner of the loop walked the other way.
+    /// This shape in the loop walked the other way.
     pub(crate) fn reversed(self) -> Self {
         match self {
             Self::SquareToPrevious => Self::SquareToNext,
@@ -57,12 +57,12 @@ impl Corner {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HalfPlane {
     pub normal: Vec2,
-    /// (m) where `normal` has length 1.
+    /// Greatest dot product with `normal`: a distance (m) where `normal` has length 1.
     pub limit: f64,
 }
 
 impl HalfPlane {
-    /// The part of a convex polygon inside it.
+    /// The part of a convex polygon that lies in the half-plane.
     pub fn clip(&self, polygon: &[Vec2]) -> Vec<Vec2> {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (k, &p) in polygon.iter().enumerate() {
@@ -81,7 +81,7 @@ impl HalfPlane {
         kept
     }
 
-    /// The same for points relative to an origin that lies at `-by`.
+    /// The half-plane moved by a vector.
     pub fn translated(&self, by: Vec2) -> Self {
         Self {
             normal: self.normal,
@@ -90,18 +90,18 @@ impl HalfPlane {
     }
 }
 
-/// The outcome of a corner.
+/// Whether a corner was made as asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outcome {
     AsAsked,
-    /// It would have reached this far (m) and is cut off.
+    /// The corner would have reached this far (m) and is cut off.
     CutOff(f64),
-    /// Its kind would reach this far (m): mitred instead.
+    /// The shape asked would reach this far (m): the corner is mitred instead.
     Mitred(f64),
 }
 
-/// The cloth at a corner: convex patches, counter-clockwise, and what is cut away from the ends
-/// of the allowances before and after it.
+/// The cloth at a corner: convex patches, counter-clockwise, and the cuts through the ends of the allowances
+/// before and after it.
 #[derive(Clone, Debug)]
 pub(crate) struct CornerCloth {
     pub patches: Vec<Vec<Vec2>>,
@@ -112,7 +112,8 @@ pub(crate) struct CornerCloth {
 /// One of the two edges, seen from the corner.
 #[derive(Clone, Copy)]
 struct Side {
-    /// Direction in which its seam line leaves it: `d` before the corner, `-e` after it.
+    /// Direction in which the edge's seam line runs on beyond the corner: `d` before the corner, `-e` after
+    /// it.
     out: Vec2,
     normal: Vec2,
     width: f64,
@@ -124,13 +125,12 @@ struct Turn {
     after: Side,
     sin: f64,
     cos: f64,
-    /// Farthest reach (m).
+    /// Largest distance that the corner's cloth may reach (m).
     limit: f64,
 }
 
-/// The cloth at a corner between outward normals `n` and `m` with widths `a` and `b`, which reaches
-/// up to the limit times the wider; nothing where the seam line turns inwards, not at all, or has no
-/// allowance.
+/// The cloth at a corner between outward normals `n` and `m` with widths `a` and `b`, which reaches up to the
+/// limit times the wider width. `None` where the seam line turns inwards or not at all, or has no allowance.
 pub(crate) fn corner_cloth(
     (kind, limit): (Corner, f64),
     normals: [Vec2; 2],
@@ -170,7 +170,7 @@ pub(crate) fn corner_cloth(
     Some(cloth)
 }
 
-/// Counter-clockwise without repeated points.
+/// Makes a patch counter-clockwise and removes repeated points.
 fn tidy(patch: &mut Vec<Vec2>) {
     patch.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
     if ring_area(patch) < 0.0 {
@@ -187,7 +187,7 @@ impl CornerCloth {
         }
     }
 
-    /// `patch` up to a square end at `limit` along `out`, if `reach` is farther.
+    /// `patch`, cut off square at the distance `limit` along `out` if its `reach` is farther.
     fn limited(patch: Vec<Vec2>, out: Vec2, limit: f64, reach: f64) -> Self {
         if reach <= limit {
             return Self::patch(patch);
@@ -201,12 +201,12 @@ impl CornerCloth {
 }
 
 impl Turn {
-    /// Direction half-way out of the corner.
+    /// Unit vector out of the corner, half-way between the two extended seam lines.
     fn bisector(&self) -> Vec2 {
         (self.before.out + self.after.out).normalize()
     }
 
-    /// Where both offset lines meet; far away where they do not.
+    /// Meeting point of the two offset lines; far away or not finite where they are parallel.
     fn tip(&self) -> Vec2 {
         let (n, m) = (self.before.normal, self.after.normal);
         let (a, b) = (self.before.width, self.after.width);
@@ -216,7 +216,7 @@ impl Turn {
     fn mitre(&self) -> CornerCloth {
         let Turn { before, after, .. } = self;
         let (na, mb) = (before.normal * before.width, after.normal * after.width);
-        // The end of the wider allowance stands beyond the other's cut line, which runs on to it.
+        // The end of the wider allowance stands beyond the other cut line, which runs on to that end.
         if after.width * self.cos > before.width {
             let u = after.normal * (before.width / self.cos);
             return CornerCloth::patch(vec![Vec2::zeros(), na, u]);
@@ -252,7 +252,7 @@ impl Turn {
         }
     }
 
-    /// A mitre because a corner of the kind asked for would reach this far.
+    /// A mitre, because a corner of the shape asked for would reach this far (m).
     fn mitre_instead(&self, reach: f64) -> CornerCloth {
         let mitre = self.mitre();
         match mitre.outcome {
@@ -264,7 +264,7 @@ impl Turn {
         }
     }
 
-    /// The seam line of `sewn` runs on to the cut line of `other`, its allowance ends square there.
+    /// The seam line of `sewn` runs on to the cut line of `other`, where the allowance of `sewn` ends square.
     fn square(&self, sewn: &Side, other: &Side, trimmed: usize) -> CornerCloth {
         let reach = other.width / self.sin;
         let (end, out) = (sewn.out * reach, sewn.normal * sewn.width);
@@ -320,11 +320,12 @@ impl Turn {
         CornerCloth::limited(vec![Vec2::zeros(), na, e, f, mb], out, self.limit, reach)
     }
 
-    /// `hem` is turned up along its seam line; number of its trim.
+    /// The allowance of `hem` is turned up along its seam line. `trimmed` is the number of the hem among the
+    /// trims.
     fn mirrored(&self, hem: &Side, other: &Side, trimmed: usize) -> CornerCloth {
-        // The other cut line meets the hem's extended seam line here.
+        // Distance along the hem's extended seam line to the other cut line (m).
         let meet = other.width / self.sin;
-        // Its mirror image meets the hem's cut line this far out.
+        // Distance along the hem's cut line to the mirror image of the other cut line (m).
         let end = (other.width + hem.width * self.cos) / self.sin;
         let reach = meet.max(end);
         if reach > self.limit || self.sin <= STRAIGHT {

@@ -8,33 +8,33 @@ use toile_pattern::{Draft, Pattern};
 pub struct CutList {
     /// The fabric.
     pub fabric: String,
-    /// Its pieces, in the order of the pattern.
+    /// Pieces cut from it, in the order of the pattern.
     pub pieces: Vec<CutListPiece>,
 }
 
 /// A panel in a cut list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutListPiece {
-    /// The panel.
+    /// Name of the panel.
     pub name: String,
-    /// How often it is cut.
+    /// Number of pieces to cut.
     pub quantity: u32,
-    /// How many of these are pairs, one of two turned over.
+    /// Number of pairs among them, one piece of each turned over.
     pub pairs: u32,
-    /// Area of one as cut, holes taken out (m2).
+    /// Area of one piece as cut, holes taken out (m2).
     pub area: f64,
 }
 
 impl CutList {
-    /// Area of all its pieces (m2).
+    /// Area of all pieces of the list (m2).
     pub fn area(&self) -> f64 {
         let all = self.pieces.iter().map(|p| f64::from(p.quantity) * p.area);
         all.sum()
     }
 }
 
-/// The cut list of a draft by the first copy of each panel, fabrics in the order in which pieces name
-/// them. Copies among the pieces given are left out.
+/// The cut list of a draft, from the first copy of each panel. Fabrics stand in the order in which the pieces
+/// name them. Further copies among `pieces` are left out.
 pub fn cut_list((pattern, draft): (&Pattern, &Draft), pieces: &[CutPiece]) -> Vec<CutList> {
     let mut lists: Vec<CutList> = Vec::new();
     for cut in pieces.iter().filter(|piece| piece.id.copy == 0) {

@@ -1,31 +1,31 @@
 //! The mouth of a dart: cloth that lies flush with the edge beside it once the dart is pressed.
 //!
-//! Sewn shut and pressed to one side, the cloth inside a dart is folded at the leg it is pressed
-//! towards and again, backwards, at the fold line half-way between the legs. So the half beside
-//! that leg is cut along the mirror image in it of the neighbour's cut line, and the other half
-//! along the mirror image of the first in the fold line.
+//! When a dart is sewn shut and pressed to one side, the cloth inside it is folded at the leg it is pressed
+//! towards, and again, backwards, at the fold line half-way between the legs. So the half of the mouth beside
+//! that leg is cut along the mirror image, in the leg, of the neighbour's cut line; the other half is cut
+//! along the mirror image of the first half in the fold line.
 
 use crate::chain::{Chain, Tag, corner_tag};
 use crate::ring::{Chord, Ring};
 use crate::{CapFault, CutError, Dart, MITRE_LIMIT, SegmentKind};
 use toile_geometry::{Polygon, Vec2};
 
-/// The points that replace the legs of a dart in the chain round the cloth.
+/// The cloth at the mouth of a dart: points that replace the legs in the chain round the cloth.
 pub(crate) struct Cap {
-    /// Edges of the ring.
+    /// The two legs, as edges of the ring.
     pub legs: [usize; 2],
-    /// From the start of the first leg towards the end of the second, whose point is left out.
+    /// Outer boundary from the start of the first leg towards the end of the second, whose point is left out.
     pub roof: Chain,
     /// Cloth between the neighbours' allowances and the extended legs.
     pub patches: Vec<Chain>,
     pub fault: Option<CapFault>,
 }
 
-/// A straight line of which points lie at the left or the right.
+/// A directed line, with points to its left and right.
 #[derive(Clone, Copy)]
 struct Axis {
     on: Vec2,
-    /// Of length 1.
+    /// Unit vector along the line.
     along: Vec2,
 }
 
@@ -35,33 +35,33 @@ impl Axis {
         self.on + self.along * (2.0 * d.dot(&self.along)) - d
     }
 
-    /// Signed distance, positive at the left (m).
+    /// Signed distance of a point from the line, positive at the left (m).
     fn side(&self, p: Vec2) -> f64 {
         self.along.perp(&(p - self.on))
     }
 
-    /// Where the line through `p` along `way` meets it.
+    /// Point of the axis that the line through `p` along `way` meets.
     fn meet(&self, p: Vec2, way: Vec2) -> Option<Vec2> {
         let t = -self.side(p) / self.along.perp(&way);
         t.is_finite().then(|| p + way * t)
     }
 }
 
-/// The direction of a ring with this outward normal.
+/// Direction of a ring that has this outward normal.
 fn along(normal: Vec2) -> Vec2 {
     Vec2::new(-normal.y, normal.x)
 }
 
-/// One side of a dart's mouth: the end of a leg and the edge beside it, walked away from the dart.
+/// One side of a dart's mouth: the end of a leg, and the neighbour edge walked away from the dart.
 struct Flank {
-    /// Edge of the ring that is the leg.
+    /// The leg, as an edge of the ring.
     leg: usize,
     mouth: Vec2,
-    /// Outwards along the leg, of length 1.
+    /// Unit vector outwards along the leg.
     out: Vec2,
-    /// The neighbour's offset line from the mouth on.
+    /// The neighbour's cut line, from the mouth on (m).
     offset: Vec<Vec2>,
-    /// Its width (m).
+    /// Width of the neighbour's allowance (m).
     width: f64,
 }
 
@@ -113,8 +113,8 @@ impl Flank {
         }
     }
 
-    /// The offset line from where it meets the extended leg on, and the cloth that is missing
-    /// between its start and the leg.
+    /// The neighbour's cut line from the extended leg on, and the triangle of cloth that is missing between
+    /// the start of the cut line and the leg.
     fn beyond_leg(&self, axis: Axis) -> Result<(Vec<Vec2>, Option<[Vec2; 3]>), CapFault> {
         let [first, second, ..] = self.offset[..] else {
             return Err(CapFault::NoNeighbour);
@@ -220,7 +220,7 @@ fn patch_chain(patch: [Vec2; 3], tag: Tag) -> Chain {
     }
 }
 
-/// Straight across the mouth, with the width of the edge it is pressed towards.
+/// A cap straight across the mouth, with the width of the edge that the dart is pressed towards.
 fn straight(flanks: &[Flank; 2], pressed: usize, width: f64) -> Chain {
     let (p, q) = (flanks[0].mouth, flanks[1].mouth);
     let across = (q - p).try_normalize(0.0).unwrap_or_default();
@@ -247,8 +247,8 @@ fn folded(
     let across = (far.mouth - near.mouth)
         .try_normalize(1e-9)
         .ok_or(CapFault::NoMeeting)?;
-    // The fold line takes one end of the mouth to the other: with legs of equal lengths it runs
-    // through the apex.
+    // The mirror image in the fold line takes one end of the mouth to the other: with legs of equal lengths
+    // the line runs through the apex.
     let fold = Axis {
         on: (near.mouth + far.mouth) * 0.5,
         along: Vec2::new(-across.y, across.x),
@@ -274,7 +274,7 @@ fn folded(
         cap_tag(flank.leg)
     });
     let mut tags: Vec<Tag> = tags.collect();
-    // The sides on the extended legs are steps to the neighbours' allowances.
+    // The first and last side lie on the extended legs: they are steps to the neighbours' allowances.
     let corner = |which: usize| corner_tag(ring, [legs[0], ring.after(legs[1])][which]);
     if let [first, .., last] = &mut tags[..] {
         (*first, *last) = (corner(pressed), corner(1 - pressed));
@@ -293,7 +293,7 @@ fn folded(
     Ok((Chain { points, tags }, patches))
 }
 
-/// The points of a path up to the line, and the one on it.
+/// The points of a path up to a line, and the point where the path meets it.
 fn up_to(path: Vec<Vec2>, line: Axis) -> Result<Vec<Vec2>, CapFault> {
     let sign = line.side(path[0]).signum();
     let crossed = path.iter().position(|&p| line.side(p) * sign <= 0.0);
@@ -310,7 +310,7 @@ fn up_to(path: Vec<Vec2>, line: Axis) -> Result<Vec<Vec2>, CapFault> {
     Ok(kept)
 }
 
-/// The legs backwards from the end of the second to the start of the first, both left out.
+/// Points of the legs, backwards from the end of the second to the start of the first, both left out.
 fn apex_side(ring: &Ring, legs: [usize; 2]) -> Vec<Vec2> {
     let mut points: Vec<Vec2> = legs
         .iter()

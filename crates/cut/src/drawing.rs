@@ -1,5 +1,5 @@
 //! The drawing of a cut piece: lines, areas and words by kind. Prints, markers, their files and the window
-//! draw a piece from this alone.
+//! draw a piece from the drawing alone.
 
 use crate::CutNotch;
 use crate::label::Spot;
@@ -11,11 +11,11 @@ use toile_pattern::{CornerName, LineName, NotchId};
 /// The purpose of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StrokeKind {
-    /// To cut along.
+    /// A line to cut along.
     Cut,
-    /// To sew along.
+    /// A line to sew along.
     Sew,
-    /// Drawn inside.
+    /// Another line drawn inside the piece.
     Inside,
     /// A notch, to cut along.
     Notch,
@@ -29,16 +29,16 @@ pub enum StrokeKind {
     Drill,
 }
 
-/// The part of the piece that a line shows.
+/// The part of the piece that a line draws.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StrokeName {
-    /// A closed line, each segment by name.
+    /// A closed line, with the name of each segment.
     Ring(Vec<PieceSegment>),
     /// A line of the panel.
     Line(LineName),
     /// A notch.
     Notch(NotchId),
-    /// A corner a dart made, and the half it is on.
+    /// A corner that a dart made, and the half of a folded panel that it is on.
     Corner(CornerName, u8),
     /// The piece as a whole.
     Piece,
@@ -47,13 +47,13 @@ pub enum StrokeName {
 /// A line through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
-    /// Its purpose.
+    /// Purpose of the line.
     pub kind: StrokeKind,
-    /// The part of the piece that it shows.
+    /// Part of the piece that the line draws.
     pub name: StrokeName,
-    /// Its corners (m).
+    /// Corners of the line (m).
     pub points: Vec<Vec2>,
-    /// Whether the last is joined to the first.
+    /// Whether the last point is joined to the first.
     pub closed: bool,
 }
 
@@ -62,38 +62,38 @@ pub struct Stroke {
 pub struct Drawing {
     /// The area of the cloth.
     pub fill: Option<Polygon>,
-    /// Its lines, in the order of their kinds as they are drawn over one another.
+    /// Lines, in the order of their kinds: later ones are drawn over earlier ones.
     pub strokes: Vec<Stroke>,
-    /// Its words.
+    /// Words written on the piece.
     pub words: Vec<Words>,
 }
 
-/// What is written on a piece, and where.
+/// The text to write on a piece, with limits on its size and place.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Writing<'w> {
-    /// The lines, the first one largest.
+    /// Lines of text, the first one largest.
     pub lines: &'w [&'w str],
-    /// Largest letters (m), where they are to be smaller than usual.
+    /// Largest height of letters (m), if they are to be smaller than usual.
     pub most: Option<f64>,
-    /// Lines that words do not lie on, besides those of the piece (m).
+    /// Lines that words must not lie on, besides the lines of the piece (m).
     pub clear_of: &'w [[Vec2; 2]],
 }
 
-/// Size of the letters on the largest pieces (m), and on the smallest.
+/// Height of letters on the largest and on the smallest pieces (m).
 const LETTERS: [f64; 2] = [0.022, 0.004];
 /// Arm of the cross at the end of a dart (m).
 const DRILL: f64 = 0.003;
 
 impl StrokeKind {
-    /// Whether a knife follows it.
+    /// Whether a knife follows the line.
     pub fn is_cut(self) -> bool {
         matches!(self, Self::Cut | Self::Notch)
     }
 }
 
 impl CutPiece {
-    /// The piece drawn somewhere: `place` takes its points there, moved, turned, turned over or
-    /// scaled. The lines given are written on it, the first one largest.
+    /// Drawing of the piece. `place` maps points of the piece to points of the drawing: moved, turned, turned
+    /// over or scaled. `lines` are written on it, the first one largest.
     pub fn drawing(&self, place: impl Fn(Vec2) -> Vec2, lines: &[&str]) -> Drawing {
         let writing = Writing {
             lines,
@@ -102,7 +102,7 @@ impl CutPiece {
         self.drawing_with(place, &writing)
     }
 
-    /// The same with more said of the words.
+    /// [`Self::drawing`] with the size and place of the words limited too.
     pub fn drawing_with(&self, place: impl Fn(Vec2) -> Vec2, writing: &Writing<'_>) -> Drawing {
         let placed = |points: &[Vec2]| points.iter().map(|&p| place(p)).collect::<Vec<Vec2>>();
         let mut strokes = Vec::new();
@@ -148,7 +148,7 @@ impl CutPiece {
             }
         }
         let polygon = self.polygon().mapped(&place);
-        // Words and grain keep clear of seam lines and darts where these are known.
+        // Words and grain line keep clear of seam lines and darts if the seam lines are known.
         let inner = match self.sew.is_empty() {
             true => polygon.clone(),
             false => self.sewn().mapped(&place),
@@ -173,7 +173,7 @@ impl CutPiece {
         }
     }
 
-    /// Its notches, of those that look alike one.
+    /// Notches of the piece, only one of those that look alike.
     pub fn notches_seen(&self) -> impl Iterator<Item = &CutNotch> {
         let seen = self.notches.iter().enumerate();
         seen.filter(|(k, notch)| !self.notches[..*k].iter().any(|n| n.looks_like(notch)))
@@ -188,7 +188,8 @@ impl CutPiece {
         let Some(way) = way.filter(|_| spot.room > 0.0) else {
             return Vec::new();
         };
-        // All of it lies inside the free circle round the spot, and above that where words are below.
+        // The whole arrow lies inside the free circle round the spot, and above the words if they are at the
+        // spot.
         let (centre, reach) = match label.above {
             true => {
                 let up = label.words.first().map_or(Vec2::y(), Words::up);
@@ -217,8 +218,8 @@ fn inner_lines(strokes: &[Stroke]) -> Vec<[Vec2; 2]> {
         .collect()
 }
 
-/// A closed line whole, or its parts that do not lie on the fold of the cloth: corners, segments,
-/// and whether it is closed.
+/// A closed line whole, or the parts of it that do not lie on the fold of the cloth: corners, segments, and
+/// whether it is closed.
 fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
     let count = ring.points.len();
     let on_fold = |k: usize| ring.segments[k % count] == PieceSegment::Fold;
@@ -238,7 +239,7 @@ fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
     parts
 }
 
-/// Size of the first line at a spot (m).
+/// Height of the letters of the first line at a spot (m).
 fn letters(spot: &Spot) -> f64 {
     (spot.room * 0.3).clamp(LETTERS[1], LETTERS[0])
 }

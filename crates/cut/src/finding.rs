@@ -1,13 +1,13 @@
-//! Faults of a cut line: what was not done as asked.
+//! Faults of a cut line: allowances, corners, darts and notches that could not be made as asked.
 
 use crate::EdgeIndex;
 use toile_geometry::Vec2;
 use toile_pattern::NotchId;
 
-/// Why a dart has a straight cap.
+/// Reason why the mouth of a dart is cut straight across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CapFault {
-    /// The edge it is pressed towards is a leg of a dart too.
+    /// The edge that the dart is pressed towards is a leg of a dart too.
     NoNeighbour,
     /// The leg runs along the neighbour's cut line or nearly so, or the mouth has no width.
     NoMeeting,
@@ -18,23 +18,21 @@ pub enum CapFault {
     Crossing,
 }
 
-/// A fault of a cut line. Places along edges are counted from the start of
-/// the edge as given.
+/// A fault of a cut line. Places along an edge are measured from the start of the edge as given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// Along a span of an edge its own cut line is missing, because other cloth or allowance lies there:
-    /// the piece is cut farther out.
+    /// Along a span of an edge the edge's own cut line is missing, because other cloth or allowance lies
+    /// there: the piece is cut farther out.
     Swallowed {
         /// The edge.
         edge: EdgeIndex,
         /// The span, from and to (m).
         span: [f64; 2],
-        /// Whether it starts or ends at an inner corner or a dart, where allowances always
-        /// overlap.
+        /// Whether the span starts or ends at an inner corner or a dart, where allowances always overlap.
         inner_corner: bool,
     },
-    /// Along a span of an edge the allowance, measured square to the seam line, is narrower
-    /// than asked: a corner takes some of it.
+    /// Along a span of an edge the allowance, measured square to the seam line, is narrower than asked: a
+    /// corner takes some of it.
     Narrow {
         /// The edge.
         edge: EdgeIndex,
@@ -47,21 +45,21 @@ pub enum Finding {
     CutOff {
         /// The edge that starts at the corner.
         corner: EdgeIndex,
-        /// How far from the seam line's corner it would reach (m).
+        /// Distance from the seam line's corner that the cut line would reach (m).
         asked: f64,
-        /// How far it reaches (m).
+        /// Distance that it reaches (m).
         kept: f64,
     },
-    /// A corner is too blunt for its kind, which would reach too far, and is mitred.
+    /// A corner is too blunt for the shape asked, which would reach too far, and is mitred.
     Mitred {
         /// The edge that starts at the corner.
         corner: EdgeIndex,
-        /// How far from the seam line's corner it would reach (m).
+        /// Distance from the seam line's corner that the shape asked would reach (m).
         asked: f64,
     },
     /// The allowances of a slit's sides meet: it is not cut open.
     SlitShut {
-        /// The edges with the slit's mouth, in the cloth's order.
+        /// The edges at the slit's mouth, in the cloth's order.
         edges: [EdgeIndex; 2],
         /// Middle of the mouth on the seam line (m).
         mouth: Vec2,
@@ -72,14 +70,14 @@ pub enum Finding {
     },
     /// The allowances round a bay meet at its mouth and leave a hole in the piece.
     BayShut {
-        /// Its number in [`crate::CutLine::holes`].
+        /// Number of the hole in [`crate::CutLine::holes`].
         hole: usize,
         /// Area of the hole (m2).
         area: f64,
     },
     /// A hole is filled by its allowance, or falls into parts.
     HoleShut {
-        /// Number of the hole as given.
+        /// Number of the hole in the seam line.
         hole: usize,
         /// Number of parts that remain: 0, or more than 1.
         parts: usize,
@@ -88,14 +86,14 @@ pub enum Finding {
     StraightCap {
         /// Number of the dart.
         dart: usize,
-        /// Why.
+        /// Reason.
         fault: CapFault,
     },
     /// Notches are cut less deep than usual, as the allowance is narrower.
     NotchesShort {
         /// The notches.
         notches: Vec<NotchId>,
-        /// The least depth (m).
+        /// Depth of the shallowest of them (m).
         depth: f64,
     },
     /// Notches are drawn on the seam line, as there is no allowance to cut them into.

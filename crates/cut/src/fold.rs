@@ -6,11 +6,12 @@ use toile_geometry::{
     Bounds2, EdgeTree, Polygon, Vec2, intersection, point_segment_distance, total_area,
 };
 
-/// Outlines that differ by less than this part of their area are the same.
+/// Largest difference of outlines that count as the same (share of their area).
 const SAME_SHAPE: f64 = 1e-4;
-/// Directions that differ by less are the same (rad).
+/// Sine of the largest angle between directions that count as the same (1).
 const SAME_WAY: f64 = 1e-6;
-/// Points this near to a line lie on it (m): some steps of the grid that halves are cut on.
+/// Largest distance from a line of points that count as on it (m): some steps of the grid that halves are cut
+/// on.
 const ON_LINE: f64 = 1e-6;
 
 impl HalfPlane {
@@ -20,17 +21,17 @@ impl HalfPlane {
         self.inward.dot(&Vec2::new(cos, sin)).abs() < SAME_WAY
     }
 
-    /// How far inside a point lies (m).
+    /// Distance of a point inside the border of the half-plane (m).
     fn depth(&self, point: Vec2) -> f64 {
         (point - self.at).dot(&self.inward)
     }
 
-    /// Whether a point is kept, the line included.
+    /// Whether a point is kept, also on the border.
     fn keeps(&self, point: Vec2) -> bool {
         self.depth(point) >= -ON_LINE
     }
 
-    /// The largest part of a polygon that is kept.
+    /// The largest part of a polygon inside the half-plane.
     fn cut(&self, polygon: &Polygon) -> Polygon {
         let bounds = polygon.bounds();
         let reach = 1.1 * (bounds.size().norm() + (bounds.centre() - self.at).norm());
@@ -45,7 +46,7 @@ impl HalfPlane {
         largest.unwrap_or_else(|| Polygon::new(Vec::new()))
     }
 
-    /// The part of rings that is kept, each segment with what it was.
+    /// The part of rings inside the half-plane; each segment keeps the name it had.
     fn cut_rings(&self, rings: &[PieceRing]) -> Vec<PieceRing> {
         let polygon = Polygon {
             outer: rings.first().map_or_else(Vec::new, |r| r.points.clone()),
@@ -79,7 +80,7 @@ impl HalfPlane {
         self.cut(&polygon).rings().map(of).collect()
     }
 
-    /// A line of points that lies on the side kept or on the border, or its parts that do.
+    /// A polyline whole if all of it lies inside or on the border, else the parts of it that are inside.
     fn kept(&self, points: &[Vec2]) -> Vec<Vec<Vec2>> {
         match points.iter().all(|&p| self.keeps(p)) {
             true => vec![points.to_vec()],
@@ -87,7 +88,7 @@ impl HalfPlane {
         }
     }
 
-    /// The parts of a line of points that are kept.
+    /// The parts of a polyline inside the half-plane.
     fn cut_line(&self, points: &[Vec2]) -> Vec<Vec<Vec2>> {
         let mut parts: Vec<Vec<Vec2>> = vec![Vec::new()];
         for (k, &p) in points.iter().enumerate() {
@@ -171,7 +172,7 @@ impl CutPiece {
         }
     }
 
-    /// Whether it is the same on both sides of a line, so that it may be cut on a fold.
+    /// Whether the piece is its own mirror image in a line, so that it may be cut on a fold.
     pub fn is_symmetric_in(&self, half: &HalfPlane) -> bool {
         let outer = self.outer();
         let mirror = |p: Vec2| p - half.inward * (2.0 * half.depth(p));
@@ -184,7 +185,7 @@ impl CutPiece {
         are_mirror_images(&self.straightened(), &other.straightened())
     }
 
-    /// Its outline with the grain along +x and the box at the origin.
+    /// Outline with the grain along +x and the lower corner of its box at the origin.
     fn straightened(&self) -> Polygon {
         let straight = self.outer().rotated(-self.grain);
         straight.translated(-straight.bounds().min)

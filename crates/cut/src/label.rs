@@ -2,13 +2,13 @@
 
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 
-/// Cells of the grid along each side of a polygon's box.
+/// Number of cells of the grid along each side of a polygon's box.
 const CELLS: u32 = 24;
 
 /// A place far inside a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spot {
-    /// The place (m).
+    /// Position (m).
     pub at: Vec2,
     /// Distance to the nearest line (m); 0 where there is no room.
     pub room: f64,
@@ -24,7 +24,7 @@ pub(crate) fn cells(polygon: &Polygon) -> Vec<Vec2> {
     all.filter(|&point| polygon.contains(point)).collect()
 }
 
-/// Of some points inside a polygon the one that lies far from lines and near its middle.
+/// The point, among some inside a polygon, that lies far from lines and near the middle of the polygon's box.
 pub(crate) fn roomiest_of(polygon: &Polygon, cells: &[Vec2], lines: &[[Vec2; 2]]) -> Spot {
     let bounds = polygon.bounds();
     let centre = bounds.centre();

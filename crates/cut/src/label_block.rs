@@ -5,32 +5,33 @@ use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_lettering::{shortened, width};
 
-/// Size of lines after the first over that of the first.
+/// Size of the lines after the first, over the size of the first.
 const LATER_LINES: f64 = 0.7;
-/// From a line to the next over its size.
+/// Distance from one baseline to the next, over the size of the lower line.
 const LINE_STEP: f64 = 1.3;
-/// Heights of letters over and under the baseline, over their size.
+/// Height of letters above and below the baseline, over their size.
 const ASCENT: f64 = 0.8;
 const DESCENT: f64 = 0.25;
 /// Share of a free length that words take: fonts of other programs are wider.
 const FILLED: f64 = 0.85;
-/// How far below the spot words begin, and how far down they go, over its distance to the outline.
+/// Gap between the spot and the words below it, and height of those words, over the spot's distance to the
+/// outline.
 const GAP: f64 = 0.05;
 const LINES: f64 = 0.85;
-/// Letters that are read with ease (m); words are written by the grain line if they are no smaller.
+/// Size of letters that are read with ease (m); words stand by the grain line if they are no smaller.
 const EASY: f64 = 0.003;
-/// Words are shortened rather than written in smaller letters (m).
+/// Smallest letters (m): below this size words are shortened instead.
 const SMALL: f64 = 0.0018;
-/// Length that a shortened line has at the least, over the size of its letters.
+/// Least length of a shortened line, over the size of its letters.
 const SHORTEST: f64 = 3.0;
-/// Upright words are read less well: they must be so much larger.
+/// Factor by which upright words must be larger to be chosen: they are read less well.
 const UPRIGHT: f64 = 1.6;
-/// Smallest size that counts (m).
+/// Smallest size of letters that counts as room (m).
 const LEAST: f64 = 1e-6;
-/// Steps by which the largest size is found.
+/// Number of bisections in the search for the largest size.
 const STEPS: u32 = 12;
 
-/// Words, the middle of their baseline at a point.
+/// A line of words, centred on a point of its baseline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Words {
     /// The text.
@@ -44,12 +45,12 @@ pub struct Words {
 }
 
 impl Words {
-    /// Unit vector from their feet to their heads.
+    /// Unit vector from the feet of the letters to their heads.
     pub(crate) fn up(&self) -> Vec2 {
         Vec2::new(-self.angle.sin(), self.angle.cos())
     }
 
-    /// A box that holds them (m).
+    /// Box that holds the words (m).
     fn bounds(&self) -> Bounds2 {
         let (up, half) = (self.up(), 0.5 * width(&self.text) / FILLED * self.size);
         let along = Vec2::new(up.y, -up.x) * half;
@@ -58,20 +59,20 @@ impl Words {
     }
 }
 
-/// Where words can stand.
+/// The room for words in a piece.
 struct Room<'r> {
-    /// Places far inside, by a grid.
+    /// Candidate places inside the piece, on a grid (m).
     cells: &'r [Vec2],
-    /// What words must not lie on, outline included.
+    /// Lines that words must not lie on, outline included (m).
     lines: &'r [[Vec2; 2]],
 }
 
-/// Lines of words with their widths, at size 1 of the first.
+/// Lines of words to be set below one another.
 struct Block<'w> {
     lines: Vec<&'w str>,
 }
 
-/// A place for a block: its middle, the size of its first line, and whether it runs upwards.
+/// A place for a block: its middle, the size of its first line, and whether it reads upwards.
 #[derive(Clone, Copy)]
 struct Fit {
     at: Vec2,
@@ -83,14 +84,14 @@ fn share(line: usize) -> f64 {
     if line == 0 { 1.0 } else { LATER_LINES }
 }
 
-/// Height of some lines over the size of the first.
+/// Height of a block of lines over the size of the first.
 fn height(count: usize) -> f64 {
     let last = share(count.saturating_sub(1));
     ASCENT + LINE_STEP * LATER_LINES * (count.max(1) - 1) as f64 + DESCENT * last
 }
 
 impl Block<'_> {
-    /// Width over the size of the first line, with what other fonts need more.
+    /// Width of the block over the size of the first line, with allowance for wider fonts.
     fn width(&self) -> f64 {
         let widths = self.lines.iter().enumerate();
         widths
@@ -129,8 +130,8 @@ impl Room<'_> {
         !self.lines.iter().any(|&line| enters(line, &bounds))
     }
 
-    /// The largest number up to `most` for which a box of a growing half size is free somewhere, and
-    /// where: the place nearest to one that is preferred. Boxes turned upright swap their sides.
+    /// The largest number up to `most` for which a box of half size `half` is free at some place; of places
+    /// that are alike, the one nearest to `near`. Boxes turned upright swap their sides.
     fn largest(&self, near: Vec2, most: f64, half: impl Fn(f64) -> Vec2) -> Option<Fit> {
         let mut best: Option<Fit> = None;
         for &at in self.cells {
@@ -156,7 +157,7 @@ impl Room<'_> {
         best
     }
 
-    /// Lines of words below a spot, in letters that are read with ease.
+    /// Lines of words below a spot, if there is room there for letters that are read with ease.
     fn below(&self, spot: &Spot, block: &Block<'_>, most: f64) -> Option<Vec<Words>> {
         let half = Vec2::new(block.width(), height(block.lines.len())) * 0.5;
         let most = most.min(LINES * spot.room / (2.0 * half.y));
@@ -183,8 +184,8 @@ impl Room<'_> {
         self.largest(near, most, |size| whole * size)
     }
 
-    /// Lines of words somewhere inside, the first in letters of a size at the most (m). They are
-    /// smaller, upright or shortened where they must, and end with an ellipsis where they are cut.
+    /// Lines of words somewhere inside, the first in letters of at most this size (m). They are smaller,
+    /// upright or shortened where they must be, and end with an ellipsis where they are cut.
     fn words(&self, lines: &[&str], (near, most): (Vec2, f64)) -> Vec<Words> {
         let block = Block {
             lines: lines.to_vec(),
@@ -212,8 +213,8 @@ impl Room<'_> {
     }
 }
 
-/// The first lines, each no longer than a length (m) and with an ellipsis if it or what follows is
-/// cut.
+/// The first lines, each no longer than a length (m); an ellipsis ends a line that is cut, and the last one
+/// if further lines are left out.
 fn shortened_block(lines: &[&str], count: usize, (length, fit): (f64, Fit)) -> Vec<Words> {
     let short: Vec<String> = lines[..count]
         .iter()
@@ -234,8 +235,8 @@ fn shortened_block(lines: &[&str], count: usize, (length, fit): (f64, Fit)) -> V
     block.placed(fit)
 }
 
-/// The largest of two sizes and those between for which a box that grows with it is free; the
-/// smaller one is.
+/// The largest number between two for which a box that grows with it is free; the box of the smaller number
+/// is known to be free.
 fn grown([mut fits, most]: [f64; 2], is_free: impl Fn(f64) -> bool) -> f64 {
     if is_free(most) {
         return most;
@@ -251,7 +252,7 @@ fn grown([mut fits, most]: [f64; 2], is_free: impl Fn(f64) -> bool) -> f64 {
     fits
 }
 
-/// Whether a segment comes into a box.
+/// Whether a segment enters a box.
 fn enters([from, to]: [Vec2; 2], bounds: &Bounds2) -> bool {
     let way = to - from;
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -275,18 +276,18 @@ fn enters([from, to]: [Vec2; 2], bounds: &Bounds2) -> bool {
     enter < leave
 }
 
-/// The words of a piece, and where its grain line goes.
+/// The words of a piece, and the place of its grain line.
 pub(crate) struct Label {
     pub words: Vec<Words>,
-    /// The spot of the grain line, which lies above the words there; in its middle where the words
-    /// lie elsewhere.
+    /// Free place of the grain line: above the words if they are below the spot, in the middle of the spot if
+    /// they lie elsewhere.
     pub spot: Spot,
     pub above: bool,
 }
 
-/// Lines of words inside a polygon, clear of other lines: by the roomiest spot, the grain line above
-/// them, where they are read with ease there, else wherever they fit best. The first line's letters
-/// have a size at the most (m), by the spot.
+/// Lines of words inside a polygon, clear of other lines. They stand at the roomiest spot, with the grain
+/// line above them, if letters there are read with ease; else wherever they fit best. `most` gives the
+/// largest letters of the first line at a spot (m).
 pub(crate) fn label(
     polygon: &Polygon,
     others: &[[Vec2; 2]],
@@ -315,11 +316,11 @@ pub(crate) fn label(
     if let Some(words) = clear.below(&spot, &block, most) {
         return by_the_spot(words);
     }
-    // Words on a line inside are better than words that are cut.
+    // Words that lie on an inner line are better than words that are cut.
     let fit = clear.fit(&block, (spot.at, most));
     let crowded = fit.is_none_or(|fit| fit.size < SMALL.min(most));
     let words = if crowded { &free } else { &clear }.words(lines, (spot.at, most));
-    // The grain line keeps clear of them.
+    // The grain line keeps clear of the words.
     let boxes: Vec<Bounds2> = words.iter().map(Words::bounds).collect();
     let mut around = edges;
     around.extend(boxes.iter().flat_map(|b| {

@@ -1,11 +1,11 @@
 //! Pieces as they are cut: the seam line of a piece grown by the allowance of each of its edges.
 //!
-//! The cut line is the boundary of a union of convex pieces of cloth (a rectangle outside each
-//! chord, a wedge at each outer bend, a patch at each corner, a cap at each dart), so that it
-//! cannot cross itself and no loops have to be taken out. Every segment of it says which edge it
-//! belongs to; what could not be done as asked is listed. A [`CutPiece`] is a piece of a draft with
-//! all that is drawn on it, and its [`Drawing`] is what prints, markers, files and the window show.
-//! Lengths in metres. `docs/methods/cut.md` has the equations.
+//! The cut line is the boundary of a union of convex pieces of cloth (a rectangle outside each chord, a wedge
+//! at each outer bend, a patch at each corner, a cap at each dart), so that it cannot cross itself and no
+//! loops have to be taken out. Every segment of it says which edge it belongs to; whatever could not be done
+//! as asked is listed. A [`CutPiece`] is a piece of a draft with all that is drawn on it, and its [`Drawing`]
+//! is shown by prints, markers, files and the window. Lengths in metres. `docs/methods/cut.md` has the
+//! equations.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 

@@ -2,7 +2,7 @@
 
 use toile_pattern::{EdgeOrigin, Name, Panel};
 
-/// An edge of a panel or of one it is a side of, or what an operation made, in words.
+/// Words for an edge: the name of a drawn edge of a panel in the lineage, else of the operation that made it.
 pub(crate) fn edge_words(lineage: &[&Panel], origin: EdgeOrigin) -> String {
     match origin.name {
         Name::Drawn(id) => match lineage.iter().find_map(|panel| panel.edge(id)) {

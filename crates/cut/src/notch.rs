@@ -3,37 +3,35 @@
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeOrigin, NotchId, NotchKind};
 
-/// Depth of a notch (m): seen from an arm's length, and short of a 10 mm seam.
+/// Depth of a notch (m): visible at arm's length, and well within an allowance of 10 mm.
 pub const NOTCH_DEPTH: f64 = 0.006;
 
-/// A notch of a cut piece. At a corner of the seam line there is one for each cut line that meets
-/// there.
+/// A notch of a cut piece. At a corner of the seam line there is one for each cut line that meets there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutNotch {
     /// The notch of the panel.
     pub id: NotchId,
-    /// The edge it is on.
+    /// The edge that the notch is on.
     pub edge: EdgeOrigin,
-    /// Its shape.
+    /// Shape of the notch.
     pub kind: NotchKind,
-    /// Where on the seam line (m).
+    /// Place on the seam line (m).
     pub point: Vec2,
     /// Unit vector into the piece.
     pub inward: Vec2,
-    /// Where on the edge's cut line (m): straight out from the seam line; at a corner where the
-    /// seam line of the other edge, drawn on, meets it. The place on the seam line where that is
-    /// nowhere.
+    /// Place on the edge's cut line (m): straight out from the seam line, or, at a corner, the point where
+    /// the other edge's extended seam line meets the cut line. Equal to `point` if there is no such place.
     pub on_cut: Vec2,
-    /// Unit vector along the edge as drawn: the side to which a check mark slopes.
+    /// Unit vector along the edge as drawn: a check mark slopes to this side.
     pub along: Vec2,
-    /// How deep it is cut (m); 0 where it is drawn, as there is no allowance to cut.
+    /// Depth of the cut (m); 0 where the notch is drawn, as there is no allowance to cut.
     pub depth: f64,
     /// The lines to cut along, each through points (m), from the cut line into the allowance.
     pub cut: Vec<Vec<Vec2>>,
 }
 
 impl CutNotch {
-    /// Lines drawn on the seam line, each through points (m).
+    /// The lines of the notch drawn on the seam line, each through points (m).
     pub fn on_seam_line(&self) -> Vec<Vec<Vec2>> {
         let place = |[along, inward]: [f64; 2]| {
             self.point + (self.along * along + self.inward * inward) * NOTCH_DEPTH
@@ -42,8 +40,8 @@ impl CutNotch {
         shape(self.kind).iter().map(line).collect()
     }
 
-    /// Whether it shows at the same place as another: at an inner corner, where edges go on
-    /// straight into each other, and on a fold.
+    /// Whether the notch looks the same as another at the same place: at an inner corner, where edges
+    /// continue straight into each other, and on a fold.
     pub(crate) fn looks_like(&self, other: &Self) -> bool {
         const SAME: f64 = 1e-6;
         let same = |a: Vec2, b: Vec2| (a - b).norm() < SAME;
@@ -58,7 +56,7 @@ impl CutNotch {
     }
 }
 
-/// The lines of a kind of notch of depth 1: along the edge, and inwards from it.
+/// The lines of a kind of notch at depth 1: coordinates along the edge, and inwards from it.
 pub(crate) fn shape(kind: NotchKind) -> Vec<Vec<[f64; 2]>> {
     match kind {
         NotchKind::Slit => vec![vec![[0.0, 0.0], [0.0, 1.0]]],

@@ -1,4 +1,4 @@
-//! Where the notches of a piece stand: on the seam line, and on the cut lines beside it.
+//! Places of the notches of a piece: on the seam line, and on the cut lines beside it.
 
 use crate::corner::MITRE_LIMIT;
 use crate::notch::CutNotch;
@@ -7,16 +7,16 @@ use crate::seams::{NamedSeam, Plane};
 use toile_geometry::{Vec2, ring_area};
 use toile_pattern::{EdgeOrigin, Piece, PieceNotch};
 
-/// A notch this near to a corner of the seam line is at it (m).
+/// Largest distance between a corner of the seam line and a notch that counts as at the corner (m).
 pub(crate) const AT_CORNER: f64 = 1e-6;
 
-/// Unit vectors and width at a place of an edge.
+/// Directions and allowance at a point of an edge.
 #[derive(Clone, Copy)]
 struct Side {
     edge: EdgeOrigin,
-    /// Along the edge, in the order of the loop.
+    /// Unit vector along the edge, in the order of the loop.
     way: Vec2,
-    /// Away from the cloth.
+    /// Unit vector away from the cloth.
     out: Vec2,
     /// Width of the allowance (m).
     width: f64,
@@ -28,14 +28,14 @@ pub(crate) struct Corner {
     after: Side,
 }
 
-/// Where a notch stands: its edge, from the seam line to the cut line (m), and into the piece.
+/// A notch's edge, the vector from the seam line to the cut line (m), and the unit vector into the piece.
 struct Stand {
     edge: EdgeOrigin,
     outwards: Vec2,
     inward: Vec2,
 }
 
-/// The notches of a piece with the room they have.
+/// The notches of a piece, cut as deep as their room allows.
 pub(crate) fn notches_of(
     piece: &Piece,
     plane: &Plane,
@@ -110,7 +110,7 @@ fn straight_out(notch: &PieceNotch, plane: &Plane, seam: &NamedSeam) -> Stand {
 pub(crate) fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
     for (number, (edges, names)) in seam.loops().enumerate() {
         let corners: Vec<Vec2> = edges.iter().flat_map(|e| e.curve.flatten(1e-3)).collect();
-        // Outlines run counter-clockwise round the cloth and holes clockwise, or all the other way.
+        // Outlines run counter-clockwise round the cloth and holes clockwise, or both the other way round.
         let is_hole = number > 0;
         let sign = match (ring_area(&corners) < 0.0) == is_hole {
             true => 1.0,
@@ -138,8 +138,8 @@ pub(crate) fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
 }
 
 impl Corner {
-    /// The places of a notch at the corner, one for each side that is cut; one of an edge where
-    /// neither is.
+    /// The stands of a notch at the corner: one for each side that is not a dart's leg; if both are legs, one
+    /// on `edge`.
     fn stands(&self, edge: EdgeOrigin) -> Vec<Stand> {
         let (a, b) = (self.before, self.after);
         let inward = -(a.out + b.out).try_normalize(1e-6).unwrap_or(a.out);
@@ -164,14 +164,15 @@ impl Corner {
         }
     }
 
-    /// From the corner to each cut line that meets there.
+    /// Vectors from the corner to each cut line that meets there (m).
     pub fn outwards_all(&self) -> Vec<Vec2> {
         let stands = self.stands(self.before.edge).into_iter();
         stands.map(|stand| stand.outwards).collect()
     }
 
-    /// From the corner to a side's cut line: along the other side's seam line drawn on. At an inner
-    /// corner and at a blunt one, where that is far away, to where both cut lines meet.
+    /// Vector from the corner to the cut line of a side (m): along the other side's extended seam line. At an
+    /// inner corner, and at a blunt one, where that point is far away: to the point where both cut lines
+    /// meet.
     fn outwards(&self, side: Side, drawn_on: Vec2) -> Vec2 {
         let (sin, cos) = (
             -self.before.out.dot(&self.after.way),
@@ -185,7 +186,7 @@ impl Corner {
         drawn_on * (side.width / rise.max(1e-9)).min(MITRE_LIMIT * side.width)
     }
 
-    /// From the corner to where both cut lines meet, unless that is far away.
+    /// Vector from the corner to the point where both cut lines meet (m), unless that is far away.
     fn meeting(&self) -> Option<Vec2> {
         let (n, m) = (self.before.out, self.after.out);
         let (p, q) = (self.before.width, self.after.width);

@@ -7,22 +7,22 @@ use toile_geometry::{
 };
 use toile_pattern::NotchKind;
 
-/// Share of the allowance a notch is cut into at the most: the rest is sewn.
+/// Largest share of the allowance that a notch is cut into: the rest is sewn.
 const MAX_ALLOWANCE_SHARE: f64 = 0.6;
-/// Between a notch and the cloth that is sewn at the least, over its depth: what is left of the
-/// allowance beside the deepest notch.
+/// Least distance between a notch and the sewn cloth, over the depth of the notch: the allowance left beside
+/// the deepest notch.
 const CLEAR: f64 = 0.66;
-/// Between the ground of a notch and the cut line at the least, over its depth.
+/// Least distance between the bottom of a notch and the cut line, over the depth of the notch.
 const WITHIN: f64 = 0.3;
-/// Next depth that is tried over the last.
+/// Ratio of each depth tried to the one before.
 const SHALLOWER: f64 = 0.85;
-/// A notch less deep is not cut (m): it is no wider than the cut of a knife.
+/// Least depth of a notch (m): a shallower one is no wider than the cut of a knife.
 const LEAST: f64 = 0.000_25;
-/// How far from the seam line a cut line is looked for (m).
+/// Largest distance from the seam line at which a cut line is looked for (m).
 const REACH: f64 = 0.5;
-/// Cut lines nearer to the seam line are the same line, flattened (m).
+/// Cut lines nearer to the seam line than this coincide with it, but for flattening (m).
 const ON_SEAM: f64 = 1e-4;
-/// A cut line passes through a place that is no farther away (m).
+/// Largest distance of a point that counts as on the cut line (m).
 const ON_CUT: f64 = 2e-5;
 
 /// A piece's cut line, and the cloth inside its seam lines.
@@ -31,7 +31,7 @@ pub(crate) struct Room {
     pub sewn: Polygon,
 }
 
-/// What lies near a notch.
+/// The cut line and the seam lines near a notch.
 struct Near<'a> {
     room: &'a Room,
     cut: Vec<[Vec2; 2]>,
@@ -39,8 +39,8 @@ struct Near<'a> {
 }
 
 impl Room {
-    /// Where a notch at a place of the seam line stands on the cut line that should lie beyond it
-    /// by a vector (m); nothing where that line does not lie before other cloth.
+    /// Point of the cut line for a notch at `from`, on a cut line expected at `from + outwards` (m). `None`
+    /// where there is no cut line or other sewn cloth lies before it.
     pub fn cut_line(&self, from: Vec2, outwards: Vec2) -> Option<Vec2> {
         let at = self
             .there(from + outwards)
@@ -52,7 +52,7 @@ impl Room {
         (length <= ON_SEAM || !self.sewn.edges().any(blocked)).then_some(at)
     }
 
-    /// The place on the cut line next to a place, if it passes there.
+    /// The nearest point of the cut line, if the line passes through `place`.
     fn there(&self, place: Vec2) -> Option<Vec2> {
         let away = |at: &Vec2| (at - place).norm();
         let nearest = self.cut.edges().map(|edge| closest_on_segment(place, edge));
@@ -60,7 +60,7 @@ impl Room {
         nearest.filter(|at| away(at) <= ON_CUT)
     }
 
-    /// Where a ray from a place meets the cut line first.
+    /// The first point at which a ray meets the cut line.
     fn outwards(&self, from: Vec2, way: Vec2) -> Option<Vec2> {
         let way = way.try_normalize(1e-9)?;
         let mut nearest = REACH;
@@ -79,8 +79,8 @@ impl Room {
         (nearest < REACH).then(|| from + way * nearest.max(0.0))
     }
 
-    /// The depth to which a notch can be cut, and its lines: from a place of the seam line, and
-    /// that on the cut line, with unit vectors along the cut line and inwards. Nothing where no
+    /// Depth to which a notch can be cut, and its lines. `point` is its place on the seam line, `at` its
+    /// place on the cut line, `axes` are unit vectors along the cut line and inwards. `None` where no
     /// allowance is wide enough.
     pub fn cut(
         &self,
@@ -118,7 +118,7 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// The lines of a notch so deep, if all of them lie in the allowance.
+    /// The lines of a notch of this depth, if all of them lie in the allowance.
     fn lines(
         &self,
         kind: NotchKind,
@@ -149,8 +149,8 @@ impl<'a> Near<'a> {
         Some(lines)
     }
 
-    /// The place of the cut line straight out or in from a place that should be on it, no farther
-    /// than a depth inwards (m).
+    /// The point of the cut line straight outwards or inwards from a place that should be on it, at most 0.9
+    /// `inwards` away (m).
     fn on_cut_line(&self, place: Vec2, inwards: Vec2) -> Option<Vec2> {
         let (from, to) = (place + inwards * 0.9, place - inwards * 0.9);
         let way = to - from;
@@ -168,14 +168,14 @@ impl<'a> Near<'a> {
         first.map(|at| from + way * at)
     }
 
-    /// Whether a place lies in the piece as cut, so far from the cut line (m).
+    /// Whether a point lies in the piece as cut, at least this far from the cut line (m).
     fn is_within(&self, place: Vec2, far: f64) -> bool {
         let near = |edge: &[Vec2; 2]| point_segment_distance(place, *edge) < far;
         self.room.cut.contains(place) && !self.cut.iter().any(near)
     }
 
-    /// Whether a line from or to the cut line crosses it nowhere else, and keeps so far from what
-    /// is sewn (m).
+    /// Whether a line from or to the cut line crosses it nowhere else, and keeps at least this far from the
+    /// sewn cloth (m).
     fn is_clear(&self, line: [Vec2; 2], far: f64) -> bool {
         let short = (line[1] - line[0]) * 0.02;
         let inner = [line[0] + short, line[1] - short];

@@ -1,15 +1,15 @@
 //! Options of cut pieces that the pattern does not give: shrinkage, and cloth for fusing.
 
-/// Share of its length a cloth loses when it is washed.
+/// Shares of its length that a cloth loses when it is washed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shrinkage {
     /// Share lost along the warp, below 1; 0.03 for 3 %.
     pub warp: f64,
-    /// Share lost across it, below 1.
+    /// Share lost along the weft, below 1.
     pub weft: f64,
 }
 
-/// Shares that cloth can lose or win, beyond any that was measured.
+/// Largest share that cloth can lose or gain, beyond any that was measured.
 const MAX_SHRINKAGE: f64 = 0.5;
 
 impl Shrinkage {
@@ -19,7 +19,8 @@ impl Shrinkage {
         sound(self.warp) && sound(self.weft)
     }
 
-    /// How much larger a piece is drawn along the warp and across it, so that it comes out right.
+    /// Factors by which a piece is enlarged along the warp and the weft, so that it has its size after
+    /// washing.
     pub fn factors(&self) -> [f64; 2] {
         [self.warp, self.weft].map(|share| 1.0 / (1.0 - share))
     }
@@ -28,8 +29,8 @@ impl Shrinkage {
 /// Options of cut pieces that the pattern does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CutOptions {
-    /// What the cloth loses in the wash. The seam line grows; allowances keep their widths.
+    /// Shrinkage of the cloth in the wash. The seam line grows; allowances keep their widths.
     pub shrinkage: Shrinkage,
-    /// Cloth all round beyond the allowances (m), for pieces that are cut again after fusing.
+    /// Width of the cloth all round beyond the allowances (m), for pieces that are cut again after fusing.
     pub block: f64,
 }

@@ -11,13 +11,13 @@ use toile_geometry::{CrossingKind, Polygon, Vec2};
 
 /// The cut line of a piece: its seam line, darts capped, grown by the allowance of each edge.
 ///
-/// Curves are flattened to [`crate::FLATNESS`]; corners of the result are right to about 4e-9 of
-/// the piece's extent. Where no edge of a loop has a width the loop is returned as flattened, and
-/// everywhere the corners that the union leaves in place keep their coordinates to the bit.
+/// Curves are flattened to [`crate::FLATNESS`]; corners of the result are accurate to about 4e-9 of the
+/// piece's extent. A loop in which no edge has a width is returned as flattened, and everywhere the corners
+/// that the union leaves in place keep their coordinates to the bit.
 ///
 /// # Errors
-/// [`CutError`] for a seam line that bounds no region: open, crossing itself, not finite; for
-/// widths below 0; and for darts that are none.
+/// [`CutError`] for a seam line that bounds no region (open, crossing itself, not finite), for widths below
+/// 0, for corner limits out of range, and for darts whose legs do not make a dart.
 pub fn cut_line(seam: &SeamLine) -> Result<CutLine, CutError> {
     let rings = seam.rings()?;
     let mut line = CutLine::default();
@@ -82,8 +82,9 @@ impl CutLine {
     }
 }
 
-/// The rings with their corners moved back from the grid to where they came from and needless ones
-/// left out, unless they then cross, which takes two corners within a grid step of each other.
+/// The rings with their corners moved back from the grid to their original coordinates, and needless corners
+/// left out. Either is undone if the rings then cross, which takes two corners within a grid step of each
+/// other.
 fn traced(ring: &Ring, sides: &Sides, rings: &[Vec<Vec2>]) -> (Vec<Traced>, Vec<CutRing>) {
     let attempt = |exact: bool, merged: bool| {
         let traced: Vec<Traced> = rings.iter().map(|r| sides.trace(r, exact)).collect();

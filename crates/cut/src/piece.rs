@@ -16,28 +16,28 @@ use toile_pattern::{
     Role,
 };
 
-/// A notch that is less deep is told (m): the allowance is then narrower than a notch is deep.
+/// Depth below which a notch is reported as short (m).
 const SHORT_NOTCH: f64 = 0.0035;
 
 /// The kind of a segment of a cut piece's line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PieceSegment {
-    /// Beside an edge, in its allowance; of a line that is sewn the edge itself.
+    /// Cut line in the allowance of an edge; of a line that is sewn, the edge itself.
     Edge(EdgeOrigin),
     /// Cloth at the mouth of a dart; the edge is the leg it lies beside.
     DartCap(EdgeOrigin),
-    /// At a corner; the edge is the one that starts there.
+    /// Cut line at a corner; the edge is the one that starts there.
     Corner(EdgeOrigin),
     /// The fold of the cloth, which is not cut.
     Fold,
-    /// Nothing is known of it.
+    /// Segment of unknown origin.
     Unknown,
 }
 
 /// A closed line of a cut piece.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceRing {
-    /// Its corners (m); the first is not repeated.
+    /// Corners of the line (m); the first is not repeated.
     pub points: Vec<Vec2>,
     /// The kind of the segment from each corner to the next.
     pub segments: Vec<PieceSegment>,
@@ -46,20 +46,20 @@ pub struct PieceRing {
 /// A line drawn inside a cut piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InsideLine {
-    /// The line of the panel, or what an operation made.
+    /// The line of the panel, or the operation that made it.
     pub name: LineName,
-    /// Its corners (m).
+    /// Corners of the line (m).
     pub points: Vec<Vec2>,
 }
 
-/// A point to mark with a drill or a tack: where a dart ends.
+/// A point to mark with a drill or a tack: the end of a dart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drill {
-    /// The corner the dart made.
+    /// The corner that the dart made.
     pub name: CornerName,
-    /// Which half of a folded panel it is on.
+    /// The half of a folded panel that it is on.
     pub half: u8,
-    /// Where (m).
+    /// Position (m).
     pub at: Vec2,
 }
 
@@ -70,7 +70,7 @@ pub enum TextKind {
     Name,
     /// The size it is drafted to.
     Size,
-    /// How often it is cut.
+    /// The number of pieces to cut.
     Count,
     /// The fabric it is cut from.
     Fabric,
@@ -79,7 +79,7 @@ pub enum TextKind {
 /// A text of a cut piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PieceText {
-    /// Its kind.
+    /// Kind of the text.
     pub kind: TextKind,
     /// The words.
     pub text: String,
@@ -93,48 +93,48 @@ pub struct CutPiece {
     pub id: PieceId,
     /// Name to show.
     pub name: String,
-    /// The line to cut along, the cloth at its left: the outline first, then holes.
+    /// The lines to cut along, the cloth at their left: the outline first, then holes.
     pub cut: Vec<PieceRing>,
     /// The lines to sew along: the outline first, then holes and darts inside the piece.
     pub sew: Vec<PieceRing>,
     /// Other lines.
     pub inside: Vec<InsideLine>,
-    /// The fold line it was unfolded in last, with the half as drawn kept.
+    /// The fold line that the piece was last unfolded at, with its side as drawn.
     pub fold: Option<HalfPlane>,
-    /// Whether this is a half, to be laid on the fold of the cloth: from and to (m).
+    /// Ends of the fold (m), if this is a half that is laid on the fold of the cloth.
     pub on_fold: Option<[Vec2; 2]>,
     /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: f64,
     /// Notches.
     pub notches: Vec<CutNotch>,
-    /// Ends of darts.
+    /// Ends of darts, to be marked.
     pub drills: Vec<Drill>,
-    /// Lines at the cut line where legs of darts and lines of pleats meet it.
+    /// Short lines at the cut line where legs of darts and lines of pleats meet it.
     pub fold_ticks: Vec<FoldTick>,
-    /// Which way its darts and pleats are pressed.
+    /// Directions in which the darts and pleats are pressed.
     pub pressed: Vec<PressArrow>,
-    /// Its texts.
+    /// Texts to write on the piece.
     pub texts: Vec<PieceText>,
     /// Faults of the cut line.
     pub findings: Vec<Finding>,
-    /// The edge each number in a finding stands for.
+    /// Edge of the pattern for each edge number in a finding.
     pub(crate) names: Vec<Vec<EdgeOrigin>>,
-    /// The width asked beside each of them (m).
+    /// Width asked beside each of these edges (m).
     pub(crate) widths: Vec<Vec<f64>>,
-    /// The dart each number in a finding stands for: its first leg.
+    /// First leg of the dart for each dart number in a finding.
     pub(crate) darts: Vec<EdgeOrigin>,
 }
 
-/// The side of a line that is kept.
+/// A line, and the side of it that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfPlane {
-    /// On the line (m).
+    /// A point on the line (m).
     pub at: Vec2,
     /// Unit vector to the side that is kept.
     pub inward: Vec2,
 }
 
-/// Why a piece of a draft cannot be cut.
+/// Reason why a piece of a draft cannot be cut.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PieceError {
     /// The seam line has no cut line.
@@ -146,10 +146,10 @@ pub enum PieceError {
 }
 
 impl CutPiece {
-    /// A piece of a draft as it is cut. The size is written on it if there is one.
+    /// A piece of a draft as it is cut. `size` is written on it if given.
     ///
     /// # Errors
-    /// [`PieceError`] where the piece bounds no region.
+    /// [`PieceError`] if there is no piece of this number, or the piece has no cut line.
     pub fn new(
         (pattern, draft): (&Pattern, &Draft),
         number: usize,
@@ -180,7 +180,7 @@ impl CutPiece {
         let rings = std::iter::once(&line.outline).chain(&line.holes);
         let cut: Vec<PieceRing> = rings.map(named).collect();
         let sew = sewn(&seam);
-        // Darts inside the piece are sewn and hold cloth.
+        // Darts inside the piece are sewn and hold cloth: the room for notches ignores them.
         let room = Room {
             cut: polygon_of(&cut),
             sewn: polygon_of(&sew[..seam.names.len()]),
@@ -223,7 +223,7 @@ impl CutPiece {
         })
     }
 
-    /// A piece of which only the line to cut along is known.
+    /// A piece of which only the cut line is known.
     pub fn of_outline(name: &str, outline: &Polygon, grain: f64) -> Self {
         let ring = |points: &Vec<Vec2>| PieceRing {
             points: points.clone(),
@@ -256,7 +256,7 @@ impl CutPiece {
         }
     }
 
-    /// Whether all its numbers are finite.
+    /// Whether all numbers of the piece are finite.
     pub fn is_finite(&self) -> bool {
         let rings = self.cut.iter().chain(&self.sew).map(|ring| &ring.points);
         let lines = rings.chain(self.inside.iter().map(|line| &line.points));
@@ -286,23 +286,23 @@ impl CutPiece {
         polygon_of(&self.sew)
     }
 
-    /// Its extent as cut (m).
+    /// Box of the piece as cut (m).
     pub fn bounds(&self) -> Bounds2 {
         self.outer().bounds()
     }
 
-    /// A text of a kind.
+    /// The text of this kind, if the piece has one.
     pub fn text(&self, kind: TextKind) -> Option<&str> {
         let found = self.texts.iter().find(|text| text.kind == kind);
         found.map(|text| &*text.text)
     }
 
-    /// The width of allowance asked beside an edge of a finding (m).
+    /// Width of the allowance asked beside an edge of a finding (m).
     pub(crate) fn width(&self, index: EdgeIndex) -> Option<f64> {
         self.widths.get(index.ring)?.get(index.edge).copied()
     }
 
-    /// The edge a number in a finding stands for.
+    /// Edge of the pattern for an edge number in a finding.
     pub fn edge(&self, index: EdgeIndex) -> Option<EdgeOrigin> {
         name_of(&self.names, index)
     }
@@ -326,7 +326,7 @@ fn widths(seam: &NamedSeam) -> Vec<Vec<f64>> {
     loops.map(width).collect()
 }
 
-/// The fold line a piece was unfolded in last: all that was drawn before lies on one side of it.
+/// The fold line that a piece was last unfolded at: everything drawn before lies on one side of it.
 fn last_fold(piece: &Piece, plane: &Plane) -> Option<HalfPlane> {
     let bit = 1_u8 << piece.folds.len().checked_sub(1)?.min(7);
     let [at, way] = *piece.folds.last()?;
@@ -357,8 +357,7 @@ fn sewn(seam: &NamedSeam) -> Vec<PieceRing> {
     seam.loops().map(ring).collect()
 }
 
-/// What is said of notches: those for which the allowance is narrow, and those for which there is
-/// none.
+/// Findings about notches: those with a narrow allowance, and those without any.
 fn notch_findings(notches: &[CutNotch]) -> Vec<Finding> {
     let of = |wanted: &dyn Fn(&CutNotch) -> bool| {
         let mut ids: Vec<NotchId> = Vec::new();
@@ -397,7 +396,7 @@ fn inside_lines(piece: &Piece, plane: &Plane) -> Vec<InsideLine> {
     piece.internal_lines.iter().map(line).collect()
 }
 
-/// Ends of darts: the apex of one in the outline, the corners of one inside.
+/// Ends of darts: the apex of a dart in the outline, the corners of a dart inside.
 fn drills(seam: &NamedSeam) -> Vec<Drill> {
     let outline = seam.names.first().map_or(&[][..], |names| names);
     let mut found = Vec::new();
@@ -457,7 +456,7 @@ fn texts(
         .collect()
 }
 
-/// Why a seam line has no cut line, with the names of the edges.
+/// Words for the reason why a seam line has no cut line, with the names of the edges.
 fn error_words((pattern, piece): (&Pattern, &Piece), seam: &NamedSeam, error: &CutError) -> String {
     let words = |index: EdgeIndex| match name_of(&seam.names, index) {
         Some(origin) => {

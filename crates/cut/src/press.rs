@@ -1,5 +1,5 @@
-//! How the darts and pleats of a piece are folded: short lines at the cut line where they are brought together, and
-//! arrows to where they are pressed.
+//! Fold marks of darts and pleats: short lines at the cut line where they are brought together, and arrows in
+//! the direction in which they are pressed.
 
 use crate::notch::{CutNotch, NOTCH_DEPTH};
 use crate::notch_place::{AT_CORNER, corner_at};
@@ -8,7 +8,7 @@ use crate::seams::{NamedSeam, Plane};
 use toile_geometry::Vec2;
 use toile_pattern::{NotchKind, Piece, PressArrow, Role};
 
-/// The arrows of a piece in the plane it is cut in.
+/// The press arrows of a piece, in the plane in which it is cut.
 pub(crate) fn pressed(piece: &Piece, plane: &Plane) -> Vec<PressArrow> {
     let arrow = |arrow: &PressArrow| {
         let across = plane.vector(arrow.way);
@@ -25,15 +25,15 @@ pub(crate) fn pressed(piece: &Piece, plane: &Plane) -> Vec<PressArrow> {
 /// A short line where a leg of a dart or a line of a pleat ends at the cut line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldTick {
-    /// From the cut line inwards (m).
+    /// Ends of the line (m), from the cut line inwards.
     pub ends: [Vec2; 2],
-    /// Whether it lies in the allowance, where it may be cut as a notch is; without an allowance it leads into the
-    /// cloth and is drawn alone.
+    /// Whether the line lies in the allowance, where it may be cut like a notch. Without an allowance it runs
+    /// into the cloth and is only drawn.
     pub in_allowance: bool,
 }
 
-/// Lines into the allowance where the legs of darts and the lines of pleats, drawn on, meet the cut line, as deep as
-/// notches; where there is no allowance, along them into the cloth. None where a notch is.
+/// Short lines where the extended legs of darts and lines of pleats meet the cut line: into the allowance, as
+/// deep as notches, or, without an allowance, along the leg into the cloth. None where there is a notch.
 pub(crate) fn fold_ticks(
     piece: &Piece,
     plane: &Plane,
@@ -56,7 +56,8 @@ pub(crate) fn fold_ticks(
     ticks
 }
 
-/// Ends on the outline of what is folded, each with a place further along it into the cloth.
+/// Ends on the outline of the legs of darts and the lines of pleats, each with a point farther along the line
+/// in the cloth.
 fn folded_ends(piece: &Piece, plane: &Plane, seam: &NamedSeam) -> Vec<[Vec2; 2]> {
     let outline = &seam.line.outline;
     let legs = seam.line.darts.iter().flat_map(|dart| {
@@ -74,7 +75,7 @@ fn folded_ends(piece: &Piece, plane: &Plane, seam: &NamedSeam) -> Vec<[Vec2; 2]>
     legs.chain(lines.flatten()).collect()
 }
 
-/// The lines at one end: one for each cut line that meets there.
+/// The short lines at one end: one for each cut line that meets there.
 fn ticks_at([end, inner]: [Vec2; 2], seam: &NamedSeam, room: &Room) -> Vec<FoldTick> {
     let outwards = corner_at(seam, end).map_or_else(Vec::new, |corner| corner.outwards_all());
     let ways: Vec<(Vec2, Vec2)> = outwards

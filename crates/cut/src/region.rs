@@ -4,19 +4,20 @@ use crate::chain::Chain;
 use crate::ring::Ring;
 use toile_geometry::{Bounds2, Polygon, Vec2, point_segment_distance, ring_area, wound_region};
 
-/// Points given to the union are multiples of this (m), a hundredth of its own grid, and its
-/// result then is too: no rounding comes between the grid, where rings do not cross, and us.
+/// Step (m) to which points are rounded before the union, a hundredth of the union's own grid. Its result
+/// lies on multiples of this step too, so no rounding comes between the grid, on which rings do not cross,
+/// and the caller.
 const STEP: f64 = 1.0 / (1u64 << 36) as f64;
-/// The origin is a multiple of this (m), so that moving back is exact up to 8 km from there.
+/// Step (m) to which the origin is rounded, so that moving back is exact up to 8 km from it.
 const ORIGIN_STEP: f64 = 1.0 / (1u64 << 20) as f64;
-/// Grid steps of the union over half its extent: 2^28 to 2^29.
+/// Step of the union's grid over half the union's extent, which has 2^28 to 2^29 steps.
 const GRID: f64 = 1.0 / (1u64 << 28) as f64;
 
-/// Coordinates near the origin, rounded to [`STEP`].
+/// A coordinate system with the origin near the piece, rounded to [`STEP`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub origin: Vec2,
-    /// Distance up to which the union moves a point (m): some of its grid steps.
+    /// Largest distance by which the union moves a point (m): some of its grid steps.
     pub tolerance: f64,
 }
 
@@ -53,18 +54,17 @@ fn largest(polygons: Vec<Polygon>) -> Option<Polygon> {
         .max_by(|a, b| a.area().total_cmp(&b.area()))
 }
 
-/// Slivers narrower than the grid are none (m2).
+/// Whether a ring is more than a sliver: its area (m2) is compared with a strip as wide as the tolerance (m).
 fn is_real(ring: &[Vec2], tolerance: f64) -> bool {
     let length: f64 = Bounds2::of(ring.iter().copied()).size().sum();
     ring_area(ring).abs() > tolerance * length
 }
 
-/// A ring without segments shorter than the grid's error, and without hairlines, which rounding
-/// leaves between sides in one line that end in different points: the ring runs back there along
-/// where it came from.
+/// A ring without segments shorter than the grid's error, and without hairlines: places where the ring runs
+/// back along itself. Rounding leaves them between sides in one line that end in different points.
 fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
     let mut k = 0;
-    // Steps without a removal; a whole round of them ends it.
+    // Steps since the last removal; a whole round of them ends the loop.
     let mut steady = 0;
     while ring.len() > 3 && steady < ring.len() {
         let count = ring.len();
@@ -91,7 +91,7 @@ fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
     ring
 }
 
-/// The piece's outline and the bays its allowances close, in the frame.
+/// The piece's outline and the bays that its allowances close, in the frame.
 pub(crate) fn outline_region(chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
     let Some(whole) = largest(wound_region(&frame.loops(chains))) else {
         return Vec::new();
@@ -104,8 +104,8 @@ pub(crate) fn outline_region(chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
         .collect()
 }
 
-/// What remains of a hole beyond its allowances, clockwise, in the frame: the holes of a sheet of
-/// cloth round the hole, with the hole cut out and its allowances added.
+/// The remains of a hole inside its allowances, clockwise, in the frame: the holes of a sheet of cloth round
+/// the hole, with the hole cut out and its allowances added.
 pub(crate) fn hole_region(ring: &Ring, chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
     let mut loops = frame.loops(chains);
     let seam = ring.chords.iter().map(|chord| frame.snap(chord.from));

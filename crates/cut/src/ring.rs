@@ -3,10 +3,10 @@
 use crate::{Corner, EdgeIndex, SeamEdge};
 use toile_geometry::{Curve, Vec2, orient2d, ring_area};
 
-/// Chords stay this near to the curves (m): a tenth of what a cutter resolves.
+/// Largest distance of chords from the curves (m): a tenth of what a cutter resolves.
 pub const FLATNESS: f64 = 5e-6;
 
-/// Tight edges are flattened finer by this.
+/// Factor by which edges with tight bends are flattened finer.
 const FINER: f64 = 8.0;
 
 /// A straight piece of an edge.
@@ -14,18 +14,18 @@ const FINER: f64 = 8.0;
 pub(crate) struct Chord {
     pub from: Vec2,
     pub to: Vec2,
-    /// Number of its edge in [`Ring::edges`].
+    /// Number of the chord's edge in [`Ring::edges`].
     pub edge: usize,
-    /// Length of the edge before it, in the ring's direction (m).
+    /// Length of the edge before the chord, in the ring's direction (m).
     pub at: f64,
-    /// Its length (m), above 0.
+    /// Length of the chord (m), above 0.
     pub length: f64,
-    /// Away from the cloth, of length 1.
+    /// Unit vector away from the cloth.
     pub normal: Vec2,
 }
 
 impl Chord {
-    /// Unit vector from its start to its end.
+    /// Unit vector from the chord's start to its end.
     pub fn along(&self) -> Vec2 {
         Vec2::new(-self.normal.y, self.normal.x)
     }
@@ -34,25 +34,25 @@ impl Chord {
 /// An edge in the ring's direction.
 #[derive(Clone, Debug)]
 pub(crate) struct RingEdge {
-    /// Its number in the given loop.
+    /// Number of the edge in the given loop.
     pub source: usize,
-    /// Width of its allowance (m).
+    /// Width of the allowance (m).
     pub width: f64,
-    /// The corner at its start, previous and next in the ring's direction.
+    /// Shape of the corner at the edge's start; previous and next are in the ring's direction.
     pub corner: Corner,
-    /// How many times the wider allowance the cut line may reach from there.
+    /// Limit of the corner's reach, over the wider allowance (1).
     pub limit: f64,
-    /// Its chords, as a range of [`Ring::chords`].
+    /// Chords of the edge, as a range of [`Ring::chords`].
     pub chords: std::ops::Range<usize>,
-    /// Length of its chords (m).
+    /// Length of all chords (m).
     pub length: f64,
-    /// Outward normals of the curve at its start and end: those of the chords there are turned
-    /// by up to some hundredths, half a millimetre at the end of a wide allowance.
+    /// Outward normals of the curve at its start and end. The normals of the chords there differ by up to
+    /// some hundredths, half a millimetre at the end of a wide allowance.
     pub ends: [Vec2; 2],
 }
 
-/// Points along an edge. Where it bends as tightly as its allowance is wide, the cut line moves by
-/// more than the chords: it is flattened finer there.
+/// Points along an edge. Where the edge bends as tightly as its allowance is wide, the cut line moves by more
+/// than the chords do: it is flattened finer there.
 fn flattened(edge: &SeamEdge) -> Vec<Vec2> {
     let points = edge.curve.flatten(FLATNESS);
     let is_tight = |p: &[Vec2]| {
@@ -67,7 +67,7 @@ fn flattened(edge: &SeamEdge) -> Vec<Vec2> {
 }
 
 impl RingEdge {
-    /// Takes the curve's normals at its ends, where it has a tangent that is the chord's nearly.
+    /// Takes the normals of the curve at the edge's ends, where the curve has a tangent close to the chord's.
     fn set_ends(&mut self, chords: &[Chord], curve: &Curve, reversed: bool) {
         let sign = if reversed { -1.0 } else { 1.0 };
         for end in 0..2 {
@@ -174,12 +174,12 @@ impl Ring {
         }
     }
 
-    /// The given edge that chord `k` is a part of.
+    /// Number in the given loop of the edge that chord `k` is a part of.
     pub fn source_of(&self, k: usize) -> usize {
         self.edges[self.chords[k].edge].source
     }
 
-    /// The given edge with its loop.
+    /// Number of an edge in the given seam line.
     pub fn index(&self, edge: usize) -> EdgeIndex {
         EdgeIndex {
             ring: self.number,
@@ -207,7 +207,7 @@ impl Ring {
         &self.chords[self.edges[edge].chords.end - 1]
     }
 
-    /// From a chord's start (0) or end (1) to the end of its allowance (m).
+    /// Vector from a chord's start (0) or end (1) to the outer end of its allowance (m).
     pub fn out(&self, k: usize, end: usize) -> Vec2 {
         let edge = &self.edges[self.chords[k].edge];
         let at_end = match end {
@@ -220,7 +220,7 @@ impl Ring {
         }
     }
 
-    /// A place on an edge, counted in the given direction (m), from one in the ring's direction.
+    /// A length along an edge in its given direction (m), from one in the ring's direction.
     pub fn given_place(&self, edge: usize, at: f64) -> f64 {
         if self.reversed {
             self.edges[edge].length - at
@@ -229,7 +229,7 @@ impl Ring {
         }
     }
 
-    /// The legs of a dart as edges of the ring, in its order.
+    /// The legs of a dart as edges of the ring, in the ring's order.
     pub fn legs(&self, legs: [usize; 2]) -> Option<[usize; 2]> {
         let find = |source: usize| self.edges.iter().position(|e| e.source == source);
         let [a, b] = [find(legs[0])?, find(legs[1])?];

@@ -6,28 +6,28 @@ use toile_geometry::{Curve, Vec2};
 /// An edge of a seam line, and the allowance beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeamEdge {
-    /// Where it is sewn (m); it ends where the next edge of its loop starts.
+    /// The line that is sewn (m); it ends where the next edge of its loop starts.
     pub curve: Curve,
     /// Width of the allowance (m), measured square to the curve; 0 for none.
     pub width: f64,
-    /// How the cut line turns at the edge's start.
+    /// Shape of the cut line at the edge's start.
     pub corner: Corner,
-    /// How many times the wider allowance the cut line may reach from there: [`crate::MITRE_LIMIT`]
-    /// usually, 1 to 100 (1).
+    /// Limit of the cut line's reach from that corner, over the wider allowance (1): usually
+    /// [`crate::MITRE_LIMIT`], from 1 to 100.
     pub limit: f64,
 }
 
-/// A dart that is sewn shut and pressed to one side, drawn as two edges of the outline that meet
-/// in its apex. Their own widths and corners are not used.
+/// A dart that is sewn shut and pressed to one side, drawn as two edges of the outline that meet in its apex.
+/// Widths and corners of these edges are not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dart {
     /// Numbers of the outline's edges: the leg before the apex and the leg after it.
     pub legs: [usize; 2],
-    /// Which of the legs the cloth inside the dart is pressed towards: 0 or 1.
+    /// Leg that the cloth inside the dart is pressed towards: 0 or 1.
     pub pressed: usize,
 }
 
-/// The line a piece is sewn along, unfolded. Loops may run either way.
+/// The line that a piece is sewn along, unfolded. Loops may run either way.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeamLine {
     /// The edges round the piece; the allowance lies outside.
@@ -47,7 +47,7 @@ pub struct EdgeIndex {
     pub edge: usize,
 }
 
-/// Why a seam line has no cut line.
+/// Reason why a seam line has no cut line.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CutError {
     /// A coordinate is not a finite number.

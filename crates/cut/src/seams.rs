@@ -15,8 +15,7 @@ pub(crate) struct NamedSeam {
 }
 
 impl NamedSeam {
-    /// Its loops, the outline first, with the names of their edges; last those that are sewn and
-    /// not cut.
+    /// Loops with the names of their edges: the outline, the holes, then the loops that are sewn and not cut.
     pub fn loops(&self) -> impl Iterator<Item = (&[SeamEdge], &[EdgeOrigin])> {
         let cut = std::iter::once(&self.line.outline).chain(&self.line.holes);
         let only = self.sewn_only.iter().map(|(edges, names)| (edges, names));
@@ -34,14 +33,14 @@ impl NamedSeam {
     }
 }
 
-/// The plane of a piece before it was shrunk and as it is seen from the right side of the cloth.
+/// The plane in which a piece is cut: enlarged against shrinkage and seen from the right side of the cloth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {
-    /// Direction of the warp, of length 1, as drawn.
+    /// Unit vector along the warp, as drawn.
     warp: Vec2,
-    /// How much larger it is cut along the warp and across it.
+    /// Factors by which the piece is enlarged along the warp and the weft.
     factors: [f64; 2],
-    /// Whether it was drawn from the wrong side, so that x is turned round.
+    /// Whether the piece was drawn from the wrong side, so that x is negated.
     turned: bool,
 }
 
@@ -61,7 +60,7 @@ impl Plane {
         self.factors[0] == self.factors[1]
     }
 
-    /// A vector as it is cut.
+    /// A drawn vector in the plane of cutting.
     pub fn vector(&self, v: Vec2) -> Vec2 {
         let weft = Vec2::new(-self.warp.y, self.warp.x);
         let [along, across] = self.factors;
@@ -77,7 +76,7 @@ impl Plane {
         Vec2::new(x, stretched.y)
     }
 
-    /// A normal as it is cut, of length 1.
+    /// A drawn normal in the plane of cutting, of length 1.
     pub fn normal(&self, n: Vec2) -> Vec2 {
         let along = self.vector(Vec2::new(-n.y, n.x));
         let sign = if self.turned { -1.0 } else { 1.0 };
@@ -86,7 +85,7 @@ impl Plane {
             .unwrap_or(n)
     }
 
-    /// Direction of the warp as it is cut (rad).
+    /// Direction of the warp in the plane of cutting (rad).
     pub fn grain(&self, drawn: f64) -> f64 {
         match self.turned {
             true => std::f64::consts::PI - drawn,
@@ -94,8 +93,8 @@ impl Plane {
         }
     }
 
-    /// A curve as it is cut. An arc that is stretched unevenly is a few cubics, right to 1e-7 of its
-    /// radius.
+    /// A drawn curve in the plane of cutting. An arc that is stretched unevenly becomes a few cubics,
+    /// accurate to 1e-7 of its radius.
     pub fn curves(&self, curve: Curve) -> Vec<Curve> {
         match curve {
             Curve::Arc { bulge, .. } if !self.is_even() && bulge != 0.0 => {
@@ -147,8 +146,8 @@ fn cubic_of(arc: Curve) -> Curve {
     let Curve::Arc { start, end, bulge } = arc else {
         return arc;
     };
-    // The bulge is the tangent of a quarter of the angle: the handles are 4/3 of it times the
-    // radius, which is half the chord over the sine of half the angle.
+    // The bulge is the tangent of a quarter of the arc's angle. Handles are 4/3 of it times the radius, which
+    // is half the chord over the sine of half the angle.
     let radius = 0.5 * (end - start).norm() / (2.0 * bulge.abs().atan()).sin();
     let handle = 4.0 / 3.0 * bulge.abs() * radius;
     let tangent = |t: f64| arc.derivative(t).try_normalize(0.0).unwrap_or_default();
@@ -159,7 +158,7 @@ fn cubic_of(arc: Curve) -> Curve {
     }
 }
 
-/// The seam line of a drafted piece in the plane it is cut in.
+/// The seam line of a drafted piece in the plane in which it is cut.
 pub(crate) fn seam_of(piece: &Piece, plane: &Plane, options: &CutOptions) -> NamedSeam {
     let mut seam = NamedSeam::default();
     let (outline, names) = edges_of(&piece.outline, plane, options.block);
@@ -206,8 +205,8 @@ fn edges_of(edges: &[PieceEdge], plane: &Plane, block: f64) -> (Vec<SeamEdge>, V
     (made, names)
 }
 
-/// How many times the wider allowance a corner reaches. None at all is the most that may be asked: a
-/// mitre of a little more than one degree.
+/// Limit of a corner's reach, over the wider allowance (1). `MitreLimit::None` gives the largest that may be
+/// asked: a mitre of a little more than one degree.
 fn limit_of(limit: MitreLimit) -> f64 {
     let [least, most] = MitreLimit::RANGE;
     match limit {
@@ -216,9 +215,9 @@ fn limit_of(limit: MitreLimit) -> f64 {
     }
 }
 
-/// How the cut line turns at the start of an edge. Kinds that name one of its two edges name the
-/// one after it as drawn, which on a mirror image is the one before. Where an edge meets its own
-/// mirror image neither is the one.
+/// Shape of the cut line at the start of an edge. Shapes that refer to one of the two edges refer to the one
+/// after the corner as drawn, which on a mirror image is the one before. Where an edge meets its own mirror
+/// image they become mitres.
 fn corner_of(before: &PieceEdge, edge: &PieceEdge) -> Corner {
     let own_image =
         before.origin.name == edge.origin.name && before.origin.half != edge.origin.half;
@@ -234,7 +233,7 @@ fn corner_of(before: &PieceEdge, edge: &PieceEdge) -> Corner {
     }
 }
 
-/// Darts of an outline: legs that follow each other.
+/// Darts of an outline: pairs of legs that follow each other.
 fn darts_of(piece: &Piece, names: &[EdgeOrigin]) -> Vec<Dart> {
     let count = names.len();
     let mut darts = Vec::new();

@@ -7,10 +7,10 @@ use crate::{CutRing, Origin, SegmentKind};
 use std::ops::ControlFlow;
 use toile_geometry::{EdgeTree, Vec2, point_segment_distance};
 
-/// A corner turns if its height is more than this of its shorter side.
+/// Least height of a corner that turns, over its shorter side (1).
 const TURN: f64 = 1e-4;
 
-/// All sides of all chains, as given and in the frame.
+/// All sides of all chains: in the frame (`tree`) and as given.
 pub(crate) struct Sides {
     frame: Frame,
     tree: EdgeTree,
@@ -20,22 +20,22 @@ pub(crate) struct Sides {
 
 /// A ring with the side each of its segments lies on.
 pub(crate) struct Traced {
-    /// (m), no longer in the frame.
+    /// Corners (m), no longer in the frame.
     pub points: Vec<Vec2>,
     pub sides: Vec<usize>,
-    /// Where on its side each segment starts and ends (shares of the side's length).
+    /// Start and end of each segment on its side (shares of the side's length).
     pub spans: Vec<[f64; 2]>,
 }
 
 /// A span of a segment that lies on a side.
 struct Overlap {
-    /// Along the segment (m).
+    /// Start along the segment (m).
     from: f64,
     to: f64,
     side: usize,
 }
 
-/// Of several sides along one segment the one with the least rank names it.
+/// Rank of a tag: the side of the least rank names a segment that several sides lie along.
 fn rank(tag: &Tag) -> u8 {
     match (tag.kind, tag.beside) {
         (SegmentKind::Edge, Some(_)) => 0,
@@ -67,7 +67,7 @@ impl Sides {
         &self.tags[side]
     }
 
-    /// The part of a segment that runs along a side, if it does in the same direction.
+    /// The part of a segment that runs along a side in the same direction.
     fn overlap(&self, [p, q]: [Vec2; 2], side: usize) -> Option<Overlap> {
         let [a, b] = self.tree.edges()[side];
         let tolerance = self.frame.tolerance;
@@ -85,7 +85,7 @@ impl Sides {
         (off(from) <= tolerance && off(to) <= tolerance).then_some(Overlap { from, to, side })
     }
 
-    /// The sides along each segment of a ring.
+    /// The parts of each segment of a ring that run along sides.
     fn overlaps(&self, segments: &[[Vec2; 2]]) -> Vec<Vec<Overlap>> {
         let mut found: Vec<Vec<Overlap>> = segments.iter().map(|_| Vec::new()).collect();
         let tree = EdgeTree::new(segments.to_vec());
@@ -102,7 +102,8 @@ impl Sides {
         (0..self.tags.len()).min_by(order).unwrap_or(0)
     }
 
-    /// Where each side begins along a segment: sides of the best rank, in order, without gaps.
+    /// Sides along a segment with the place where each begins (m): those of the best rank, in order, without
+    /// gaps.
     fn pieces(&self, segment: [Vec2; 2], overlaps: &[Overlap]) -> Vec<(f64, usize)> {
         let length = (segment[1] - segment[0]).norm();
         let covers = |overlap: &&Overlap, t: f64| overlap.from <= t && t <= overlap.to;
@@ -134,8 +135,8 @@ impl Sides {
         pieces
     }
 
-    /// A ring in the frame with the sides its segments lie on; segments along several sides are
-    /// divided. `exact` gives corners that are ends of sides their coordinates as given.
+    /// A ring in the frame with the side that each segment lies on; segments along several sides are divided.
+    /// With `exact`, corners that are ends of sides get the coordinates of those ends as given.
     pub fn trace(&self, ring: &[Vec2], exact: bool) -> Traced {
         let count = ring.len();
         let segments: Vec<[Vec2; 2]> = (0..count)
@@ -173,7 +174,7 @@ impl Sides {
         }
     }
 
-    /// Where on a side a point lies, as a share of its length.
+    /// Place of a point along a side (share of the side's length).
     fn share(&self, side: usize, p: Vec2) -> f64 {
         let [a, b] = self.tree.edges()[side];
         let way = b - a;
@@ -187,8 +188,8 @@ impl Sides {
 }
 
 impl Traced {
-    /// The ring with the edges as given. `merged` leaves out corners in which nothing turns and
-    /// no edge ends, as where a corner's patch continues an edge's cut line.
+    /// The ring with the edges as given. `merged` leaves out corners in which nothing turns and no edge ends,
+    /// such as between a corner's patch and the cut line that it continues.
     pub fn ring(&self, ring: &Ring, sides: &Sides, merged: bool) -> CutRing {
         let mut tags: Vec<Tag> = self.sides.iter().map(|&side| *sides.tag(side)).collect();
         let mut points = self.points.clone();
@@ -222,8 +223,8 @@ impl Traced {
     }
 }
 
-/// What two segments in one line are together, if they may be one: one of an edge takes in that of
-/// a corner at its end.
+/// The tag of two segments in one line, if they may be joined: an edge or a dart cap absorbs a corner at its
+/// end.
 fn joined(ring: &Ring, [a, b]: [&Tag; 2]) -> Option<Tag> {
     use SegmentKind::{Corner, DartCap, Edge};
     let beside = [ring.before(a.edge), a.edge, ring.after(a.edge)].contains(&b.edge);
