@@ -7,10 +7,10 @@ use std::sync::Arc;
 use toile_geometry::TriangleMesh;
 use toile_pattern::Draft;
 
-/// How a garment is assembled.
+/// Options for assembling a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AssemblyOptions {
-    /// Mean edge length of the triangles (m); 10 mm shows folds, 20 mm is a preview.
+    /// Mean edge length of the triangles (m); 10 mm resolves folds, 20 mm is a preview.
     pub edge_length: f64,
 }
 
@@ -25,21 +25,23 @@ impl Default for AssemblyOptions {
 pub struct Assembled {
     /// The placed, unsewn garment.
     pub garment: Garment,
-    /// The meshes it was made from, which can follow an edit of the draft: see [`crate::morph()`].
+    /// The meshes that the garment was made from, which can follow an edit of the draft: see
+    /// [`crate::morph()`].
     pub meshes: Arc<PieceMeshes>,
     /// Notes for the user.
     pub diagnostics: Vec<Diagnostic>,
-    /// Pairs of cloth and skin triangles that cross: 0 unless a diagnostic says why.
+    /// Number of pairs of cloth and skin triangles that intersect: 0 unless a diagnostic gives the reason.
     pub body_intersections: usize,
-    /// Pairs of triangles of different panels that cross: 0 unless a diagnostic says why.
+    /// Number of pairs of triangles of different panels that intersect: 0 unless a diagnostic gives the
+    /// reason.
     pub panel_intersections: usize,
 }
 
-/// Meshes the sewn pieces of a draft and places them round a body, at least 5 mm outside the
-/// skin where that is possible. The same input gives the same garment.
+/// Meshes the sewn pieces of a draft and places them round a body, at least 5 mm outside the skin if
+/// possible. The same input gives the same garment.
 ///
 /// # Errors
-/// See [`mesh_pieces`]; and [`AssemblyError::NoPart`].
+/// Those of [`mesh_pieces`]; and [`AssemblyError::NoPart`].
 pub fn assemble(
     draft: &Draft,
     body: &PlacementBody,
@@ -86,12 +88,12 @@ pub fn assemble(
 }
 
 impl Garment {
-    /// The same garment with the shapes of an edited draft: its panels and seams as `draft` has them,
-    /// the same triangles at the points of `meshes`, placed as it is.
+    /// The garment with the shapes of an edited draft: panels and seams of `draft`, the same triangles with
+    /// the points of `meshes`, and the same placement.
     ///
     /// # Panics
-    /// When `meshes` has other triangles: it must come from this garment's meshes by
-    /// [`crate::morph()`] to `draft`.
+    /// If `meshes` has other triangles: it must be made from this garment's meshes by [`crate::morph()`] to
+    /// `draft`.
     #[must_use]
     pub fn with_shapes(&self, draft: &Draft, meshes: &PieceMeshes) -> Self {
         let shaped = garment(draft, meshes, self.positions.clone());

@@ -21,9 +21,9 @@ fn inside(p: Vec2, polygon: &[Vec2]) -> bool {
 pub(crate) struct Boundary {
     /// Vertices, loop after loop (m).
     pub points: Vec<Vec2>,
-    /// Vertices of each loop: outline first.
+    /// Vertex range of each loop, the outline first.
     pub loops: Vec<Range<usize>>,
-    /// For each edge of the piece, the vertex of each of its samples.
+    /// For each edge of the piece, the vertices of its samples.
     pub samples: Vec<Vec<usize>>,
     /// Whether the outline is counter-clockwise.
     pub counter_clockwise: bool,
@@ -42,7 +42,7 @@ impl Boundary {
         Ok(boundary)
     }
 
-    /// Samples the loops of a piece, whether they can be meshed or not.
+    /// Samples the loops of a piece without checking that they can be meshed.
     pub fn sampled(index: usize, table: &EdgeTable, sampling: &Sampling) -> Self {
         let mut boundary = Self::default();
         let mut contour = usize::MAX;
@@ -95,10 +95,10 @@ impl Boundary {
         })
     }
 
-    /// Whether its loops enclose area and neither cross nor touch each other.
+    /// Checks that the loops enclose area and neither cross nor touch each other.
     ///
     /// # Errors
-    /// What is wrong with them.
+    /// The fault of the outline.
     pub fn check(&self, piece: &Piece) -> Result<(), AssemblyError> {
         let error = |reason: String, remedy: &str| AssemblyError::Outline {
             piece: piece.name.clone(),
@@ -144,7 +144,7 @@ impl Boundary {
         Ok(())
     }
 
-    /// Where two segments first cross or touch: a sweep over segments sorted by x.
+    /// First point at which two segments cross or touch, by a sweep over segments sorted by x.
     fn first_crossing(&self) -> Option<Vec2> {
         let mut segments: Vec<[usize; 2]> = self.segments().collect();
         for &[a, b] in &segments {

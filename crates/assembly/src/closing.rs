@@ -1,28 +1,28 @@
-//! Pieces placed by their file on both sides of the body, as the halves of a hood: moved together where the seams
-//! between them would close through it.
+//! Pieces that their file places on both sides of the body, such as the halves of a hood: both are moved
+//! together if the seams between them would close through the body.
 
 use crate::role::Role;
 use crate::{Diagnostic, PieceMeshes, PlacementBody, Stitch};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_pattern::Draft;
 
-/// Least share of a normal that lies across the body, of a piece at its side.
+/// Smallest sideways component of the normal of a piece that counts as lying at the side of the body.
 const SIDEWAYS: f64 = 0.7;
-/// How far such pieces are moved at most (m), and the step of the search (m).
+/// Largest move of such pieces (m), and step of the search (m).
 const FARTHEST: f64 = 0.2;
 const STEP: f64 = 0.01;
-/// How much farther they are moved than where the seams are clear (m).
+/// Extra move beyond the position at which the seams are clear (m).
 const SPARE: f64 = 0.02;
 
-/// The pieces with what is known of them.
+/// The pieces of a draft with their meshes and roles.
 pub(crate) struct PlacedPieces<'a> {
     pub draft: &'a Draft,
     pub meshes: &'a PieceMeshes,
     pub roles: &'a [Role],
 }
 
-/// Moves pairs of pieces at both sides of the body, sewn to each other, back or forward until no stitch between them
-/// crosses the body on its way to close.
+/// Moves pairs of opposite pieces that are sewn to each other, back or forward, until no stitch between them
+/// crosses the body on its closing path.
 pub(crate) fn clear_closing_seams(
     pieces: &PlacedPieces,
     body: &PlacementBody,
@@ -71,7 +71,7 @@ pub(crate) fn clear_closing_seams(
 }
 
 impl PlacedPieces<'_> {
-    /// Whether two pieces are placed by their file, one at each side of the body.
+    /// Whether two pieces are placed by their file on opposite sides of the body.
     fn are_opposite(&self, pair: [usize; 2], positions: &[Vec<Vec3>]) -> bool {
         let sides = pair.map(|k| match self.roles[k] {
             Role::Placed(place) if !positions[k].is_empty() => {
@@ -84,7 +84,7 @@ impl PlacedPieces<'_> {
         matches!(sides, [Some(a), Some(b)] if a * b < 0.0)
     }
 
-    /// The ways that the stitches between two pieces close along.
+    /// Closing paths of the stitches between two pieces: straight lines between the stitched vertices.
     fn ways(&self, pair: [usize; 2], positions: &[Vec<Vec3>]) -> Vec<[Vec3; 2]> {
         let mut ends = Vec::new();
         for mesh in &self.meshes.pieces {
@@ -103,7 +103,7 @@ impl PlacedPieces<'_> {
     }
 }
 
-/// How many ways, moved along the depth of the body (m), cross its skin.
+/// Number of closing paths, moved by `by` along the depth of the body (m), that cross the skin.
 fn blocked(ways: &[[Vec3; 2]], body: &PlacementBody, by: f64) -> usize {
     let mut slivers = TriangleMesh::default();
     for &[a, b] in ways {

@@ -1,4 +1,4 @@
-//! Internal lines of a piece, as constraints of its mesh.
+//! Internal lines of a piece as constraints of its mesh.
 
 use crate::Diagnostic;
 use crate::boundary::Boundary;
@@ -6,7 +6,7 @@ use crate::size_field::SizeField;
 use toile_geometry::{Vec2, segments_cross};
 use toile_pattern::Piece;
 
-/// A place on an internal line of a piece.
+/// A position on an internal line of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LinePlace {
     /// Index into the piece's internal lines.
@@ -18,7 +18,7 @@ pub(crate) struct LinePlace {
 }
 
 impl LinePlace {
-    /// Where it is on a piece (m); none where the piece has no such curve.
+    /// The point on a piece (m); `None` if the piece has no such curve.
     pub fn point(&self, piece: &Piece) -> Option<Vec2> {
         let curve = piece
             .internal_lines
@@ -33,21 +33,21 @@ impl LinePlace {
     }
 }
 
-/// Constraints of the mesh of a piece inside its outline.
+/// Constraints inside the outline of a piece for its mesh.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Creases {
-    /// Pairs of vertices, numbered after the boundary's.
+    /// Segments as pairs of vertices, numbered after those of the boundary.
     pub segments: Vec<[usize; 2]>,
-    /// Their points (m).
+    /// Positions of the vertices (m).
     pub points: Vec<Vec2>,
-    /// Where on a line each point is.
+    /// Position of each vertex on its internal line.
     pub places: Vec<LinePlace>,
-    /// Points and segments left out because they meet others.
+    /// Number of points and segments left out because they are too near to others or cross them.
     pub left_out: usize,
 }
 
 impl Creases {
-    /// Samples the internal lines of a piece, clear of its boundary and of each other.
+    /// Samples the internal lines of a piece, at a distance from its boundary and from each other.
     pub fn new(piece: &Piece, boundary: &Boundary, edge_length: f64) -> Self {
         let walls: Vec<[Vec2; 2]> = boundary
             .segments()
@@ -96,7 +96,7 @@ impl Creases {
         creases
     }
 
-    /// Adds the segment between two points where it crosses neither the boundary nor another.
+    /// Adds the segment between two points unless it crosses the boundary or another segment.
     fn join(&mut self, ends: [usize; 2], base: usize, walls: &[[Vec2; 2]]) {
         let segment = ends.map(|v| self.points[v]);
         let free = walls.iter().all(|w| !segments_cross(*w, segment))
@@ -117,7 +117,7 @@ impl Creases {
     }
 }
 
-/// Tells how many points of internal lines the mesh does not follow.
+/// A note on points of internal lines that the mesh does not follow, if there are any.
 pub(crate) fn left_out_note(piece: &Piece, left_out: usize) -> Option<Diagnostic> {
     (left_out > 0).then(|| {
         Diagnostic::note(

@@ -1,20 +1,20 @@
-//! All edges of the sewn pieces in one table, with their lengths and the size of triangle that
-//! the shape of the outline asks for along them.
+//! All edges of the sewn pieces in one table, with their lengths and the triangle size that the shape of the
+//! outline requires along them.
 
 use crate::AssemblyError;
 use toile_geometry::{Curve, Vec2};
 use toile_pattern::{Draft, Piece, PieceEdge};
 
-/// Smallest size the shape of an outline may ask for, as a share of the target edge length.
-/// Smaller would follow needle-thin points into ever smaller triangles and time steps.
+/// Smallest triangle size that the shape of an outline may require, relative to the target edge length.
+/// Smaller sizes would follow needle-thin points with ever smaller triangles and time steps.
 const MIN_SHAPE_SIZE: f64 = 0.35;
-/// A point across the piece counts as near when the way to it along the outline is this much
-/// longer than the straight way: corners wider than about 40 degrees do not count.
+/// A point across the piece counts as near if the path to it along the outline is this many times longer than
+/// the straight line: corners wider than about 40 degrees do not count.
 const ACROSS: f64 = 2.9;
-/// Outlines with more probes than this are not searched for narrow places, which takes the
-/// square of their number in time.
+/// Largest number of probes for which an outline is searched for narrow places; the search takes time
+/// proportional to the square of the number.
 const MAX_PROBES: usize = 30_000;
-/// Turning of the outline per sample (rad): seven chords a circle at least.
+/// Turning angle of the outline per sample (rad): at least seven chords per circle.
 const TURN: f64 = 0.9;
 
 /// One edge of one piece.
@@ -22,20 +22,20 @@ const TURN: f64 = 0.9;
 pub(crate) struct Edge {
     /// Index into the draft's pieces.
     pub piece: usize,
-    /// Which closed loop of the piece: 0 the outline, then the holes.
+    /// Index of the closed loop of the piece: 0 the outline, then the holes.
     pub contour: usize,
-    /// The next edge of the loop, an index into the table.
+    /// Index in the table of the next edge of the loop.
     pub next: usize,
-    /// Its curve (m).
+    /// Curve of the edge (m).
     pub curve: Curve,
-    /// Its arc length (m).
+    /// Arc length of the edge (m).
     pub length: f64,
-    /// Size of triangle the shape asks for (m) at equal arc-length steps, ends included.
+    /// Triangle size that the shape requires (m), at equal arc-length steps, ends included.
     pub shape_size: Vec<f64>,
 }
 
 impl Edge {
-    /// Point at an arc-length fraction (m); the ends exactly.
+    /// The point at an arc-length fraction (m); exact at both ends.
     pub fn point(&self, fraction: f64) -> Vec2 {
         if fraction <= 0.0 {
             self.curve.start()
@@ -47,7 +47,7 @@ impl Edge {
         }
     }
 
-    /// Size the shape asks for at an arc-length fraction (m).
+    /// Triangle size that the shape requires at an arc-length fraction (m).
     pub fn size_at(&self, fraction: f64) -> f64 {
         let last = self.shape_size.len() - 1;
         let place = fraction.clamp(0.0, 1.0) * last as f64;
@@ -61,13 +61,13 @@ impl Edge {
 /// All edges of the sewn pieces.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeTable {
-    /// Edges in draft order: outline first, then each hole.
+    /// Edges in the order of the draft: outline first, then each hole.
     pub edges: Vec<Edge>,
-    /// First edge of each piece; pieces that are not sewn have none.
+    /// Index of the first edge of each piece; pieces that are not sewn have no edges.
     pub first: Vec<usize>,
 }
 
-/// The loops of a piece: outline first.
+/// The loops of a piece, the outline first.
 pub(crate) fn contours(piece: &Piece) -> impl Iterator<Item = &[PieceEdge]> {
     std::iter::once(piece.outline.as_slice()).chain(piece.holes.iter().map(Vec::as_slice))
 }
@@ -81,7 +81,7 @@ fn outline_error(piece: &Piece, reason: impl Into<String>, remedy: &str) -> Asse
 }
 
 impl EdgeTable {
-    /// Measures every edge of the chosen pieces, and what size their shape asks for.
+    /// Measures every edge of the chosen pieces, with the triangle sizes that their shape requires.
     pub fn new(draft: &Draft, chosen: &[bool], spacing: f64) -> Result<Self, AssemblyError> {
         let mut table = Self::measured(draft, chosen)?;
         for piece in 0..draft.pieces.len() {
@@ -93,7 +93,7 @@ impl EdgeTable {
         Ok(table)
     }
 
-    /// Measures every edge of the chosen pieces, without the sizes their shape asks for.
+    /// Measures every edge of the chosen pieces, without triangle sizes.
     pub fn measured(draft: &Draft, chosen: &[bool]) -> Result<Self, AssemblyError> {
         let mut table = Self::default();
         for (index, piece) in draft.pieces.iter().enumerate() {
@@ -161,13 +161,13 @@ impl EdgeTable {
         Ok(())
     }
 
-    /// Edges of a piece.
+    /// Index range of the edges of a piece.
     pub fn of_piece(&self, piece: usize) -> std::ops::Range<usize> {
         self.first[piece]..self.first[piece + 1]
     }
 }
 
-/// A point of the flattened boundary of one piece.
+/// A sample point of the boundary of one piece.
 struct Probe {
     point: Vec2,
     tangent: Vec2,
@@ -177,8 +177,8 @@ struct Probe {
     edge: usize,
 }
 
-/// Sets the size each edge of one piece asks for: the radius of its curvature, and the width of
-/// the piece where two stretches of its outline face each other across cloth.
+/// Sets the triangle size that each edge of a piece requires, from the radius of curvature and the width of
+/// the piece wherever two parts of its outline face each other across cloth.
 fn set_shape_sizes(edges: &mut [Edge], spacing: f64) {
     let probes = boundary_probes(edges, spacing);
     let contour_count = edges.iter().map(|e| e.contour + 1).max().unwrap_or(0);
@@ -213,7 +213,7 @@ fn set_shape_sizes(edges: &mut [Edge], spacing: f64) {
                 size = distance;
             }
         }
-        // Curvature from the turning between neighbouring probes of the same edge.
+        // Curvature from the turning angle between neighbouring probes of the same edge.
         for other in [k.wrapping_sub(1), k + 1] {
             if let Some(near) = probes.get(other).filter(|n| n.edge == probe.edge) {
                 let turn = probe.tangent.angle(&near.tangent);
@@ -255,7 +255,7 @@ fn boundary_probes(edges: &[Edge], spacing: f64) -> Vec<Probe> {
     probes
 }
 
-/// Twice the signed area of the outline through the probes (m2).
+/// Signed area of the outline through the probes (m2).
 fn signed_area(probes: &[Probe]) -> f64 {
     let outline: Vec<Vec2> = probes
         .iter()
@@ -265,7 +265,7 @@ fn signed_area(probes: &[Probe]) -> f64 {
     polygon_area(&outline)
 }
 
-/// Signed area of a closed polygon (m2): positive when counter-clockwise.
+/// Signed area of a closed polygon (m2), positive if counter-clockwise.
 pub(crate) fn polygon_area(points: &[Vec2]) -> f64 {
     let Some(&origin) = points.first() else {
         return 0.0;

@@ -1,6 +1,6 @@
-//! Errors that keep a draft from being assembled, and notes on one that was assembled.
+//! Errors of assembling a draft, and notes on an assembled garment.
 
-/// Why no mesh could be made.
+/// The reason why no mesh could be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AssemblyError {
     /// The target edge length cannot be used.
@@ -14,29 +14,29 @@ pub enum AssemblyError {
     Outline {
         /// Name of the piece.
         piece: String,
-        /// What is wrong with it.
+        /// The fault of the outline.
         reason: String,
-        /// What to do about it.
+        /// Remedy for the user.
         remedy: String,
     },
-    /// A seam names something that is not there or cannot be matched.
+    /// A seam names something that does not exist, or its sides cannot be matched.
     #[error("seam \"{seam}\": {reason}; {remedy}")]
     Seam {
         /// Name of the seam.
         seam: String,
-        /// What is wrong with it.
+        /// The fault of the seam.
         reason: String,
-        /// What to do about it.
+        /// Remedy for the user.
         remedy: String,
     },
-    /// A piece is worn on a part that the body has not, as arms on a dress form.
+    /// A piece is worn on a body part that the body does not have, such as arms on a dress form.
     #[error(
         "piece \"{piece}\" is worn on {part}, which this body has not; choose a figure that has it"
     )]
     NoPart {
         /// Name of the piece.
         piece: String,
-        /// The part, in words.
+        /// Name of the body part in a sentence.
         part: &'static str,
     },
     /// The mesh would be larger than any garment needs.
@@ -44,25 +44,25 @@ pub enum AssemblyError {
     TooLarge(f64),
 }
 
-/// How much a diagnostic matters.
+/// Importance of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Said for information.
+    /// Information only.
     Note,
-    /// The result may not be what was meant.
+    /// The result may not be as intended.
     Warning,
 }
 
 /// A note on a garment that was assembled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// How much it matters.
+    /// Importance of the diagnostic.
     pub severity: Severity,
-    /// The piece or seam it is about.
+    /// The piece or seam concerned.
     pub place: String,
-    /// What was found.
+    /// Description of the finding.
     pub message: String,
-    /// What can be done.
+    /// Suggested remedy.
     pub hint: String,
 }
 

@@ -1,5 +1,5 @@
-//! Flared pieces: rings and sectors of rings, as circle skirts are cut of. They are unrolled about the circle of their
-//! inner edge before they are laid out, so that they hang from it.
+//! Flared pieces: rings and sectors of rings, from which circle skirts are cut. Before they are laid out they
+//! are unrolled about the circle of their inner edge, so that they hang from it.
 
 use crate::flat_pieces::{FlatPiece, Tie};
 use crate::mesh::{PieceMesh, PieceMeshes};
@@ -8,39 +8,40 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_geometry::Vec2;
 use toile_pattern::{BodyPart, Draft, Facing};
 
-/// Least angle of a sector that is laid out as one (rad): flatter waists are wrapped as they are.
+/// Smallest angle of a sector that is unrolled (rad): pieces with flatter waist edges are wrapped as they
+/// are.
 const MIN_TURN: f64 = 0.6;
-/// Farthest that an inner edge lies off its circle, as a share of its radius.
+/// Largest deviation of an inner edge from its circle, relative to the radius.
 const OFF_CIRCLE: f64 = 0.08;
-/// Farthest that cloth reaches over the sides of a sector (rad).
+/// Largest angle by which cloth may reach over the sides of a sector (rad).
 const OVER_SIDE: f64 = 0.12;
-/// Neighbouring edges whose directions differ by less than this are one arc (rad).
+/// Neighbouring edges with directions that differ by less than this form one arc (rad).
 const SMOOTH: f64 = 0.35;
-/// Least length of an inner edge that is sewn to nothing, over the length round the waist.
+/// Smallest length of an inner edge that is sewn to nothing, relative to the waist girth.
 const ROUND_WAIST: f64 = 0.7;
 
-/// The inner edge of a ring or of a sector of one.
+/// The inner edge of a ring or of a sector of a ring.
 #[derive(Clone, Debug)]
 struct InnerEdge {
     centre: Vec2,
     radius: f64,
-    /// Direction of its middle (rad), and the angle it spans (rad).
+    /// Direction of the middle of the edge, and the angle that it spans (rad).
     middle: f64,
     turn: f64,
-    /// Edges of the piece that it is made of.
+    /// Indices of the piece's edges that form it.
     edges: Vec<usize>,
 }
 
-/// What is known of the pieces when they are searched for flares.
+/// Data for finding flared pieces.
 pub(crate) struct Pieces<'a> {
     pub draft: &'a Draft,
     pub meshes: &'a PieceMeshes,
-    /// Length round the body's waist (m).
+    /// Waist girth of the body (m).
     pub waist: f64,
 }
 
-/// Unrolls every flared piece that hangs on the trunk. Rings that are sewn to what goes round the trunk go round it
-/// too, whatever their document says of a ring alone.
+/// Unrolls every flared piece that hangs on the trunk. Rings that are sewn to pieces round the trunk go round
+/// it as well, even if the document lays a single ring over the body.
 pub(crate) fn unroll_flares(pieces: &Pieces, laid: &mut [FlatPiece], roles: &mut [Role]) {
     let found: Vec<Option<InnerEdge>> = (0..laid.len())
         .map(|k| match roles[k] {
@@ -68,7 +69,7 @@ pub(crate) fn unroll_flares(pieces: &Pieces, laid: &mut [FlatPiece], roles: &mut
 }
 
 impl Pieces<'_> {
-    /// Pieces that an edge of a piece is sewn to, as indices of meshed pieces, with the edges there.
+    /// Pieces that an edge of a piece is sewn to: indices of the meshed pieces, with their edges.
     fn partners(&self, k: usize, edge: usize) -> Vec<(usize, usize)> {
         let piece = self.meshes.pieces[k].draft_piece;
         let mut partners = Vec::new();
@@ -88,8 +89,9 @@ impl Pieces<'_> {
         partners
     }
 
-    /// Whether a piece hangs from its inner edge: that is sewn to what is worn round the trunk, or goes round the
-    /// waist by itself; and its outer edge is sewn to nothing but to the inner edge of another such piece.
+    /// Whether a piece hangs from its inner edge. The inner edge must be sewn to pieces round the trunk, or
+    /// go round the waist by itself; the outer edge may only be sewn to the inner edge of another flared
+    /// piece.
     fn hangs(
         &self,
         k: usize,
@@ -132,8 +134,8 @@ impl Pieces<'_> {
 }
 
 impl InnerEdge {
-    /// Angle of a point from the middle (rad), and its distance from the centre (m). The coordinates are those of the
-    /// piece as laid, seen from its right side.
+    /// Angle of a point from the middle (rad) and distance from the centre (m). The coordinates are those of
+    /// the flat piece, seen from its right side.
     fn polar(&self, p: Vec2) -> [f64; 2] {
         let d = p - self.centre;
         let turn = (d.y.atan2(d.x) - self.middle + PI).rem_euclid(TAU) - PI;
@@ -147,7 +149,7 @@ impl InnerEdge {
     }
 }
 
-/// The inner edge of a piece that is a ring or a sector of one; none of another.
+/// The inner edge of a piece that is a ring or a sector of a ring; `None` for other pieces.
 fn inner_edge(mesh: &PieceMesh, laid: &FlatPiece) -> Option<InnerEdge> {
     let outline = outline_edges(mesh);
     let holes: Vec<usize> = (outline..mesh.edge_vertices.len()).collect();
@@ -161,7 +163,7 @@ fn inner_edge(mesh: &PieceMesh, laid: &FlatPiece) -> Option<InnerEdge> {
     found.next()
 }
 
-/// How many of a mesh's edges are of its outline: they come first.
+/// Number of edges of a mesh that belong to its outline; they come first.
 fn outline_edges(mesh: &PieceMesh) -> usize {
     let own = &mesh.loops[0];
     let of_outline = |vertices: &Vec<u32>| vertices.iter().all(|v| own.contains(v));
@@ -207,13 +209,13 @@ fn sector(mesh: &PieceMesh, laid: &FlatPiece, edges: Vec<usize>) -> Option<Inner
     (inner.turn >= MIN_TURN && is_inside).then_some(inner)
 }
 
-/// Points along edges of a piece as laid, in the order of its outline.
+/// Points along edges of the flat piece, in the order of its outline.
 fn points_of(mesh: &PieceMesh, laid: &FlatPiece, edges: &[usize]) -> Vec<Vec2> {
     let vertices = edges.iter().flat_map(|&e| &mesh.edge_vertices[e]);
     vertices.map(|&v| laid.points[v as usize]).collect()
 }
 
-/// Runs of edges of the outline that bend on evenly, each as the outline walks it.
+/// Sequences of outline edges without corners between them, in the order of the outline.
 fn smooth_chains(mesh: &PieceMesh, laid: &FlatPiece, outline: usize) -> Vec<Vec<usize>> {
     let directions = |edge: usize| {
         let points = points_of(mesh, laid, &[edge]);
@@ -240,7 +242,7 @@ fn smooth_chains(mesh: &PieceMesh, laid: &FlatPiece, outline: usize) -> Vec<Vec<
     chains
 }
 
-/// Centre and radius of the circle that fits points (Kasa 1976), where they lie near it.
+/// Centre and radius of the circle that fits points (Kasa 1976); `None` if they do not lie near it.
 fn circle(points: &[Vec2]) -> Option<(Vec2, f64)> {
     let count = points.len() as f64;
     if points.len() < 3 {
@@ -268,7 +270,8 @@ fn circle(points: &[Vec2]) -> Option<(Vec2, f64)> {
     points.iter().all(is_near).then_some((centre, radius))
 }
 
-/// Lays a piece out by the way along its inner edge and the distance under it.
+/// Unrolls a piece: the first coordinate is the arc length along its inner edge, the second is measured from
+/// there.
 fn unroll(laid: &mut FlatPiece, inner: &InnerEdge) {
     for p in &mut laid.points {
         let [turn, distance] = inner.polar(*p);
@@ -281,14 +284,15 @@ fn unroll(laid: &mut FlatPiece, inner: &InnerEdge) {
     laid.turn = inner.turn;
 }
 
-/// Turns a flared piece to its wrong side where the seam along its inner edge asks for that: walked by the seam, both
-/// sides of it must go round the body the same way.
+/// Turns a flared piece to its wrong side if the seam along its inner edge requires it: walked along the
+/// seam, both sides must go round the body in the same direction.
 pub(crate) fn turn_as_sewn(laid: &mut [FlatPiece], ties: &mut [Tie]) {
     for k in 0..laid.len() {
         if laid[k].turn == 0.0 {
             continue;
         }
-        // Half of the steps from stitch to stitch would suffice: but for one at the seam's end, all go the same way.
+        // The sign of the majority suffices: all steps from stitch to stitch go the same way, except one at
+        // the end of the seam.
         let mut together = 0.0;
         for pair in ties.windows(2) {
             for (own, other) in [(0, 1), (1, 0)] {

@@ -1,4 +1,5 @@
-//! Rows of flared pieces, laid round the trunk as a cone: level with what they hang from, wider and in folds below.
+//! Rows of flared pieces, laid round the trunk as a cone: at the top level with the pieces they hang from,
+//! below wider and in folds.
 
 use crate::flat_pieces::{FlatPiece, Tie};
 use crate::outline_curve::OutlineCurve;
@@ -10,13 +11,14 @@ use std::f64::consts::TAU;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::Facing;
 
-/// Distance of cloth from the hull of the skin to start with (m).
+/// Initial distance of cloth from the convex hull of the skin (m).
 const FIRST_DISTANCE: f64 = 0.012;
-/// Most that the cone widens for each metre of cloth: half a right angle lies under arms that are held out so.
+/// Largest radial widening of the cone per metre of cloth, so that it stays below arms that are held out at
+/// 45 degrees.
 const WIDEST: f64 = 0.5;
-/// Levels that the cone is computed at.
+/// Number of levels at which the cone is computed.
 const LEVELS: usize = 24;
-/// Largest height of folds for each metre of cloth below the inner edge.
+/// Largest height of folds per metre of cloth below the inner edge.
 const FOLDS: f64 = 0.45;
 /// Height above the floor below which no cloth is laid (m).
 const FLOOR: f64 = 0.03;
@@ -27,7 +29,7 @@ struct Level {
     curve: OutlineCurve,
 }
 
-/// Positions of every piece of a row of flared pieces (m), in the order of the row.
+/// Positions of the pieces of a row with flared pieces (m), in the order of the row.
 pub(crate) fn wrap_flared(
     row: &Row,
     laid: &[FlatPiece],
@@ -56,8 +58,8 @@ pub(crate) fn wrap_flared(
     row.pieces.iter().map(place).collect()
 }
 
-/// The cone of a row from its top down (m): as long at each level as the cloth, in so many folds everywhere that this
-/// is so at the hem.
+/// The cone of a row from its top down (m). At each level it is as long as the cloth, in a constant number of
+/// folds that suffices at the hem.
 fn cone(
     row: &Row,
     around: &Surroundings,
@@ -96,8 +98,8 @@ fn cone(
         .collect()
 }
 
-/// Sets the places of the pieces of a flared row round the body: side by side as they are sewn, then turned together
-/// so that what they hang from is above, else so that they face where they should.
+/// Sets the positions of a flared row's pieces round the body: side by side as they are sewn, then rotated
+/// together below the pieces they hang from, or else towards their facings.
 pub(crate) fn set_flared_shifts(
     laid: &mut [FlatPiece],
     roles: &[Role],
@@ -147,8 +149,8 @@ pub(crate) fn set_flared_shifts(
     }
 }
 
-/// The pieces of a row as they follow each other to the left round the body: each is sewn by its last side to the
-/// first of the next.
+/// The pieces of a row in their order to the left round the body: the last side of each is sewn to the first
+/// side of the next.
 fn in_order(row: &Row, laid: &[FlatPiece], ties: &[Tie]) -> Vec<usize> {
     let middle = |k: usize| 0.5 * (laid[k].low.x + laid[k].high.x);
     let follows = |a: usize, b: usize| {

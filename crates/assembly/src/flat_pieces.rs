@@ -1,4 +1,4 @@
-//! Pieces laid flat as they are seen from the right side of the cloth, and the stitches between them.
+//! Pieces laid flat, seen from the right side of the cloth, and the stitches between them.
 
 use crate::Stitch;
 use crate::mesh::PieceMeshes;
@@ -9,15 +9,16 @@ use toile_geometry::Vec2;
 pub(crate) struct FlatPiece {
     /// Points of the piece seen from the right side of the cloth (m).
     pub points: Vec<Vec2>,
-    /// Box of the points (m).
+    /// Bounding box of the points (m).
     pub low: Vec2,
     pub high: Vec2,
-    /// Added to the second coordinate: height in the part's frame (m).
+    /// Offset of the second coordinate: height in the frame of the body part (m).
     pub rise: f64,
-    /// Added to the first coordinate: distance round the part from its first direction (m).
+    /// Offset of the first coordinate: distance round the body part from its first direction (m).
     pub shift: f64,
-    /// How much longer it gets round for each metre down from its inner edge, which then is at height 0 of the
-    /// points: the angle of the sector of a ring that it is (rad); 0 of a piece that is not flared.
+    /// Increase of the piece's length round the body per metre below its inner edge, which lies at height 0
+    /// of the points. It is the angle of the ring sector that the piece is (rad); 0 for a piece that is not
+    /// flared.
     pub turn: f64,
 }
 
@@ -27,7 +28,7 @@ impl FlatPiece {
         self.high.x - self.low.x
     }
 
-    /// Lowest and highest place in the part's frame (m).
+    /// Lowest and highest coordinate in the frame of the body part (m).
     pub fn span(&self) -> [f64; 2] {
         [self.low.y + self.rise, self.high.y + self.rise]
     }
@@ -62,13 +63,13 @@ pub(crate) fn flat_pieces(meshes: &PieceMeshes, counter_clockwise: &[bool]) -> V
         .collect()
 }
 
-/// A stitch as pieces and places in them.
+/// A stitch: two pieces and a point in each.
 pub(crate) struct Tie {
     pub pieces: [usize; 2],
     pub points: [Vec2; 2],
 }
 
-/// Stitches between different pieces.
+/// The stitches between different pieces.
 pub(crate) fn ties(meshes: &PieceMeshes, laid: &[FlatPiece]) -> Vec<Tie> {
     let mut starts = vec![0];
     for piece in laid {

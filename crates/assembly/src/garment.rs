@@ -1,36 +1,38 @@
-//! The garment: the triangle mesh of all sewn pieces, with the map back to them.
+//! The garment: one triangle mesh of all sewn pieces, with the map back to the pieces.
 
 use std::ops::Range;
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::{PieceId, SeamOrigin};
 
-/// All sewn pieces as one triangle mesh, not yet merged: every piece has its own vertices.
+/// All sewn pieces as one triangle mesh. Seams are not merged: every piece has its own vertices.
 #[derive(Clone, Debug, Default)]
 pub struct Garment {
-    /// Placed round the body (m).
+    /// Vertex positions round the body (m).
     pub positions: Vec<Vec3>,
-    /// Place of each vertex in its piece's plane (m).
+    /// Position of each vertex in the plane of its piece (m).
     pub flat: Vec<Vec2>,
-    /// Corners; wound like the piece's outline, so that normals point to the right side.
+    /// Vertex indices of each triangle, wound like the outline of the piece, so that normals point to the
+    /// right side.
     pub triangles: Vec<[u32; 3]>,
-    /// One entry a sewn piece, in draft order; vertices and triangles are contiguous.
+    /// One entry per sewn piece, in the order of the draft; the vertices and triangles of a piece are
+    /// contiguous.
     pub panels: Vec<GarmentPanel>,
-    /// Vertex pairs that a seam draws together, one to one along each seam.
+    /// Vertex pairs that seams draw together, one to one along each seam.
     pub stitches: Vec<Stitch>,
 }
 
 /// One piece inside a garment.
 #[derive(Clone, Debug)]
 pub struct GarmentPanel {
-    /// Which piece it is.
+    /// Identity of the piece.
     pub piece: PieceId,
     /// Index into the draft's pieces.
     pub draft_piece: usize,
-    /// Name to show.
+    /// Name displayed.
     pub name: String,
-    /// Its vertices.
+    /// Index range of the piece's vertices.
     pub vertices: Range<usize>,
-    /// Its triangles.
+    /// Index range of the piece's triangles.
     pub triangles: Range<usize>,
     /// Direction of the warp in the piece's plane (rad).
     pub grain: f64,
@@ -41,9 +43,9 @@ pub struct GarmentPanel {
 /// Two vertices that are sewn together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stitch {
-    /// Vertices of both sides; equal where a seam closes on itself (a dart's apex is left out).
+    /// One vertex of each side; both are equal if a seam closes on itself (a dart's apex is left out).
     pub vertices: [u32; 2],
-    /// The seam.
+    /// The seam that the stitch belongs to.
     pub seam: SeamOrigin,
     /// Index into the draft's seams.
     pub draft_seam: usize,

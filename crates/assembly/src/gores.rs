@@ -1,20 +1,22 @@
-//! Which way pieces face that are sewn side to side round the body, as gores are, where nothing tells of them: each as
-//! it comes in the ring.
+//! Facings of pieces that are sewn side to side round the body, such as gores, if nothing else tells them:
+//! each gets the facing of its position in the ring.
 
 use crate::flat_pieces::{FlatPiece, Tie};
 use std::f64::consts::TAU;
 use toile_geometry::Vec2;
 use toile_pattern::Facing;
 
-/// Least share of the stitches of two neighbours that join the right side of one to the left side of the other.
+/// Smallest fraction of the stitches between two neighbours that join the right side of one to the left side
+/// of the other.
 const SIDE_BY_SIDE: f64 = 0.75;
-/// Fewer pieces than this face each other in front and behind.
+/// Smallest number of pieces in a ring; fewer face each other in front and behind.
 const FEWEST: usize = 3;
-/// Facings as they follow each other to the left round the wearer, from the front on.
+/// Facings in their order to the left round the wearer, from the front.
 const ROUND: [Facing; 4] = [Facing::Front, Facing::Left, Facing::Back, Facing::Right];
 
-/// The facing of each piece of a closed ring of which none is told a facing; none of other pieces. A ring faces as what
-/// it is sewn to, else its first piece faces forward. `told` is what names and the document say.
+/// The facing of each piece in a closed ring whose facings are all unknown; `None` for other pieces. The ring
+/// is turned to match the pieces it is sewn to; otherwise its first piece faces forward. `told` holds the
+/// facings known from names and the document.
 pub(crate) fn ring_facings(
     laid: &[FlatPiece],
     ties: &[Tie],
@@ -48,10 +50,11 @@ pub(crate) fn ring_facings(
     facings
 }
 
-/// The piece whose left side is sewn to the right side of another.
+/// The piece that follows piece `k` to the left round the wearer: its left edge is sewn to the right edge of
+/// `k`, both seen from outside.
 fn next_to_the_left(k: usize, laid: &[FlatPiece], ties: &[Tie]) -> Option<usize> {
     let middle = |k: usize| 0.5 * (laid[k].low.x + laid[k].high.x);
-    // Stitches to each other piece: those from side to side, and all.
+    // For each other piece, the number of stitches from side to side, and of all stitches.
     let mut counts = vec![[0_usize; 2]; laid.len()];
     for tie in ties {
         for (own, other) in [(0, 1), (1, 0)] {
@@ -71,7 +74,7 @@ fn next_to_the_left(k: usize, laid: &[FlatPiece], ties: &[Tie]) -> Option<usize>
         .max_by_key(|&j| (counts[j][0], laid.len() - j))
 }
 
-/// The pieces of the ring that a piece is one of, from it on to the left; none of a piece that is in no ring.
+/// The ring that contains a piece, from that piece to the left; empty for a piece that is in no ring.
 fn ring_from(first: usize, next: &[Option<usize>]) -> Vec<usize> {
     let mut ring = vec![first];
     let mut at = next[first];
@@ -85,7 +88,7 @@ fn ring_from(first: usize, next: &[Option<usize>]) -> Vec<usize> {
     }
 }
 
-/// How far a ring is turned so that it faces as what it is sewn to (turns).
+/// Rotation of a ring to match the pieces that it is sewn to (turns).
 fn turn_of((ring, places): (&[usize], &[f64]), ties: &[Tie], told: &[Option<Facing>]) -> f64 {
     let mut turned = Vec2::zeros();
     for tie in ties {

@@ -1,4 +1,5 @@
-//! Harmonic interpolation over a plane mesh: free vertices move as the given ones round them do.
+//! Harmonic interpolation over a plane mesh: free vertices follow the displacements of the given vertices
+//! around them.
 
 use crate::planar::Planar;
 use std::fmt;
@@ -7,33 +8,34 @@ use toile_geometry::Vec2;
 use toile_sparse::ScalarMatrix;
 use toile_sparse::factor::{Factor, Graph, NotPositive};
 
-/// Least weight of an edge [-]: edges whose weight is nought but for rounding are kept, so that
-/// every free vertex is tied to given ones.
+/// Smallest weight of an edge (1). Edges with a weight of zero except for rounding are kept, so that every
+/// free vertex is connected to given ones.
 const MIN_WEIGHT: f64 = 1e-12;
 
-/// Harmonic weights of the free vertices of one mesh, factorised: shapes of its outline are followed by one
-/// solution each.
+/// Harmonic weights of the free vertices of one mesh, factorised once: each new shape of the outline then
+/// costs one solution.
 ///
-/// Each free vertex moves by the mean of its neighbours, weighted by half the sum of the cotangents opposite
-/// the edge between them (Pinkall and Polthier 1993).
+/// Each free vertex moves by the weighted mean of its neighbours' displacements. The weight is half the sum
+/// of the cotangents opposite the edge between them (Pinkall and Polthier 1993).
 ///
 /// The weights are those of the Delaunay triangulation of the same points and boundary (Bobenko and
-/// Springborn 2007): none is negative there, so the mean is a convex combination, and affine maps are
-/// reproduced whatever the triangles of the mesh.
+/// Springborn 2007), where none is negative. The mean is then a convex combination, and affine maps are
+/// reproduced for any triangles of the mesh.
 pub(crate) struct HarmonicWeights {
-    /// How many of the first vertices are given.
+    /// Number of given vertices; they come first.
     given: usize,
     free: usize,
-    /// Free vertex, given vertex and weight of each edge between such two.
+    /// Free vertex, given vertex and weight of each edge between a free and a given vertex.
     border: Vec<(usize, usize, f64)>,
     factor: Factor<1>,
 }
 
 impl HarmonicWeights {
-    /// Of a mesh whose first `given` vertices will be given; `triangles` are wound counter-clockwise.
+    /// Factorises the weights of a mesh whose first `given` vertices are given; `triangles` must be
+    /// counter-clockwise.
     ///
     /// # Errors
-    /// Where the points give no finite weights.
+    /// The points give no finite weights.
     pub fn new(
         points: &[Vec2],
         triangles: Vec<[usize; 3]>,
@@ -101,7 +103,7 @@ impl HarmonicWeights {
     }
 }
 
-/// The weights of one mesh, made when they are first asked for; copies of the mesh have them in common.
+/// The weights of one mesh, computed at the first use; copies of the mesh share them.
 #[derive(Clone, Default)]
 pub(crate) struct SharedWeights(Arc<Mutex<Option<HarmonicWeights>>>);
 
@@ -112,16 +114,17 @@ impl fmt::Debug for SharedWeights {
 }
 
 impl SharedWeights {
-    /// Displacements (m) of all vertices from those of the first ones, by the weights that `make` gives.
+    /// Displacements (m) of all vertices from those of the first ones; `make` computes the weights if they
+    /// are missing.
     ///
     /// # Errors
-    /// That of `make`.
+    /// The error of `make`.
     pub fn displacements(
         &self,
         given: &[Vec2],
         make: impl FnOnce() -> Result<HarmonicWeights, NotPositive>,
     ) -> Result<Vec<Vec2>, NotPositive> {
-        // Weights are put in whole, so that a panic elsewhere leaves none that is half made.
+        // The weights are stored only when complete, so that a panic elsewhere leaves no incomplete ones.
         let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut weights = match shared.take().filter(|had| had.given == given.len()) {
             Some(weights) => weights,
@@ -155,7 +158,7 @@ fn weights(points: &[Vec2], triangles: Vec<[usize; 3]>) -> Vec<([usize; 2], f64)
         }
     }
     for (_, weight) in &mut edges {
-        // Not `max`, which would hide a weight that is no number.
+        // Not `max`, which would hide a weight that is not a number.
         if *weight < MIN_WEIGHT {
             *weight = MIN_WEIGHT;
         }
@@ -182,8 +185,8 @@ mod tests {
         Ok(first)
     }
 
-    /// A ring of points on a circle, one boundary, with free points inside; the triangles are those
-    /// of a fan of strips that are far from Delaunay.
+    /// A mesh with a boundary and free inner points. The triangles are those of a sheared grid, far from
+    /// Delaunay.
     fn skewed() -> (Vec<Vec2>, Vec<[usize; 3]>, usize) {
         let (columns, rows) = (9, 7);
         let at = |i: usize, j: usize| {

@@ -1,4 +1,4 @@
-//! Draft to seam-matched, triangulated, placed panels.
+//! Makes triangulated panels from a draft, with matching vertices along seams, placed round a body.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod assemble;

@@ -1,6 +1,6 @@
-//! Union-find, plain and with an orientation between members.
+//! Union-find data structures, plain and with an orientation between members.
 
-/// Disjoint sets joined by links.
+/// Disjoint sets that can be joined.
 pub(crate) struct Links {
     parent: Vec<usize>,
 }
@@ -12,7 +12,7 @@ impl Links {
         }
     }
 
-    /// The smallest member of a set.
+    /// Representative of a member's set: the smallest member.
     pub fn root(&mut self, member: usize) -> usize {
         let mut member = member;
         while self.parent[member] != member {
@@ -22,14 +22,14 @@ impl Links {
         member
     }
 
-    /// Joins two sets.
+    /// Joins the sets of two members.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[a.max(b)] = a.min(b);
     }
 }
 
-/// Disjoint sets of members that run the same way as their root or the other way.
+/// Disjoint sets of members, each with the same or the opposite direction as its root.
 pub(crate) struct OrientedLinks {
     parent: Vec<(usize, bool)>,
     symmetric: Vec<bool>,
@@ -43,7 +43,7 @@ impl OrientedLinks {
         }
     }
 
-    /// The root of a member's set, and whether the member runs against it.
+    /// The root of a member's set, and whether the member has the opposite direction.
     pub fn root(&self, member: usize) -> (usize, bool) {
         let (mut member, mut reversed) = (member, false);
         while self.parent[member].0 != member {
@@ -53,7 +53,7 @@ impl OrientedLinks {
         (member, reversed)
     }
 
-    /// Joins two members that run the same way, or `opposed` ways.
+    /// Joins two members with the same direction, or with opposite directions if `opposed`.
     pub fn join(&mut self, a: usize, b: usize, opposed: bool) {
         let ((a, a_back), (b, b_back)) = (self.root(a), self.root(b));
         let flip = a_back ^ b_back ^ opposed;
@@ -66,7 +66,7 @@ impl OrientedLinks {
         self.symmetric[low] |= self.symmetric[high];
     }
 
-    /// Whether a set's members are also joined end for end.
+    /// Whether the members of a set are also joined to themselves with reversed direction.
     pub fn is_symmetric(&self, root: usize) -> bool {
         self.symmetric[root]
     }

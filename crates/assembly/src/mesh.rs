@@ -1,4 +1,4 @@
-//! Pieces of a draft as triangle meshes in their planes, with matching seams.
+//! Pieces of a draft as triangle meshes in their planes, with matching vertices along seams.
 
 use crate::boundary::Boundary;
 use crate::creases::Creases;
@@ -15,50 +15,50 @@ use std::sync::Arc;
 use toile_geometry::{TriangulationError, Vec2};
 use toile_pattern::{Draft, Piece, PieceId};
 
-/// Most vertices a draft may ask for.
+/// Largest number of vertices of a draft.
 const MAX_VERTICES: f64 = 5e6;
 
 /// One piece of a draft as a triangle mesh.
 #[derive(Clone, Debug)]
 pub struct PieceMesh {
-    /// Which piece it is.
+    /// Identity of the piece.
     pub piece: PieceId,
     /// Index into the draft's pieces.
     pub draft_piece: usize,
-    /// Vertices in the piece's plane (m): boundary loops first.
+    /// Vertices in the piece's plane (m), those of the boundary loops first.
     pub points: Vec<Vec2>,
-    /// Corners, wound like the outline.
+    /// Vertex indices of each triangle, wound like the outline.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertices of each boundary loop in the direction of the outline: outline first.
+    /// Vertices of each boundary loop in the direction of the outline, the outline first.
     pub loops: Vec<Vec<u32>>,
-    /// Vertices of each edge's samples, ends included.
+    /// Vertices of the samples on each edge, ends included.
     pub edge_vertices: Vec<Vec<u32>>,
-    /// Arc-length fraction of each edge's samples, in the order of its vertices.
+    /// Arc-length fractions of the samples on each edge, in the order of the vertices.
     pub edge_fractions: Vec<Vec<f64>>,
-    /// The shape it was made from, with which a later shape of the piece is compared.
+    /// The shape that the mesh was made from, to be compared with later shapes of the piece.
     pub(crate) source: Arc<MeshSource>,
 }
 
-/// Meshed pieces and how they are sewn.
+/// Meshed pieces with the stitches between them.
 #[derive(Clone, Debug, Default)]
 pub struct PieceMeshes {
     /// The sewn pieces in draft order.
     pub pieces: Vec<PieceMesh>,
-    /// Pairs of vertices; numbered piece after piece.
+    /// Pairs of stitched vertices, numbered piece after piece.
     pub stitches: Vec<Stitch>,
     /// Notes for the user.
     pub diagnostics: Vec<Diagnostic>,
-    /// The mean edge that was asked for (m).
+    /// Mean edge length that was requested (m).
     pub edge_length: f64,
 }
 
-/// Meshes the sewn pieces of a draft: seams sampled first, so that both sides match vertex to
-/// vertex, then each piece triangulated on its own.
+/// Meshes the sewn pieces of a draft. Seams are sampled first, so that the vertices of both sides match, then
+/// each piece is triangulated on its own.
 ///
-/// `edge_length` (m) is the mean edge asked for. The same draft gives the same meshes.
+/// `edge_length` is the mean edge length requested (m). The same draft gives the same meshes.
 ///
 /// # Errors
-/// An edge length out of range, an outline that cannot be meshed, a seam to nothing.
+/// An edge length out of range, an outline that cannot be meshed, a seam to something that does not exist.
 pub fn mesh_pieces(draft: &Draft, edge_length: f64) -> Result<PieceMeshes, AssemblyError> {
     let chosen: Vec<bool> = draft.pieces.iter().map(|p| p.sewn).collect();
     mesh_chosen(draft, &chosen, edge_length)
@@ -139,7 +139,7 @@ fn refuse_too_large(table: &EdgeTable, edge_length: f64) -> Result<(), AssemblyE
     Ok(())
 }
 
-/// Vertices that are sewn together, numbered piece after piece.
+/// Stitches between vertices, which are numbered piece after piece.
 pub(crate) fn stitches(
     draft: &Draft,
     table: &EdgeTable,
@@ -166,7 +166,7 @@ pub(crate) fn stitches(
         })
         .filter(|s| s.vertices[0] != s.vertices[1])
         .collect();
-    // A joint between two edges of one outline is one vertex, met twice.
+    // A joint between two edges of one outline is a single vertex, found twice.
     stitches.dedup();
     stitches
 }
@@ -215,7 +215,7 @@ fn planar_error(piece: &Piece, error: TriangulationError) -> AssemblyError {
     }
 }
 
-/// Counter-clockwise triangles wound like the outline.
+/// Gives counter-clockwise triangles the winding of the outline.
 fn wound(triangles: &[[usize; 3]], counter_clockwise: bool) -> Vec<[u32; 3]> {
     let turned = |t: &[usize; 3]| {
         let [a, b, c] = t.map(|v| v as u32);
@@ -240,7 +240,7 @@ impl PieceMesh {
             .sum()
     }
 
-    /// Angles and edge lengths.
+    /// Angles and edge lengths of the mesh.
     pub fn quality(&self) -> MeshQuality {
         let boundary_count: usize = self.loops.iter().map(Vec::len).sum();
         let angles = self.outline_angles(boundary_count);
@@ -286,7 +286,7 @@ impl PieceMesh {
         quality
     }
 
-    /// Whether a triangle of boundary vertices joins three neighbours on a loop.
+    /// Whether a triangle of boundary vertices joins three consecutive vertices of a loop.
     fn cuts_a_corner(&self, triangle: &[u32; 3]) -> bool {
         self.loops.iter().any(|list| {
             let Some(&first) = list.first() else {

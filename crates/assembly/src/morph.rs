@@ -1,4 +1,4 @@
-//! Meshes that follow an edit of the pattern: the same triangles at new places.
+//! Meshes that follow an edit of the pattern: the same triangles with new vertex positions.
 
 use crate::boundary::Boundary;
 use crate::creases::left_out_note;
@@ -14,22 +14,22 @@ use std::collections::{HashMap, VecDeque};
 use toile_geometry::{Vec2, orient2d};
 use toile_pattern::{Draft, Piece, PieceId, SeamOrigin};
 
-/// Smallest angle of a triangle that follows an edit (rad), 15 degrees: membrane forces of sharper ones
-/// are stiff across and inexact along them. Fresh meshes have angles over 25 degrees.
+/// Smallest allowed angle of a triangle after an edit (rad), 15 degrees: membrane forces of sharper triangles
+/// are stiff across them and inaccurate along them. Fresh meshes have angles over 25 degrees.
 const MIN_ANGLE: f64 = 0.261_799_387_799_149_4;
-/// How much smaller the angle may become of a triangle that was made sharper than that (rad), 1 degree:
-/// a narrow corner of an outline has such triangles in every mesh.
+/// Largest decrease of the angle of a triangle that was sharper than that from the start (rad), 1 degree: a
+/// narrow corner of an outline has such triangles in every mesh.
 const ANGLE_LOSS: f64 = 0.017_453_292_519_943_295;
-/// How long an edge may be as a share of its length when it was made, at least and at most.
+/// Allowed range of an edge's length, relative to its original length.
 const LENGTH_SHARES: [f64; 2] = [0.5, 1.5];
-/// A node that moved by less than this share of its edge did not move: the search for the place of a
-/// notch and shares of a chain's length are no more exact.
+/// A node that moved by less than this fraction of its edge counts as unmoved: the search for the position of
+/// a notch, and fractions of a chain's length, are no more accurate.
 const SAME_FRACTION: f64 = 1e-9;
 
-/// Why meshes cannot follow an edit.
+/// The reason why meshes cannot follow an edit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MorphError {
-    /// These pieces are no longer what was meshed, or too far from it: sorted, each once.
+    /// Identities of pieces that differ too much from the meshed ones: sorted, each once.
     #[error("{} pieces changed too much for their triangles to follow; mesh the draft anew", .0.len())]
     NeedsRemesh(Vec<PieceId>),
     /// The edited draft cannot be meshed at all.
@@ -37,24 +37,24 @@ pub enum MorphError {
     Draft(#[from] AssemblyError),
 }
 
-/// Gives the meshes of an earlier draft the shapes of an edited one: triangles, stitched vertices and
-/// their order stay, points change.
+/// Applies the shapes of an edited draft to the meshes of an earlier one: triangles, stitched vertices and
+/// their order stay, the points move.
 ///
-/// Samples of the outline keep their share of their edge, and of the stretch between two points that
-/// must be vertices (ends of spans, notches) where these moved. Points of internal lines keep their
-/// share of their curve. All others follow by harmonic weights, from where they were when the piece
-/// was meshed: the result depends on that mesh and on `draft`, not on edits in between, and a piece
-/// that gets its shape back gets its points back, to the bit.
+/// Samples of the outline keep their fraction of their edge; between two nodes that moved (ends of spans,
+/// notches) they keep their fraction of the stretch between them. Points of internal lines keep their
+/// fraction of their curve. All other vertices follow by harmonic weights from their original positions: the
+/// result depends on the original mesh and on `draft`, not on edits in between, and a piece that returns to
+/// its original shape gets its original points, bit by bit.
 ///
-/// Cost: one solution for each piece whose outline or internal lines moved, and one factorisation when the first
-/// copy of its mesh does so.
+/// Cost: one solution for each piece with a changed outline or changed internal lines, and one factorisation
+/// when the first copy of its mesh changes.
 ///
 /// # Errors
-/// [`MorphError::NeedsRemesh`] where pieces were added, removed or put in another order; edges or
-/// internal lines too; where seams sew other points or ask for more or fewer; where an outline
-/// crosses itself, a triangle turned over, has an angle under 15 degrees (or lost 1 degree, if it
-/// was made sharper) or an edge under half or over 1.5 times as long as when it was made.
-/// [`MorphError::Draft`] where the draft has no meshes, see [`crate::mesh_pieces`].
+/// [`MorphError::NeedsRemesh`] if pieces, edges or internal lines were added, removed or reordered; if seams
+/// sew other points, or need more or fewer; if an outline crosses itself, a triangle turned over, has an
+/// angle under 15 degrees (or lost 1 degree, if it was sharper originally) or an edge under half or over 1.5
+/// times its original length. [`MorphError::Draft`] if the draft cannot be meshed, see
+/// [`crate::mesh_pieces`].
 pub fn morph(meshes: &PieceMeshes, draft: &Draft) -> Result<PieceMeshes, MorphError> {
     let chosen: Vec<bool> = draft.pieces.iter().map(|p| p.sewn).collect();
     let mut pieces = meshes.pieces.clone();
@@ -104,7 +104,7 @@ fn needs_remesh(mut pieces: Vec<PieceId>) -> MorphError {
     MorphError::NeedsRemesh(pieces)
 }
 
-/// Finds the meshed pieces in a draft that sews the same ones in the same order.
+/// Finds the meshed pieces in a draft, which must sew the same ones in the same order.
 fn find_pieces(pieces: &mut [PieceMesh], draft: &Draft) -> Result<(), MorphError> {
     let sewn: Vec<usize> = (0..draft.pieces.len())
         .filter(|&k| draft.pieces[k].sewn)
@@ -129,8 +129,8 @@ fn find_pieces(pieces: &mut [PieceMesh], draft: &Draft) -> Result<(), MorphError
     Err(needs_remesh(changed))
 }
 
-/// The samples of all edges, none where the piece has other edges or other nodes; and which pieces have
-/// the same.
+/// The samples of all edges, empty for pieces with other edges or other nodes; and for each piece whether it
+/// has the same.
 fn sampled(
     pieces: &[PieceMesh],
     draft: &Draft,
@@ -159,8 +159,8 @@ fn sampled(
     (sampling, fits)
 }
 
-/// Fractions of an edge's samples that keep their share between nodes; none where there are more or
-/// fewer nodes.
+/// Fractions of an edge's samples, keeping their fraction between nodes; `None` if the number of nodes
+/// differs.
 fn fractions(source: &EdgeSource, nodes: &Nodes, edge: usize) -> Option<Vec<f64>> {
     let list = &nodes.on_edge[edge];
     if list.len() != source.nodes.len() {
@@ -193,7 +193,7 @@ fn fractions(source: &EdgeSource, nodes: &Nodes, edge: usize) -> Option<Vec<f64>
     Some(fractions)
 }
 
-/// First vertex of each piece of the draft.
+/// Index of the first vertex of each piece of the draft.
 fn first_vertices(pieces: &[PieceMesh], draft: &Draft) -> Vec<usize> {
     let mut first = vec![0; draft.pieces.len()];
     let mut count = 0;
@@ -207,7 +207,7 @@ fn first_vertices(pieces: &[PieceMesh], draft: &Draft) -> Vec<usize> {
 /// The old stitches in their order, numbered by the seams of the new draft.
 ///
 /// # Errors
-/// Vertices that are sewn in one of both alone.
+/// Vertices that are sewn in only one of the two.
 fn renumbered(old: &[Stitch], new: &[Stitch]) -> Result<Vec<Stitch>, Vec<u32>> {
     let mut known: HashMap<(SeamOrigin, [u32; 2]), VecDeque<usize>> = HashMap::new();
     for s in new {
@@ -235,7 +235,7 @@ fn renumbered(old: &[Stitch], new: &[Stitch]) -> Result<Vec<Stitch>, Vec<u32>> {
     }
 }
 
-/// Marks the pieces of some vertices as not fit.
+/// Marks the pieces of some vertices as unfit.
 fn mark_owners(pieces: &[PieceMesh], vertices: &[u32], fits: &mut [bool]) {
     let mut first = 0;
     for (mesh, fits) in pieces.iter().zip(fits) {
@@ -246,8 +246,8 @@ fn mark_owners(pieces: &[PieceMesh], vertices: &[u32], fits: &mut [bool]) {
 }
 
 impl PieceMesh {
-    /// Moves the vertices to where a piece with these samples has them; says whether the triangles
-    /// are sound there.
+    /// Moves the vertices to a new shape of the piece with the given samples; returns whether the triangles
+    /// are valid there.
     fn follow(&mut self, piece: &Piece, table: &EdgeTable, sampling: &Sampling) -> bool {
         let range = table.of_piece(self.draft_piece);
         self.edge_fractions = sampling.fractions[range].to_vec();
@@ -278,7 +278,7 @@ impl PieceMesh {
         let Ok(way) = source.weights.displacements(&way, weights) else {
             return false;
         };
-        // Those that are given exactly, the others by their displacement.
+        // Given vertices have exact positions, the others are displaced.
         given.extend((source.points.iter().zip(&way).skip(count)).map(|(p, d)| p + d));
         self.points = given;
         let old = &self.source.points;
@@ -286,7 +286,7 @@ impl PieceMesh {
         (self.triangles.iter()).all(|t| is_sound(corners(old, t), corners(&self.points, t)))
     }
 
-    /// The triangles as they were made, counter-clockwise.
+    /// The original triangles, counter-clockwise.
     fn counter_clockwise(&self) -> Vec<[usize; 3]> {
         let p = |v: usize| self.source.points[v];
         let turned = |t: &[u32; 3]| {
@@ -301,7 +301,7 @@ impl PieceMesh {
     }
 }
 
-/// Whether a triangle has not turned over and keeps its angles and edges within the bounds.
+/// Whether a triangle has not turned over, and keeps its angles and edges within the limits.
 fn is_sound(old: [Vec2; 3], new: [Vec2; 3]) -> bool {
     let side = |[a, b, c]: [Vec2; 3]| orient2d(a, b, c);
     let angle = smallest_angle(old);
@@ -345,7 +345,7 @@ mod tests {
         assert!(!sound(EVEN, scaled(EVEN, -1.0, 1.0)));
         assert!(!sound(EVEN, [[0.0, 0.0], [1.0, 0.0], [0.5, 0.0]]));
         assert!(!sound(EVEN, [[0.0, 0.0], [1.0, 0.0], [f64::NAN, 0.9]]));
-        // As it was made, whichever way that is.
+        // The same winding as the original, whichever that is.
         assert!(sound(scaled(EVEN, -1.0, 1.0), scaled(EVEN, -1.1, 1.0)));
     }
 

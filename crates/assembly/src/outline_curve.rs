@@ -1,26 +1,26 @@
-//! Curves round a body in the plane across a limb: convex, at a distance from what they go
-//! round, walked by arc length so that cloth laid on them is not stretched.
+//! Convex curves round a body in a plane across a limb, at a distance from the body. They are parametrised by
+//! arc length so that cloth laid on them is not stretched.
 
 use toile_geometry::{Vec2, convex_hull, half_hull};
 
-/// Narrowest fold a ring is laid in (m).
+/// Smallest width of the folds of a ring (m).
 const NARROWEST_FOLD: f64 = 0.04;
 /// Angle between neighbouring points of a rounded corner (rad).
 const CORNER_STEP: f64 = 0.05;
 
-/// A polyline walked by arc length. Coordinates: first towards the left of the facing
-/// direction, second along it.
+/// A polyline parametrised by arc length. The first coordinate points to the left of the facing direction,
+/// the second along it.
 #[derive(Clone, Debug)]
 pub(crate) struct OutlineCurve {
     points: Vec<Vec2>,
-    /// Arc length at each point, zero where the walk starts (m).
+    /// Arc length at each point, zero at the start of the walk (m).
     lengths: Vec<f64>,
     closed: bool,
 }
 
 impl OutlineCurve {
-    /// The ring at `distance` (m) round the convex hull of points, walked from the front
-    /// (first coordinate that of `centre`, second largest) towards the left.
+    /// The ring at `distance` (m) round the convex hull of points. The walk starts in front (first coordinate
+    /// that of `centre`, second largest) and goes to the left.
     pub fn ring(points: &[Vec2], centre: Vec2, distance: f64) -> Self {
         let mut hull = convex_hull(points);
         if hull.is_empty() {
@@ -40,7 +40,7 @@ impl OutlineCurve {
             }
             let steps = ((to - from) / CORNER_STEP).ceil().clamp(1.0, 200.0);
             for i in 0..=steps as usize {
-                // The outward normal of a counter-clockwise edge is its direction turned right.
+                // The outward normal of a counter-clockwise edge is its direction turned to the right.
                 let turn = from + (to - from) * i as f64 / steps;
                 outer.push(here + Vec2::new(turn.cos(), turn.sin()) * distance);
             }
@@ -71,14 +71,13 @@ impl OutlineCurve {
         curve
     }
 
-    /// The ring laid in even folds that reach up to `amplitude` (m) outward, so that it is
-    /// `length` (m) long. Folds get no narrower than [`NARROWEST_FOLD`]: what does not fit then
-    /// is left out.
+    /// The ring with even folds that reach up to `amplitude` (m) outward, so that it is `length` (m) long.
+    /// Folds are at least [`NARROWEST_FOLD`] wide: the ring may then be shorter than `length`.
     pub fn folded(&self, length: f64, amplitude: f64) -> Self {
         self.in_folds(self.fold_count(length, amplitude), length, amplitude)
     }
 
-    /// How many folds [`Self::folded`] lays it in.
+    /// Number of folds that [`Self::folded`] uses.
     pub fn fold_count(&self, length: f64, amplitude: f64) -> usize {
         let around = self.length();
         let most = (around / NARROWEST_FOLD).floor().max(2.0) as usize;
@@ -89,7 +88,8 @@ impl OutlineCurve {
         count
     }
 
-    /// The ring laid in so many even folds, that reach up to `amplitude` (m) outward, so that it is `length` (m) long.
+    /// The ring with `count` even folds that reach up to `amplitude` (m) outward, so that it is `length` (m)
+    /// long.
     pub fn in_folds(&self, count: usize, length: f64, amplitude: f64) -> Self {
         let (mut low, mut high) = (0.0, amplitude);
         for _ in 0..30 {
@@ -126,7 +126,7 @@ impl OutlineCurve {
         curve
     }
 
-    /// Largest distance of its points from a centre (m).
+    /// Largest distance of the points from a centre (m).
     pub fn reach(&self, centre: Vec2) -> f64 {
         self.points
             .iter()
@@ -134,8 +134,8 @@ impl OutlineCurve {
             .fold(0.0, f64::max)
     }
 
-    /// The curve in front of points: their upper hull, no steeper than half a right angle,
-    /// moved `distance` (m) forward and walked from first coordinate `middle`.
+    /// The curve in front of points: their upper hull, no steeper than 45 degrees, moved `distance` (m)
+    /// forward and walked from first coordinate `middle`.
     pub fn front(points: &[Vec2], middle: f64, distance: f64) -> Self {
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.y.total_cmp(&a.y)));
@@ -191,12 +191,12 @@ impl OutlineCurve {
         0.0
     }
 
-    /// Whole length of a ring (m).
+    /// Total length of the ring (m).
     pub fn length(&self) -> f64 {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// The point at an arc length from the start of the walk (m); a ring goes on round.
+    /// The point at an arc length from the start of the walk (m), periodic for a ring.
     pub fn at(&self, length: f64) -> Vec2 {
         let total = self.length();
         let wanted = if self.closed && total > 0.0 {

@@ -5,7 +5,7 @@ use crate::outline_curve::OutlineCurve;
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::{BodyPart, Facing};
 
-/// Radius at which a point counts as equally far from a part as any other (m).
+/// Typical radius of a body part (m), the unit in which distances from its axis are compared.
 const fn usual_radius(part: BodyPart) -> f64 {
     match part {
         BodyPart::Trunk => 0.15,
@@ -15,8 +15,8 @@ const fn usual_radius(part: BodyPart) -> f64 {
     }
 }
 
-/// Frame of a body part: cloth's upward direction and the four directions it may face, each
-/// the next one's right hand: front, left, back, right of the trunk.
+/// Frame of a body part: the upward direction of cloth and its four facings in counter-clockwise order, for
+/// the trunk front, left, back and right.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartFrame {
     pub part: BodyPart,
@@ -26,7 +26,7 @@ pub(crate) struct PartFrame {
     facings: [Vec3; 4],
 }
 
-/// The axis of a part, or a stand-in where the body has none.
+/// The axis of a part, or a vertical substitute if the body does not have the part.
 fn axis(body: &PlacementBody, part: BodyPart) -> (Vec3, Vec3) {
     let axis = body.limbs.iter().find(|l| l.part == part);
     let ends = axis.and_then(|l| Some((*l.axis.first()?, *l.axis.last()?)));
@@ -44,7 +44,7 @@ impl PartFrame {
             BodyPart::LeftArm => 1.0,
             BodyPart::RightArm => -1.0,
             _ => {
-                // Upright parts keep to true heights above the floor.
+                // Upright parts use true heights above the floor.
                 let middle = (root + tip) * 0.5;
                 let front = Vec3::z();
                 return Self {
@@ -69,7 +69,7 @@ impl PartFrame {
         }
     }
 
-    /// Which quarter turn from the frame's first direction a facing is.
+    /// Number of quarter turns from the frame's first direction to a facing.
     pub fn quarter(&self, facing: Facing) -> usize {
         let arm = |front: usize| match facing {
             Facing::Front => front,
@@ -89,12 +89,13 @@ impl PartFrame {
         }
     }
 
-    /// Distance along the frame's upward direction (m).
+    /// Coordinate along the frame's upward direction (m).
     pub fn height(&self, p: Vec3) -> f64 {
         (p - self.origin).dot(&self.up)
     }
 
-    /// Place across the axis, seen with quarter `quarter` ahead: left of it, along it (m).
+    /// Coordinates across the axis, looking in the direction of `quarter`: to the left of it, and along it
+    /// (m).
     pub fn across(&self, p: Vec3, quarter: usize) -> Vec2 {
         let offset = p - self.origin;
         Vec2::new(
@@ -103,7 +104,7 @@ impl PartFrame {
         )
     }
 
-    /// The point at a place across the axis and a height (m).
+    /// The point with coordinates across the axis and a height (m).
     pub fn point(&self, across: Vec2, quarter: usize, height: f64) -> Vec3 {
         self.origin
             + self.facings[(quarter + 1) % 4] * across.x
@@ -111,7 +112,7 @@ impl PartFrame {
             + self.up * height
     }
 
-    /// A point of cloth on a curve: `along` it, at a height (m).
+    /// A point of cloth on a curve, at the arc length `along` and a height (m).
     pub fn on_curve(&self, curve: &OutlineCurve, quarter: usize, along: f64, height: f64) -> Vec3 {
         self.point(curve.at(along), quarter, height)
     }
@@ -134,8 +135,7 @@ fn polyline_distance(p: Vec3, line: &[Vec3]) -> f64 {
     }
 }
 
-/// For each vertex of the skin, the part it belongs to: the one whose axis is nearest in
-/// multiples of its usual radius.
+/// The body part of each skin vertex: the part whose axis is nearest in multiples of its typical radius.
 pub(crate) fn label_skin(body: &PlacementBody) -> Vec<BodyPart> {
     body.skin
         .mesh()

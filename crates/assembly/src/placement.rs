@@ -1,5 +1,5 @@
-//! Pieces placed round the body: wrapped, laid over or as given, then moved until they are
-//! clear of the skin and of each other.
+//! Places pieces round the body: wrapped, laid over or as given; then moves them until they are clear of the
+//! skin and of each other.
 
 use crate::closing::{PlacedPieces, clear_closing_seams};
 use crate::flare::{Pieces, turn_as_sewn, unroll_flares};
@@ -16,28 +16,28 @@ use crate::{AssemblyError, Diagnostic, PlacementBody};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Draft, Facing};
 
-/// Distance every vertex keeps from the skin (m).
+/// Distance that every vertex keeps from the skin (m).
 pub(crate) const SKIN_CLEARANCE: f64 = 0.005;
-/// How far from a vertex the skin is looked for (m).
+/// Distance from a vertex within which the skin is searched (m).
 const LOOK: f64 = 0.03;
-/// Steps of the search for a clear place.
+/// Largest number of steps of the search for a clear position.
 const CLEAR_STEPS: usize = 60;
-/// Steps of moving rows that cross each other apart.
+/// Largest number of steps to separate rows that intersect.
 const APART_STEPS: usize = 12;
-/// Steps in which collars and hoods only rise before they also widen.
+/// Number of steps in which collars and hoods only rise, before they also widen.
 const HEAD_LIFTS: usize = 8;
-/// How far a piece placed by its file may be pushed (m).
+/// Largest distance by which a piece placed by its file is pushed (m).
 const MAX_PUSH: f64 = 0.3;
 
-/// Where all vertices go.
+/// Positions of all vertices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Placement {
     /// Positions of each meshed piece's vertices (m).
     pub positions: Vec<Vec<Vec3>>,
 }
 
-/// A way a row was placed: how deep it is in the skin (m) and how often it crosses it, what was
-/// asked, and where its pieces came to lie (m).
+/// A trial placement of a row: depth in the skin (m) and number of intersections, the parameters, and the
+/// positions of its pieces (m).
 type Attempt = ((f64, usize), Fit, Vec<Vec<Vec3>>);
 
 struct Placer<'a> {
@@ -53,7 +53,7 @@ struct Placer<'a> {
 /// Places every meshed piece.
 ///
 /// # Errors
-/// A piece is worn on a part the body has not.
+/// A piece is worn on a body part that the body does not have.
 pub(crate) fn place(
     draft: &Draft,
     meshes: &PieceMeshes,
@@ -84,7 +84,7 @@ pub(crate) fn place(
         let frame = PartFrame::new(body, row.part);
         set_flared_shifts(&mut laid, &roles, (row, &rows), &ties, &frame);
     }
-    // Trunk last, over sleeves: its fronts and backs go round what is placed already.
+    // Trunk last, over sleeves: its fronts and backs go round the pieces placed before.
     rows.sort_by_key(|row| row.part == BodyPart::Trunk);
     let mut placer = Placer {
         draft,
@@ -117,7 +117,7 @@ pub(crate) fn place(
     })
 }
 
-/// Refuses a piece worn on a part the body has not.
+/// Refuses a piece worn on a body part that the body does not have.
 fn has_parts(
     (draft, meshes): (&Draft, &PieceMeshes),
     roles: &[Role],
@@ -136,7 +136,7 @@ fn has_parts(
     Ok(())
 }
 
-/// Length round the trunk at the waist (m).
+/// Girth of the trunk at the waist (m).
 fn waist_length(body: &PlacementBody, labels: &[BodyPart]) -> f64 {
     let around = Surroundings {
         body,
@@ -169,13 +169,14 @@ impl Placer<'_> {
         }
     }
 
-    /// How far inside the distance kept from the skin a piece comes (m), and, where it keeps
-    /// that distance, how many of its triangles cross the skin all the same.
+    /// Depth by which a piece violates the skin clearance (m); if it keeps the clearance, also the number of
+    /// its triangles that still intersect the skin.
     fn trouble(&self, k: usize, positions: &[Vec3]) -> (f64, usize) {
         let skin = self.body.skin;
         let mut depth: f64 = 0.0;
         for (i, &p) in positions.iter().enumerate() {
-            // A piece that crosses nothing has all vertices on one side: one look far is enough.
+            // A piece without intersections has all vertices on one side of the skin: one unlimited search is
+            // enough.
             let reach = if i == 0 { f64::INFINITY } else { LOOK };
             if let Some(closest) = skin.closest_point(p, reach) {
                 depth = depth.max(SKIN_CLEARANCE - closest.signed_distance);
@@ -188,7 +189,7 @@ impl Placer<'_> {
         (depth, crossings)
     }
 
-    /// Places a row, farther out until it is clear of the skin; returns what was needed.
+    /// Places a row, increasing its distance until it is clear of the skin; returns the parameters used.
     fn place_row(&mut self, row: &Row, start: Fit) -> Fit {
         let placed: Vec<Vec3> = self.positions.iter().flatten().copied().collect();
         let mut fit = start;
@@ -215,7 +216,7 @@ impl Placer<'_> {
             }
             let even = step % 2 == 0;
             match row.part {
-                // Sleeves slide off the shoulder, collars and hoods rise off it.
+                // Sleeves slide off the shoulder; collars and hoods rise off it.
                 BodyPart::LeftArm | BodyPart::RightArm if even => fit.lift -= 0.01,
                 BodyPart::Head if even || step < HEAD_LIFTS => fit.lift += 0.005,
                 BodyPart::LeftArm | BodyPart::RightArm => fit.distance += 0.002,
@@ -231,7 +232,7 @@ impl Placer<'_> {
         fit
     }
 
-    /// Moves rows apart that cross each other: the outer one of two goes farther out.
+    /// Separates rows that intersect: the outer one of two is moved farther out.
     fn part_rows(&mut self, rows: &[Row], fits: &mut [Fit]) {
         let row_of = |k: usize| rows.iter().position(|r| r.pieces.contains(&k));
         for _ in 0..APART_STEPS {
@@ -261,7 +262,7 @@ impl Placer<'_> {
         }
     }
 
-    /// Puts pieces where their file says, pushed off the skin along their right side.
+    /// Places pieces as their file says, pushed off the skin along their right side.
     fn place_given(&mut self, diagnostics: &mut Vec<Diagnostic>) {
         for k in 0..self.roles.len() {
             let Role::Placed(place) = self.roles[k] else {
@@ -308,7 +309,7 @@ impl Placer<'_> {
         }
     }
 
-    /// A normal turned away from the nearest axis of the body.
+    /// A normal, reversed if needed so that it points away from the nearest axis of the body.
     fn outward(&self, positions: &[Vec3], normal: Vec3) -> Vec3 {
         let middle = positions.iter().sum::<Vec3>() / positions.len().max(1) as f64;
         let mut nearest = (f64::INFINITY, Vec3::zeros());
@@ -365,8 +366,8 @@ impl Placer<'_> {
     }
 }
 
-/// Pairs of meshed pieces that cross each other, each once. Triangles that touch in vertices
-/// lying at one place, as sewn edges may, do not count.
+/// Pairs of meshed pieces that intersect, each once. Triangles that only touch at coinciding vertices, as at
+/// sewn edges, do not count.
 pub(crate) fn crossing_panels(meshes: &PieceMeshes, positions: &[Vec<Vec3>]) -> Vec<[usize; 2]> {
     let mut pairs: Vec<[usize; 2]> = crossing_triangles(meshes, positions)
         .into_iter()
@@ -377,7 +378,7 @@ pub(crate) fn crossing_panels(meshes: &PieceMeshes, positions: &[Vec<Vec3>]) -> 
     pairs
 }
 
-/// Pairs of crossing triangles of different pieces: the pieces, and the triangles in the whole
+/// Pairs of intersecting triangles of different pieces: the pieces, and the triangle indices in the whole
 /// garment.
 pub(crate) fn crossing_triangles(
     meshes: &PieceMeshes,

@@ -1,27 +1,27 @@
-//! The body as placement takes it: surface, axes of its parts, levels.
+//! The body as needed for placement: surface, axes of its parts, heights.
 
 use toile_geometry::{SurfaceTree, Vec3};
 use toile_pattern::BodyPart;
 
-/// The body a garment is placed on. The body's own crate is not known here: the session fills
-/// this in from a mannequin or from any closed mesh.
+/// The body a garment is placed on. This crate is independent of the body crate: the session fills this in
+/// from a mannequin or from any closed mesh.
 pub struct PlacementBody<'a> {
-    /// The closed skin, outward.
+    /// The closed surface of the skin, with outward normals.
     pub skin: &'a SurfaceTree,
-    /// Axes of the parts the body has, in the order of [`BodyPart`]: a dress form has trunk and neck.
+    /// Axes of the parts that the body has, in the order of [`BodyPart`]: a dress form has trunk and neck.
     pub limbs: Vec<Limb>,
-    /// Heights above the floor (m).
+    /// Heights of landmarks above the floor (m).
     pub levels: Levels,
 }
 
 impl PlacementBody<'_> {
-    /// Whether it has a part.
+    /// Whether the body has a part.
     pub(crate) fn has(&self, part: BodyPart) -> bool {
         self.limbs.iter().any(|limb| limb.part == part)
     }
 }
 
-/// A part in words.
+/// Name of a body part in a sentence.
 pub(crate) fn part_words(part: BodyPart) -> &'static str {
     match part {
         BodyPart::Trunk => "the trunk",
@@ -36,10 +36,10 @@ pub(crate) fn part_words(part: BodyPart) -> &'static str {
 /// The axis of one body part.
 #[derive(Clone, Debug)]
 pub struct Limb {
-    /// Which part.
+    /// The body part.
     pub part: BodyPart,
-    /// Points from the root outward: trunk from the crotch up to the neck, head from the neck up,
-    /// arm from the shoulder joint to the wrist, leg from the hip joint to the ankle (m).
+    /// Points of the axis from the root outward (m): trunk from the crotch up to the neck, head from the neck
+    /// up, arm from the shoulder joint to the wrist, leg from the hip joint to the ankle.
     pub axis: Vec<Vec3>,
 }
 

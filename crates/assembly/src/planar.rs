@@ -1,20 +1,19 @@
-//! A plane triangulation that can be smoothed: triangles with their neighbours, edge flips and
-//! vertex stars.
+//! A plane triangulation for smoothing: triangles with their neighbours, edge flips and vertex stars.
 
 use std::collections::HashSet;
 use toile_geometry::{TriangulationError, Vec2, delaunay_triangles, orient2d};
 
-/// No triangle on the other side of an edge.
+/// Marks a missing triangle on the other side of an edge.
 pub(crate) const NONE: usize = usize::MAX;
 
-/// The fixed part of a triangulation.
+/// The fixed part of a triangulation: boundary, creases and fixed vertices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frame {
-    /// Segments with the inside of the piece on their left.
+    /// Boundary segments with the inside of the piece on their left.
     pub walls: Vec<[usize; 2]>,
-    /// Segments inside the piece that triangles must follow.
+    /// Segments inside the piece that must be edges of triangles.
     pub creases: Vec<[usize; 2]>,
-    /// Vertices from here on may be moved or removed.
+    /// Number of fixed vertices; later ones may be moved or removed.
     pub fixed: usize,
 }
 
@@ -23,9 +22,9 @@ pub(crate) struct Frame {
 pub(crate) struct Planar {
     pub points: Vec<Vec2>,
     pub triangles: Vec<[usize; 3]>,
-    /// Triangle across the edge opposite each corner.
+    /// Neighbouring triangle across the edge opposite each corner.
     pub neighbours: Vec<[usize; 3]>,
-    /// Whether the edge opposite each corner must stay.
+    /// Whether the edge opposite each corner must not be flipped.
     pub locked: Vec<[bool; 3]>,
 }
 
@@ -46,8 +45,8 @@ impl Planar {
         Ok(planar)
     }
 
-    /// The Delaunay triangulation of a mesh's points inside its boundary: its triangles, which
-    /// are counter-clockwise, with edges flipped.
+    /// The Delaunay triangulation of a mesh's points inside its boundary, made from its counter-clockwise
+    /// triangles by edge flips.
     pub fn delaunay(points: Vec<Vec2>, triangles: Vec<[usize; 3]>) -> Self {
         let mut planar = Self {
             points,
@@ -80,7 +79,7 @@ impl Planar {
         self.locked = vec![[false; 3]; self.triangles.len()];
     }
 
-    /// Removes the triangles that a flood from outside the walls reaches.
+    /// Removes the triangles reached by a flood fill from outside the boundary.
     fn keep_inside(&mut self, frame: &Frame) {
         let walls: HashSet<[usize; 2]> = frame.walls.iter().copied().collect();
         let mut state = vec![0u8; self.triangles.len()];
@@ -146,8 +145,8 @@ impl Planar {
         stars
     }
 
-    /// The four vertices of the edge opposite corner `k` of `t`: the corner, the edge's ends,
-    /// the corner across.
+    /// The four vertices round the edge opposite corner `k` of `t`: the corner, the ends of the edge, the
+    /// opposite corner of the neighbour.
     pub fn quad(&self, t: usize, k: usize) -> Option<([usize; 4], usize)> {
         let other = self.neighbours[t][k];
         if other == NONE {
@@ -166,7 +165,7 @@ impl Planar {
         ))
     }
 
-    /// Whether the edge opposite corner `k` of `t` can be turned: both new triangles would be
+    /// Whether the edge opposite corner `k` of `t` can be flipped: both new triangles would be
     /// counter-clockwise.
     pub fn can_flip(&self, t: usize, k: usize) -> bool {
         if self.locked[t][k] {
@@ -178,7 +177,7 @@ impl Planar {
         })
     }
 
-    /// Turns the edge opposite corner `k` of `t`.
+    /// Flips the edge opposite corner `k` of `t`.
     pub fn flip(&mut self, t: usize, k: usize) {
         let Some(([a, b, c, d], across)) = self.quad(t, k) else {
             return;
@@ -206,8 +205,8 @@ impl Planar {
         }
     }
 
-    /// Flips edges until the triangulation is constrained Delaunay (Lawson 1977): an edge turns
-    /// when the angles opposite it add to more than half a turn.
+    /// Flips edges until the triangulation is constrained Delaunay (Lawson 1977): an edge is flipped if the
+    /// angles opposite it add up to more than half a turn.
     pub fn make_delaunay(&mut self) {
         let mut queue: Vec<usize> = (0..self.triangles.len()).collect();
         let mut budget = 20 * self.triangles.len() + 100;
@@ -239,8 +238,7 @@ impl Planar {
     }
 }
 
-/// Sine of the sum of the angles from `u` to `v` and from `w` to `x`, times their lengths,
-/// relative to them.
+/// Sine of the sum of the angle from `u` to `v` and the angle from `w` to `x`.
 fn sine_of_sum(u: Vec2, v: Vec2, w: Vec2, x: Vec2) -> f64 {
     let sum = u.perp(&v) * w.dot(&x) + u.dot(&v) * w.perp(&x);
     sum / (u.norm() * v.norm() * w.norm() * x.norm()).max(f64::MIN_POSITIVE)

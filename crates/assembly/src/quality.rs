@@ -2,7 +2,7 @@
 
 use toile_geometry::Vec2;
 
-/// Smallest inner angle of a triangle (rad); zero where it has no area.
+/// Smallest inner angle of a triangle (rad); zero for a triangle without area.
 pub fn smallest_angle(corners: [Vec2; 3]) -> f64 {
     let [a, b, c] = corners;
     let doubled = (b - a).perp(&(c - a)).abs();
@@ -17,9 +17,10 @@ pub struct MeshQuality {
     pub triangles: usize,
     /// Smallest angle (rad).
     pub smallest_angle: f64,
-    /// Smallest angle over triangles that no narrow outline corner forces to be sharp (rad).
+    /// Smallest angle of the triangles that are not forced to be sharp by a narrow corner of the outline
+    /// (rad).
     pub smallest_free_angle: f64,
-    /// Triangles whose smallest angle is under 20 degrees, corner triangles left out.
+    /// Number of triangles with a smallest angle under 20 degrees, without those at narrow corners.
     pub under_20: usize,
     /// Mean of the smallest angles of all triangles (rad).
     pub mean_smallest_angle: f64,
@@ -29,11 +30,11 @@ pub struct MeshQuality {
     pub shortest_edge: f64,
     /// Longest edge (m).
     pub longest_edge: f64,
-    /// Triangles with all three corners on the boundary that do not cut off one corner of it.
+    /// Number of triangles with all three corners on the boundary that do not just cut off a corner of it.
     pub bridging: usize,
 }
 
-/// Sums up several meshes: worst of the worst, means weighted by triangles.
+/// Combines several meshes: the worst of the extremes, means weighted by triangles.
 pub fn combine(parts: &[MeshQuality]) -> MeshQuality {
     let mut all = MeshQuality {
         smallest_angle: f64::INFINITY,

@@ -1,5 +1,5 @@
-//! Interior vertices of a piece: seeded, added where triangles are too large, removed where
-//! they crowd, smoothed until triangles are nearly equilateral.
+//! Interior vertices of a piece: seeded, added where triangles are too large, removed where they crowd,
+//! smoothed until triangles are nearly equilateral.
 
 use crate::circumcircle::circumcircle;
 use crate::planar::{Frame, NONE, Planar};
@@ -7,17 +7,17 @@ use crate::size_field::SizeField;
 use crate::smoothing;
 use toile_geometry::{TriangulationError, Vec2, orient2d};
 
-/// Rounds of adding and removing vertices.
+/// Number of rounds of adding and removing vertices.
 const ROUNDS: usize = 10;
-/// A triangle is too large when its circumradius exceeds this share of the target edge length
-/// (an equilateral triangle of that edge has 0.577).
+/// Largest circumradius of a triangle, relative to the target edge length (an equilateral triangle with that
+/// edge has 0.577).
 const MAX_RADIUS: f64 = 0.76;
-/// Vertices nearer to each other than this share of the target edge length are thinned out.
+/// Distance between vertices, relative to the target edge length, below which they are thinned out.
 const CROWDED: f64 = 0.62;
-/// New vertices keep this distance from the boundary, as a share of the target edge length.
+/// Distance of new vertices from the boundary, relative to the target edge length.
 const BOUNDARY_CLEARANCE: f64 = 0.38;
 
-/// Meshes the inside of a frame: the first `frame.fixed` points stay as they are.
+/// Meshes the inside of a frame; the first `frame.fixed` points stay unchanged.
 pub(crate) fn refine(
     fixed: Vec<Vec2>,
     seeds: Vec<Vec2>,
@@ -50,7 +50,7 @@ pub(crate) fn refine(
     Ok(planar)
 }
 
-/// Interior vertices to remove: too near to another, or badly connected.
+/// Interior vertices to be removed: too near to another, or badly connected.
 fn crowded(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<bool> {
     let mut removed = vec![false; planar.points.len()];
     let stars = planar.stars();
@@ -77,7 +77,7 @@ fn crowded(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<bool> {
     removed
 }
 
-/// New vertices where triangles are too large or cross from boundary to boundary.
+/// New vertices where triangles are too large or connect boundary with boundary.
 fn missing_vertices(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<Vec2> {
     let mut candidates: Vec<(f64, Vec2)> = Vec::new();
     for t in 0..planar.triangles.len() {
@@ -128,8 +128,8 @@ fn missing_vertices(planar: &Planar, frame: &Frame, field: &SizeField) -> Vec<Ve
     accepted
 }
 
-/// Middle of an edge that joins two boundary vertices across the piece and does not merely cut
-/// off a corner.
+/// Midpoint of an edge that connects two boundary vertices across the piece, unless it merely cuts off a
+/// corner.
 fn crossing_edge(
     planar: &Planar,
     frame: &Frame,
@@ -154,8 +154,7 @@ fn crossing_edge(
     (length > 0.85 * field.size(middle)).then_some(middle)
 }
 
-/// The triangle that holds a point, found by walking from `start` without crossing a locked
-/// edge.
+/// The triangle that contains a point, found by walking from `start` without crossing a locked edge.
 fn walk(planar: &Planar, start: usize, target: Vec2) -> Option<usize> {
     let mut t = start;
     'steps: for _ in 0..64 {

@@ -1,5 +1,4 @@
-//! The body part that every piece belongs to: as the document says, else from its name, else from its seams
-//! and size.
+//! The body part of every piece: as the document says, else from its name, else from its seams and size.
 
 use crate::Diagnostic;
 use crate::flat_pieces::{FlatPiece, Tie};
@@ -9,12 +8,12 @@ use crate::wearer_side::wearer_sides;
 use toile_geometry::Rigid;
 use toile_pattern::{BodyPart, Draft, Facing, Piece, Worn};
 
-/// Where a piece goes.
+/// The placement rule of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Role {
-    /// As given.
+    /// Placed as the file says.
     Placed(Rigid),
-    /// Round a body part.
+    /// Wrapped round a body part.
     Wrapped {
         part: BodyPart,
         facing: Facing,
@@ -22,7 +21,7 @@ pub(crate) enum Role {
     },
 }
 
-/// Decides the roles of all meshed pieces.
+/// Determines the roles of all meshed pieces.
 pub(crate) fn roles(
     (draft, meshes): (&Draft, &PieceMeshes),
     (laid, ties): (&[FlatPiece], &[Tie]),
@@ -86,19 +85,19 @@ pub(crate) fn roles(
         .collect()
 }
 
-/// The body part that a piece's name suggests.
+/// The body part suggested by the name of a piece.
 pub fn body_part_by_name(piece: &Piece) -> Option<BodyPart> {
     Guess::from_name(piece, told_side(&(piece, None))).part
 }
 
-/// The place that a piece's name suggests.
+/// The body part and facing suggested by the name of a piece.
 #[derive(Clone, Copy, Debug, Default)]
 struct Guess {
     part: Option<BodyPart>,
     facing: Option<Facing>,
 }
 
-/// Words of a name: runs of letters, split where small letters meet capitals.
+/// Words of a name: sequences of letters, also split where a lower-case letter is followed by a capital.
 fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut small = false;
@@ -117,7 +116,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// The side a piece faces by the document, else by its name.
+/// The facing of a piece according to the document, else to its name.
 fn told_facing((piece, role): &(&Piece, Option<&Role>)) -> Option<Facing> {
     match role {
         Some(Role::Wrapped { facing, .. }) => Some(*facing),
@@ -126,7 +125,7 @@ fn told_facing((piece, role): &(&Piece, Option<&Role>)) -> Option<Facing> {
     }
 }
 
-/// Whether a piece goes on the wearer's left by the document, else by its name.
+/// Whether a piece goes on the wearer's left according to the document, else to its name.
 fn told_side((piece, role): &(&Piece, Option<&Role>)) -> Option<bool> {
     match role {
         Some(Role::Wrapped { part, facing, .. }) => match (part, facing) {
@@ -147,7 +146,7 @@ fn told_side((piece, role): &(&Piece, Option<&Role>)) -> Option<bool> {
 }
 
 impl Guess {
-    /// The place by the name; `left` is whether the piece goes on the wearer's left, if that is known.
+    /// Guesses from the name; `left` is whether the piece goes on the wearer's left, if known.
     fn from_name(piece: &Piece, left: Option<bool>) -> Self {
         let words = words(&piece.name);
         let has = |list: &[&str]| words.iter().any(|w| list.contains(&w.as_str()));
@@ -193,7 +192,7 @@ impl Guess {
         Self { part, facing }
     }
 
-    /// The place with a facing for a piece of the trunk whose name tells none.
+    /// Adds a facing to a guess for a piece of the trunk whose name does not tell one.
     fn on_trunk(mut self, facing: Option<Facing>) -> Self {
         if matches!(self.part, None | Some(BodyPart::Trunk)) {
             self.facing = self.facing.or(facing);
@@ -202,7 +201,7 @@ impl Guess {
     }
 }
 
-/// How many stitches join each pair of meshed pieces.
+/// Number of stitches between each pair of meshed pieces.
 pub(crate) struct SewnLengths {
     count: usize,
     table: Vec<f64>,
@@ -242,8 +241,9 @@ fn opposite(facing: Facing) -> Facing {
     }
 }
 
-/// Fills in unknown roles, largest piece first: a part from the name, else from the piece it is
-/// sewn to most; a facing from the name, else from the ring of gores it is one of, else opposite to that piece.
+/// Fills in unknown roles, pieces with telling names first, then the largest. The body part comes from the
+/// name, else from the piece with the most common stitches. The facing comes from the name, else from the
+/// ring of gores, else it is opposite to that piece.
 fn guess(
     known: &mut [Option<Role>],
     guesses: &[Guess],
@@ -251,7 +251,7 @@ fn guess(
     (areas, draft, meshes): (&[f64], &Draft, &PieceMeshes),
 ) {
     let mut order: Vec<usize> = (0..known.len()).filter(|&k| known[k].is_none()).collect();
-    // Named pieces first: they are what the others lean on.
+    // Pieces with telling names first: the others are derived from them.
     order.sort_by(|&a, &b| {
         let certainty = |k: usize| {
             usize::from(guesses[k].part.is_some()) + usize::from(guesses[k].facing.is_some())

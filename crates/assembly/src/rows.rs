@@ -1,5 +1,5 @@
-//! Pieces laid out flat before they are wrapped: heights and places round the part, so that
-//! sewn edges come near each other.
+//! Arrangement of flat pieces before wrapping: heights and positions round the body part that bring sewn
+//! edges near each other.
 
 use crate::PlacementBody;
 use crate::flat_pieces::{FlatPiece, Tie};
@@ -10,25 +10,26 @@ use crate::role::Role;
 use toile_geometry::Vec2;
 use toile_pattern::{BodyPart, Draft, Facing};
 
-/// Weight that draws a piece to the middle of the side it faces, against one a stitch.
+/// Weight of the pull towards the middle of the side that a piece faces; a stitch has weight 1.
 const FACING_WEIGHT: f64 = 0.5;
-/// Sweeps of the solver for places; garments have few pieces.
+/// Number of sweeps of the solver for positions; garments have few pieces.
 const SWEEPS: usize = 400;
 
-/// Pieces on one part at about the same height.
+/// Pieces on one body part at about the same height.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub part: BodyPart,
     /// Indices of meshed pieces.
     pub pieces: Vec<usize>,
-    /// Distance round that the pieces fill (m).
+    /// Total length of the pieces round the body part (m).
     pub girth: f64,
-    /// How much longer it gets for each metre down: the sectors of its flared pieces together (rad).
+    /// Increase of the girth per metre downwards: sum of the sector angles of the flared pieces (rad).
     pub turn: f64,
 }
 
-/// Parts that share heights above the floor are laid out together; each arm has its own, and
-/// what is worn on the head stands on the base of the neck, not in the neckline.
+/// Index of the group of body parts that are arranged together. Parts with heights above the floor form one
+/// group. Each arm is a group of its own, and so is the head, whose pieces stand on the base of the neck, not
+/// in the neckline.
 fn family(part: BodyPart) -> usize {
     match part {
         BodyPart::LeftArm => 1,
@@ -49,8 +50,8 @@ fn wrapped(role: &Role) -> Option<(BodyPart, Facing, Option<f64>)> {
     }
 }
 
-/// Sets every wrapped piece's height: sewn edges level with each other, then each connected
-/// group moved to where it hangs.
+/// Sets the height of every wrapped piece: sewn edges at the same height, then each connected group moved to
+/// the height at which it hangs.
 pub(crate) fn set_heights(
     laid: &mut [FlatPiece],
     roles: &[Role],
@@ -104,7 +105,7 @@ pub(crate) fn set_heights(
     }
 }
 
-/// How far a group of pieces must rise to hang where it belongs.
+/// Distance by which a group of pieces must rise to hang at the right height (m).
 fn group_lift(
     members: &[usize],
     laid: &[FlatPiece],
@@ -115,7 +116,7 @@ fn group_lift(
         .iter()
         .filter_map(|&k| {
             let (part, _, level) = wrapped(&roles[k])?;
-            // On an arm the level counts from the shoulder outward, against the frame.
+            // On an arm the level counts from the shoulder outward, opposite to the frame.
             let arm = matches!(part, BodyPart::LeftArm | BodyPart::RightArm);
             let height = if arm { -level? } else { level? };
             Some(height - laid[k].rise)
@@ -151,7 +152,7 @@ fn group_lift(
     }
 }
 
-/// Whether a front is sewn to a back along the top of both: what tops have and skirts have not.
+/// Whether a front is sewn to a back along the top of both, which distinguishes tops from skirts.
 fn has_shoulder_seam(
     members: &[usize],
     laid: &[FlatPiece],
@@ -183,7 +184,7 @@ fn has_shoulder_seam(
     })
 }
 
-/// Groups wrapped pieces of one part whose heights overlap.
+/// Groups wrapped pieces of one body part with overlapping heights into rows.
 pub(crate) fn rows(laid: &[FlatPiece], roles: &[Role]) -> Vec<Row> {
     let count = laid.len();
     let mut links = Links::new(count);
@@ -218,8 +219,8 @@ pub(crate) fn rows(laid: &[FlatPiece], roles: &[Role]) -> Vec<Row> {
     rows
 }
 
-/// Sets every piece's distance round the part: sewn edges near each other, pieces near the
-/// side they face, on a ring as long as all pieces of the row together.
+/// Sets the distance of every piece round the body part: sewn edges near each other, pieces near the side
+/// they face, on a ring as long as all pieces of the row together.
 pub(crate) fn set_shifts(
     laid: &mut [FlatPiece],
     roles: &[Role],

@@ -1,40 +1,40 @@
-//! Samples along every edge: the same number on both sides of each seam, whatever their
-//! lengths, with interval lengths that grow gently away from short ones.
+//! Samples along every edge: the same number on both sides of each seam, even if their lengths differ, with
+//! intervals that grow gradually away from short ones.
 
 use crate::edges::EdgeTable;
 use crate::links::{Links, OrientedLinks};
 use crate::seam_match::{Matching, Nodes, SeamChains};
 use toile_pattern::Draft;
 
-/// How much the interval length may grow per metre walked. Neighbouring intervals then differ
-/// by a third at most, which keeps triangle angles over 25 degrees.
+/// Largest growth of the interval length per metre of edge. Neighbouring intervals then differ by at most a
+/// third, which keeps triangle angles over 25 degrees.
 pub(crate) const GROWTH: f64 = 0.3;
-/// Least interval on the short side of a gathered seam, as a share of the edge length.
+/// Smallest interval on the short side of a gathered seam, relative to the edge length.
 const MIN_GATHERED: f64 = 0.3;
-/// Intervals shorter than this share of the edge length make their neighbours no shorter: one
-/// tiny edge must not fill a whole garment with tiny triangles.
+/// Intervals shorter than this fraction of the edge length do not shorten their neighbours further: one tiny
+/// edge must not fill a whole garment with tiny triangles.
 const MIN_SPREAD: f64 = 0.15;
 
-/// Two vertices to sew: edge and sample on each side.
+/// Two vertices to be sewn together: edge and sample on each side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SampleStitch {
     pub draft_seam: usize,
-    /// Edge and index of its sample, for both sides.
+    /// Edge and index of the sample, for both sides.
     pub samples: [(usize, usize); 2],
 }
 
 /// Samples of all edges and the stitches between them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sampling {
-    /// Arc-length fractions of each edge's samples, both ends included.
+    /// Arc-length fractions of the samples on each edge, both ends included.
     pub fractions: Vec<Vec<f64>>,
-    /// Which samples of each edge are nodes, the ends included.
+    /// Indices of the samples on each edge that are nodes, the ends included.
     pub nodes: Vec<Vec<usize>>,
     /// Stitches, seam by seam in walking order.
     pub stitches: Vec<SampleStitch>,
 }
 
-/// A stretch between two neighbouring nodes of an edge.
+/// The part of an edge between two neighbouring nodes.
 struct Interval {
     edge: usize,
     nodes: [usize; 2],
@@ -43,14 +43,14 @@ struct Interval {
     length: f64,
 }
 
-/// Intervals that are sewn together and so get the same samples.
+/// Intervals that are sewn together and therefore get the same samples.
 struct Class {
     members: Vec<(usize, bool)>,
-    /// The length its samples are counted for (m).
+    /// Length for which the number of samples is computed (m).
     length: f64,
-    /// Target interval (m) at equal steps along it.
+    /// Target interval (m), at equal steps along the class.
     size: Vec<f64>,
-    /// Whether it is sewn to itself end for end, so that its samples must be symmetric.
+    /// Whether the class is sewn to itself in reverse, so that its samples must be symmetric.
     symmetric: bool,
 }
 
@@ -91,8 +91,8 @@ fn intervals(table: &EdgeTable, nodes: &Nodes) -> (Vec<Interval>, Vec<usize>) {
     (intervals, first)
 }
 
-/// Which intervals two matched stations span on each side: interval and whether it is walked
-/// backwards.
+/// For consecutive stations on one side of a seam, the interval between them and whether it is walked
+/// backwards; `None` if they do not span one interval.
 fn spanned(
     nodes: &Nodes,
     first: &[usize],
@@ -120,7 +120,7 @@ fn spanned(
     found
 }
 
-/// Two intervals a seam sews together: the seam, both intervals.
+/// Pairs of intervals that a seam sews together: the seam and both intervals.
 type Partners = Vec<(usize, [usize; 2])>;
 
 fn link_intervals(matching: &Matching, first: &[usize], count: usize) -> (OrientedLinks, Partners) {
@@ -200,7 +200,7 @@ fn classes(
     classes
 }
 
-/// Groups of nodes at the same corner of a piece.
+/// For each node, the group of nodes at the same corner of a piece.
 fn node_groups(table: &EdgeTable, nodes: &Nodes) -> Vec<usize> {
     let mut links = Links::new(nodes.all.len());
     for (edge, list) in nodes.on_edge.iter().enumerate() {
@@ -212,8 +212,8 @@ fn node_groups(table: &EdgeTable, nodes: &Nodes) -> Vec<usize> {
     (0..nodes.all.len()).map(|n| links.root(n)).collect()
 }
 
-/// Limits the growth of the target interval along each class and round the corners of pieces.
-/// A member gets the class's interval times its share of the class's length.
+/// Limits the growth of the target interval along each class and round the corners of pieces. The interval of
+/// a member is that of the class, scaled by the ratio of their lengths.
 fn grade(classes: &mut [Class], intervals: &[Interval], groups: &[usize], spacing: f64) {
     let mut node_size = vec![f64::INFINITY; groups.len()];
     for _ in 0..100 {
@@ -264,8 +264,8 @@ impl Class {
         }
     }
 
-    /// Fractions of its samples, both ends included: equal steps of the integral of one over
-    /// the target interval.
+    /// Fractions of the samples of the class, both ends included: equal steps of the integral of one over the
+    /// target interval.
     fn places(&self) -> Vec<f64> {
         let last = self.size.len() - 1;
         let step = self.length / last as f64;
@@ -276,7 +276,7 @@ impl Class {
         }
         let wanted = total[last];
         let low = wanted.floor().max(1.0);
-        // The count whose intervals are nearest to the target ones by ratio.
+        // The number of intervals that brings their length nearest to the target, by ratio.
         let count = if wanted > (low * (low + 1.0)).sqrt() {
             low + 1.0
         } else {
@@ -346,8 +346,7 @@ fn assemble(
 }
 
 impl Sampling {
-    /// Adds the stitches between samples that are given. Each edge must have as many nodes here as in
-    /// the matching.
+    /// Adds the stitches to given samples. Each edge must have as many nodes here as in the matching.
     pub fn sew(&mut self, table: &EdgeTable, matching: &Matching) {
         let (intervals, first) = intervals(table, &matching.nodes);
         self.stitch(matching, &intervals, &first);
@@ -369,7 +368,7 @@ fn stitch(
 ) {
     let samples_of = |sampling: &Sampling, m: usize| {
         let edge = intervals[m].edge;
-        // The m-th interval of all lies between this node of its edge and the next.
+        // Interval m lies between this node of its edge and the next.
         let nodes = &sampling.nodes[edge][m - first[edge]..];
         (edge, nodes[0], nodes[1] - nodes[0])
     };
@@ -386,8 +385,8 @@ fn stitch(
         let count = ends[0].0.2.min(ends[1].0.2);
         for k in 0..=count {
             let samples = ends.map(|end| walk(end, k));
-            // Where a chain passes from one edge to the next, both vertices of the joint are
-            // sewn to the other side, so that merging makes one of all of them.
+            // At a joint between two edges of a chain, both vertices of the joint are sewn to the other side,
+            // so that merging makes them one vertex.
             if previous != Some(samples) {
                 sampling.stitches.push(SampleStitch {
                     draft_seam: sewing.seam,

@@ -1,28 +1,28 @@
-//! Checks of the sewn mesh: its topology with stitched vertices made one.
+//! Checks of the sewn mesh: topology after stitched vertices are merged.
 
 use crate::Garment;
 use crate::links::Links;
 use std::collections::BTreeMap;
 use toile_pattern::Draft;
 
-/// Topology of a garment whose stitched vertices are one.
+/// Topology of a garment after stitched vertices are merged.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sanity {
-    /// Number of pieces that hang together.
+    /// Number of connected components.
     pub components: usize,
-    /// Vertices after sewing.
+    /// Number of vertices after sewing.
     pub vertices: usize,
-    /// Edges on more than two triangles, as merged vertex pairs, where no multi-ply seam allows
-    /// them.
+    /// Edges of more than two triangles, as pairs of merged vertices, without those that a multi-ply seam
+    /// allows.
     pub non_manifold_edges: Vec<[u32; 2]>,
-    /// Edges whose two triangles walk them the same way: the cloth would turn inside out.
+    /// Edges that both triangles traverse in the same direction: the cloth would turn inside out.
     pub inconsistent_edges: Vec<[u32; 2]>,
-    /// Triangles with two corners sewn together.
+    /// Number of triangles with two corners sewn together.
     pub collapsed_triangles: usize,
 }
 
 impl Sanity {
-    /// Whether nothing is wrong but possibly several components.
+    /// Whether there are no faults, apart from possibly several components.
     pub fn is_sound(&self) -> bool {
         self.non_manifold_edges.is_empty()
             && self.inconsistent_edges.is_empty()
@@ -30,7 +30,7 @@ impl Sanity {
     }
 }
 
-/// Merges stitched vertices by union-find and looks at the result.
+/// Merges stitched vertices by union-find and checks the result.
 pub fn sanity(draft: &Draft, garment: &Garment) -> Sanity {
     let mut links = Links::new(garment.flat.len());
     for stitch in &garment.stitches {
@@ -50,7 +50,7 @@ pub fn sanity(draft: &Draft, garment: &Garment) -> Sanity {
         }
     }
     let mut report = Sanity::default();
-    // For each edge, how often it is walked up and down.
+    // For each edge, the number of traversals in either direction.
     let mut walks: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
     let mut hang = Links::new(garment.flat.len());
     for triangle in &garment.triangles {

@@ -6,13 +6,13 @@ use crate::{AssemblyError, Diagnostic};
 use toile_geometry::{Curve, Vec2};
 use toile_pattern::{Draft, DraftSeam, DraftSpan};
 
-/// Points of the two sides nearer than this share of the edge length are taken for one.
+/// Points of the two sides that are nearer than this fraction of the edge length are merged.
 const MERGE: f64 = 0.35;
-/// Ends of spans nearer than this share of the edge length snap together on one edge.
+/// Ends of spans on one edge that are nearer than this fraction of the edge length are merged.
 const SNAP: f64 = 0.1;
-/// Distance a notch must keep from other points, as a share of the edge length.
+/// Distance that a notch must keep from other points, relative to the edge length.
 const NOTCH_CLEARANCE: f64 = 1.0;
-/// Rounds after which seams that keep asking for new points are refused.
+/// Number of rounds after which seams that still require new points are refused.
 const MAX_ROUNDS: usize = 64;
 
 /// A point of an edge that must be a vertex.
@@ -24,29 +24,29 @@ pub(crate) struct Node {
     pub fraction: f64,
 }
 
-/// A span of an edge in a chain.
+/// A span of an edge in a chain, the sequence of spans on one side of a seam.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgeSpan {
     pub edge: usize,
     pub from: f64,
     pub to: f64,
-    /// Chain fractions of its ends.
+    /// Start and end as fractions of the chain's length.
     start: f64,
     end: f64,
 }
 
-/// A place on a chain where vertices are: one node, or two where spans join.
+/// A position on a chain that must have vertices: one node, or two where spans join.
 #[derive(Clone, Debug)]
 pub(crate) struct Station {
-    /// Fraction of the chain's length.
+    /// Position as a fraction of the chain's length.
     pub place: f64,
-    /// Span and node that name the station for good.
+    /// Span and node that identify the station permanently.
     key: (usize, usize),
-    /// All nodes there.
+    /// All nodes at the station.
     pub nodes: Vec<usize>,
 }
 
-/// A seam's chains and the stations matched so far.
+/// The chains of a seam with the stations matched so far.
 #[derive(Clone, Debug)]
 pub(crate) struct SeamChains {
     /// Index into the draft's seams.
@@ -57,7 +57,7 @@ pub(crate) struct SeamChains {
     pairs: Vec<[(usize, usize); 2]>,
 }
 
-/// All nodes, by edge in order of their fractions.
+/// All nodes, and those of each edge in the order of their fractions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Nodes {
     pub all: Vec<Node>,
@@ -74,7 +74,7 @@ impl Nodes {
         id
     }
 
-    /// The node nearest to a fraction and its distance in fractions.
+    /// The node nearest to a fraction of an edge, and the distance as a fraction.
     fn nearest(&self, edge: usize, fraction: f64) -> (usize, f64) {
         let mut best = (0, f64::INFINITY);
         for &n in &self.on_edge[edge] {
@@ -95,14 +95,14 @@ fn seam_error(seam: &DraftSeam, reason: String, remedy: &str) -> AssemblyError {
     }
 }
 
-/// Seams between the chosen pieces and the nodes of all edges.
+/// Seams between the chosen pieces, and the nodes of all edges.
 pub(crate) struct Matching {
     pub nodes: Nodes,
     pub sewings: Vec<SeamChains>,
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Reads all seams and matches their nodes until stable.
+/// Reads all seams and matches their nodes until nothing changes.
 pub(crate) fn match_seams(
     draft: &Draft,
     table: &EdgeTable,
@@ -191,7 +191,7 @@ impl Matching {
         Ok(())
     }
 
-    /// Makes sure there is a node where a span ends, and gives its fraction. `spacing` is the
+    /// Ensures that there is a node at the end of a span, and returns the node's fraction. `spacing` is the
     /// edge length as a fraction of the edge.
     fn end_of_span(&mut self, edge: usize, fraction: f64, spacing: f64) -> f64 {
         let fraction = fraction.clamp(0.0, 1.0);
@@ -204,7 +204,7 @@ impl Matching {
         self.nodes.all[node].fraction
     }
 
-    /// Adds notches that are not too near to another node; says whether any was added.
+    /// Adds notches that are not too near to another node; returns whether any was added.
     fn add_notches(
         &mut self,
         draft: &Draft,
@@ -234,7 +234,7 @@ impl Matching {
         added
     }
 
-    /// Gives every node a partner across every seam it lies on.
+    /// Gives every node a partner across every seam that it lies on.
     fn settle(
         &mut self,
         draft: &Draft,
@@ -263,7 +263,7 @@ impl Matching {
     }
 }
 
-/// Turns lengths along a chain into shares of its whole length.
+/// Converts lengths along a chain to fractions of its total length.
 fn as_shares(spans: &mut [EdgeSpan], total: f64) {
     for stretch in spans.iter_mut() {
         stretch.start /= total;
@@ -297,10 +297,10 @@ fn check_span(
     Ok((!flat).then(|| table.first[span.piece] + span.edge))
 }
 
-/// Edge and arc-length fraction of the outline point nearest to a point.
+/// Edge and arc-length fraction of the outline point that is nearest to a point.
 fn nearest_on_piece(table: &EdgeTable, piece: usize, point: Vec2) -> Option<(usize, f64)> {
-    // Edges that may come nearest first: once a point is nearer than the others can be, they are
-    // not sampled.
+    // Edges in the order of a lower bound of their distance: once a point is nearer than the bound of the
+    // remaining edges, those are not sampled.
     let mut edges: Vec<(f64, usize)> = table
         .of_piece(piece)
         .map(|edge| (least_distance(&table.edges[edge].curve, point), edge))
@@ -315,7 +315,7 @@ fn nearest_on_piece(table: &EdgeTable, piece: usize, point: Vec2) -> Option<(usi
         for k in 0..=count {
             let fraction = f64::from(k) / f64::from(count);
             let distance = (table.edges[edge].point(fraction) - point).norm();
-            // Of points equally near, the first along the outline.
+            // Of equally near points, the first along the outline.
             if best.is_none_or(|b| distance < b.0 || (distance == b.0 && edge < b.1)) {
                 best = Some((distance, edge, fraction));
             }
@@ -338,8 +338,8 @@ fn nearest_on_piece(table: &EdgeTable, piece: usize, point: Vec2) -> Option<(usi
     Some((edge, 0.5 * (low + high)))
 }
 
-/// A distance (m) that no point of a curve is nearer than: that of the box round the points that
-/// define it, but for rounding; nought for arcs, which lie outside it.
+/// A lower bound of the distance from a point to a curve (m): the distance to the bounding box of its
+/// defining points, reduced for rounding; zero for arcs, which may leave that box.
 fn least_distance(curve: &Curve, point: Vec2) -> f64 {
     if matches!(curve, Curve::Arc { .. }) {
         return 0.0;
@@ -418,7 +418,7 @@ impl SeamChains {
         }
     }
 
-    /// Matches the stations between two matched ones, adding nodes where one side has none.
+    /// Matches the stations between two matched pairs, adding nodes on the side that lacks one.
     fn pair_gap(
         &mut self,
         nodes: &mut Nodes,

@@ -1,10 +1,10 @@
-//! Edge lengths for the triangles inside a piece, and the nearest boundary.
+//! Target edge lengths for the triangles inside a piece, and distances from the boundary.
 
 use crate::boundary::Boundary;
 use crate::sampling::GROWTH;
 use toile_geometry::Vec2;
 
-/// Cells of a bucket grid are bounded, so that needle-thin pieces cost no memory.
+/// Largest number of cells of a bucket grid, which limits the memory for needle-thin pieces.
 const MAX_CELLS: f64 = 4e6;
 
 /// Buckets of indices over a rectangle.
@@ -59,8 +59,8 @@ impl Grid {
     }
 }
 
-/// Target size of triangles at every point of a piece: the edge length, less near short
-/// boundary intervals, growing gently away from them.
+/// Target edge length at every point of a piece: the given edge length, or less near short boundary
+/// intervals, growing gradually away from them.
 pub(crate) struct SizeField {
     spacing: f64,
     sources: Vec<(Vec2, f64)>,
@@ -77,7 +77,7 @@ fn segment_distance(p: Vec2, [a, b]: [Vec2; 2]) -> f64 {
 }
 
 impl SizeField {
-    /// From the intervals of a boundary and the creases inside it.
+    /// The size field from the intervals of a boundary and the creases inside it.
     pub fn new(boundary: &Boundary, creases: &[[Vec2; 2]], spacing: f64) -> Self {
         let points = &boundary.points;
         let segments: Vec<[Vec2; 2]> = boundary
@@ -131,8 +131,8 @@ impl SizeField {
             .fold(self.spacing, f64::min)
     }
 
-    /// Distance to the boundary and creases, right up to the edge length, at least the edge
-    /// length beyond (m).
+    /// Distance to the boundary and to creases (m): exact up to the edge length, beyond it equal to the edge
+    /// length.
     pub fn boundary_distance(&self, p: Vec2) -> f64 {
         self.near_segments
             .at(p)
@@ -141,7 +141,7 @@ impl SizeField {
             .fold(self.spacing, f64::min)
     }
 
-    /// Points of a hexagonal lattice inside the boundary that keep clear of it.
+    /// Points of a hexagonal lattice inside the boundary that keep a distance from it.
     pub fn lattice(&self, boundary: &Boundary) -> Vec<Vec2> {
         let h = self.spacing;
         let row_height = h * 0.75_f64.sqrt();

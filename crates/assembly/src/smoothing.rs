@@ -1,4 +1,4 @@
-//! Moving interior vertices to better places without moving the boundary.
+//! Moves interior vertices to better positions without moving the boundary.
 
 use crate::circumcircle::circumcircle;
 use crate::planar::{Frame, Planar};
@@ -6,15 +6,14 @@ use crate::quality::smallest_angle;
 use crate::size_field::SizeField;
 use toile_geometry::{Vec2, orient2d};
 
-/// Triangles with a smaller angle are worked on one by one (rad).
+/// Triangles with a smaller angle are improved one by one (rad).
 const POOR: f64 = 0.56;
-/// Corners narrower than this keep their ear: a split would make two sharper ones (rad).
+/// Corners narrower than this keep their ear: splitting it would make two sharper triangles (rad).
 const NARROW_EAR: f64 = 1.25;
 
-/// Sweeps of optimal Delaunay smoothing (Chen 2004): each vertex moves to the mean of the
-/// circumcentres of its triangles, weighted by area over target area, then edges are flipped.
-/// Circumcentres outside their triangle are drawn back to it, which keeps the sweep stable at
-/// the boundary.
+/// Sweeps of optimal Delaunay smoothing (Chen 2004): each vertex moves to the mean of the circumcentres of
+/// its triangles, weighted by area over target area, then edges are flipped. Circumcentres outside their
+/// triangle are moved back to it, which keeps the sweep stable at the boundary.
 pub(crate) fn relax(planar: &mut Planar, frame: &Frame, field: &SizeField, sweeps: usize) {
     for _ in 0..sweeps {
         let stars = planar.stars();
@@ -47,7 +46,7 @@ fn smoothed(planar: &Planar, field: &SizeField, v: usize, star: &[usize]) -> Opt
     (total > 0.0).then(|| sum / total)
 }
 
-/// Whether all triangles of a star stay counter-clockwise with the vertex elsewhere.
+/// Whether all triangles of a star stay counter-clockwise when the vertex is moved.
 fn stays_valid(planar: &Planar, v: usize, star: &[usize], place: Vec2) -> bool {
     star.iter().all(|&t| {
         let p = planar.triangles[t].map(|w| if w == v { place } else { planar.points[w] });
@@ -68,8 +67,8 @@ fn move_towards(planar: &mut Planar, v: usize, star: &[usize], target: Vec2) {
     }
 }
 
-/// Turns the long edge of triangles that have two boundary edges, so that a corner vertex is
-/// tied to the interior, where the corner is wide enough.
+/// Flips the long edge of triangles with two boundary edges, if the corner is wide enough, so that the corner
+/// vertex is connected to the interior.
 pub(crate) fn open_ears(planar: &mut Planar, frame: &Frame) {
     for t in 0..planar.triangles.len() {
         let Some(k) = (0..3).find(|&k| !planar.locked[t][k]) else {
@@ -90,8 +89,8 @@ pub(crate) fn open_ears(planar: &mut Planar, frame: &Frame) {
     }
 }
 
-/// Hill-climbs the vertices round poor triangles so that the smallest angle of each star grows,
-/// and turns edges where that helps (local optimisation after Freitag and Ollivier-Gooch 1997).
+/// Moves the vertices of poor triangles by hill climbing so that the smallest angle of each star grows, and
+/// flips edges if that helps (local optimisation after Freitag and Ollivier-Gooch 1997).
 pub(crate) fn improve_worst(planar: &mut Planar, frame: &Frame, field: &SizeField) {
     for _ in 0..12 {
         let stars = planar.stars();

@@ -1,26 +1,26 @@
-//! What a row of pieces goes round: the skin of the body part it is worn on, the arms beside it, and pieces placed
-//! before.
+//! Obstacles for a row of pieces: the skin of the body part that it is worn on, the arms beside it, and
+//! pieces placed before.
 
 use crate::PlacementBody;
 use crate::part_frames::PartFrame;
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::BodyPart;
 
-/// Skin this far above and below a row is gone round too (m).
+/// Skin up to this distance above and below a row is also an obstacle (m).
 pub(crate) const BAND: f64 = 0.03;
 /// Distance that rings round the trunk keep from the arms (m).
 const ARM_CLEARANCE: f64 = 0.015;
 
-/// The curve that a row goes round.
+/// The body and the pieces that a row goes round.
 pub(crate) struct Surroundings<'a> {
     pub body: &'a PlacementBody<'a>,
-    /// Part of each vertex of the skin.
+    /// Body part of each vertex of the skin.
     pub labels: &'a [BodyPart],
-    /// Points of pieces placed before.
+    /// Vertices of the pieces placed before.
     pub placed: &'a [Vec3],
 }
 
-/// Parameters of a wrapped row, which the search for a clear place changes.
+/// Parameters of a wrapped row, varied by the search for a clear position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fit {
     /// Extra distance from the skin (m).
@@ -29,7 +29,8 @@ pub(crate) struct Fit {
     pub lift: f64,
 }
 
-/// Skin a row on a part goes round, between two heights.
+/// Obstacles of a row on a body part between two heights: skin vertices that `keep` accepts, and for the
+/// trunk pieces placed before.
 pub(crate) fn obstacles(
     part: BodyPart,
     around: &Surroundings,
@@ -52,8 +53,8 @@ pub(crate) fn obstacles(
     found
 }
 
-/// Places across a part's axis of its skin between two heights, and a little above and below: that of the trunk with
-/// the legs (m).
+/// Coordinates across a part's axis of the part's skin, between two heights and a little above and below (m).
+/// The skin of the trunk includes head and legs.
 pub(crate) fn skin_outline(
     part: BodyPart,
     around: &Surroundings,
@@ -80,7 +81,7 @@ pub(crate) fn skin_outline(
     .collect()
 }
 
-/// How far from the trunk's axis cloth may reach between two heights without coming near the arms (m).
+/// Distance from the axis of the trunk within which cloth keeps clear of the arms, between two heights (m).
 pub(crate) fn arm_distance(
     part: BodyPart,
     around: &Surroundings,

@@ -1,14 +1,14 @@
-//! On which side of the wearer the copies of a pair go, from what they are sewn to.
+//! The side of the wearer for each copy of a pair, derived from the seams.
 
 use crate::flat_pieces::{FlatPiece, Tie};
 use crate::mesh::PieceMeshes;
 use toile_pattern::Facing;
 
-/// Of each meshed piece, whether it goes on the wearer's left, where seams tell.
+/// For each meshed piece, whether it goes on the wearer's left, if the seams tell.
 ///
-/// A stitch to a piece across the middle of the body tells by its place on that piece; a stitch between
-/// both copies of a pair lies at the middle and tells by its place on the copy; a stitch to a piece whose
-/// side is known tells that side. `facing` and `known` are what names and the document say.
+/// A stitch to a piece across the middle of the body tells the side by its position on that piece. A stitch
+/// between both copies of a pair lies at the middle and tells it by its position on the copy. A stitch to a
+/// piece with a known side tells that side. `facing` and `known` come from names and the document.
 pub(crate) fn wearer_sides(
     (meshes, laid): (&PieceMeshes, &[FlatPiece]),
     ties: &[Tie],
@@ -17,7 +17,7 @@ pub(crate) fn wearer_sides(
 ) -> Vec<Option<bool>> {
     let twins = twins(meshes);
     let mut left: Vec<Option<bool>> = known.to_vec();
-    // The piece of which seams tell most is decided first, and tells of its neighbours.
+    // The piece with the strongest evidence is decided first, and becomes evidence for its neighbours.
     loop {
         let mut scores = vec![0.0; laid.len()];
         for tie in ties {
@@ -27,7 +27,7 @@ pub(crate) fn wearer_sides(
                     continue;
                 };
                 scores[k] += if j == twin {
-                    // The middle lies on the right of what is on the left.
+                    // The middle of the body lies to the right of a piece on the left.
                     -side_of(&laid[k], tie.points[own].x, facing[k])
                 } else if twins[j].is_none() {
                     side_of(&laid[j], tie.points[other].x, facing[j])
@@ -51,7 +51,7 @@ pub(crate) fn wearer_sides(
     }
 }
 
-/// The other copy of each piece's pair among the meshed pieces.
+/// For each piece, the other copy of its pair among the meshed pieces.
 fn twins(meshes: &PieceMeshes) -> Vec<Option<usize>> {
     let ids = meshes.pieces.iter().map(|mesh| mesh.piece);
     let twin = |id: toile_pattern::PieceId| {
@@ -69,7 +69,7 @@ fn sign(left: bool) -> f64 {
     if left { 1.0 } else { -1.0 }
 }
 
-/// The side of the wearer that a place of a piece across the middle lies on, as a sign; nought where its
+/// The side of the wearer on which a position on a piece across the middle lies, as a sign; zero if the
 /// facing does not tell. Seen from outside, the wearer's left is on the right in front and on the left
 /// behind.
 fn side_of(piece: &FlatPiece, x: f64, facing: Option<Facing>) -> f64 {

@@ -1,4 +1,4 @@
-//! Rows of pieces wrapped round a body part, outside the skin, without stretching them.
+//! Wraps rows of pieces round a body part, outside the skin, without stretching them.
 
 use crate::PlacementBody;
 use crate::flared_row::wrap_flared;
@@ -11,21 +11,21 @@ use crate::surroundings::{BAND, Fit, Surroundings, arm_distance, obstacles, skin
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Facing};
 
-/// Distance of cloth from the hull of the skin to start with (m).
+/// Initial distance of cloth from the convex hull of the skin (m).
 const FIRST_DISTANCE: f64 = 0.012;
-/// Distance between neighbouring pieces of a row, as a share of their places' spread.
+/// Factor on the positions of a row's pieces round the part, which leaves gaps between neighbours.
 const SPREAD: f64 = 1.02;
-/// Room for folds below which a ring is not folded (m).
+/// Smallest room for folds in which a ring is folded (m).
 const MIN_FOLD: f64 = 0.04;
 /// Distance that pieces of one leg keep from the middle of the body (m).
 const MIDDLE_CLEARANCE: f64 = 0.006;
 
-/// The shape a row is bent to.
+/// The shape to which a row is bent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bend {
-    /// Once round the part.
+    /// A ring round the part.
     Ring,
-    /// Before and behind the part: under the arms or between the legs no ring fits.
+    /// Curves in front of and behind the part: no ring fits under the arms or between the legs.
     Sides,
 }
 
@@ -51,7 +51,7 @@ fn facing_of(role: &Role) -> Facing {
     }
 }
 
-/// Positions of every piece of a row (m), in the order of the row.
+/// Positions of the pieces of a row (m), in the order of the row.
 pub(crate) fn wrap_row(
     row: &Row,
     laid: &[FlatPiece],
@@ -104,7 +104,7 @@ fn ring_for(
     if row.part != BodyPart::Trunk {
         return ring;
     }
-    // Wide skirts would meet the arms: they are laid in folds between body and arms.
+    // Wide skirts would touch the arms: they are laid in folds between body and arms.
     let free = arm_distance(row.part, around, frame, [band[0] + BAND, band[1] - BAND]);
     let close = OutlineCurve::ring(&points, Vec2::zeros(), FIRST_DISTANCE + distance);
     let room = free - close.reach(Vec2::zeros());
@@ -186,7 +186,7 @@ fn wrap_side(
     };
     let mut positions = bent(middle);
     if let Some(side) = side {
-        // Mirror twins must not cross in the middle of the body.
+        // Mirrored copies must not cross in the middle of the body.
         let outward = if place.quarter == 2 { -side } else { side };
         for _ in 0..20 {
             let nearest = positions
@@ -203,8 +203,8 @@ fn wrap_side(
     positions
 }
 
-/// Lays a piece flat over the body like a poncho: the hole (else the middle) over the neck, at
-/// the lowest height above the shoulders where the hole clears the skin. Says whether it does.
+/// Lays a piece flat over the body like a poncho, with the hole (else the middle) over the neck, at the
+/// lowest height above the shoulders at which the hole clears the skin. Returns whether it does.
 pub(crate) fn lay_over(
     piece: &FlatPiece,
     hole: &[Vec2],
@@ -220,7 +220,7 @@ pub(crate) fn lay_over(
     let ring: &[Vec2] = if hole.is_empty() { &piece.points } else { hole };
     let middle = ring.iter().sum::<Vec2>() / ring.len().max(1) as f64;
     let at = |p: Vec2, height: f64| {
-        // The top of the piece lies behind the neck, its right side up.
+        // The top of the piece lies behind the neck, with its right side up.
         Vec3::new(neck.x + p.x - middle.x, height, neck.z - (p.y - middle.y))
     };
     let skin = &body.skin.mesh().positions;
@@ -246,7 +246,7 @@ pub(crate) fn lay_over(
     (piece.points.iter().map(|&p| at(p, place)).collect(), clear)
 }
 
-/// Whether a point lies inside a polygon at least `margin` (m) from its corners and edges.
+/// Whether a point lies inside a polygon, at least `margin` (m) from its corners and edges.
 fn inside_by(p: Vec2, polygon: &[Vec2], margin: f64) -> bool {
     let mut inside = false;
     for k in 0..polygon.len() {

@@ -9,8 +9,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Writes a file so that nobody ever sees half of it. A file of that name is replaced and keeps
-/// its permissions; a link is followed.
+/// Writes a file atomically: other processes see either the old content or the complete new one. A file of
+/// the same name is replaced and keeps its permissions; a symbolic link is followed.
 ///
 /// # Errors
 /// The folder is missing or may not be written, the name is not that of an ordinary file, or the
@@ -19,10 +19,10 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Staged::new(path, bytes)?.commit()
 }
 
-/// Finds out whether files can be written into a folder, which need not be there yet. Nothing is left behind.
+/// Checks that files can be written into a folder, which need not exist yet. Nothing is left behind.
 ///
 /// # Errors
-/// The folder cannot be made, or nothing can be written where it is or would be.
+/// The folder cannot be created, or nothing can be written in it or in its nearest existing parent.
 pub fn check_folder(folder: &Path) -> Result<(), FileError> {
     let there = folder.ancestors().find(|above| above.exists());
     let there = there.unwrap_or(Path::new("."));
@@ -91,7 +91,7 @@ impl Staged {
     }
 }
 
-/// The file a path stands for, links followed; refuses folders and devices.
+/// The file that a path names, with symbolic links followed; refuses folders and devices.
 fn ordinary_target(path: &Path) -> Result<PathBuf, FileError> {
     let refuse = |cause: &str, hint| FileError {
         action: "write",
@@ -116,7 +116,7 @@ fn ordinary_target(path: &Path) -> Result<PathBuf, FileError> {
     }
 }
 
-/// A new temporary file with the permissions any new file would get.
+/// A new temporary file with the permissions that any new file would get.
 fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".toile-").suffix(".partial");
@@ -130,8 +130,8 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Makes the new name itself survive a loss of power, where the system allows it. The file is
-/// already complete, so a refusal loses nothing and is not reported.
+/// Makes the new name itself survive a loss of power, on systems that can do so. The file is already
+/// complete, so a failure loses nothing and is not reported.
 fn sync_folder_of(file: &Path) {
     let folder = match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

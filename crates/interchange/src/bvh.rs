@@ -18,9 +18,9 @@ pub(crate) enum Channel {
 pub(crate) struct Bone {
     pub(crate) name: String,
     pub(crate) parent: Option<usize>,
-    /// From the parent's origin at rest, in the file's unit.
+    /// Offset from the parent's origin at rest, in the file's unit.
     pub(crate) offset: Vec3,
-    /// Where it ends, for the last one of a limb.
+    /// Offset of the end of the bone from its origin, given for the last joint of a limb.
     pub(crate) end: Option<Vec3>,
     pub(crate) channels: Vec<Channel>,
 }
@@ -89,16 +89,16 @@ fn shortened(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// Most joints and most frames accepted: beyond them a file is damaged.
+/// Largest number of joints and of frames accepted: a file with more is damaged.
 const MOST: [usize; 2] = [1000, 200_000];
 
-/// Reads a BVH file for a skeleton: joints are recognised by their usual names (CMU's, MakeHuman's,
-/// H-Anim's, left and right in words or letters); every bone points as the file's does, whatever
-/// pose either stands in at rest; the root's way is over the leg length. Joints the file does not
-/// have stay as they are at rest to the one they hang on.
+/// Reads a BVH file and maps its motion to a skeleton. Joints are recognised by their usual names (CMU's,
+/// MakeHuman's, H-Anim's, left and right in words or letters). Every bone points in the direction that it has
+/// in the file, whatever the rest poses of the file and of the skeleton are. The path of the root is divided
+/// by the leg length. Joints that the file does not have keep their rest pose relative to their parent.
 ///
 /// # Errors
-/// The fault, its place and a remedy; a file with none of hips, knees and shoulders.
+/// The fault, its place and a remedy; also a file without hips, knees and shoulders.
 pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
     let mut words = Words::new(text);
     words.expect("HIERARCHY")?;
@@ -147,8 +147,8 @@ pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
     })
 }
 
-/// What turns the file's axes so that Y is up. A file does not say which axis that is: it is the one along which the
-/// shoulders lie over the knees at rest, most of all.
+/// Rotation from the file's axes to axes with Y up. A BVH file does not say which axis is up: it is taken to
+/// be the axis along which the shoulders lie highest over the knees at rest.
 fn upright(bones: &[Bone]) -> UnitQuaternion<f64> {
     let places = places_at_rest(bones);
     let middle = |pair: [Joint; 2]| {
@@ -162,13 +162,13 @@ fn upright(bones: &[Bone]) -> UnitQuaternion<f64> {
     let up = Vec3::ith(axis, up[axis].signum());
     match axis {
         1 if up.y > 0.0 => UnitQuaternion::identity(),
-        // Head down it still faces forward.
+        // The figure stands on its head; turned about z it still faces forward.
         1 => UnitQuaternion::new(Vec3::z() * PI),
         _ => UnitQuaternion::rotation_between(&up, &Vec3::y()).unwrap_or_default(),
     }
 }
 
-/// Where the bones begin at rest, in the file's unit.
+/// Origins of the bones at rest, in the file's unit.
 fn places_at_rest(bones: &[Bone]) -> Vec<Vec3> {
     let mut places = vec![Vec3::zeros(); bones.len()];
     for (k, bone) in bones.iter().enumerate() {
@@ -251,7 +251,7 @@ fn channel(words: &mut Words) -> Result<Channel, FormatError> {
     }
 }
 
-/// The joint a bone of the file is, by its name.
+/// The joint that a bone of the file stands for, by the bone's name.
 fn joint_named(name: &str) -> Option<Joint> {
     if let Some(joint) = Joint::named(name) {
         return Some(joint);
@@ -297,7 +297,7 @@ fn joint_named(name: &str) -> Option<Joint> {
     })
 }
 
-/// Where each joint's own bone ends, for the direction it points in.
+/// The joint at the far end of a joint's own bone, which gives the direction of the bone.
 fn end_of(joint: Joint) -> Option<Joint> {
     use Joint::*;
     let limbs = [
@@ -310,13 +310,13 @@ fn end_of(joint: Joint) -> Option<Joint> {
     bones.find(|bone| bone[0] == joint).map(|bone| bone[1])
 }
 
-/// From the file's bones to a skeleton's joints.
+/// Maps the file's bones to a skeleton's joints.
 pub(crate) struct Carrier {
-    /// The bone of each joint.
+    /// The file's bone of each joint.
     bone: [Option<usize>; Joint::COUNT],
-    /// What turns each joint's bone from where it points at rest to where the file's does.
+    /// Rotation of each joint's bone from its rest direction in the skeleton to that in the file.
     align: [UnitQuaternion<f64>; Joint::COUNT],
-    /// Length of the file's legs, and the root's place at rest, in its unit.
+    /// Length of the legs of the file's figure, and the rest position of the root, in the file's unit.
     leg: f64,
     root: Vec3,
 }
@@ -347,7 +347,7 @@ impl Carrier {
         let mut align = [UnitQuaternion::identity(); Joint::COUNT];
         for joint in Joint::ALL {
             let Some(end) = end_of(joint) else {
-                // Hands and feet go with the bone above them at rest.
+                // Hands and feet take the rest rotation of the bone above them.
                 if let Some(parent) = joint.parent()
                     && end_of(parent).is_some()
                 {
@@ -362,7 +362,7 @@ impl Carrier {
                     UnitQuaternion::rotation_between(&own, &theirs).unwrap_or_default();
             }
         }
-        // Feet stand flat at rest on both.
+        // Feet stand flat at rest in the file and in the skeleton.
         for joint in [
             Joint::LAnkle,
             Joint::RAnkle,
@@ -493,10 +493,10 @@ mod tests {
             (thigh(&motion.poses[0]) + Vec3::y()).norm() < 1e-9,
             "straight down"
         );
-        // Turned a quarter to the left about the upright, then the thigh lifted forward by 90
-        // degrees: it points where the body faces.
+        // A quarter turn to the left about the vertical axis, then the thigh lifted forward by 90 degrees: it
+        // points forward from the body.
         assert!((thigh(&motion.poses[1]) - Vec3::x()).norm() < 1e-9);
-        // One unit of ten on the way, legs are ten long.
+        // The root moves by one leg length: 10 units, and the legs are 10 units long.
         assert!((motion.poses[1].shift - Vec3::x()).norm() < 1e-9);
     }
 
@@ -537,7 +537,7 @@ mod tests {
             assert_eq!(motion.poses.len(), frames, "{file}");
             motion
         });
-        // One motion on two skeletons: the joints of one body come to nearly the same places.
+        // One motion on two skeletons: the joints come to nearly the same positions, relative to the root.
         let mut worst: f64 = 0.0;
         for (a, b) in motions[0].poses.iter().zip(&motions[1].poses).step_by(20) {
             let [a, b] = [a, b].map(|pose| skeleton.frames(pose));

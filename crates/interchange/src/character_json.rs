@@ -6,7 +6,7 @@ use toile_realtime::{Character, CharacterFile};
 /// Reads a character file and checks it.
 ///
 /// # Errors
-/// Text that is no character file, or a character that cannot be: the place and the remedy.
+/// The text is not a character file, or the character is not valid: the place and the remedy.
 pub fn read_character(text: &str) -> Result<Character, FormatError> {
     let hint = "write {\"toile\": 1, \"kind\": \"character\", \"joints\": […], \"groups\": […], \"ellipsoids\": […]}";
     let file: CharacterFile = serde_json::from_str(text).map_err(|error| {
@@ -19,7 +19,7 @@ pub fn read_character(text: &str) -> Result<Character, FormatError> {
     file.into_character().map_err(refused)
 }
 
-/// Writes a character file: a line for each joint, group, ellipsoid and key pose.
+/// Writes a character file, one line each for a joint, group, ellipsoid or key pose.
 ///
 /// # Errors
 /// A number that JSON cannot hold.

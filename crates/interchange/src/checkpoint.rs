@@ -1,5 +1,6 @@
-//! Checkpoints of the run of a garment or a scene as files: two lines of JSON, what the file is and the checkpoint. Numbers are
-//! written so that they are read again to the last bit; a checksum finds what was changed since.
+//! Checkpoints of a garment's or a scene's run as files of two lines of JSON: a head with format and
+//! checksum, then the checkpoint. Numbers are written so that reading gives back every bit; the checksum
+//! detects later changes.
 
 use crate::FormatError;
 use crate::scene::json_error;
@@ -17,8 +18,8 @@ struct Head {
     checksum: u32,
 }
 
-/// A type that may be saved as a checkpoint, with the name of its format. `toile run` writes only that of
-/// `toile-session`, which has a scene's run with the counts of its report.
+/// A type that can be saved as a checkpoint, with the name of its format. `toile run` writes only the type of
+/// `toile-session`, which holds a scene's run with the counts of its report.
 pub trait CheckpointFormat: Serialize + DeserializeOwned {
     /// The name of the format.
     const FORMAT: &'static str;
@@ -32,16 +33,16 @@ impl CheckpointFormat for SceneCheckpoint {
     const FORMAT: &'static str = "toile-scene-checkpoint";
 }
 
-/// The version that is written and read: what was saved by another goes on to other bytes.
+/// The version written and read. A checkpoint of another version would continue to different results.
 const VERSION: u32 = 5;
 
-/// What to do about a file that does not serve.
+/// Remedy for a checkpoint that cannot be used.
 const REMEDY: &str = "take another checkpoint, or drape from the start";
 
 /// Writes a checkpoint.
 ///
 /// # Errors
-/// One that JSON has no words for.
+/// The checkpoint has a value that JSON cannot represent.
 pub fn write_checkpoint<C: CheckpointFormat>(checkpoint: &C) -> Result<String, FormatError> {
     let body = serde_json::to_string(checkpoint).map_err(|error| json_error(&error))?;
     let head = Head {
@@ -56,7 +57,7 @@ pub fn write_checkpoint<C: CheckpointFormat>(checkpoint: &C) -> Result<String, F
 /// Reads a checkpoint.
 ///
 /// # Errors
-/// Text that is no checkpoint, of another version, cut short or changed, by the place and what to do.
+/// The text is no checkpoint, is of another version, cut short or changed: the place and a remedy.
 pub fn read_checkpoint<C: CheckpointFormat>(text: &str) -> Result<C, FormatError> {
     let (head, body) = text.split_once('\n').unwrap_or((text, ""));
     let is_ours = head.contains(C::FORMAT);

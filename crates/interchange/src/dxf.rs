@@ -4,14 +4,14 @@
 use std::fmt::Write as _;
 use toile_geometry::{Bounds2, Vec2};
 
-/// A DXF in the making.
+/// A DXF file being written.
 pub(crate) struct DxfWriter {
     layers: Vec<(&'static str, u8)>,
     entities: String,
     extent: Bounds2,
 }
 
-/// A number to a ten-thousandth of a millimetre.
+/// A number with four decimals (0.0001 mm), without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -22,7 +22,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// One line, letters beyond ASCII by their code in UTF-16.
+/// A text on one line; characters beyond ASCII are written by their UTF-16 code.
 fn plain(text: &str) -> String {
     let mut safe = String::new();
     for c in text.chars() {
@@ -40,7 +40,7 @@ fn plain(text: &str) -> String {
 }
 
 impl DxfWriter {
-    /// Without entities; layers with their colours (AutoCAD colour index).
+    /// A DXF without entities; each layer has a name and a colour (AutoCAD colour index).
     pub fn new(layers: Vec<(&'static str, u8)>) -> Self {
         Self {
             layers,
@@ -59,7 +59,7 @@ impl DxfWriter {
         self.group(code + 20, "0");
     }
 
-    /// A line through points (m).
+    /// A polyline through points (m).
     pub fn polyline(&mut self, layer: &str, points: &[Vec2], closed: bool) {
         if points.len() < 2 {
             return;
@@ -80,8 +80,7 @@ impl DxfWriter {
         self.group(8, layer);
     }
 
-    /// Words with their baseline's middle at a point (m), letters of a height (m), turned by an
-    /// angle (rad).
+    /// A text with the middle of its baseline at a point (m), letter height (m) and rotation (rad).
     pub fn text(&mut self, layer: &str, words: &str, (at, height, angle): (Vec2, f64, f64)) {
         let at = [at.x * 1e3, at.y * 1e3];
         self.group(0, "TEXT");
@@ -94,7 +93,7 @@ impl DxfWriter {
         self.point(11, at);
     }
 
-    /// The file.
+    /// The complete file.
     pub fn finish(self) -> String {
         let corner = |name: &str, p: Vec2| {
             let (x, y) = (number(p.x), number(p.y));

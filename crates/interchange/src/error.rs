@@ -2,25 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-/// A file that could not be read or written. Says which, why, and what to do.
+/// A file that could not be read or written. The message tells which file, why, and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {}: {cause}; {hint}", path.display())]
 pub struct FileError {
-    /// What was tried, as in "write".
+    /// The action that failed, as in "write".
     pub action: &'static str,
     /// The file or folder.
     pub path: PathBuf,
-    /// What the system answered, or what is wrong with the place.
+    /// The answer of the system, or the fault of the path.
     pub cause: String,
-    /// What the person can do.
+    /// Remedy for the user.
     pub hint: &'static str,
 }
 
 impl FileError {
-    /// An error of the operating system, with the remedy that fits its kind.
+    /// An error of the operating system, with the remedy for its kind.
     pub fn from_io(action: &'static str, path: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
-        // Kinds of errors of the system: others than these may come with every version of it.
+        // Error kinds of the operating system; later versions may add more.
         #[expect(
             clippy::wildcard_enum_match_arm,
             reason = "the system may tell kinds that nobody knows yet"
@@ -51,15 +51,15 @@ impl FileError {
     }
 }
 
-/// Text or bytes that are not what they should be: what is wrong, where, and the remedy.
+/// Text or bytes that do not have the expected format: the fault, the place and the remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {what}; {hint}")]
 pub struct FormatError {
-    /// Where in the input, as in "line 12" or "panels.front.edges\[3\]".
+    /// Place in the input, as in "line 12" or "panels.front.edges\[3\]".
     pub place: String,
-    /// What is wrong there.
+    /// The fault at this place.
     pub what: String,
-    /// What the person can do.
+    /// Remedy for the user.
     pub hint: String,
 }
 

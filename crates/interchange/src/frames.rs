@@ -1,8 +1,8 @@
 //! Recorded frames (`NAME.frames`): the positions of all surfaces of a scene at steps of a run.
 //!
-//! A section begins with one line of JSON, its head; records of equal length follow, each with step, time, positions
-//! in `f32` and a checksum that covers the head, too. Where the triangles change another section begins. A file that
-//! was cut short is read up to its last whole record.
+//! A section begins with its head, one line of JSON. Records of equal length follow, each with step, time,
+//! positions in `f32` and a checksum that also covers the head. A new section begins wherever the triangles
+//! change. A file that was cut short is read up to its last complete record.
 
 use crate::FormatError;
 use crate::scene::json_error;
@@ -22,19 +22,19 @@ pub struct FrameHead {
     pub surfaces: Vec<FrameSurface>,
 }
 
-/// A surface: an object, or several that are sewn together.
+/// A surface: one object, or several that are sewn together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrameSurface {
-    /// Its name, as one of a file.
+    /// Name of the surface, which can serve as a file name.
     pub name: String,
-    /// Its objects, with the first triangle of each and the one after its last.
+    /// The objects of the surface: name, index of the first triangle and index after the last one.
     pub objects: Vec<(String, [usize; 2])>,
     /// Number of its vertices.
     pub vertices: usize,
-    /// Corners of the triangles.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Positions of a surface at rest (m), which has no place in the records.
+    /// Positions of a surface that does not move (m); it has no positions in the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub still: Option<Vec<[f32; 3]>>,
     /// Rest shape of a cloth.
@@ -42,11 +42,11 @@ pub struct FrameSurface {
     pub rest: Option<RestShape>,
 }
 
-/// A cloth without its positions: see [`Cloth`].
+/// A cloth without its positions; see [`Cloth`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestShape {
-    /// Corners of each triangle in its material plane (m).
+    /// Vertex positions of each triangle in its material plane (m).
     pub rest: Vec<[Vec2; 3]>,
     /// Index of the material of each triangle.
     pub material: Vec<u16>,
@@ -63,38 +63,38 @@ pub struct Frame {
     pub step: u64,
     /// Simulated time (s).
     pub time: f64,
-    /// Positions of all surfaces that move, one after the other (m).
+    /// Positions of all moving surfaces, one surface after the other (m).
     pub positions: Vec<[f32; 3]>,
 }
 
-/// Frames of the same triangles.
+/// Consecutive frames with the same triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSection {
-    /// What they are frames of.
+    /// Scene and surfaces of the frames.
     pub head: FrameHead,
     /// The frames.
     pub frames: Vec<Frame>,
-    /// Bytes of the file before its head.
+    /// Offset of the head from the start of the file (bytes).
     pub start: usize,
 }
 
-/// A file of frames.
+/// The content of a file of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frames {
     /// The sections; at least one of them has a frame.
     pub sections: Vec<FrameSection>,
-    /// Bytes after the last whole record: the file was cut short.
+    /// Number of bytes after the last complete record, not 0 if the file was cut short.
     pub left_out: usize,
 }
 
 const FORMAT: &str = "toile-frames";
-/// The version that is written and read.
+/// The version written and read.
 const VERSION: u32 = 1;
-/// The first bytes of a record.
+/// Tag at the start of every record.
 const TAG: &[u8; 4] = b"FRM1";
-/// Bytes of a record beside its positions: tag, step, time, checksum.
+/// Size of a record without its positions (bytes): tag, step, time, checksum.
 const FRAMING: usize = 4 + 8 + 8 + 4;
-/// Bytes of a position.
+/// Size of a position (bytes).
 const POSITION: usize = 12;
 const REMEDY: &str = "record the frames again";
 
@@ -115,7 +115,7 @@ impl FrameHead {
         moving.map(|s| s.vertices).fold(0, usize::saturating_add)
     }
 
-    /// Refuses a head whose lists do not fit together.
+    /// Refuses a head with lists that do not fit together.
     fn check(&self) -> Result<(), FormatError> {
         let refuse = |place: &str, what: String| Err(FormatError::new(place, what, REMEDY));
         if self.format != FORMAT {
@@ -136,7 +136,7 @@ impl FrameHead {
 }
 
 impl FrameSurface {
-    /// What does not fit together, in words.
+    /// Description of the first inconsistency of the surface.
     fn defect(&self) -> Option<String> {
         let count = self.vertices;
         let corners = self.triangles.iter().flatten();
@@ -170,7 +170,7 @@ impl FrameSurface {
 }
 
 impl RestShape {
-    /// That of a cloth.
+    /// The rest shape of a cloth.
     pub fn of(cloth: &Cloth) -> Self {
         Self {
             rest: cloth.rest.clone(),
@@ -180,7 +180,7 @@ impl RestShape {
         }
     }
 
-    /// The cloth of this rest shape on a mesh.
+    /// A cloth with this rest shape and the positions of a mesh.
     pub fn on(&self, mesh: &TriangleMesh) -> Cloth {
         Cloth {
             positions: mesh.positions.clone(),
@@ -194,7 +194,7 @@ impl RestShape {
 }
 
 impl FrameSection {
-    /// A surface of a frame.
+    /// The mesh of a surface at a frame.
     pub fn mesh(&self, surface: usize, frame: usize) -> Option<TriangleMesh> {
         let own = self.head.surfaces.get(surface)?;
         let positions = match &own.still {
@@ -219,7 +219,7 @@ impl FrameSection {
     }
 }
 
-/// Writes heads and records of a file of frames, for whoever appends them.
+/// Encodes the heads and records of a file of frames; the caller appends them to the file.
 #[derive(Clone, Debug)]
 pub struct FrameWriter {
     /// CRC-32 of the head.
@@ -228,10 +228,10 @@ pub struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// A section with its bytes.
+    /// Starts a section; returns its writer and the bytes of its head.
     ///
     /// # Errors
-    /// Lists that do not fit together, or what JSON has no words for.
+    /// Lists that do not fit together, or a value that JSON cannot represent.
     pub fn begin(head: &FrameHead) -> Result<(Self, Vec<u8>), FormatError> {
         head.check()?;
         let mut bytes = serde_json::to_vec(head).map_err(|error| json_error(&error))?;
@@ -243,10 +243,10 @@ impl FrameWriter {
         Ok((writer, bytes))
     }
 
-    /// The bytes of a record.
+    /// The bytes of one record.
     ///
     /// # Errors
-    /// Another number of positions than the section's, or one that is not finite.
+    /// The frame has another number of positions than the section, or one that is not finite.
     pub fn record(&self, frame: &Frame) -> Result<Vec<u8>, FormatError> {
         check_frame(frame, self.vertices)?;
         let mut bytes = Vec::with_capacity(FRAMING + POSITION * self.vertices);
@@ -265,7 +265,7 @@ impl FrameWriter {
     }
 }
 
-/// Checksum of a record without its last four bytes.
+/// Checksum of a record, without its own four bytes.
 fn checksum(head: u32, record: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new_with_initial(head);
     hasher.update(record);
@@ -288,10 +288,10 @@ fn check_frame(frame: &Frame, vertices: usize) -> Result<(), FormatError> {
     }
 }
 
-/// Reads a file of frames, up to the last whole record of one that was cut short.
+/// Reads a file of frames; a file that was cut short is read up to its last complete record.
 ///
 /// # Errors
-/// What is no file of frames, has no whole frame, or was changed, by the place.
+/// A file that is no file of frames, has no complete frame or was changed: the place.
 pub fn read_frames(bytes: &[u8]) -> Result<Frames, FormatError> {
     let mut sections: Vec<FrameSection> = Vec::new();
     let mut writer: Option<FrameWriter> = None;
@@ -377,7 +377,7 @@ fn read_record(record: &[u8], writer: &FrameWriter, at: usize) -> Result<Frame, 
     Ok(frame)
 }
 
-/// Refuses a frame that is not after the one before it.
+/// Refuses a frame whose time is not later than that of the frame before it.
 fn check_order(before: Option<&Frame>, frame: &Frame) -> Result<(), FormatError> {
     let is_later = before.is_none_or(|before| before.time < frame.time);
     match is_later {
@@ -430,7 +430,7 @@ mod tests {
         }
     }
 
-    /// Two sections, of three and of two frames, with the ends of their records.
+    /// A file of two sections, with three and two frames, and the offset at which each record ends.
     fn file() -> (Vec<u8>, Vec<usize>) {
         let (mut bytes, mut ends) = (Vec::new(), Vec::new());
         for (vertices, steps) in [(3, 0..3), (4, 3..5)] {
@@ -495,19 +495,19 @@ mod tests {
         let mut wrong = head(3);
         wrong.surfaces[1].triangles[0] = [0, 1, 3];
         assert!(FrameWriter::begin(&wrong).is_err());
-        // A record of one file behind the head of another.
+        // A record of one file after the head of another.
         let (_, mut line) = FrameWriter::begin(&FrameHead::new(8, head(3).surfaces)).unwrap();
         line.extend(writer.record(&frame(0, 3)).unwrap());
         let error = read_frames(&line).unwrap_err();
         assert!(error.what.contains("another file"), "{error}");
-        // Time that stands still.
+        // A time that does not advance.
         let (writer, mut line) = FrameWriter::begin(&head(3)).unwrap();
         line.extend(writer.record(&frame(1, 3)).unwrap().repeat(2));
         assert!(read_frames(&line).unwrap_err().what.contains("not after"));
     }
 
     proptest! {
-        /// A changed byte is found, or left whole what was read; nothing panics.
+        /// A changed byte is detected, or did not alter the result; nothing panics.
         #[test]
         fn no_change_goes_unnoticed(at in 0_usize..10_000, byte in any::<u8>()) {
             let (mut bytes, _) = file();

@@ -10,10 +10,10 @@ use gltf_json::{Accessor, Buffer, Index, Material, Mesh, Node, Root, Scene, Valu
 use std::collections::BTreeMap;
 use toile_geometry::Vec3;
 
-/// Meshes side by side in one scene, metres, Y up.
+/// Separate meshes in one scene. Metres, Y up.
 #[derive(Clone, Debug, Default)]
 pub struct GlbScene {
-    /// One node each, in order.
+    /// The meshes, each written as one node, in order.
     pub meshes: Vec<GlbMesh>,
 }
 
@@ -22,41 +22,41 @@ pub struct GlbScene {
 pub struct GlbMesh {
     /// Name of the node and of the mesh.
     pub name: String,
-    /// Its parts; a garment has one a panel.
+    /// The parts of the mesh; a garment has one part per panel.
     pub primitives: Vec<GlbPrimitive>,
 }
 
-/// One part of a mesh with its own vertices and its own material, which carries its name.
+/// One part of a mesh with its own vertices and its own material, which carries the part's name.
 #[derive(Clone, Debug, Default)]
 pub struct GlbPrimitive {
-    /// Name of the material, since glTF gives a primitive none.
+    /// Name of the material, since a glTF primitive has no name.
     pub name: String,
     /// Vertex positions (m).
     pub positions: Vec<Vec3>,
-    /// A normal for each vertex, of any length; a zero one is written as +Y.
+    /// A normal for each vertex, of any length; a zero vector is written as +Y.
     pub normals: Vec<Vec3>,
-    /// Place of each vertex in the pattern plane (m), y up.
+    /// Position of each vertex in the pattern plane (m), y up.
     pub uvs: Option<Vec<[f64; 2]>>,
-    /// Corners of each triangle, counter-clockwise seen from the right side.
+    /// Vertex indices of each triangle, counter-clockwise seen from the right side.
     pub triangles: Vec<[u32; 3]>,
     /// Base colour, sRGB 0..=1.
     pub colour: [f64; 3],
 }
 
-/// Places beyond this are moved before they become `f32` (m). Below it a rounding is at most
-/// 6e-8 m, so that a distance between two places is right to 1.7e-7 m.
+/// Pattern positions beyond this are moved towards the origin before rounding to `f32` (m). Below it the
+/// rounding is at most 6e-8 m, so that a distance between two positions is exact to 1.7e-7 m.
 const CENTRED_WITHIN: f64 = 2.0;
 
 /// Writes a scene as GLB.
 ///
-/// Texture coordinates are the pattern plane in metres: `u = x`, `v = -y`, since v points down in
-/// glTF; distances between them are rest lengths. A primitive that reaches beyond 2 m is first
-/// moved by whole metres towards the origin, which leaves a texture of any whole fraction of a
-/// metre where it was. Materials are rough, two-sided, and have the given base colour.
+/// Texture coordinates are the pattern plane in metres: `u = x`, `v = -y`, since v points down in glTF;
+/// distances between them are rest lengths. A primitive that reaches beyond 2 m is first moved towards the
+/// origin by whole metres, which leaves a texture unchanged that repeats in a whole fraction of a metre.
+/// Materials are rough, two-sided, and have the given base colour.
 ///
 /// # Errors
-/// An empty primitive, lists of different lengths, a coordinate that is not finite in `f32`, an
-/// index that points nowhere, or more than 4 GiB.
+/// An empty primitive, lists of different lengths, a coordinate that is not finite in `f32`, an index out of
+/// range, or more than 4 GiB.
 pub fn write_glb(scene: &GlbScene) -> Result<Vec<u8>, FormatError> {
     let mut writer = Writer::default();
     for mesh in &scene.meshes {
@@ -154,7 +154,7 @@ impl Writer {
         })
     }
 
-    /// A vertex attribute with its exact smallest and largest values.
+    /// Writes a vertex attribute with its exact minimum and maximum.
     fn floats<const N: usize>(&mut self, values: &[[f32; N]], kind: Type) -> Index<Accessor> {
         let mut bounds = [[f32::INFINITY; N], [f32::NEG_INFINITY; N]];
         for value in values {
@@ -175,8 +175,8 @@ impl Writer {
         index
     }
 
-    /// Appends a view of its own for the values. Every component has four bytes, so each view
-    /// starts on a multiple of four.
+    /// Appends the values with a buffer view of their own. Every component has four bytes, so each view
+    /// starts at a multiple of four.
     fn accessor(
         &mut self,
         bytes: impl Iterator<Item = u8>,
@@ -332,7 +332,7 @@ fn texture_coordinates(uvs: &[[f64; 2]]) -> Vec<[f32; 2]> {
         .collect()
 }
 
-/// Linear light of an sRGB component (IEC 61966-2-1:1999).
+/// Linear value of an sRGB component (IEC 61966-2-1:1999).
 fn linear_from_srgb(c: f64) -> f64 {
     if c <= 0.04045 {
         c / 12.92
@@ -492,7 +492,8 @@ mod tests {
     }
 
     proptest! {
-        /// Distances between texture coordinates are rest lengths, wherever the panel lies.
+        /// Distances between texture coordinates are rest lengths, wherever the panel lies in the pattern
+        /// plane.
         #[test]
         fn texture_distances_are_rest_lengths(
             corner in (-1e4..1e4, -1e4..1e4), side in 0.001..2.5_f64

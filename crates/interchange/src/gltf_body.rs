@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 use toile_body::{Clip, Joint, Mannequin};
 use toile_geometry::Vec3;
 
-/// Joints a vertex goes with at the most: what every viewer knows. The largest shares are kept.
+/// Largest number of joints per vertex, the number that every viewer supports. The largest weights are kept.
 const JOINTS: usize = 4;
 
-/// Numbers of the glTF standard: component types and targets.
+/// Constants of the glTF standard: component types and buffer targets.
 const BYTE: u32 = 5121;
 const INTEGER: u32 = 5125;
 const FLOAT: u32 = 5126;
@@ -24,7 +24,7 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
-    /// Adds an accessor with a view of its own; returns its number.
+    /// Adds an accessor with a buffer view of its own; returns its index.
     pub fn add(&mut self, data: &[u8], accessor: Value, target: Option<u32>) -> usize {
         let mut view =
             json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": data.len() });
@@ -40,7 +40,7 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// Adds rows of floats with their bounds.
+    /// Adds rows of floats with their minimum and maximum.
     pub fn floats<const N: usize>(
         &mut self,
         rows: &[[f32; N]],
@@ -69,9 +69,9 @@ fn single(p: Vec3) -> [f32; 3] {
     [p.x as f32, p.y as f32, p.z as f32]
 }
 
-/// Writes a mannequin at rest as GLB with its skeleton by H-Anim names and, if given, a clip of
-/// motion by name. Metres, Y up, facing +Z. glTF blends joints linearly, where
-/// [`Mannequin::posed_skin`] blends dual quaternions: strongly bent joints come out thinner.
+/// Writes a mannequin at rest as GLB, with its skeleton by H-Anim names and, if given, a named clip of
+/// motion. Metres, Y up, facing +Z. glTF blends joints linearly, while [`Mannequin::posed_skin`] blends dual
+/// quaternions: strongly bent joints look thinner in glTF.
 ///
 /// # Errors
 /// More than 4 GiB.
@@ -176,7 +176,7 @@ fn attributes(body: &Mannequin, binary: &mut Binary) -> Value {
     })
 }
 
-/// The turns of all joints and the root's way over time; a loop ends with its first pose.
+/// The rotations of all joints and the path of the root over time; a loop ends with its first pose.
 fn animation(body: &Mannequin, name: &str, motion: &Clip, binary: &mut Binary) -> Value {
     let skeleton = body.skeleton();
     let count = motion.poses.len() + usize::from(motion.is_loop);
@@ -237,7 +237,7 @@ mod tests {
         }
         let clip = file.animations().next().unwrap();
         assert_eq!(clip.channels().count(), Joint::COUNT + 1);
-        // The joints stand where the skeleton has them.
+        // The joints stand at the skeleton's positions.
         let binds = skin
             .reader(|_| Some(&blob))
             .read_inverse_bind_matrices()

@@ -10,22 +10,22 @@ use toile_geometry::{TriangleMesh, Vec3};
 /// A surface over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MovingGlbMesh {
-    /// Its name.
+    /// Name of the surface.
     pub name: String,
-    /// Corners of the triangles.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Positions in each frame (m); one list for a surface at rest.
+    /// Positions in each frame (m); a single list for a surface that does not move.
     pub frames: Vec<Vec<[f32; 3]>>,
     /// Base colour, linear 0..=1.
     pub colour: [f32; 3],
 }
 
-/// Component type and target of corners in the glTF standard.
+/// Component type and buffer target of triangle indices in the glTF standard.
 const INTEGER: u32 = 5125;
 const CORNERS: u32 = 34963;
 
-/// Writes surfaces that move together, at some times (s), as GLB. Metres, Y up; the animation starts at 0 and is
-/// straight between frames, as the frames are. Some viewers show no more than 64 targets.
+/// Writes surfaces as GLB that all move at the given times (s). Metres, Y up. The animation starts at 0 and
+/// interpolates linearly between frames, as the recorded frames do. Some viewers show at most 64 targets.
 ///
 /// # Errors
 /// Frames that do not fit each other or the times, a mesh without triangles, more than 4 GiB.
@@ -101,7 +101,7 @@ fn check(mesh: &MovingGlbMesh, times: usize) -> Result<(), FormatError> {
     }
 }
 
-/// The first frame, with the others as targets by their differences to it.
+/// The first frame as the base mesh, the others as morph targets: differences to the first.
 fn primitive(mesh: &MovingGlbMesh, material: usize, binary: &mut Binary) -> Value {
     let first = &mesh.frames[0];
     let first_normals = normals(first, &mesh.triangles);
@@ -140,7 +140,7 @@ fn differences(rows: &[[f32; 3]], from: &[[f32; 3]]) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// Unit normals of the vertices; +Y where there is none.
+/// Unit normals of the vertices; +Y for a vertex without one.
 fn normals(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
     let mesh = TriangleMesh {
         positions: positions

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use toile_geometry::Vec2;
 use toile_lettering::{Line, width};
 
-/// User units in a metre (1/m).
+/// User units per metre (1/m).
 const UNITS: f64 = 1e5;
-/// Plotter units in a metre (1/m).
+/// Plotter units per metre (1/m).
 const PLOTTER: f64 = 4e4;
-/// Height of capitals over the size of letters.
+/// Height of capitals relative to the letter size.
 const CAPITALS: f64 = 0.72;
 
-/// A plot in the making.
+/// A plot being written.
 pub(crate) struct HpglWriter {
     text: String,
     pen: u8,
@@ -22,7 +22,7 @@ fn unit(metres: f64) -> i64 {
 }
 
 impl HpglWriter {
-    /// An empty plot of a size (m).
+    /// An empty plot with its width and height (m).
     pub fn new(size: Vec2) -> Self {
         let plotter = |metres: f64| (metres * PLOTTER).ceil() as i64;
         let mut text = String::from("IN;");
@@ -39,7 +39,7 @@ impl HpglWriter {
         }
     }
 
-    /// A line through points (m) with a pen, from 1.
+    /// A polyline through points (m), drawn with a pen counted from 1.
     pub fn polyline(&mut self, pen: u8, points: &[Vec2], closed: bool) {
         let [first, rest @ ..] = points else {
             return;
@@ -56,8 +56,8 @@ impl HpglWriter {
         let _ = writeln!(self.text, "{};PU;", all.join(","));
     }
 
-    /// Words with their baseline's middle at a point (m), letters of a size (m), turned by an
-    /// angle (rad). Plotters know ASCII alone: words with other letters are drawn by their outlines.
+    /// A text with the middle of its baseline at a point (m), letter size (m) and rotation (rad). Plotters
+    /// know ASCII only: a text with other characters is drawn as outlines.
     pub fn text(&mut self, pen: u8, words: &str, (at, size, angle): (Vec2, f64, f64)) {
         let blank = |c: char| if c.is_control() { ' ' } else { c };
         let words: String = words.chars().map(blank).collect();
@@ -75,8 +75,8 @@ impl HpglWriter {
             return;
         }
         self.select(pen);
-        // A plotter's letters are as wide as two thirds of the way from one to the next: so
-        // chosen, the words take the length that they have elsewhere.
+        // A plotter's letters are two thirds as wide as the step from one letter to the next. With this width
+        // the text is as long as in the other formats.
         let step = width(&words) * size / words.len().max(1) as f64;
         let _ = writeln!(
             self.text,
@@ -88,7 +88,7 @@ impl HpglWriter {
         );
     }
 
-    /// The file.
+    /// The complete file.
     pub fn finish(self) -> String {
         self.text + "PU;SP0;\n"
     }

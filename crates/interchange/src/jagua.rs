@@ -1,40 +1,40 @@
 //! Strip packing instances and solutions in the JSON of jagua-rs and sparrow (Gardeyn and Wauters
 //! 2025), by which nesting programs are compared.
 //!
-//! Lengths are in units of the instance. Pieces are turned about their origin, then moved; the
-//! strip lies along x from 0, its height along y.
+//! Lengths are in units of the instance. Pieces are rotated about their origin, then translated; the strip
+//! lies along x from 0, with its height along y.
 
 use crate::FormatError;
 use serde_json::{Map, Value, json};
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Strip};
 
-/// Orientations given to items that may be turned freely: every fifteen degrees.
+/// Orientations written for items that may be turned freely: every fifteen degrees.
 const FREE_TURNS: u32 = 24;
 
 /// A strip packing instance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JaguaInstance {
-    /// Its name.
+    /// Name of the instance.
     pub name: String,
-    /// Lengths in memory over lengths in the file: a power of two, so that nothing is rounded.
+    /// Length in memory divided by length in the file: a power of two, so that nothing is rounded.
     pub scale: f64,
-    /// Items, in the order of the file (m).
+    /// Items in the order of the file (m).
     pub items: Vec<Item>,
     /// The strip (m).
     pub strip: Strip,
-    /// Notes on assumptions.
+    /// Notes on assumptions that were made.
     pub notes: Vec<String>,
     ids: Vec<Value>,
     document: Map<String, Value>,
 }
 
-/// Fields of an instance and of an item that are known; `solution` and `dxf`, where an outline came
-/// from, are passed over.
+/// Known fields of an instance and of an item. `solution`, and `dxf`, which names the source of an outline,
+/// are skipped.
 const TOP_FIELDS: [&str; 4] = ["name", "strip_height", "items", "solution"];
 const ITEM_FIELDS: [&str; 5] = ["id", "demand", "allowed_orientations", "shape", "dxf"];
 
-/// A note for every field that is not known.
+/// Adds a note for every unknown field.
 fn unknown(fields: &Map<String, Value>, place: &str, (known, notes): (&[&str], &mut Vec<String>)) {
     for name in fields.keys().filter(|name| !known.contains(&name.as_str())) {
         let dot = if place.is_empty() { "" } else { "." };
@@ -42,7 +42,7 @@ fn unknown(fields: &Map<String, Value>, place: &str, (known, notes): (&[&str], &
     }
 }
 
-/// Whether a text looks like such an instance rather than like a pattern.
+/// Whether a text looks like a nesting instance rather than a pattern.
 pub fn is_jagua_instance(text: &str) -> bool {
     let document: Result<Value, _> = serde_json::from_str(text);
     document.is_ok_and(|d| d.get("items").is_some() && d.get("strip_height").is_some())
@@ -52,7 +52,7 @@ fn wrong(place: impl Into<String>, what: impl Into<String>) -> FormatError {
     FormatError::new(place, what, "correct the instance and try again")
 }
 
-/// Reads an instance; a solution in it is ignored.
+/// Reads an instance; a solution in the file is ignored.
 ///
 /// # Errors
 /// The text is not JSON, or something is missing or is not a number.
@@ -67,7 +67,7 @@ pub fn read_jagua(text: &str) -> Result<JaguaInstance, FormatError> {
     let height = document.get("strip_height").and_then(Value::as_f64);
     let height = height.filter(|h| h.is_finite() && *h > 0.0);
     let height = height.ok_or_else(|| wrong("strip_height", "there is no height above 0"))?;
-    // Between one and two metres, as a roll of fabric is.
+    // The scaled height is between one and two metres, as the width of a roll of fabric.
     let scale = (-height.log2().floor()).exp2();
     let listed = document.get("items").and_then(Value::as_array);
     let listed = listed.ok_or_else(|| wrong("items", "there is no list of items"))?;
@@ -152,7 +152,7 @@ fn read_item(
     })
 }
 
-/// Points of a ring, the repeated last one left out.
+/// Points of a ring, without the repetition of the first point at the end.
 fn ring(value: &Value, place: &str, scale: f64) -> Result<Vec<Vec2>, FormatError> {
     let list = value
         .as_array()
@@ -176,8 +176,8 @@ fn ring(value: &Value, place: &str, scale: f64) -> Result<Vec<Vec2>, FormatError
     Ok(points)
 }
 
-/// The instance with a marker as its solution, as the reader's peers write it. The same marker
-/// gives the same bytes.
+/// The instance with a marker as its solution, as jagua-rs and sparrow write it. The same marker gives the
+/// same bytes.
 ///
 /// # Errors
 /// A number is not finite.
@@ -215,8 +215,8 @@ pub fn write_jagua(
     text.map_err(|error| wrong("solution", error.to_string()))
 }
 
-/// Items and the usable width of a strip as an instance, in millimetres, grain along x; also what
-/// this format could not carry over. On fabric that runs one way only turn 0 is allowed.
+/// Items and the usable width of a strip as an instance, in millimetres with the grain along x; also returns
+/// the properties that the format cannot hold. On one-way fabric only rotation 0 is allowed.
 ///
 /// # Errors
 /// A number is not finite.
@@ -262,7 +262,7 @@ pub fn write_jagua_instance(
     Ok((format!("{instance}\n"), left_out(items, strip)))
 }
 
-/// The parts of a job that an instance cannot express.
+/// The properties of a job that an instance cannot express.
 fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
     let any = |has: &dyn Fn(&Item) -> bool| items.iter().any(has);
     let all = [

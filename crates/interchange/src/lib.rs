@@ -1,7 +1,7 @@
-//! Native formats, importers, exporters.
+//! Readers and writers of the native formats and of foreign ones.
 //!
 //! Readers take bytes or text and return a value or a [`FormatError`] with place and remedy;
-//! writers return bytes, and [`write_atomically`] puts them on the disk.
+//! writers return bytes, and [`write_atomically`] writes them to the disk.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]

@@ -12,11 +12,11 @@ use toile_measure::{Measurements, Origin, UnitKind, definition};
 const KIND: &str = "mannequin";
 const VERSION: u32 = 1;
 
-/// Centre, effective semi-axes (0.1 mm) and rotation vector (mrad) of a primitive, and its weight
-/// [0.001] where it is not one.
+/// Centre, effective semi-axes (0.1 mm) and rotation vector (mrad) of a primitive, then its weight (0.001)
+/// unless it is 1.
 type Row = Vec<i32>;
 
-/// The native file. Lengths of measurements in centimetres, angles in degrees.
+/// The native file. Measured lengths in centimetres, angles in degrees.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MannequinFile {
@@ -24,8 +24,8 @@ struct MannequinFile {
     kind: String,
     figure: Figure,
     measurements: BTreeMap<String, f64>,
-    /// Primitives of trunk, head, left arm and left leg before any measurement is applied; none
-    /// for the figure's own.
+    /// Primitives of trunk, head, left arm and left leg before any measurement is applied; empty for the
+    /// primitives of the figure.
     #[serde(default)]
     trunk: Vec<Row>,
     #[serde(default)]
@@ -34,18 +34,18 @@ struct MannequinFile {
     arm: Vec<Row>,
     #[serde(default)]
     leg: Vec<Row>,
-    /// Levels and joints (m) of a body fitted to a mesh.
+    /// Heights and joint positions (m) of a body fitted to a mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     frame: Option<BodyFrame>,
-    /// What is particular about single primitives.
+    /// Exceptional properties of single primitives.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     particular: Vec<ParticularRow>,
-    /// Primitives that are moved together.
+    /// Groups of primitives that are moved together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     joined: Vec<Vec<usize>>,
 }
 
-/// Properties of a single primitive, counted from 0 over trunk, head, arm and leg.
+/// Properties of one primitive, which is numbered from 0 over trunk, head, arm and leg.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ParticularRow {
@@ -60,13 +60,13 @@ struct ParticularRow {
     deformation: Option<Deformation>,
 }
 
-/// Parts in the file's order.
+/// Body parts in the order of the file.
 const PARTS: [Part; 4] = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg];
 
-/// What is particular about the primitives, and what is joined, by the numbers of the file.
+/// Exceptional properties and joined groups of the primitives, numbered as in the file.
 fn particular(description: &Description) -> (Vec<ParticularRow>, Vec<Vec<usize>>) {
     let all = &description.primitives;
-    // Which primitive of the description stands at each place of the file.
+    // Index in the description of each primitive of the file.
     let order: Vec<usize> = PARTS
         .iter()
         .flat_map(|part| (0..all.len()).filter(|&k| all[k].part == *part))
@@ -97,7 +97,7 @@ fn particular(description: &Description) -> (Vec<ParticularRow>, Vec<Vec<usize>>
     (rows.collect(), joined)
 }
 
-/// Puts what is particular back to primitives in the file's order.
+/// Assigns the exceptional properties of the file to its primitives.
 fn rigged(
     primitives: &mut [Primitive],
     rows: Vec<ParticularRow>,
@@ -128,12 +128,12 @@ fn rigged(
     })
 }
 
-/// Lengths are kept to 0.1 mm and turns to 1 mrad, as the templates are; weights to 0.001.
+/// Lengths are stored to 0.1 mm and rotations to 1 mrad, as in the templates; weights to 0.001.
 const LENGTH: f64 = 1e-4;
 const TURN: f64 = 1e-3;
 const WEIGHT: f64 = 1e-3;
 
-/// A frame with its lengths as they are kept.
+/// A frame with its lengths rounded as they are stored.
 fn rounded(frame: &BodyFrame) -> BodyFrame {
     let length = |x: f64| (x / LENGTH).round() / (1.0 / LENGTH).round();
     let place = |p: [f64; 3]| p.map(length);
@@ -163,10 +163,10 @@ fn rounded(frame: &BodyFrame) -> BodyFrame {
     }
 }
 
-/// Writes all a mannequin is made from: the same file gives the same body.
+/// Writes everything that a mannequin is made from: the same file gives the same body.
 ///
 /// # Errors
-/// A primitive of a right limb, which is the left one's mirror image.
+/// A primitive of a right limb: right limbs are mirror images of the left ones.
 pub fn write_mannequin(description: &Description) -> Result<String, FormatError> {
     let rows = |part: Part| -> Vec<Row> {
         let own = description.primitives.iter().filter(|p| p.part == part);
@@ -211,7 +211,7 @@ pub fn write_mannequin(description: &Description) -> Result<String, FormatError>
     };
     let text = serde_json::to_string(&file)
         .map_err(|error| FormatError::new("mannequin", error.to_string(), "check the values"))?;
-    // One primitive a line.
+    // One primitive per line.
     Ok(text.replace("],[", "],\n[").replace("]],\"", "]],\n\"") + "\n")
 }
 
@@ -219,7 +219,7 @@ fn is_angle(name: &str) -> bool {
     definition(name).is_some_and(|known| known.kind == UnitKind::Angle)
 }
 
-/// Reads what [`write_mannequin`] wrote.
+/// Reads a file of [`write_mannequin`].
 ///
 /// # Errors
 /// The fault, its place and a remedy.
@@ -311,7 +311,7 @@ mod tests {
                 .map(|(a, b)| (a - b).norm())
                 .fold(0.0, f64::max);
             assert!(furthest < 1e-4, "{figure:?}: {furthest}");
-            // Written again it is the same file.
+            // Writing it again gives the same file.
             assert_eq!(write_mannequin(&again.description()).unwrap(), text);
         }
     }
@@ -327,7 +327,7 @@ mod tests {
             turn: [0.0; 3],
         };
         let edits = [
-            // Written among the trunk's, before the head's.
+            // Written among the trunk's primitives, before those of the head.
             PrimitiveEdit::Create {
                 new: Primitive::new(Part::Trunk, [0.05, 1.1, 0.05], [0.08; 3]),
             },
@@ -352,7 +352,7 @@ mod tests {
                 }),
             },
         ];
-        // A trunk's primitive in the middle has no second group of a side.
+        // A central primitive of the trunk has no second group on the other side.
         let pair = own.primitives.iter().position(|p| !p.is_central()).unwrap();
         let edits = edits.map(|edit| match edit {
             PrimitiveEdit::Group { part, also, .. } => PrimitiveEdit::Group {

@@ -1,4 +1,4 @@
-//! The drawing of a marker: everything that is drawn of it, whatever the format.
+//! The drawing of a marker, independent of the file format.
 
 use crate::{FormatError, Shown};
 use std::sync::Arc;
@@ -15,17 +15,17 @@ pub struct MarkerDrawing {
     pub title: String,
     /// The fabric.
     pub strip: Strip,
-    /// Fabric used, end margins included (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins, 0..=1.
+    /// Area of the pieces divided by width times length between the end margins (0 to 1).
     pub efficiency: f64,
-    /// The pieces laid.
+    /// The pieces laid on the fabric.
     pub pieces: Vec<MarkerPiece>,
-    /// Names of the copies that found no place, and why.
+    /// Names of the copies that could not be placed, each with the reason.
     pub unplaced: Vec<[String; 2]>,
-    /// Regions where pieces overlap, in the plane of the fabric (m); nothing on a sound marker.
+    /// Regions where pieces overlap, in the plane of the fabric (m); empty for a valid marker.
     pub overlaps: Vec<Polygon>,
-    /// Facts for the report.
+    /// Facts listed in the report.
     pub facts: MarkerFacts,
 }
 
@@ -34,19 +34,19 @@ pub struct MarkerDrawing {
 pub struct MarkerFacts {
     /// Name of the fabric.
     pub fabric: String,
-    /// The roll it is cut from, if there are several.
+    /// The roll that the marker is cut from, if there are several.
     pub roll: Option<String>,
-    /// Layers cut at once; a fold does not count.
+    /// Number of layers cut at once; the two layers of folded fabric count as one.
     pub plies: u32,
     /// Whether every second ply is turned over.
     pub face_to_face: bool,
-    /// Area of the pieces over width times length, 0..=1.
+    /// Area of the pieces divided by width times length (0 to 1).
     pub utilisation: f64,
-    /// Price of a metre of length.
+    /// Price of one metre of fabric length.
     pub price_per_metre: Option<f64>,
     /// Currency of the price.
     pub currency: String,
-    /// The unit numbers are shown in.
+    /// The unit of displayed lengths.
     pub unit: DisplayUnit,
     /// Notes for the cutter.
     pub notes: Vec<String>,
@@ -71,13 +71,13 @@ impl Default for MarkerFacts {
 /// One piece on a marker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkerPiece {
-    /// Name to write on it.
+    /// Name written on the piece.
     pub name: String,
-    /// Number that pieces of one kind share: they are filled with one colour.
+    /// Number of the item, shared by all its copies: they are filled with one colour.
     pub item: usize,
-    /// Its drawing, in its own plane.
+    /// Drawing of the piece, in the piece's own plane.
     pub piece: Arc<CutPiece>,
-    /// Marker from piece.
+    /// Transform from the piece to the marker.
     pub pose: Pose,
 }
 
@@ -86,7 +86,7 @@ fn plural(count: usize) -> String {
 }
 
 impl MarkerDrawing {
-    /// Fabric needed, all plies together (m).
+    /// Length of fabric needed for all plies together (m).
     pub fn yardage(&self) -> f64 {
         self.length * f64::from(self.facts.plies)
     }
@@ -96,12 +96,12 @@ impl MarkerDrawing {
         Some(self.facts.price_per_metre? * self.yardage())
     }
 
-    /// How its numbers are shown.
+    /// Formatter for lengths and areas in the unit of the marker.
     pub(crate) fn shown(&self) -> Shown {
         Shown(self.facts.unit)
     }
 
-    /// What to tell of letters that no font has, in what is written on prints and plots of it.
+    /// Warning about characters that no font has, in the texts of prints and plots of the marker.
     pub fn missing_note(&self) -> Option<String> {
         let names = self.pieces.iter().map(|piece| &piece.name);
         let names = names.chain(self.unplaced.iter().flatten());
@@ -110,7 +110,7 @@ impl MarkerDrawing {
         missing_note(&missing_letters(all.map(String::as_str)))
     }
 
-    /// The marker in words: length and efficiency, then the fabric, then what is missing.
+    /// Summary in sentences: length and efficiency, then the fabric, then pieces left out and overlaps.
     pub(crate) fn summary(&self) -> Vec<String> {
         let strip = &self.strip;
         let shown = self.shown();
@@ -145,7 +145,7 @@ impl MarkerDrawing {
         lines
     }
 
-    /// How the fabric lies.
+    /// The spread in words: number of plies, folded or open, face to face.
     pub(crate) fn spread(&self) -> String {
         let plies = match self.facts.plies {
             1 => String::new(),
@@ -160,7 +160,7 @@ impl MarkerDrawing {
         format!("{plies}{way}")
     }
 
-    /// Refuses what cannot be drawn.
+    /// Refuses a drawing with numbers that are not finite.
     pub(crate) fn check_numbers(&self) -> Result<(), FormatError> {
         let refuse = |place: String| {
             let hint = "check the piece's outline and make the marker again";

@@ -10,11 +10,11 @@ use toile_nesting::{
 const FORMAT: &str = "toile-marker";
 const VERSION: u32 = 1;
 
-/// The content of a `marker.json`.
+/// The content of a `marker.json` file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFile {
-    /// What kind of file this is: `toile-marker`.
+    /// Kind of the file: `toile-marker`.
     pub format: String,
     /// Version of the format, from 1.
     pub version: u32,
@@ -24,24 +24,24 @@ pub struct MarkerFile {
     pub name: String,
     /// The fabric.
     pub fabric: MarkerFabric,
-    /// Fabric used, end margins included (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins, 0..=1.
+    /// Area of the pieces divided by width times length between the end margins (0 to 1).
     pub efficiency: f64,
-    /// Area of the pieces over width times length, 0..=1.
+    /// Area of the pieces divided by width times length (0 to 1).
     pub utilisation: f64,
-    /// The roll it is cut from, if there are several.
+    /// The roll that the marker is cut from, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub roll: Option<String>,
-    /// Layers cut at once; a fold does not count.
+    /// Number of layers cut at once; the two layers of folded fabric count as one.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub plies: u32,
     /// Whether every second ply is turned over.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub face_to_face: bool,
-    /// The pieces laid.
+    /// The pieces laid on the fabric.
     pub pieces: Vec<MarkerFilePiece>,
-    /// Copies that found no place.
+    /// Copies that could not be placed.
     pub unplaced: Vec<MarkerFileUnplaced>,
 }
 
@@ -49,45 +49,45 @@ pub struct MarkerFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFabric {
-    /// Its name in the pattern.
+    /// Name of the fabric in the pattern.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// Full width (m).
     pub width: f64,
-    /// Unusable edge at either side (m).
+    /// Width of the unusable edge on either side (m).
     pub selvedge: f64,
-    /// Free fabric at either end (m).
+    /// Free fabric left at either end (m).
     pub end_margin: f64,
     /// Least distance between pieces (m).
     pub gap: f64,
-    /// Length at hand (m); null means as long as it takes.
+    /// Length of fabric available (m); null for no limit.
     pub max_length: Option<f64>,
-    /// Whether the fabric has a nap, so that all pieces point one way.
+    /// Whether the fabric has a nap, so that all pieces point in one direction.
     pub one_way: bool,
-    /// Whether the pieces of each garment point one way, whichever.
+    /// Whether the pieces of each garment point in one common direction, either of the two.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub one_way_per_garment: bool,
-    /// Where it is folded along the warp.
+    /// Folds along the warp.
     #[serde(default, skip_serializing_if = "MarkerFold::is_open")]
     pub fold: MarkerFold,
-    /// Print that repeats.
+    /// Repeating print.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub print: Option<MarkerPrint>,
-    /// Flaws no piece may lie on.
+    /// Flaws that no piece may lie on.
     #[serde(rename = "defects", default, skip_serializing_if = "Vec::is_empty")]
     pub flaws: Vec<MarkerFlaw>,
 }
 
-/// Folds of the fabric, in a marker file; its width is then that of the folded fabric.
+/// Folds of the fabric, in a marker file; the width is then that of the folded fabric.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MarkerFold {
-    /// None.
+    /// No fold.
     #[default]
     Open,
-    /// At y = 0.
+    /// Folded at y = 0.
     Lower,
-    /// At y = 0 and at y = width.
+    /// Folded at y = 0 and at y = width.
     Both,
 }
 
@@ -113,13 +113,13 @@ fn is_one(plies: &u32) -> bool {
     *plies == 1
 }
 
-/// A print that repeats, in a marker file.
+/// A repeating print, in a marker file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerPrint {
-    /// Length of a repeat along the warp and across (m); 0 where it does not repeat.
+    /// Length of a repeat along the warp and across it (m); 0 in a direction without repeat.
     pub repeat: [f64; 2],
-    /// A point where lines of the print cross (m).
+    /// A point at which lines of the print cross (m).
     pub origin: [f64; 2],
 }
 
@@ -127,13 +127,13 @@ pub struct MarkerPrint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFlaw {
-    /// Its outline (m).
+    /// Outline of the flaw (m).
     pub outline: Vec<[f64; 2]>,
-    /// Distance pieces keep from it (m).
+    /// Clearance between pieces and the flaw (m).
     pub clearance: f64,
 }
 
-/// A piece laid, in a marker file.
+/// A piece laid on the fabric, in a marker file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFilePiece {
@@ -147,39 +147,40 @@ pub struct MarkerFilePiece {
     pub grain: f64,
     /// Angle from the warp to the piece's grain (deg).
     pub turn: f64,
-    /// Whether it lies face down: turned over across the grain before it is turned.
+    /// Whether the piece lies face down: it is turned over across the grain before it is rotated.
     pub face_down: bool,
-    /// Move after turning (m).
+    /// Translation after the rotation (m).
     pub at: [f64; 2],
-    /// Number of the garment it belongs to, from 0.
+    /// Number of the garment that the piece belongs to, from 0.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub garment: u32,
-    /// Free fabric it needs to any other piece (m).
+    /// Distance the piece needs to any other piece (m).
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub gap: f64,
-    /// Whether it may hide flaws.
+    /// Whether the piece may lie on flaws.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub over_flaws: bool,
-    /// The point that must lie on the print.
+    /// The point of the piece that must match the print.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on_print: Option<MarkerMatch>,
-    /// Cut outline as laid, to the nearest micrometre (m).
+    /// Cut outline of the laid piece, rounded to micrometres (m).
     pub outline: Vec<[f64; 2]>,
-    /// Holes cut into it, likewise.
+    /// Outlines of holes cut into the piece, also laid and rounded (m).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub holes: Vec<Vec<[f64; 2]>>,
 }
 
-/// A point of a piece that must lie on the print, in a marker file.
+/// A point of a piece that must match the print, in a marker file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerMatch {
-    /// In the piece as drawn (m).
+    /// Position in the piece as drawn (m).
     pub point: [f64; 2],
-    /// How far after the lines of the print, along the warp and across (m).
+    /// Offset of the point from the lines of the print, along the warp and across it (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<[f64; 2]>,
-    /// Number of the set whose members all lie alike, if it need not be on the lines.
+    /// Number of the set of points that must all lie at one place of the repeat, instead of at a given
+    /// offset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set: Option<u32>,
 }
@@ -197,7 +198,7 @@ impl MarkerMatch {
         }
     }
 
-    /// The point as the referee takes it.
+    /// The match point in the form that the nesting crate uses.
     pub fn match_point(&self) -> MatchPoint {
         MatchPoint {
             point: Vec2::from(self.point),
@@ -209,7 +210,7 @@ impl MarkerMatch {
     }
 }
 
-/// A copy that found no place, in a marker file.
+/// A copy that could not be placed, in a marker file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFileUnplaced {
@@ -219,12 +220,12 @@ pub struct MarkerFileUnplaced {
     pub item: usize,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Why, and what helps.
+    /// The reason, and the remedy.
     pub reason: String,
 }
 
 impl MarkerFile {
-    /// The file of a marker made from items on a strip. Placements that name no item are left out.
+    /// The file of a marker made from items on a strip. Placements of items that do not exist are left out.
     pub fn new(name: &str, items: &[Item], strip: &Strip, marker: &Marker) -> Self {
         let piece = |placement: &Placement| {
             let item = items.get(placement.item)?;
@@ -298,7 +299,7 @@ impl MarkerFile {
         }
     }
 
-    /// The marker in the file.
+    /// The marker that the file describes.
     pub fn marker(&self) -> Marker {
         let placement = |p: &MarkerFilePiece| Placement {
             item: p.item,
@@ -321,7 +322,7 @@ impl MarkerFile {
         }
     }
 
-    /// The fabric in the file.
+    /// The fabric that the file describes.
     pub fn strip(&self) -> Strip {
         Strip {
             width: self.fabric.width,
@@ -368,7 +369,7 @@ fn micrometres(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
 }
 
-/// The text of a marker file, one line a piece. The same marker gives the same bytes.
+/// The text of a marker file, one line per piece. The same marker gives the same bytes.
 ///
 /// # Errors
 /// A number is not finite.
@@ -462,7 +463,7 @@ fn check_numbers(file: &MarkerFile) -> Result<(), FormatError> {
 /// Reads a marker file.
 ///
 /// # Errors
-/// The text is not JSON, not a marker, of a newer version, or has a field that is not known here.
+/// The text is not JSON, not a marker, of a newer version, or has an unknown field.
 pub fn read_marker_json(text: &str) -> Result<MarkerFile, FormatError> {
     #[derive(Deserialize)]
     struct Head {

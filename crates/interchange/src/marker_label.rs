@@ -2,14 +2,15 @@
 
 use toile_lettering::{is_plain, width};
 
-/// How much wider than in Helvetica a line may come out in another sans-serif font: in DejaVu Sans
-/// and Verdana it is about 1.17 times as long.
+/// Safety factor for the length of a line in a sans-serif font other than Helvetica: in DejaVu Sans and
+/// Verdana it is about 1.17 times as long.
 const WIDER: f64 = 1.25;
 
-/// A text in lines of at most a length, at a size of letters in the same unit, whatever sans-serif
-/// font draws it: broken between words, and within a word that is longer than a line.
+/// Breaks a text of a letter size into lines that are no longer than `length`, both in the same unit,
+/// whichever sans-serif font draws it. Lines break between words, and within a word that is longer than a
+/// line.
 pub(crate) fn lines_within(text: &str, size: f64, length: f64) -> Vec<String> {
-    // Letters of other scripts may be as wide as high.
+    // Letters of other scripts may be as wide as they are high.
     let wide = |c: char| {
         let letter = c.encode_utf8(&mut [0; 4]).to_owned();
         let share = if is_plain(&letter) {

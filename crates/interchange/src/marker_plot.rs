@@ -8,9 +8,9 @@ use crate::{FormatError, MarkerDrawing};
 use toile_geometry::Vec2;
 use toile_lettering::width;
 
-/// A marker as DXF of release 12, in millimetres: layers CUT, SEW, NOTCH, GRAIN, LINE, DRILL, TEXT for
-/// the pieces and FABRIC, MARGIN, FOLD, PRINT, FLAW for the cloth. The lower corner of the fabric's
-/// start is the origin. The title stands over the fabric.
+/// A marker as DXF of release 12, in millimetres. Layers CUT, SEW, NOTCH, GRAIN, LINE, DRILL, TEXT hold the
+/// pieces, layers FABRIC, MARGIN, FOLD, PRINT, FLAW the cloth. The origin is the lower corner of the start of
+/// the fabric. The title stands above the fabric.
 ///
 /// # Errors
 /// A coordinate is not finite.
@@ -26,15 +26,15 @@ pub fn write_marker_dxf(drawing: &MarkerDrawing) -> Result<String, FormatError> 
         let place = (words.at, words.size, words.angle);
         dxf.text(Layer::Text.name(), &words.text, place);
     }
-    // Its letters are smaller where it would be longer than the fabric.
+    // Smaller letters if the title would be longer than the fabric.
     let size = TITLE.min(drawing.length.max(TITLE) / width(&drawing.title).max(1.0));
     let above = Vec2::new(0.5 * drawing.length, drawing.strip.width + TITLE);
     dxf.text(Layer::Text.name(), &drawing.title, (above, size, 0.0));
     Ok(dxf.finish())
 }
 
-/// A marker for a plotter or cutter: HPGL/2 in hundredths of a millimetre. Pen 1 is what is cut, pen
-/// 2 what is drawn on the pieces, pen 3 the fabric.
+/// A marker for a plotter or cutter: HPGL/2 in hundredths of a millimetre. Pen 1 draws the lines to cut, pen
+/// 2 the markings on the pieces, pen 3 the fabric.
 ///
 /// # Errors
 /// A coordinate is not finite.
@@ -42,7 +42,7 @@ pub fn write_marker_hpgl(drawing: &MarkerDrawing) -> Result<String, FormatError>
     drawing.check_numbers()?;
     let all = Strokes::of(drawing);
     let mut hpgl = HpglWriter::new(Vec2::new(drawing.length, drawing.strip.width));
-    // Drawn before it is cut, the fabric first.
+    // Fabric first, then markings, then cuts: nothing is drawn after it is cut.
     for pen in [3, 2, 1] {
         for stroke in all.strokes.iter().filter(|s| s.layer.pen() == pen) {
             hpgl.polyline(pen, &stroke.points, stroke.closed);
@@ -56,9 +56,9 @@ pub fn write_marker_hpgl(drawing: &MarkerDrawing) -> Result<String, FormatError>
     Ok(hpgl.finish())
 }
 
-/// Height of the letters of a title, and how far it stands over the fabric (m).
+/// Letter height of the title, and its distance above the fabric (m).
 const TITLE: f64 = 0.02;
-/// White round the fabric (m).
+/// White border round the fabric (m).
 const BORDER: f64 = 0.02;
 
 /// A marker on one PDF page at true size.
@@ -106,19 +106,19 @@ pub fn write_marker_pdf(drawing: &MarkerDrawing) -> Result<Vec<u8>, FormatError>
     Ok(sheets.finish(&drawing.title))
 }
 
-/// How a marker is put on a page.
+/// Placement and style of a marker on a page.
 pub(crate) struct PlotLook {
-    /// Where the fabric's lower corner lies (m).
+    /// Position of the fabric's lower corner (m).
     pub origin: Vec2,
-    /// Length on the page over length of fabric.
+    /// Length on the page divided by length of fabric.
     pub scale: f64,
-    /// Width of a line to cut along (m); others are half as wide.
+    /// Width of a line to cut along (m); other lines are half as wide.
     pub width: f64,
-    /// Whether words are written.
+    /// Whether texts are written.
     pub words: bool,
 }
 
-/// Fill of what is cut twice.
+/// Fill of overlaps, which would be cut twice.
 const CUT_TWICE: [f32; 3] = [0.9, 0.0, 0.0];
 
 /// Draws a marker on a page.

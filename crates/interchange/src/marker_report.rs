@@ -7,16 +7,16 @@ use toile_geometry::Vec2;
 
 /// A4, upright (m).
 const PAGE: [f64; 2] = [0.210, 0.297];
-/// White on every side (m).
+/// White border on every side (m).
 const BORDER: f64 = 0.015;
-/// Size of the letters and distance of the lines (m).
+/// Letter size and line spacing (m).
 const LETTERS: f64 = 0.0035;
 const LINE: f64 = 0.0055;
 const BLACK: Ink = [0.07, 0.07, 0.07];
 const RED: Ink = [0.7, 0.0, 0.13];
 
-/// Reports of markers on A4, one after the other: the marker small, length, efficiency, yardage, cost,
-/// a table of its pieces, what is not on it and why.
+/// Reports of markers on A4 pages, one marker after the other: a small picture, length, efficiency, yardage,
+/// cost, a table of pieces, and the pieces left out with the reason.
 ///
 /// # Errors
 /// A coordinate is not finite.
@@ -47,7 +47,7 @@ fn empty_page() -> PdfPage {
     PdfPage::new(Vec2::from(PAGE))
 }
 
-/// A column of a table: where it stands, and which side of it.
+/// A column of a table: x position (m) and alignment of the text there.
 type Column = (f64, Align);
 
 impl Report {
@@ -86,7 +86,7 @@ impl Report {
         });
     }
 
-    /// Starts a line, on the next page if this one is full.
+    /// Moves to the next line, on a new page if this one is full.
     fn next_line(&mut self, height: f64) {
         self.at -= height;
         if self.at < BORDER {
@@ -112,7 +112,7 @@ impl Report {
         self.next_line(LINE);
     }
 
-    /// Small words in as many lines as they take.
+    /// Small text, wrapped into as many lines as needed.
     fn small(&mut self, text: &str) {
         let size = 0.85 * LETTERS;
         for line in wrapped(text, size, PAGE[0] - 2.0 * BORDER) {
@@ -222,7 +222,7 @@ impl Report {
         self.rule();
     }
 
-    /// The length needed of each fabric.
+    /// Table of the length needed of each fabric.
     fn totals(&mut self, title: &str, markers: &[MarkerDrawing]) {
         self.heading(&format!("{title}: fabric needed"));
         let right = |x: f64| (PAGE[0] - BORDER - x, Align::Right);
@@ -270,7 +270,7 @@ fn percent(share: f64) -> String {
     format!("{:.1} %", share * 100.0)
 }
 
-/// A length of cloth in both units of trade.
+/// A length of cloth in both trade units, metres and yards.
 fn bought(shown: Shown, metres: f64) -> String {
     let [first, other] = shown.cloth(metres);
     format!("{first} ({other})")

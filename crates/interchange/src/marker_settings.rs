@@ -11,45 +11,45 @@ use toile_pattern::{ClothSettings, LayingRule, Spread, fields};
 
 const KIND: &str = "marker-settings";
 
-/// The name that stands for any fabric, or any piece: for what its own entry leaves open.
+/// The name that stands for every fabric or every piece; the entry of a specific name takes precedence.
 pub const ANY_NAME: &str = "*";
 
 /// The content of a file of marker settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarkerSettings {
-    /// Currency of prices, as in EUR.
+    /// Currency of the prices, as in EUR.
     pub currency: Option<String>,
-    /// By name of the fabric.
+    /// Settings of each fabric, by name.
     pub fabrics: BTreeMap<String, ClothSettings>,
-    /// By name of the panel, or of one of its pieces.
+    /// Settings of pieces, by name of the panel or of one of its pieces.
     pub pieces: BTreeMap<String, PieceSettings>,
-    /// Marks that lie on the same place of the print in every garment: lists of `panel.notch`.
+    /// Sets of notches that lie at the same place of the print in every garment: lists of `panel.notch`.
     pub matched: Vec<Vec<String>>,
 }
 
-/// Settings of one piece. A setting that is not given is the default.
+/// Settings of one piece. A setting that is not given has its default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceSettings {
-    /// What is asked of it.
+    /// Rules for laying the piece.
     pub rule: LayingRule,
-    /// The fabric it is cut from instead of the pattern's.
+    /// The fabric to cut the piece from, instead of the pattern's.
     pub fabric: Option<String>,
-    /// How often it is cut from further fabrics too.
+    /// Number of additional cuts from other fabrics, by name of the fabric.
     pub also: Option<BTreeMap<String, u32>>,
-    /// Copies that have their place already.
+    /// Copies with a fixed position.
     pub locked: Option<Vec<LockSettings>>,
 }
 
-/// A copy that stays where it is, in the terms of a `marker.json`.
+/// A copy with a fixed position, in the same terms as in a `marker.json`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LockSettings {
     /// Number of the copy, from 0.
     pub copy: u32,
     /// Angle from the warp to the piece's grain (rad).
     pub turn: f64,
-    /// Whether it lies face down.
+    /// Whether the copy lies face down.
     pub face_down: bool,
-    /// Move after turning (m).
+    /// Translation after the rotation (m).
     pub at: [f64; 2],
 }
 
@@ -70,7 +70,7 @@ fields!(LockSettings, |self, v| {
 });
 
 impl PieceSettings {
-    /// These settings over those for more pieces: what they leave open is that of the others.
+    /// These settings, with gaps filled from more general ones.
     #[must_use]
     pub fn over(self, below: &Self) -> Self {
         let Self {
@@ -88,17 +88,17 @@ impl PieceSettings {
     }
 }
 
-/// Settings of fabric that a file of settings says otherwise: a length as a roll, a tilt as a rule for all pieces, the
-/// currency once for all.
+/// Fabric settings that this kind of file expresses in another way: length as a roll, tilt as a rule for all
+/// pieces, the currency once for the whole file.
 const SAID_OTHERWISE: [&str; 3] = ["length", "tilt", "currency"];
 
 /// Reads a file of marker settings.
 ///
 /// # Errors
-/// The text is not JSON, not marker settings, of a newer version, has a field that is not known
-/// here, or a number that makes no sense.
+/// The text is not JSON, not marker settings, of a newer version, has an unknown field, or a number that
+/// makes no sense.
 pub fn read_marker_settings(text: &str) -> Result<MarkerSettings, FormatError> {
-    // What is no JSON is told as every reader of it tells it.
+    // Invalid JSON is reported in the same words as by the other readers.
     serde_json::from_str::<serde::de::IgnoredAny>(text).map_err(|error| {
         let place = format!("line {}, column {}", error.line(), error.column());
         let what = error.to_string();
@@ -163,7 +163,7 @@ pub fn read_marker_settings(text: &str) -> Result<MarkerSettings, FormatError> {
     Ok(settings)
 }
 
-/// Settings of a piece.
+/// Reads the settings of a piece.
 fn piece(item: &Item<'_>) -> Result<PieceSettings, FormatError> {
     let mut settings = PieceSettings::default();
     let besides = ["fabric", "also", "locked"];

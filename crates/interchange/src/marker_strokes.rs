@@ -30,12 +30,12 @@ pub(crate) enum Layer {
 impl Layer {
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// Name in files.
+    /// Name of the layer in files.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// Class of its lines in SVG.
+    /// Class of the layer's lines in SVG.
     pub fn class(self) -> &'static str {
         match self {
             Self::Fabric => "fabric",
@@ -53,7 +53,7 @@ impl Layer {
         }
     }
 
-    /// Whether a knife follows its lines.
+    /// Whether a knife follows the lines of the layer.
     pub fn is_cut(self) -> bool {
         self.pen() == 1
     }
@@ -72,7 +72,7 @@ impl Layer {
         }
     }
 
-    /// Red, green, blue, 0..=1.
+    /// Red, green and blue (0 to 1).
     pub fn ink(self) -> [f32; 3] {
         match self {
             Self::Cut | Self::Notch | Self::Text => [0.07, 0.07, 0.07],
@@ -86,7 +86,7 @@ impl Layer {
         }
     }
 
-    /// Pen of a plotter: 1 what is cut, 2 what is drawn on the pieces, 3 the fabric.
+    /// Pen of a plotter: 1 for lines to cut, 2 for markings on the pieces, 3 for the fabric.
     pub fn pen(self) -> u8 {
         match self {
             Self::Cut | Self::Notch => 1,
@@ -104,14 +104,14 @@ pub(crate) struct Stroke {
     pub closed: bool,
 }
 
-/// Lines and words of a marker.
+/// Lines and texts of a marker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Strokes {
     pub strokes: Vec<Stroke>,
     pub words: Vec<Words>,
 }
 
-/// Pale fills, one after another by item: red, green, blue.
+/// Pale fills, assigned to items in turn: red, green, blue.
 const FILLS: [[u8; 3]; 8] = [
     [0xf6, 0xd9, 0xc8],
     [0xcf, 0xe3, 0xf2],
@@ -128,7 +128,7 @@ pub(crate) fn fill_of(item: usize) -> [u8; 3] {
     FILLS[item % FILLS.len()]
 }
 
-/// Most lines of a print that are drawn along one side.
+/// Largest number of print lines drawn in one direction.
 const MAX_LINES: f64 = 2000.0;
 
 impl Strokes {
@@ -141,14 +141,14 @@ impl Strokes {
         all
     }
 
-    /// Adds the lines of the fabric.
+    /// The lines of the fabric.
     pub fn of_fabric(drawing: &MarkerDrawing) -> Self {
         let mut all = Self::default();
         all.fabric(drawing);
         all
     }
 
-    /// Adds the lines of one piece.
+    /// The lines and texts of one piece.
     pub fn of_piece(piece: &MarkerPiece) -> Self {
         let mut all = Self::default();
         all.piece(piece);

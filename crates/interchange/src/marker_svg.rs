@@ -1,8 +1,8 @@
 //! A marker as SVG: millimetres, at true size, y down.
 //!
-//! The fabric lies along x from the origin of the drawing, the upper selvedge at y = 0. Numbers
-//! have a fixed count of decimals, so that the same marker gives the same bytes. Its groups are
-//! layers in Inkscape, which knows them by attributes of its own.
+//! The fabric lies along x from the origin of the drawing, with the upper selvedge at y = 0. Numbers have a
+//! fixed count of decimals, so that the same marker gives the same bytes. The groups are layers for Inkscape,
+//! which recognises them by its own attributes.
 
 use crate::marker_label::lines_within;
 use crate::marker_strokes::{Layer, Stroke, Strokes, fill_of};
@@ -13,16 +13,16 @@ use toile_cut::Words;
 use toile_geometry::Vec2;
 use toile_nesting::Fold;
 
-/// White round the fabric (mm).
+/// White border round the fabric (mm).
 const BORDER: f64 = 20.0;
-/// Length that the heading and the bar of known length have at the least (mm).
+/// Smallest width of the heading with the scale bar (mm).
 const SHORTEST: f64 = 400.0;
-/// Sizes of the letters of the title and of the lines under it (mm).
+/// Letter sizes of the title and of the lines below it (mm).
 const TITLE: f64 = 22.0;
 const LETTERS: f64 = 14.0;
-/// Distance of the lines under the title (mm).
+/// Line spacing below the title (mm).
 const LINE: f64 = 18.0;
-/// From the last line of the heading to the fabric: the bar of known length lies there (mm).
+/// Distance from the last line of the heading to the fabric, with the scale bar between them (mm).
 const BELOW: f64 = 36.0;
 const BLACK: &str = "#222222";
 const RED: &str = "#b00020";
@@ -82,8 +82,8 @@ pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> 
     Ok(text)
 }
 
-/// A group that is a layer in Inkscape, by its id, the name shown and its style; none if nothing
-/// is drawn on it.
+/// A group that is a layer in Inkscape, given by its id, displayed name and style; nothing is written for an
+/// empty layer.
 fn layer(text: &mut String, (id, label, style): (&str, &str, &str), inside: &str) {
     if !inside.is_empty() {
         let _ = writeln!(
@@ -93,16 +93,16 @@ fn layer(text: &mut String, (id, label, style): (&str, &str, &str), inside: &str
     }
 }
 
-/// The text above the fabric.
+/// The heading above the fabric.
 struct Heading {
-    /// Lines with the height of their letters (mm) and their colour.
+    /// Lines with letter height (mm) and colour.
     lines: Vec<(f64, &'static str, String)>,
-    /// From the fabric to the upper border (mm).
+    /// Height of the heading above the fabric (mm).
     height: f64,
 }
 
 impl Heading {
-    /// A title and lines, none longer than a length (mm).
+    /// A title and a summary, wrapped to lines of limited length (mm).
     fn new(title: &str, summary: &[String], length: f64) -> Self {
         let title = lines_within(title, TITLE, length);
         let mut lines: Vec<_> = title.into_iter().map(|line| (TITLE, BLACK, line)).collect();
@@ -119,8 +119,8 @@ impl Heading {
         }
     }
 
-    /// The lines, and a bar of known length (mm) to check the scale of a print, which ends at
-    /// `right` (mm), with its words.
+    /// Writes the lines and a scale bar with its caption, to check the scale of a print. The bar has a known
+    /// length (mm) and ends at `right` (mm).
     fn write(&self, text: &mut String, right: f64, (bar, words): (f64, &str)) {
         let mut inside = String::new();
         let mut y = -self.height + 14.0;
@@ -148,7 +148,7 @@ impl Heading {
     }
 }
 
-/// From one line of a heading to the next (mm).
+/// Spacing from one line of a heading to the next (mm).
 fn step(pair: &[(f64, &'static str, String)]) -> f64 {
     match pair {
         [(size, ..), _] if *size == TITLE => TITLE,
@@ -199,7 +199,7 @@ fn fabric(text: &mut String, drawing: &MarkerDrawing) {
     }
 }
 
-/// The lines of the print and the flaws of the fabric.
+/// Draws the lines of the print and the flaws of the fabric.
 fn print_and_flaws(text: &mut String, drawing: &MarkerDrawing) {
     let page = Page(drawing.strip.width);
     let own = Strokes::of_fabric(drawing);
@@ -211,14 +211,14 @@ fn print_and_flaws(text: &mut String, drawing: &MarkerDrawing) {
     }
 }
 
-/// A path of a class, if it is not empty.
+/// Writes a path with a class, unless it is empty.
 fn draw(text: &mut String, class: &str, d: &str, style: &str) {
     if !d.is_empty() {
         let _ = writeln!(text, "<path class=\"{class}\" d=\"{d}\" {style}/>");
     }
 }
 
-/// The regions where pieces overlap.
+/// Fills the regions where pieces overlap.
 fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
     let page = Page(drawing.strip.width);
     let style = "fill=\"#e60000\" fill-opacity=\"0.8\" fill-rule=\"evenodd\" stroke=\"#e60000\" stroke-width=\"2\"";
@@ -228,7 +228,7 @@ fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
     }
 }
 
-/// From the fabric, of a width (m), to the page (mm): there y runs down.
+/// Transform from fabric (m) of the given width (m) to the page (mm), on which y points down.
 struct Page(f64);
 
 impl Page {

@@ -1,10 +1,10 @@
-//! Tables of body measurements of FreeSewing (JSON), and what readers of other programs share.
+//! Body measurements of FreeSewing (JSON), and helpers shared by the readers of other programs' tables.
 
 use crate::FormatError;
 use toile_measure::{FREESEWING, Measurements, Origin, UnitKind, definition, translated};
 
-/// Reads measurements as FreeSewing keeps them, a JSON object of names to millimetres (slopes in
-/// degrees), alone or under `measurements` or `measies`.
+/// Reads a table of FreeSewing: a JSON object of names and values in millimetres (slopes in degrees), at the
+/// top or under `measurements` or `measies`.
 ///
 /// # Errors
 /// The fault, its place and a remedy.
@@ -46,7 +46,7 @@ pub fn read_freesewing(text: &str) -> Result<Measurements, FormatError> {
     refuse_empty(table)
 }
 
-/// Whether a JSON text is a set of FreeSewing's: no native file, and its names.
+/// Whether a JSON text is a FreeSewing table: it is no native file and has FreeSewing's names.
 pub(crate) fn looks_like_freesewing(text: &str) -> bool {
     !text.contains("\"toile\"")
         && [
@@ -60,7 +60,7 @@ pub(crate) fn looks_like_freesewing(text: &str) -> bool {
         .any(|name| text.contains(name))
 }
 
-/// Puts a value into a table; the first of two names for one measurement stands.
+/// Enters a value into a table; of two names for one measurement the first counts.
 pub(crate) fn put(
     table: &mut Measurements,
     name: &str,

@@ -1,24 +1,24 @@
-//! Values of a table of measurements that are formulas on others of the table.
+//! Evaluates measurements whose values are formulas of other measurements in the table.
 
 use crate::FormatError;
 use std::collections::BTreeMap;
 use toile_pattern::{Formula, FormulaError};
 
-/// A measurement's value as its file has it.
+/// A measurement as written in its file.
 pub(crate) struct Written {
-    /// The line it stands on, from 1.
+    /// Line of the measurement, from 1.
     pub line: usize,
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
-    /// A number or a formula, in the file's unit.
+    /// Number or formula, in the file's unit.
     pub text: String,
 }
 
-/// What numbers and formulas come to, in the file's unit, in their order. A formula may name measurements that stand
-/// before or after it; nothing is written where nobody measured, which is 0.
+/// Values of numbers and formulas, in the file's unit and order. A formula may name measurements before or
+/// after it; an empty text means not measured and has value 0.
 ///
 /// # Errors
-/// What is no formula, names that the table does not have, formulas that need each other.
+/// An invalid formula, a name that the table does not have, formulas that depend on each other.
 pub(crate) fn values_of(rows: &[Written]) -> Result<Vec<f64>, FormatError> {
     let mut numbers: Vec<Option<f64>> = Vec::new();
     let mut formulas: BTreeMap<usize, Formula> = BTreeMap::new();
@@ -36,7 +36,7 @@ pub(crate) fn values_of(rows: &[Written]) -> Result<Vec<f64>, FormatError> {
         }
         numbers.push(number);
     }
-    // Whatever rests on numbers alone is computed, until nothing is left or what is left needs itself.
+    // Evaluates formulas whose inputs are known, until none is left or all that are left form a cycle.
     while !formulas.is_empty() {
         let is_known = |word: &str| by_name.get(word).is_none_or(|&k| numbers[k].is_some());
         let ready: Vec<usize> = formulas
@@ -59,7 +59,7 @@ pub(crate) fn values_of(rows: &[Written]) -> Result<Vec<f64>, FormatError> {
     Ok(numbers.into_iter().map(Option::unwrap_or_default).collect())
 }
 
-/// The formula as ours are written: names that are no plain words in quotes, commas between arguments.
+/// The formula in Toile's syntax: names with special characters in quotes, commas between arguments.
 fn in_our_words(text: &str) -> String {
     let is_of_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '@' | '#');
     let mut made = String::new();
@@ -94,7 +94,7 @@ fn fault(row: &Written, error: &FormulaError) -> FormatError {
     )
 }
 
-/// The refusal of formulas that need each other, which are named once round.
+/// The error for formulas that depend on each other; it names one cycle.
 fn circle(
     rows: &[Written],
     formulas: &BTreeMap<usize, Formula>,

@@ -3,16 +3,16 @@
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 
-/// Names GarmentCode gives in degrees; every other value is in centimetres.
+/// Names with values in degrees; every other value is in centimetres.
 const DEGREES: [&str; 3] = ["arm_pose_angle", "hip_inclination", "shoulder_incl"];
 
-/// Reads a GarmentCode body file: YAML whose top key `body` holds one flat map of names to
-/// numbers, lengths in centimetres, angles in degrees. Only this subset of YAML is read;
-/// comments and blank lines are skipped.
+/// Reads a GarmentCode body file: YAML with a top key `body` that holds one flat map of names to numbers,
+/// lengths in centimetres, angles in degrees. Only this subset of YAML is read; comments and blank lines are
+/// skipped.
 ///
 /// # Errors
-/// The first line that is not `name: number`, a name given twice, a number that is not finite, or
-/// no `body` map at all.
+/// The first line that is not `name: number`, a name given twice, a number that is not finite, or a missing
+/// `body` map.
 pub fn read_body_yaml(text: &str) -> Result<Measurements, FormatError> {
     let mut table = Measurements::new();
     let mut inside = false;

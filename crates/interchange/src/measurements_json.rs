@@ -20,9 +20,8 @@ struct MeasurementsFile {
     measurements: BTreeMap<String, f64>,
 }
 
-/// Reads a table of measurements, which is seen from its content: native (JSON), GarmentCode's
-/// (YAML), Seamly's and Valentina's (XML) or FreeSewing's (JSON). Of a table for several sizes the
-/// base is taken.
+/// Reads a table of measurements and recognises the format by its content: native (JSON), GarmentCode (YAML),
+/// Seamly and Valentina (XML) or FreeSewing (JSON). A table for several sizes is read in its base size.
 ///
 /// # Errors
 /// The fault, its place and a remedy.
@@ -30,10 +29,11 @@ pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
     Ok(read_sized_measurements(text, SizeChoice::default())?.0)
 }
 
-/// Reads one size of a table for several; also returns notes on the size taken and on parts left out.
+/// Reads one size of a multi-size table; also returns notes on the size chosen and on values left out.
 ///
 /// # Errors
-/// The same, and a size that the table does not have, or any size of a table of one body.
+/// The fault, its place and a remedy; a size that the table does not have, or any size for a table of one
+/// body.
 pub fn read_sized_measurements(
     text: &str,
     choice: SizeChoice,
@@ -96,7 +96,7 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
 /// Writes a table in the native format: centimetres and degrees.
 ///
 /// # Errors
-/// None for a table of finite numbers, as every table is.
+/// None for a table of finite numbers, which every table is.
 pub fn write_measurements(table: &Measurements) -> Result<String, FormatError> {
     let number = |name: &str, value: f64| {
         let angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
@@ -105,7 +105,7 @@ pub fn write_measurements(table: &Measurements) -> Result<String, FormatError> {
         } else {
             value * 100.0
         };
-        // A micrometre and less than 1e-6 degrees: what is written reads as a round number.
+        // Rounded to 1e-6 cm or 1e-6 degrees, so that round numbers look round.
         (shown * 1e6).round() / 1e6
     };
     let file = MeasurementsFile {

@@ -7,15 +7,15 @@ use crate::xml::Xml;
 use roxmltree::Node;
 use toile_measure::{Measurements, SEAMLY, translated};
 
-/// From one size of these tables to the next, and from one height to the next (m): the increments
-/// of a measurement are for so much.
+/// Difference between consecutive sizes and between consecutive heights (m): the increments of a measurement
+/// refer to these.
 const SIZE_STEP: f64 = 0.02;
 const HEIGHT_STEP: f64 = 0.06;
-/// Sizes and heights that the programs offer of a table (m).
+/// Range of sizes and of heights that the programs offer (m).
 const SIZES: [f64; 2] = [0.22, 0.72];
 const HEIGHTS: [f64; 2] = [0.50, 2.00];
 
-/// The size taken of a table for several; what is not given is the table's base.
+/// The size chosen from a multi-size table; a missing value means the table's base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SizeChoice {
     /// Size: half the chest girth (m).
@@ -25,13 +25,13 @@ pub struct SizeChoice {
 }
 
 impl SizeChoice {
-    /// Whether anything but the base is asked for.
+    /// Whether a size or a height other than the base is asked for.
     pub(crate) fn is_given(&self) -> bool {
         self.size.is_some() || self.height.is_some()
     }
 }
 
-/// The refusal of a size where a table has but one.
+/// The error for a size chosen from a table of one body.
 pub(crate) fn one_size() -> FormatError {
     FormatError::new(
         "size",
@@ -40,16 +40,15 @@ pub(crate) fn one_size() -> FormatError {
     )
 }
 
-/// Reads a measurement file of Seamly2D or Valentina: individual (`.vit`, `.smis`) or for several
-/// sizes (`.vst`, `.smms`), of which one is taken: value = base + (size - base size) / 2 cm times
-/// the size's increment + (height - base height) / 6 cm times the height's. A value of zero means
-/// that nobody measured it. Names are the catalogue's where it has the same measurement, else the
-/// file's own. Also tells which size was taken, and what of a table for several sizes is left out
-/// since no body has it.
+/// Reads a measurement file of Seamly2D or Valentina, individual (`.vit`, `.smis`) or for several sizes
+/// (`.vst`, `.smms`). One size of several is taken: value = base + (size - base size) / 2 cm times the size
+/// increment + (height - base height) / 6 cm times the height increment. A value of zero means not measured.
+/// Names are those of the catalogue where it has the same measurement, else those of the file. Also returns
+/// notes on the size taken, and on values of a multi-size table that no body can have and that are left out.
 ///
 /// # Errors
-/// A unit other than mm, cm and inch, a value that is no number and no formula on others, no value at all;
-/// a size or height that the table does not have.
+/// A unit other than mm, cm and inch; a value that is neither a number nor a formula of other measurements;
+/// no value at all; a size or height that the table does not have.
 pub fn read_seamly(
     text: &str,
     choice: SizeChoice,
@@ -88,7 +87,7 @@ fn is(node: Node<'_, '_>, name: &str) -> bool {
     node.tag_name().name() == name
 }
 
-/// Metres in the file's unit.
+/// Size of the file's unit (m).
 fn unit_of(xml: &Xml<'_>) -> Result<f64, FormatError> {
     let node = xml.elements().find(|node| is(*node, "unit"));
     let unit = node.and_then(|node| node.text()).unwrap_or("cm").trim();
@@ -104,16 +103,16 @@ fn unit_of(xml: &Xml<'_>) -> Result<f64, FormatError> {
     }
 }
 
-/// The sizes that a table for several sizes declares.
+/// The base size that a multi-size table declares.
 struct Sizes {
-    /// Base size and height (m); nothing where the table has dimensions of another kind.
+    /// Base size and base height (m); `None` if the table has dimensions of another kind.
     base: Option<[f64; 2]>,
-    /// Whether the table is in inches, which no increments are for.
+    /// Whether the table is in inches: there are no increments for inches.
     inches: bool,
 }
 
 impl Sizes {
-    /// Nothing for a table of one body.
+    /// The sizes of a table; `None` for a table of one body.
     fn of(xml: &Xml<'_>, scale: f64) -> Result<Option<Self>, FormatError> {
         let base = |name: &str| -> Result<Option<f64>, FormatError> {
             let node = xml
@@ -134,7 +133,7 @@ impl Sizes {
         }))
     }
 
-    /// Steps from the base to what is chosen.
+    /// Number of size and height steps from the base to the chosen size.
     fn choose(&self, choice: SizeChoice, notes: &mut Vec<String>) -> Result<[f64; 2], FormatError> {
         let others = "`toile body --measurements` takes another by --size and --height, and writes a body for `toile make --body`";
         let Some(base) = self.base else {
@@ -198,7 +197,7 @@ impl Sizes {
     }
 }
 
-/// A length in centimetres, as sizes are written.
+/// A length in centimetres, the unit in which sizes are named.
 fn in_cm(metres: f64) -> String {
     let rounded = (metres * 1e4).round() / 1e2;
     rounded.to_string()
@@ -208,7 +207,7 @@ fn words([size, height]: [f64; 2]) -> String {
     format!("size {} of height {} cm", in_cm(size), in_cm(height))
 }
 
-/// The measurements of a file at so many steps of size and height from its base.
+/// The measurements of a file at a number of size and height steps from the base.
 fn rows_of(xml: &Xml<'_>, steps: [f64; 2]) -> Result<Vec<Row>, FormatError> {
     let (mut written, mut growths) = (Vec::new(), Vec::new());
     for node in xml.elements().filter(|node| is(*node, "m")) {
@@ -226,14 +225,14 @@ fn rows_of(xml: &Xml<'_>, steps: [f64; 2]) -> Result<Vec<Row>, FormatError> {
     Ok(written.into_iter().zip(grown).map(row).collect())
 }
 
-/// A measurement of a file, in its own name and unit.
+/// A measurement of a file, with the file's name and unit.
 struct Row {
     line: usize,
     name: String,
     number: f64,
 }
 
-/// The value of a measurement as it is written.
+/// The value of a measurement as written.
 fn written_of(node: Node<'_, '_>, line: usize) -> Result<Written, FormatError> {
     let Some(name) = node.attribute("name").filter(|name| !name.is_empty()) else {
         return Err(FormatError::new(
@@ -256,7 +255,7 @@ fn written_of(node: Node<'_, '_>, line: usize) -> Result<Written, FormatError> {
     })
 }
 
-/// What a measurement grows by over so many steps of size and height.
+/// Growth of a measurement over a number of size and height steps.
 fn growth(node: Node<'_, '_>, row: &Written, steps: [f64; 2]) -> Result<f64, FormatError> {
     let number = |field: &str| number_of(node, (field, &row.name), row.line);
     let increments = [number("size_increase")?, number("height_increase")?];
@@ -266,7 +265,7 @@ fn growth(node: Node<'_, '_>, row: &Written, steps: [f64; 2]) -> Result<f64, For
         .sum())
 }
 
-/// A field of an element as a number; nothing if it does not have it.
+/// A field of an element as a number; `None` if the element does not have it.
 fn number_of(
     node: Node<'_, '_>,
     (field, name): (&str, &str),
@@ -286,8 +285,9 @@ fn number_of(
     }
 }
 
-/// What no body has of a published table, where a name was given to something else: the first must
-/// be less than so many times the second, else what is named third is left out, for a reason.
+/// Contradictions in published tables, in which a name was given to another measurement. The first
+/// measurement must be less than the factor times the second; else the listed ones are left out, for the
+/// reason given.
 const LESS: [(&str, f64, &str, &[&str], &str); 3] = [
     (
         "waist_to_highhip_f",
@@ -312,7 +312,7 @@ const LESS: [(&str, f64, &str, &[&str], &str); 3] = [
     ),
 ];
 
-/// Leaves out of a table what no body has, and tells so.
+/// Removes values that no body can have, and adds a note for each.
 fn leave_out(rows: &mut Vec<Row>, scale: f64, notes: &mut Vec<String>) {
     let shown = |row: &Row| {
         format!(
@@ -388,7 +388,7 @@ mod tests {
         assert_eq!(place(&file("cm", "")), "the file");
     }
 
-    /// A table for several sizes, in mm: base size 50, height 176 cm.
+    /// A table for several sizes, in mm: base size 50, base height 176 cm.
     const SEVERAL: &str = "<?xml version='1.0'?>\n<vst><unit>mm</unit>\n\
         <size base='500'/>\n<height base='1760'/>\n<body-measurements>\n\
         <m name='height' base='1760' size_increase='0' height_increase='60'/>\n\
@@ -405,7 +405,7 @@ mod tests {
         let near = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-9;
         let (table, notes) = read_seamly(SEVERAL, chosen(Some(0.54), Some(1.70))).unwrap();
         assert!(near(table.get("height"), 1.700));
-        // Two sizes up and one height down.
+        // Two sizes larger and one height step smaller.
         assert!(near(table.get("bust"), 1.044 + 2.0 * 0.038 - 0.002));
         assert!(near(table.get("head_height"), 0.246 - 2.0 * 0.002 - 0.006));
         let note = "the table is for several sizes: size 54 of height 170 cm is taken; its base is size 50 of height 176 cm";
@@ -414,7 +414,7 @@ mod tests {
         assert!(near(base.get("bust"), 1.044));
         let words = ["its base, size 50 of height 176 cm, is taken", "toile body"];
         assert!(words.iter().all(|w| notes[0].contains(w)), "{notes:?}");
-        // One of both may be left out.
+        // Size or height may be left out.
         let (wide, _) = read_seamly(SEVERAL, chosen(Some(0.52), None)).unwrap();
         assert!(near(wide.get("bust"), 1.044 + 0.038) && near(wide.get("height"), 1.76));
     }
@@ -469,7 +469,7 @@ mod tests {
             notes.len() == 4 && notes[2].contains("height_shoulder_tip"),
             "{notes:?}"
         );
-        // One person's own table says what it says.
+        // A table of one person is kept as it is.
         let own = text
             .replace("<size base='500'/>", "")
             .replace("vst>", "vit>");

@@ -1,9 +1,9 @@
-//! Reads a mesh of either format, which is seen from its content.
+//! Reads a mesh in OBJ or PLY and recognises the format by its content.
 
 use crate::ply::looks_like_ply;
 use crate::{FormatError, ObjMesh, read_obj, read_ply};
 
-/// Reads a mesh: PLY where the file begins so, else OBJ.
+/// Reads a mesh: PLY if the file begins with the PLY signature, else OBJ.
 ///
 /// # Errors
 /// Those of [`read_ply`] and [`read_obj`].

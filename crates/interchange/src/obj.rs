@@ -5,37 +5,37 @@ use std::fmt::Write;
 use std::ops::Range;
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
-/// A mesh as an OBJ file holds it: positions, texture coordinates and normals are numbered apart,
-/// so that a welded garment keeps each panel's own place in its plane.
+/// A mesh as an OBJ file holds it. Positions, texture coordinates and normals are indexed separately, so that
+/// the panels of a welded garment keep their own texture coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjMesh {
     /// Vertex positions (m).
     pub positions: Vec<Vec3>,
-    /// Corners of each triangle, as indices into `positions`.
+    /// Vertex indices of each triangle, into `positions`.
     pub triangles: Vec<[u32; 3]>,
-    /// Places in the panel's plane (m), y up; may be empty.
+    /// Positions in the panel's plane (m), y up; may be empty.
     pub texture: Vec<Vec2>,
-    /// Corners as indices into `texture`: one entry a triangle, or none at all.
+    /// Indices of each triangle's corners into `texture`: one entry per triangle, or none at all.
     pub texture_triangles: Vec<[u32; 3]>,
     /// Unit normals; may be empty.
     pub normals: Vec<Vec3>,
-    /// Corners as indices into `normals`: one entry a triangle, or none at all.
+    /// Indices of each triangle's corners into `normals`: one entry per triangle, or none at all.
     pub normal_triangles: Vec<[u32; 3]>,
-    /// Named runs of triangles, in order.
+    /// Named ranges of triangles, in order.
     pub groups: Vec<ObjGroup>,
 }
 
-/// A named run of triangles.
+/// A named range of triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ObjGroup {
-    /// The group's or the object's name.
+    /// Name of the group or object.
     pub name: String,
-    /// Its triangles.
+    /// Range of triangles.
     pub triangles: Range<usize>,
 }
 
 impl ObjMesh {
-    /// Positions and triangles alone.
+    /// The positions and triangles without texture coordinates and normals.
     pub fn into_triangle_mesh(self) -> TriangleMesh {
         TriangleMesh {
             positions: self.positions,
@@ -43,7 +43,7 @@ impl ObjMesh {
         }
     }
 
-    /// The first thing that keeps the mesh from being written.
+    /// Refuses a mesh that cannot be written, with its first fault.
     fn check(&self) -> Result<(), FormatError> {
         let finite = self
             .positions
@@ -114,11 +114,11 @@ impl From<TriangleMesh> for ObjMesh {
     }
 }
 
-/// Writes a mesh as OBJ text in metres, Y up, with nine decimals (a nanometre) and one `g` a
+/// Writes a mesh as OBJ text in metres, Y up, with nine decimals (a nanometre) and one `g` statement per
 /// group. The same mesh always gives the same text.
 ///
 /// # Errors
-/// A coordinate is not finite or an index points nowhere.
+/// A coordinate is not finite or an index is out of range.
 pub fn write_obj(mesh: &ObjMesh) -> Result<String, FormatError> {
     mesh.check()?;
     let mut text = String::with_capacity(64 * (mesh.positions.len() + mesh.triangles.len()) + 64);
@@ -150,7 +150,7 @@ pub fn write_obj(mesh: &ObjMesh) -> Result<String, FormatError> {
 fn numbers(text: &mut String, keyword: &str, values: &[f64]) {
     text.push_str(keyword);
     for &value in values {
-        // A value that rounds to zero is written without a sign.
+        // A value that rounds to zero is written without a minus sign.
         let value = if value.abs() < 0.5e-9 { 0.0 } else { value };
         let _ = write!(text, " {value:.9}");
     }
@@ -175,7 +175,7 @@ fn faces(text: &mut String, mesh: &ObjMesh, triangles: Range<usize>) {
     }
 }
 
-/// A name without line ends, which would start a new statement.
+/// A name without line breaks, which would start a new statement.
 fn one_line(name: &str) -> String {
     let clean: String = name
         .chars()
@@ -249,7 +249,7 @@ mod tests {
         );
     }
 
-    /// A fan of triangles round vertex 0 with everything an OBJ can hold.
+    /// A fan of triangles round vertex 0, with every property that an OBJ file can hold.
     fn mesh_of(points: Vec<(f64, f64, f64)>) -> ObjMesh {
         let count = points.len() as u32;
         let triangles: Vec<[u32; 3]> = (1..count - 1).map(|k| [0, k, k + 1]).collect();

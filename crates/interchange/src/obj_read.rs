@@ -5,13 +5,13 @@ use crate::{FormatError, ObjGroup, ObjMesh};
 use std::ops::Range;
 use toile_geometry::{Vec2, Vec3};
 
-/// Reads OBJ text. Polygons of any shape become triangles; materials, smoothing groups, lines and
-/// points are passed over.
+/// Reads OBJ text. Polygons of any shape are triangulated; materials, smoothing groups, lines and points are
+/// skipped.
 ///
 /// # Errors
-/// With the line number: a number that is missing or not finite, an index that points nowhere, a
-/// polygon of fewer than three corners, without area or that crosses itself, free-form surfaces, an
-/// unknown keyword; or no face at all.
+/// With the line number: a number that is missing or not finite, an index out of range, a polygon with fewer
+/// than three corners, without area or that crosses itself, free-form surfaces, an unknown keyword. Also a
+/// file without any face.
 pub fn read_obj(bytes: &[u8]) -> Result<ObjMesh, FormatError> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -35,7 +35,7 @@ pub fn read_obj(bytes: &[u8]) -> Result<ObjMesh, FormatError> {
     reader.finish()
 }
 
-/// One corner of a face: position, texture coordinate, normal, from 0.
+/// One corner of a face: indices of position, texture coordinate and normal, from 0.
 type Corner = [Option<u32>; 3];
 
 const LIST_NAMES: [&str; 3] = ["position", "texture coordinate", "normal"];
@@ -48,7 +48,7 @@ struct Reader {
     faces: Vec<Face>,
 }
 
-/// A polygon: its corners and the line it stands on.
+/// A polygon: its range of corners and its line in the file.
 struct Face {
     corners: Range<usize>,
     line: usize,
@@ -108,7 +108,7 @@ impl Reader {
         let here = self.faces.len();
         if let Some(last) = self.mesh.groups.last_mut() {
             last.triangles.end = here;
-            // "o front" followed by "g front", or a name without faces.
+            // Removes empty groups: "o front" followed by "g front", or a name without faces.
             if last.triangles.is_empty() {
                 self.mesh.groups.pop();
             }
@@ -166,7 +166,8 @@ impl Reader {
         Ok(corner)
     }
 
-    /// Faces may come before their vertices, so indices are compared with the final counts.
+    /// Checks the indices and triangulates. Faces may precede their vertices, so indices are compared with
+    /// the final counts.
     fn finish(mut self) -> Result<ObjMesh, FormatError> {
         if self.faces.is_empty() {
             return Err(FormatError::new(
@@ -179,7 +180,7 @@ impl Reader {
         let mesh = &mut self.mesh;
         let has = |k: usize| self.corners.iter().all(|corner| corner[k].is_some());
         let (textured, with_normals) = (has(1), has(2));
-        // Triangles before each face, for the groups.
+        // Number of triangles before each face, for the ranges of the groups.
         let mut before = vec![0];
         for face in &self.faces {
             let corners = &self.corners[face.corners.clone()];
@@ -209,7 +210,7 @@ impl Reader {
         Ok(self.mesh)
     }
 
-    /// Refuses the first index that points nowhere.
+    /// Refuses the first index that is out of range.
     fn check_indices(&self) -> Result<(), FormatError> {
         let mesh = &self.mesh;
         let counts = [mesh.positions.len(), mesh.texture.len(), mesh.normals.len()];

@@ -1,16 +1,16 @@
 //! Point caches (PC2): positions of a mesh's vertices at equal steps, as Blender's mesh cache reads them.
 //!
-//! Little-endian: 12 bytes `POINTCACHE2` and a zero, then version, number of points, first frame, frames a sample,
-//! number of samples, then the positions in `f32`.
+//! Little-endian: the 12 bytes `POINTCACHE2` and a zero, then version, number of points, first frame, frames
+//! per sample, number of samples, then the positions in `f32`.
 
 use crate::FormatError;
 
-/// Positions of the same points at equal steps.
+/// Positions of the same points at equal time steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointCache {
     /// Frame of the first sample.
     pub start: f32,
-    /// Frames from one sample to the next.
+    /// Number of frames from one sample to the next.
     pub step: f32,
     /// The samples: positions in the unit of the mesh.
     pub samples: Vec<Vec<[f32; 3]>>,
@@ -23,7 +23,7 @@ const REMEDY: &str = "write the point cache (PC2) again";
 /// Writes a point cache.
 ///
 /// # Errors
-/// Samples of different lengths, a coordinate that is not finite, more points than the format can count.
+/// Samples of different lengths, a coordinate that is not finite, or more points than the format can count.
 pub fn write_pc2(cache: &PointCache) -> Result<Vec<u8>, FormatError> {
     let points = cache.samples.first().map_or(0, Vec::len);
     let refuse = |what: String| FormatError::new("the point cache", what, "record it again");
@@ -64,7 +64,7 @@ fn check_sample(number: usize, sample: &[[f32; 3]]) -> Result<(), FormatError> {
 /// Reads a point cache.
 ///
 /// # Errors
-/// What is no point cache, is cut short, or has a coordinate that is not finite, by the place.
+/// Bytes that are no point cache, are cut short, or have a coordinate that is not finite: the place.
 pub fn read_pc2(bytes: &[u8]) -> Result<PointCache, FormatError> {
     let refuse = |what: &str| FormatError::new("the point cache", what, REMEDY);
     let body = bytes.strip_prefix(SIGNATURE);

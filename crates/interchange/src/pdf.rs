@@ -1,5 +1,5 @@
-//! Sheets of lines, areas and words as PDF. Lengths in metres from the lower left corner; text is
-//! Helvetica, which every reader has, or of fonts embedded in part where that lacks letters.
+//! Pages of lines, areas and text as PDF. Lengths in metres from the lower left corner. The font is
+//! Helvetica, which every reader has; for characters that it lacks, subsets of other fonts are embedded.
 
 use crate::pdf_fonts::PdfFonts;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
@@ -8,49 +8,49 @@ use std::collections::BTreeSet;
 use toile_geometry::{Bounds2, Vec2};
 use toile_lettering::{shortened, width};
 
-/// Points of a PDF in a metre (1/m).
+/// Points of a PDF per metre (1/m).
 const POINTS: f64 = 72.0 / 0.0254;
-/// Longest side of a page in its own units (PDF 1.7, annex C); longer pages have a larger unit.
+/// Longest side of a page in its own units (PDF 1.7, annex C); longer pages use a larger unit.
 const LONGEST: f64 = 14_400.0;
 
-/// A colour of ink: red, green, blue, 0..=1.
+/// A colour: red, green, blue (0 to 1).
 pub(crate) type Ink = [f32; 3];
 
-/// A PDF in the making.
+/// A PDF file being written.
 #[derive(Default)]
 pub(crate) struct PdfSheets {
     pages: Vec<PdfPage>,
-    /// Names of the layers that readers can hide (optional content groups).
+    /// Names of the layers that a reader can hide (optional content groups).
     layers: Vec<String>,
 }
 
-/// A page in the making.
+/// A page being written.
 pub(crate) struct PdfPage {
     size: Vec2,
-    /// Points in a unit of the page.
+    /// Points per unit of the page.
     unit: f64,
-    /// What was drawn before the last text, texts among it.
+    /// Everything drawn up to and including the last text.
     parts: Vec<Part>,
-    /// What was drawn since.
+    /// Everything drawn since the last text.
     content: Content,
-    /// Layers that have something on it.
+    /// Layers that have content on the page.
     layers: BTreeSet<usize>,
 }
 
-/// A part of a page: drawn, or a text, which is encoded when the fonts of the document are known.
+/// A part of a page: drawing commands, or a text, which is encoded when the fonts of the document are known.
 enum Part {
     Drawn(Vec<u8>),
     Text {
         text: String,
-        /// Size of the letters in units of the page.
+        /// Letter size in units of the page.
         size: f32,
-        /// From the letters to the page.
+        /// Matrix from text space to the page.
         matrix: [f32; 6],
         ink: Ink,
     },
 }
 
-/// Where a text stands on its baseline.
+/// The part of a text that its position refers to, on the baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Align {
     Left,
@@ -58,13 +58,13 @@ pub(crate) enum Align {
     Right,
 }
 
-/// Words on a page.
+/// A text on a page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PdfText<'a> {
     pub text: &'a str,
-    /// On the baseline (m).
+    /// Position on the baseline (m).
     pub at: Vec2,
-    /// Size of the letters (m).
+    /// Letter size (m).
     pub size: f64,
     /// Direction of the baseline (rad).
     pub angle: f64,
@@ -73,7 +73,7 @@ pub(crate) struct PdfText<'a> {
 }
 
 impl PdfPage {
-    /// An empty page of a size (m).
+    /// An empty page with its width and height (m).
     pub fn new(size: Vec2) -> Self {
         let unit = (size.max() * POINTS / LONGEST).ceil().max(1.0);
         let mut content = Content::new();
@@ -88,7 +88,7 @@ impl PdfPage {
         }
     }
 
-    /// What follows belongs to a layer, until its end.
+    /// Begins a layer: everything drawn up to its end belongs to it.
     pub fn begin_layer(&mut self, layer: usize) {
         self.layers.insert(layer);
         self.content
@@ -101,17 +101,17 @@ impl PdfPage {
         self.content.end_marked_content();
     }
 
-    /// What follows is of a kind (marked content by that name), until its end.
+    /// Begins a section of marked content with a name, up to its end.
     pub fn begin_kind(&mut self, name: &str) {
         self.content.begin_marked_content(Name(name.as_bytes()));
     }
 
-    /// Ends a kind.
+    /// Ends a section of marked content.
     pub fn end_kind(&mut self) {
         self.content.end_marked_content();
     }
 
-    /// What follows is seen inside bounds (m) alone, until the end of the clip.
+    /// Begins a clip: only drawing inside the bounds (m) is visible, up to the end of the clip.
     pub fn clip(&mut self, bounds: &Bounds2) {
         let (low, size) = (bounds.min, bounds.size());
         let [x, y, width, height] = [low.x, low.y, size.x, size.y].map(|m| self.units(m));
@@ -146,14 +146,14 @@ impl PdfPage {
         }
     }
 
-    /// Fills rings, holes by the even-odd rule.
+    /// Fills rings by the even-odd rule, so that inner rings are holes.
     pub fn fill<'p>(&mut self, rings: impl IntoIterator<Item = &'p [Vec2]>, ink: Ink) {
         self.content.set_fill_rgb(ink[0], ink[1], ink[2]);
         self.path(rings, true);
         self.content.fill_even_odd();
     }
 
-    /// Draws a line of a width (m), dashed by a length (m) if that is not 0.
+    /// Draws a line with a width (m) and a dash length (m), solid if that is 0.
     pub fn stroke(&mut self, points: &[Vec2], closed: bool, (width, dash, ink): (f64, f64, Ink)) {
         let (width, dash) = (self.units(width), self.units(dash));
         self.content.set_stroke_rgb(ink[0], ink[1], ink[2]);
@@ -165,7 +165,7 @@ impl PdfPage {
         self.content.stroke();
     }
 
-    /// Writes words.
+    /// Writes a text.
     pub fn text(&mut self, text: PdfText<'_>) {
         let width = width(text.text) * text.size;
         let back = match text.align {
@@ -187,7 +187,7 @@ impl PdfPage {
         });
     }
 
-    /// All that is on it, in fonts of the document.
+    /// The page's content stream, with the fonts of the document.
     fn encoded(&mut self, fonts: &mut PdfFonts) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut add = |part: &[u8]| {
@@ -218,13 +218,13 @@ impl PdfPage {
     }
 }
 
-/// The name of a layer in a page's resources.
+/// Name of a layer in a page's resources.
 fn layer_name(layer: usize) -> String {
     format!("L{layer}")
 }
 
 impl PdfSheets {
-    /// Without pages, with layers that readers can hide.
+    /// A document without pages, with layers that a reader can hide.
     pub fn with_layers(layers: &[String]) -> Self {
         Self {
             pages: Vec::new(),
@@ -237,7 +237,7 @@ impl PdfSheets {
         self.pages.push(page);
     }
 
-    /// The file.
+    /// The complete file.
     pub fn finish(mut self, title: &str) -> Vec<u8> {
         let mut pdf = Pdf::new();
         let mut fonts = PdfFonts::default();
@@ -307,8 +307,8 @@ impl PdfSheets {
     }
 }
 
-/// A text in lines of at most a width (m) at a size (m), broken between words; a longer word is
-/// cut.
+/// Breaks a text of a letter size (m) into lines of at most a width (m), between words; longer words are cut
+/// off.
 pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let fits = |line: &str| toile_lettering::width(line) * size <= width;
     let mut lines: Vec<String> = Vec::new();
@@ -324,7 +324,7 @@ pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-/// As many letters from the start of a text as fit a width (m) at a size (m).
+/// The longest start of a text of a letter size (m) that fits a width (m).
 pub(crate) fn fitted(text: &str, size: f64, width: f64) -> String {
     shortened(text, width / size)
 }

@@ -1,36 +1,36 @@
-//! Fonts of a PDF: Helvetica, and the parts of other fonts that its texts take, with the letters that
-//! each glyph stands for, so that texts can be searched and copied.
+//! Fonts of a PDF: Helvetica, and embedded subsets of other fonts. The characters of each glyph are recorded,
+//! so that texts can be searched and copied.
 
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 use std::sync::Arc;
 use toile_lettering::{Font, Line, OutlineKind, Run, plain_bytes};
 
-/// The objects of a font: itself, its letters, its measures, its file, the text of its letters,
-/// their glyphs.
+/// Number of PDF objects per embedded font: the font, its descendant font, its descriptor, the font file, the
+/// character map and the glyph map.
 const OBJECTS: i32 = 6;
-/// Codes are glyphs of the embedded part.
+/// The character collection Adobe-Identity: character codes are the CIDs of the embedded subset.
 const CODES: SystemInfo = SystemInfo {
     registry: Str(b"Adobe"),
     ordering: Str(b"Identity"),
     supplement: 0,
 };
 
-/// The fonts of a document, as its texts ask for them.
+/// The fonts of a document, collected as texts use them.
 #[derive(Default)]
 pub(crate) struct PdfFonts {
     fonts: Vec<PdfFont>,
 }
 
-/// The part of a font that is used.
+/// The used part of a font.
 struct PdfFont {
     font: Arc<Font>,
-    /// Glyphs with the letters that they stand for, in the order of their codes, from 1.
+    /// Glyphs with the characters they stand for, in the order of their codes, from 1.
     letters: Vec<(u16, String)>,
 }
 
 impl PdfFonts {
-    /// Shows a text whose baseline starts at the origin of the text matrix, letters of a size.
+    /// Draws a text with its baseline starting at the origin of the text matrix, in a letter size.
     pub fn show(&mut self, content: &mut Content, text: &str, (size, matrix): (f32, [f32; 6])) {
         content.begin_text();
         match plain_bytes(text) {
@@ -47,7 +47,7 @@ impl PdfFonts {
         content.end_text();
     }
 
-    /// Glyphs one by one, each at its own place: then no reader adds up other widths.
+    /// Draws glyphs one by one, each at its own position, so that readers need not add up glyph widths.
     fn show_run(&mut self, content: &mut Content, run: &Run, (size, matrix): (f32, [f32; 6])) {
         let place = self.place_of(&run.font);
         let name = font_name(place);
@@ -72,12 +72,12 @@ impl PdfFonts {
         })
     }
 
-    /// How many objects of the document they take.
+    /// Number of PDF objects that the fonts take.
     pub fn objects(&self) -> i32 {
         1 + OBJECTS * self.fonts.len() as i32
     }
 
-    /// Their names on pages and their objects, the first of which has a number.
+    /// Resource names and object numbers of the fonts, numbered from `first`.
     pub fn names(&self, first: i32) -> impl Iterator<Item = (String, Ref)> {
         let plain = ("F1".to_owned(), Ref::new(first));
         let others = (0..self.fonts.len()).map(move |k| {
@@ -87,7 +87,7 @@ impl PdfFonts {
         std::iter::once(plain).chain(others)
     }
 
-    /// Writes them as objects, the first of which has a number.
+    /// Writes the fonts as objects, numbered from `first`.
     pub fn write(&self, pdf: &mut Pdf, first: i32) {
         pdf.type1_font(Ref::new(first))
             .base_font(Name(b"Helvetica"))
@@ -98,14 +98,14 @@ impl PdfFonts {
     }
 }
 
-/// The name of an embedded font on pages.
+/// Resource name of an embedded font on pages.
 fn font_name(place: usize) -> String {
     format!("F{}", place + 2)
 }
 
 impl PdfFont {
-    /// The code of a glyph that stands for letters. Glyphs of cubic curves have one code each, as
-    /// PDF numbers them by glyph alone: such a glyph stands for the letters of its first use.
+    /// The code of a glyph that stands for some characters. In a CFF font each glyph has one code, since PDF
+    /// numbers such glyphs by index alone: the glyph stands for the characters of its first use.
     fn code(&mut self, glyph: u16, text: &str) -> u16 {
         let by_glyph = self.font.kind == OutlineKind::Cff;
         if by_glyph && glyph == 0 {
@@ -126,7 +126,7 @@ impl PdfFont {
         let Some((file, numbers)) = self.font.part(&glyphs) else {
             return;
         };
-        // Six capitals tell the parts of a font apart.
+        // A tag of six capitals marks the subset of a font.
         let tag: String = format!("{place:06}")
             .bytes()
             .map(|digit| char::from(digit - b'0' + b'A'))
@@ -192,7 +192,7 @@ impl PdfFont {
         };
     }
 
-    /// The letters of each code.
+    /// The map from codes to characters.
     fn texts(&self) -> Vec<u8> {
         let mut texts = UnicodeCmap::new(Name(b"Letters"), CODES);
         for (k, (_, text)) in self.letters.iter().enumerate() {

@@ -4,18 +4,18 @@ use crate::polygon::{distinct_corners, triangles_of};
 use crate::{FormatError, ObjMesh};
 use toile_geometry::Vec3;
 
-/// Whether a file begins as PLY does.
+/// Whether a file begins with the PLY signature.
 pub(crate) fn looks_like_ply(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\r' | b'\n', ..])
 }
 
-/// Reads a mesh: places of vertices and faces; other properties and elements are passed over.
-/// Polygons of any shape become triangles.
+/// Reads vertex positions and faces of a mesh; other properties and elements are skipped. Polygons of any
+/// shape are triangulated.
 ///
 /// # Errors
-/// With the line of the header or the vertex or face, counted from 1: a header that cannot be read,
-/// data that end early, a number that is not finite, an index that points nowhere, a polygon
-/// without area or that crosses itself; or no face at all.
+/// With the line of the header, or the number of the vertex or face, from 1: an unreadable header, data that
+/// end early, a number that is not finite, an index out of range, a polygon without area or that crosses
+/// itself. Also a file without any face.
 pub fn read_ply(bytes: &[u8]) -> Result<ObjMesh, FormatError> {
     let header = Header::read(bytes)?;
     let mut mesh = ObjMesh::default();
@@ -116,7 +116,7 @@ fn corners(element: &Element, values: &[Vec<f64>], place: String) -> Result<Vec<
     })
 }
 
-/// How numbers are written.
+/// The encoding of numbers: text, or binary with the least or the most significant byte first.
 #[derive(Clone, Copy, PartialEq)]
 enum Coding {
     Text,
@@ -124,7 +124,7 @@ enum Coding {
     Big,
 }
 
-/// A type of number: its length in bytes, and how it is read from them in the order of the least first.
+/// A number type: length in bytes, and decoder of little-endian bytes.
 #[derive(Clone, Copy)]
 struct Number {
     length: usize,
@@ -152,7 +152,7 @@ impl Number {
 
 struct Property {
     name: String,
-    /// The type of a list's length, where it is one.
+    /// The number type of a list's length, for list properties.
     length: Option<Number>,
     number: Number,
 }
@@ -164,14 +164,14 @@ struct Element {
 }
 
 impl Element {
-    /// The values of each property of the next row; nothing where it cannot be read.
+    /// The values of each property in the next row; `None` if the row cannot be read.
     fn row(&self, data: &mut Data<'_>) -> Option<Vec<Vec<f64>>> {
         let values = |property: &Property| {
             let count = match property.length {
                 None => 1.0,
                 Some(length) => data.next(length)?,
             };
-            // A length beyond what is left is no length.
+            // A length greater than the remaining data is invalid.
             let is_length = count >= 0.0 && count <= data.rest.len() as f64;
             let count = is_length.then_some(count as usize)?;
             (0..count).map(|_| data.next(property.number)).collect()
@@ -180,7 +180,7 @@ impl Element {
     }
 }
 
-/// What is left to read.
+/// The data not yet read.
 struct Data<'a> {
     rest: &'a [u8],
     coding: Coding,
@@ -212,7 +212,7 @@ impl Data<'_> {
 struct Header {
     coding: Coding,
     elements: Vec<Element>,
-    /// Bytes before the data.
+    /// Offset of the data in the file (bytes).
     length: usize,
 }
 

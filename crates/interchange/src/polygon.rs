@@ -1,9 +1,9 @@
-//! Faces of meshes that are polygons, which readers make triangles of.
+//! Polygonal faces of meshes: checks them and triangulates them.
 
 use crate::FormatError;
 use toile_geometry::{TriangulationError, Vec3, polygon_triangles};
 
-/// What is wrong with a face, and the remedy; the reader says where it stands.
+/// A fault of a face and the remedy; the reader adds the place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FaceFault {
     what: String,
@@ -16,16 +16,16 @@ impl FaceFault {
         Self { what, hint }
     }
 
-    /// With the place of the face.
+    /// The error for a face at a place.
     pub fn at(self, place: String) -> FormatError {
         FormatError::new(place, self.what, self.hint)
     }
 }
 
-/// Leaves out corners that follow on themselves, as exporters write a triangle as a quad with one corner twice.
+/// Removes repeated consecutive corners: exporters write a triangle as a quad with one corner twice.
 ///
 /// # Errors
-/// Fewer than three corners are left, or one is come back to.
+/// Fewer than three corners are left, or a corner occurs again later.
 pub(crate) fn distinct_corners<T, K: Ord>(
     corners: &mut Vec<T>,
     vertex: impl Fn(&T) -> K,
@@ -51,10 +51,10 @@ pub(crate) fn distinct_corners<T, K: Ord>(
     }
 }
 
-/// The triangles of a face by the places of its corners, as indices of these.
+/// Triangulates a face by the positions of its corners; returns indices of corners.
 ///
 /// # Errors
-/// A polygon without area, one with two corners in one place, or one that crosses itself.
+/// A polygon without area, with two corners at one position, or that crosses itself.
 pub(crate) fn triangles_of(corners: &[Vec3]) -> Result<Vec<[usize; 3]>, FaceFault> {
     polygon_triangles(corners).map_err(|error| match error {
         TriangulationError::Flat => FaceFault::new(

@@ -1,19 +1,19 @@
-//! Proportion boxes: our table of them, and tables of the user's own in the same form.
+//! Proportion boxes: the built-in table, and tables of the user in the same form.
 
 use crate::FormatError;
 use toile_body::ProportionBox;
 
-/// The table that ships: heads of stature by sex and age after published canons.
+/// The built-in table: stature in heads by sex and age, after published canons.
 const TABLE: &str = include_str!("proportions.json");
 
-/// The proportion boxes that ship.
+/// The built-in proportion boxes.
 pub fn proportion_boxes() -> Vec<ProportionBox> {
     read_proportions(TABLE).expect("a test reads the table that ships")
 }
 
-/// Reads a table of proportion boxes: a JSON list of objects with a name and the stature in head
-/// lengths (crown to chin), and optionally sex, age (years), and height of the crotch, distance of
-/// the shoulders' ends and breadth of the hips in head lengths.
+/// Reads a table of proportion boxes: a JSON list of objects with a name and the stature in head lengths
+/// (crown to chin), and optionally sex, age (years), and crotch height, distance between the shoulder ends
+/// and hip breadth in head lengths.
 ///
 /// # Errors
 /// The fault, its place and a remedy.
@@ -43,7 +43,7 @@ mod tests {
             assert!(table.iter().any(|b| b.sex == Some(sex)));
         }
         assert!(table.iter().any(|b| b.age.is_some_and(|age| age < 2.0)));
-        // A name chooses one box.
+        // A name selects one box.
         for (k, row) in table.iter().enumerate() {
             assert!(table[..k].iter().all(|other| other.name != row.name));
             assert!(!row.source.is_empty(), "{}", row.name);

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 /// A kind of file that can be told from its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// Nothing but blanks.
+    /// Nothing but white space.
     Empty,
     /// Text in UTF-16.
     Utf16,
@@ -27,7 +27,7 @@ pub enum FileKind {
     Svg,
     /// A page of HTML.
     Html,
-    /// HPGL, as plotters take it.
+    /// HPGL, the language of plotters.
     Hpgl,
     /// A pattern of Valentina (.val).
     ValentinaPattern,
@@ -39,7 +39,7 @@ pub enum FileKind {
     OtherXml,
     /// STL.
     Stl,
-    /// A table of measurements of any of the forms that are read.
+    /// A table of measurements in any supported form.
     Measurements,
     /// A Wavefront mesh.
     Obj,
@@ -53,11 +53,11 @@ pub enum FileKind {
     Pattern,
     /// A GarmentCode specification.
     GarmentCode,
-    /// A mannequin file.
+    /// A mannequin.
     Mannequin,
-    /// A marker as data.
+    /// A marker (`marker.json`).
     Marker,
-    /// Settings of a marker maker.
+    /// Settings for marker making.
     MarkerSettings,
     /// A nesting instance of jagua-rs.
     NestingInstance,
@@ -72,7 +72,7 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// The kind of a file; nothing where its content does not tell.
+    /// The kind of a file; `None` if the content does not tell.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         of_magic(bytes).or_else(|| {
             let text = std::str::from_utf8(bytes).ok()?;
@@ -86,7 +86,7 @@ impl FileKind {
         })
     }
 
-    /// Its name in a sentence.
+    /// Name of the kind in a sentence.
     pub fn name(self) -> &'static str {
         match self {
             Self::Empty => "an empty file",
@@ -123,7 +123,7 @@ impl FileKind {
         }
     }
 
-    /// Which command takes it; nothing where none reads it yet.
+    /// The commands that take this kind of file; `None` if no command reads it yet.
     fn taken_by(self) -> Option<&'static str> {
         match self {
             Self::Measurements => {
@@ -159,7 +159,7 @@ impl FileKind {
         }
     }
 
-    /// A remedy of its own, where that is nearer than another file.
+    /// A more specific remedy than giving another file.
     fn remedy(self) -> Option<&'static str> {
         match self {
             Self::Empty => Some("it holds nothing: it may not have been saved"),
@@ -212,7 +212,7 @@ pub enum ExpectedKind {
     Motion,
     /// A scene.
     Scene,
-    /// A marker as data.
+    /// A marker (`marker.json`).
     Marker,
     /// Marker settings.
     MarkerSettings,
@@ -222,7 +222,7 @@ pub enum ExpectedKind {
     Journal,
     /// A fabric file.
     Fabric,
-    /// JSON of a small form of its own: edits, proportions, landmarks.
+    /// A small JSON file of another kind: edits, proportions, landmarks.
     SmallJson,
 }
 
@@ -244,7 +244,7 @@ impl ExpectedKind {
         }
     }
 
-    /// The formats that are read, for the remedy.
+    /// The supported formats, for the remedy.
     fn reads(self) -> &'static str {
         match self {
             Self::Pattern => {
@@ -268,11 +268,11 @@ impl ExpectedKind {
         }
     }
 
-    /// Refuses content that is plainly of another kind, by its name. Damaged content and what
-    /// cannot be told passes: the reader says where it is wrong.
+    /// Refuses content that is clearly of another kind, and names that kind. Damaged or unrecognised content
+    /// passes, so that the reader can report the place of the fault.
     ///
     /// # Errors
-    /// The content is of a kind that this reader does not take.
+    /// The content is of a kind that the reader does not take.
     pub fn check(self, bytes: &[u8]) -> Result<(), FormatError> {
         let Some(kind) = FileKind::of(bytes).filter(|&kind| !self.takes(kind)) else {
             return Ok(());
@@ -289,7 +289,7 @@ impl ExpectedKind {
     }
 }
 
-/// Kinds that begin with certain bytes.
+/// Recognises a kind by its first bytes.
 fn of_magic(bytes: &[u8]) -> Option<FileKind> {
     const STARTS: [(&[u8], FileKind); 18] = [
         (b"ply\n", FileKind::Ply),
@@ -316,20 +316,20 @@ fn of_magic(bytes: &[u8]) -> Option<FileKind> {
     }
     let start = STARTS.iter().find(|(start, _)| bytes.starts_with(start));
     match start {
-        // Text may begin with these letters; a bitmap is no text.
+        // A text may begin with these letters; a bitmap is not valid text.
         Some((b"BM", _)) if std::str::from_utf8(bytes).is_ok() => None,
         found => found.map(|&(_, kind)| kind),
     }
 }
 
-/// Kinds of XML, by the root element.
+/// Recognises a kind of XML by the root element.
 fn of_xml(text: &str) -> FileKind {
     match root_element(text) {
         Some("svg") => FileKind::Svg,
         Some("html") => FileKind::Html,
         Some("X3D") => FileKind::X3d,
         Some("vit" | "vst" | "smis" | "smms") => FileKind::Measurements,
-        // Seamly2D took Valentina's form over and says its own name in a comment.
+        // Seamly2D adopted Valentina's format and names itself in a comment.
         Some("pattern") if text.contains("Seamly2D") => FileKind::SeamlyPattern,
         Some("pattern") => FileKind::ValentinaPattern,
         _ => FileKind::OtherXml,
@@ -352,7 +352,7 @@ fn root_element(text: &str) -> Option<&str> {
     }
 }
 
-/// Kinds of JSON objects, by their fields. Damaged JSON has none.
+/// Recognises a kind of JSON by the fields of the object; `None` for damaged JSON.
 fn of_json(text: &str) -> Option<FileKind> {
     let mut objects = serde_json::Deserializer::from_str(text).into_iter::<Map<String, Value>>();
     let head = objects.next()?.ok()?;
@@ -380,7 +380,7 @@ fn of_json(text: &str) -> Option<FileKind> {
     Some(kind)
 }
 
-/// Kinds of text, by their lines.
+/// Recognises a kind of text by its lines.
 fn of_lines(text: &str) -> Option<FileKind> {
     let mut lines = text.lines().map(str::trim);
     let first = lines.next().unwrap_or_default();
@@ -391,7 +391,7 @@ fn of_lines(text: &str) -> Option<FileKind> {
     if first.starts_with("#VRML") || first.starts_with("#X3D") {
         return Some(FileKind::X3d);
     }
-    // A DXF is pairs of lines, a number and a value; 999 is a comment.
+    // A DXF consists of pairs of lines, a code and a value; code 999 is a comment.
     if first == "999" || (first == "0" && second == "SECTION") {
         return Some(FileKind::Dxf);
     }

@@ -1,7 +1,7 @@
 //! The scene file: JSON for every object of a simulation.
 //!
-//! Lengths are metres, times seconds, everything SI. Meshes, patterns and bodies are named by
-//! path; whoever has them loaded turns a [`SceneFile`] into a scene.
+//! All quantities are in SI units. Meshes, patterns and bodies are named by path; the caller that has loaded
+//! them turns a [`SceneFile`] into a scene.
 
 use crate::scene_motion::{GripFile, MotionFile, Unknown};
 use crate::{FormatError, MaterialFile};
@@ -10,39 +10,39 @@ use toile_body::AskedStance;
 use toile_drape::{Air, ContactSettings, Damping, MethodKind, MethodSettings, Scene};
 use toile_geometry::Vec3;
 
-/// A scene as written.
+/// A scene as written in its file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SceneFile {
     /// Acceleration of gravity (m/s2).
     #[serde(default = "earth")]
     pub gravity: [f64; 3],
-    /// The air.
+    /// The air: drag, density and wind.
     #[serde(default)]
     pub air: AirFile,
-    /// Damping of everything alike.
+    /// Damping of all objects.
     #[serde(default)]
     pub damping: DampingFile,
-    /// Simulated time (s); 1 s where it is left out, or until the figures of the scene have stood still for 1 s.
+    /// Simulated time (s). Default: 1 s, or until the figures of the scene have stood still for 1 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<f64>,
-    /// Step in time (s).
+    /// Time step (s).
     #[serde(default = "usual_step")]
     pub step: f64,
     /// Time between saved frames (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame_step: Option<f64>,
-    /// How the motion is computed; by `xpbd` where a body moves, else by implicit Euler where it is left out.
+    /// The time integration method. Default: `xpbd` if a body moves, else implicit Euler.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<MethodFile>,
-    /// How cloth meets surfaces.
+    /// Contact of cloth with surfaces and with cloth.
     #[serde(default)]
     pub collision: CollisionFile,
-    /// How mesh files stand; what is left out is found by a person among them.
+    /// Axes and unit of mesh files. Default: recognised from a person among the meshes.
     #[serde(default)]
     pub meshes: MeshesFile,
     /// The objects.
     pub objects: Vec<ObjectFile>,
-    /// Attachment forces.
+    /// Elastics: attachment forces between two vertices, or a vertex and a point.
     #[serde(default)]
     pub elastics: Vec<ElasticFile>,
     #[serde(flatten)]
@@ -55,7 +55,7 @@ pub struct MeshesFile {
     /// The axis that is up: `x`, `y`, `z`, `-x`, `-y` or `-z`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub up: Option<String>,
-    /// `m`, `cm`, `mm`, `in` or `ft`.
+    /// Unit: `m`, `cm`, `mm`, `in` or `ft`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     #[serde(flatten)]
@@ -63,10 +63,10 @@ pub struct MeshesFile {
 }
 
 impl MeshesFile {
-    /// What is said of how they stand.
+    /// The axis and the unit that the file states.
     ///
     /// # Errors
-    /// No axis, or no unit.
+    /// An unknown axis or an unknown unit.
     pub fn asked(&self) -> Result<AskedStance, FormatError> {
         let wrong = |field: &str, what: String| {
             FormatError::new(
@@ -92,16 +92,16 @@ fn read_word<T: std::str::FromStr<Err = String>>(
 /// The air of a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct AirFile {
-    /// Drag per mass (1/s).
+    /// Drag coefficient per mass (1/s).
     #[serde(default)]
     pub drag: f64,
-    /// Density (kg/m3); that of sea level when a coefficient or the wind is given.
+    /// Density (kg/m3). Default: that at sea level if a drag coefficient or the wind is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
-    /// Drag coefficient across the cloth.
+    /// Drag coefficient normal to the cloth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal: Option<f64>,
-    /// Drag coefficient along the cloth.
+    /// Drag coefficient tangential to the cloth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tangential: Option<f64>,
     /// Velocity of the wind (m/s).
@@ -112,7 +112,7 @@ pub struct AirFile {
 }
 
 impl AirFile {
-    /// The air, with defaults where nothing is written.
+    /// The air, with defaults for missing values.
     pub fn air(&self) -> Air {
         let usual = Air::default();
         let acts = self.normal.is_some() || self.tangential.is_some() || self.wind.is_some();
@@ -130,10 +130,10 @@ impl AirFile {
 /// Rayleigh damping of a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct DampingFile {
-    /// In proportion to mass (1/s).
+    /// Mass-proportional coefficient (1/s).
     #[serde(default)]
     pub mass: f64,
-    /// In proportion to stiffness (s).
+    /// Stiffness-proportional coefficient (s).
     #[serde(default)]
     pub stiffness: f64,
     #[serde(flatten)]
@@ -150,18 +150,19 @@ impl DampingFile {
     }
 }
 
-/// The method of a scene.
+/// The time integration method of a scene.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MethodFile {
-    /// Its name.
+    /// Name of the method.
     pub name: String,
-    /// Substeps a step is cut into.
+    /// Number of substeps in a step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub substeps: Option<u32>,
-    /// Iterations in a substep at the most.
+    /// Largest number of iterations in a substep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub iterations: Option<usize>,
-    /// Where iterations stop: a gradient (N) in time, net force over weight for rest.
+    /// Tolerance at which iterations stop: a gradient (N) for motion in time, net force divided by weight for
+    /// rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     #[serde(flatten)]
@@ -183,19 +184,19 @@ impl Default for MethodFile {
 /// Contact in a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct CollisionFile {
-    /// Distance kept from surfaces (m).
+    /// Distance kept between cloth and surfaces (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
-    /// Pressure per depth (N/m3).
+    /// Contact stiffness: pressure per penetration depth (N/m3).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
     /// Whether friction acts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<bool>,
-    /// Distance kept between the middles of two cloths (m); none or 0 lets cloth pass through cloth.
+    /// Distance kept between the mid-surfaces of two cloths (m). If missing or 0, cloth passes through cloth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cloth_offset: Option<f64>,
-    /// Pairs of names of objects that pass through each other; a cloth with itself passes through itself.
+    /// Pairs of object names that pass through each other; a cloth paired with itself has no self-contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ignore: Vec<[String; 2]>,
     #[serde(flatten)]
@@ -205,62 +206,62 @@ pub struct CollisionFile {
 /// One object of a scene.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ObjectFile {
-    /// Unique name.
+    /// Name, unique in the scene.
     pub name: String,
     /// `static`, `animated` or `deformable`.
     pub kind: String,
-    /// An OBJ file, relative to the scene file.
+    /// An OBJ file, with a path relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<String>,
-    /// A pattern file: its garment, sewn on the body of `on`, else on the scene's first.
+    /// A pattern file. Its garment is sewn on the body `on`, or else on the first body of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
-    /// The body that wears the garment, by its name: it is sewn and draped to rest on it before the scene begins, with all
-    /// that the body wears.
+    /// Name of the body that wears the garment. Before the scene begins, the garment is sewn and draped to
+    /// rest on the body, together with all other garments of that body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
-    /// `preview`, `fit` or `final`: how fine a garment that is worn is meshed, and how near to rest it is draped.
+    /// `preview`, `fit` or `final`: mesh size of a worn garment, and how close to rest it is draped.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<String>,
-    /// `woman`, `man`, `mean`, or a file of measurements: a mannequin.
+    /// A mannequin: `woman`, `man`, `mean`, or a file of measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
-    /// A file of recorded frames: the way of an animated object, or where a deformable one starts; or a point cache
-    /// (PC2) of its mesh.
+    /// A file of recorded frames: the motion of an animated object, or the start of a deformable one; or a
+    /// point cache (PC2) of the object's mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames: Option<String>,
-    /// Which object of the recording it is; that of its name, or the only one.
+    /// Name of the object in the recording. Default: the object of the same name, or the only one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// The frame that a deformable object starts from, counted from 0; the last.
+    /// The frame that a deformable object starts from, counted from 0. Default: the last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// Frames a second of a point cache (1/s).
+    /// Frame rate of a point cache (1/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<f64>,
-    /// Where it stands.
+    /// Placement of the object in the scene.
     #[serde(default)]
     pub transform: TransformFile,
-    /// What a deformable object is made of.
+    /// Material of a deformable object.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialFile>,
     /// Vertices that do not move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pins: Vec<u32>,
-    /// How an animated object moves.
+    /// Motion of an animated object.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionFile>,
-    /// Vertices of a deformable object that are led.
+    /// Vertices of a deformable object that follow a given motion.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub grips: Vec<GripFile>,
-    /// Place of a deformable object among cloths worn over one another: larger lies farther out.
+    /// Layer of a deformable object among cloths worn over one another: larger lies farther out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layer: Option<u16>,
     #[serde(flatten)]
     unknown: Unknown,
 }
 
-/// Scaled, then turned, then moved.
+/// A similarity transform: scale, then rotation, then translation.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct TransformFile {
     /// Translation (m).
@@ -288,7 +289,7 @@ impl Default for TransformFile {
 }
 
 impl TransformFile {
-    /// The place a point of the object's own file takes in the scene (m).
+    /// Position in the scene of a point of the object's own file (m).
     pub fn apply(&self, point: Vec3) -> Vec3 {
         nalgebra::Rotation3::from_scaled_axis(Vec3::from(self.rotation)) * (point * self.scale)
             + Vec3::from(self.translation)
@@ -298,13 +299,13 @@ impl TransformFile {
 /// An elastic between two ends.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ElasticFile {
-    /// Object and vertex.
+    /// First end: a vertex of an object.
     pub from: EndFile,
-    /// Object and vertex, or a point.
+    /// Second end: a vertex of an object, or a point.
     pub to: EndFile,
     /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Gap at which the ends become one vertex (m).
+    /// Distance at which the two ends are merged into one vertex (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub merge_within: Option<f64>,
     #[serde(flatten)]
@@ -317,7 +318,7 @@ pub struct ElasticFile {
 pub enum EndFile {
     /// A vertex of an object.
     Vertex(String, u32),
-    /// A place (m).
+    /// A fixed point (m).
     Point([f64; 3]),
 }
 
@@ -327,7 +328,7 @@ fn earth() -> [f64; 3] {
 fn one() -> f64 {
     1.0
 }
-/// Substeps or iterations a file may ask for: more is surely a mistake.
+/// Largest number of substeps or iterations in a file: more is surely a mistake.
 const MAX_ITERATIONS: usize = 1_000_000;
 
 fn usual_step() -> f64 {
@@ -335,10 +336,10 @@ fn usual_step() -> f64 {
 }
 
 impl SceneFile {
-    /// The method named, with its settings.
+    /// The time integration method with its settings.
     ///
     /// # Errors
-    /// An unknown name (the message lists those that are known), settings out of range.
+    /// An unknown name (the message lists the known ones), or settings out of range.
     pub fn method(&self) -> Result<MethodSettings, FormatError> {
         let moves = |object: &ObjectFile| object.body.is_some() && object.motion.is_some();
         let usual = MethodFile {
@@ -399,7 +400,7 @@ impl SceneFile {
         })
     }
 
-    /// Contact, with defaults where nothing is written.
+    /// The contact settings, with defaults for missing values.
     pub fn contact(&self) -> ContactSettings {
         let usual = ContactSettings::default();
         ContactSettings {
@@ -410,7 +411,7 @@ impl SceneFile {
         }
     }
 
-    /// Paths of the fields that are not known here.
+    /// Paths of unknown fields.
     fn unknown_fields(&self) -> Vec<String> {
         let mut found = Vec::new();
         let mut add = |path: String, unknown: &Unknown| {
@@ -450,7 +451,7 @@ impl SceneFile {
     }
 }
 
-/// What is wrong with JSON, and where.
+/// The error of a JSON reader, with line and column.
 pub(crate) fn json_error(error: &serde_json::Error) -> FormatError {
     let place = format!("line {}, column {}", error.line(), error.column());
     let what = error.to_string();
@@ -458,10 +459,10 @@ pub(crate) fn json_error(error: &serde_json::Error) -> FormatError {
     FormatError::new(place, what, "see this kind of file in docs/FORMATS.md")
 }
 
-/// Reads a scene file. Beside it come the paths of fields that are not known here.
+/// Reads a scene file; also returns the paths of unknown fields.
 ///
 /// # Errors
-/// With line and column: text that is not JSON, a field missing or of the wrong kind.
+/// With line and column: text that is not JSON, a field that is missing or of the wrong kind.
 pub fn read_scene(text: &str) -> Result<(SceneFile, Vec<String>), FormatError> {
     let file: SceneFile = serde_json::from_str(text).map_err(|error| json_error(&error))?;
     let unknown = file.unknown_fields();

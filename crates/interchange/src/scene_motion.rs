@@ -6,32 +6,32 @@ use std::collections::BTreeMap;
 use toile_drape::{Motion, MotionKey};
 use toile_geometry::Vec3;
 
-/// Fields that are not known here, by their names.
+/// Unknown fields, by name.
 pub(crate) type Unknown = BTreeMap<String, Value>;
 
-/// A motion as written: of a solid by keys, straight from key to key, still before the first and after the last; of a
-/// body by a clip, with keys that turn it about itself.
+/// A motion as written. A solid moves by keys, linearly from key to key, at rest before the first and after
+/// the last. A body moves by a clip, and keys turn it about itself.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct MotionFile {
-    /// The place it turns about, in the scene (m).
+    /// The pivot of rotations, in the scene (m).
     #[serde(default)]
     pub pivot: [f64; 3],
-    /// Where it is when.
+    /// The keys: positions and rotations at given times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub keys: Vec<KeyFile>,
     /// The clip of a body: `walk`, `run`, `stand`, `astride`, or a file (BVH, X3D, VRML).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clip: Option<String>,
-    /// Rounds of a loop after which the figure stands still.
+    /// Number of loop cycles after which the figure stands still.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strides: Option<f64>,
-    /// How fast the clip is played, 0 to 2.
+    /// Playback rate of the clip, 0 to 2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<f64>,
-    /// Whether the figure goes over the ground; else it stays on the spot.
+    /// Whether the figure travels over the ground; otherwise it stays in place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub travel: Option<bool>,
-    /// Whether it goes from the pose it was dressed in to the start of the clip before time 0.
+    /// Whether the figure moves from its dressing pose to the start of the clip before time 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lead_in: Option<bool>,
     #[serde(flatten)]
@@ -43,7 +43,7 @@ pub struct MotionFile {
 pub struct KeyFile {
     /// The time (s).
     pub time: f64,
-    /// Translation from where it was loaded (m).
+    /// Translation from the loaded position (m).
     #[serde(default)]
     pub translation: [f64; 3],
     /// Rotation vector: axis times angle (rad).
@@ -53,7 +53,7 @@ pub struct KeyFile {
     unknown: Unknown,
 }
 
-/// Vertices that are led along a motion.
+/// Vertices that follow a given motion.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct GripFile {
     /// The vertices.
@@ -65,7 +65,7 @@ pub struct GripFile {
 }
 
 impl MotionFile {
-    /// Fields of a body's clip that are given.
+    /// Names of the given fields that apply only to the clip of a body.
     pub fn clip_fields(&self) -> Vec<&'static str> {
         let given = [
             ("clip", self.clip.is_some()),
@@ -78,7 +78,7 @@ impl MotionFile {
         given.map(|(field, _)| field).collect()
     }
 
-    /// The motion by its keys alone.
+    /// The motion described by the keys, without the clip.
     pub fn motion(&self) -> Motion {
         let keys = self.keys.iter().map(|key| MotionKey {
             time: key.time,
@@ -91,7 +91,7 @@ impl MotionFile {
         }
     }
 
-    /// Fields that are not known, by the place they stand in.
+    /// Unknown fields, each with the path of its place.
     pub(crate) fn unknown_fields(&self) -> Vec<(String, &Unknown)> {
         let keys = self.keys.iter().enumerate();
         std::iter::once((String::new(), &self.unknown))
@@ -101,7 +101,7 @@ impl MotionFile {
 }
 
 impl GripFile {
-    /// Fields that are not known, by the place they stand in.
+    /// Unknown fields, each with the path of its place.
     pub(crate) fn unknown_fields(&self) -> Vec<(String, &Unknown)> {
         let motion = self.motion.unknown_fields().into_iter();
         std::iter::once((String::new(), &self.unknown))

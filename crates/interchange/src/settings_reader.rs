@@ -1,5 +1,5 @@
-//! Reads a part of a file of settings by its fields: lengths are texts with their unit, angles degrees, and a field that is
-//! not known is refused.
+//! Reads a part of a settings file by its fields: lengths are texts with their unit, angles are in degrees,
+//! and unknown fields are refused.
 
 use crate::FormatError;
 use crate::native::item::Item;
@@ -11,7 +11,7 @@ use toile_pattern::fields::{
 };
 use toile_pattern::{AnyId, Mark, Number, Want};
 
-/// A refusal of settings.
+/// The error for invalid settings.
 pub fn refused(place: impl Into<String>, what: impl Into<String>) -> FormatError {
     FormatError::new(place, what, "see docs/FORMATS.md, marker settings")
 }
@@ -21,7 +21,7 @@ fn refused_at(item: &Item<'_>, what: String) -> FormatError {
     refused(place, what)
 }
 
-/// A value of the wrong kind.
+/// The error for a value of the wrong type.
 pub fn invalid_type(item: &Item<'_>, expected: &str) -> FormatError {
     let (is_integer, found) = match &item.node.value {
         Json::Null => (false, "null".to_owned()),
@@ -45,7 +45,7 @@ pub fn invalid_type(item: &Item<'_>, expected: &str) -> FormatError {
     )
 }
 
-/// A field that is not known.
+/// The error for an unknown field.
 pub fn unknown_field(item: &Item<'_>, name: &str, known: &[&str]) -> FormatError {
     let expected = match known {
         [a, b] => format!("`{a}` or `{b}`"),
@@ -58,29 +58,29 @@ pub fn unknown_field(item: &Item<'_>, name: &str, known: &[&str]) -> FormatError
     refused_at(item, format!("unknown field `{name}`, expected {expected}"))
 }
 
-/// Reads one part.
+/// Reads one part of a settings file.
 pub struct SettingsReader<'s, 'a> {
     item: Item<'a>,
-    /// What the part is called where something else stands in its place.
+    /// Name of the expected type, for the error if another type is found.
     expected: &'s str,
-    /// Fields of the part that such a file does not have.
+    /// Fields of the part that this kind of file does not have.
     without: &'s [&'s str],
-    /// Fields that are read elsewhere.
+    /// Fields that another reader reads.
     besides: &'s [&'s str],
     place: Place<'a>,
     fault: Option<FormatError>,
 }
 
-/// What a reader stands in.
+/// The place in which the next field is looked up.
 enum Place<'a> {
-    /// Fields by their keys: those that were asked for.
+    /// In an object, by keys; holds the keys asked for so far.
     Part(Vec<&'static str>),
-    /// Fields one after another: those that are left.
+    /// In a list, in order; holds the remaining items.
     List(std::vec::IntoIter<Item<'a>>),
 }
 
 impl<'s, 'a> SettingsReader<'s, 'a> {
-    /// A reader of a part, and what that is called; without some of its fields.
+    /// A reader of a part, with the name of the expected type and the fields that the file does not have.
     pub fn new(item: &Item<'a>, expected: &'s str, without: &'s [&'s str]) -> Self {
         Self {
             item: item.clone(),
@@ -92,7 +92,7 @@ impl<'s, 'a> SettingsReader<'s, 'a> {
         }
     }
 
-    /// With fields that are read elsewhere.
+    /// Adds fields that another reader reads.
     pub fn with(self, besides: &'s [&'s str]) -> Self {
         Self { besides, ..self }
     }
@@ -103,7 +103,7 @@ impl<'s, 'a> SettingsReader<'s, 'a> {
         self.done()
     }
 
-    /// The first thing that is wrong: a field that is not known before all others.
+    /// The first error; an unknown field comes before all others.
     fn done(&mut self) -> Result<(), FormatError> {
         if let Place::Part(known) = &self.place {
             let known: Vec<&str> = known.iter().chain(self.besides).copied().collect();
@@ -159,7 +159,7 @@ impl<'s, 'a> SettingsReader<'s, 'a> {
     }
 }
 
-/// What a part of a field is called where something else stands in its place.
+/// Name of the type of a field's value, for the error if another type is found.
 fn struct_name(key: &str) -> &'static str {
     match key {
         "print" => "struct PrintSettings",
@@ -213,7 +213,7 @@ fn set(item: &Item<'_>, field: ValueField, value: ValueMut<'_>) -> Result<(), Fo
 }
 
 impl VisitorMut for SettingsReader<'_, '_> {
-    // Files of settings speak of parts by name.
+    // Settings files refer to parts by name, not by id.
     fn own(&mut self, _: &mut dyn AnyId) {}
 
     fn id(&mut self, _: &'static str, _: &mut dyn AnyId) {}

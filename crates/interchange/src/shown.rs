@@ -1,16 +1,16 @@
-//! Lengths and areas in words, in the unit of a document.
+//! Lengths and areas as text, in the display unit of a document.
 
 use toile_pattern::DisplayUnit;
 
-/// Inches in a yard.
+/// Inches per yard.
 const YARD: f64 = 36.0;
 
-/// Puts numbers in words: inches where a document has inches, else centimetres.
+/// Formats lengths and areas: in inches for a document in inches, else in centimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown(pub DisplayUnit);
 
 impl Shown {
-    /// Whether it shows inches.
+    /// Whether lengths are shown in inches.
     pub fn is_inch(self) -> bool {
         self.0 == DisplayUnit::Inch
     }
@@ -34,7 +34,7 @@ impl Shown {
         }
     }
 
-    /// A short length (m) with its unit: a margin, a gap.
+    /// A short length (m) with its unit, such as a margin or a gap.
     pub fn short(self, metres: f64) -> String {
         match self.is_inch() {
             true => format!("{:.2} in", inches(metres)),
@@ -42,7 +42,7 @@ impl Shown {
         }
     }
 
-    /// A length of cloth (m) as it is bought, in yards or metres first.
+    /// A length of cloth (m) as sold: metres and yards, with the document's unit first.
     pub fn cloth(self, metres: f64) -> [String; 2] {
         let [metric, yards] = [
             format!("{metres:.3} m"),
@@ -59,7 +59,7 @@ impl Shown {
         format!("{} {}", self.area_number(square_metres), self.area_unit())
     }
 
-    /// An area (m2) as a number in its unit.
+    /// An area (m2) as a number in the display unit.
     pub(crate) fn area_number(self, square_metres: f64) -> String {
         let unit = match self.is_inch() {
             true => DisplayUnit::Inch,

@@ -1,6 +1,6 @@
 //! Numbers and words of SVG.
 
-/// Three decimals of a millimetre; no negative zero.
+/// A number with three decimals, without trailing zeros or a negative zero.
 pub(crate) fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -11,7 +11,7 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// Words as XML; control characters become spaces.
+/// A text escaped for XML; control characters become spaces.
 pub(crate) fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {

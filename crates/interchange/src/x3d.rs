@@ -9,16 +9,16 @@ use std::collections::BTreeMap;
 use toile_body::{Clip, Joint, Skeleton};
 use toile_geometry::Vec3;
 
-/// Poses a second that a motion is taken at.
+/// Sampling rate of the poses of a motion (1/s).
 const RATE: f64 = 30.0;
-/// Longest cycle taken (s): beyond it a file is damaged.
+/// Longest animation cycle accepted (s): a file with a longer one is damaged.
 const LONGEST: f64 = 3600.0;
 
-/// Turns over the share of the cycle.
+/// Rotations with their times as fractions of the cycle.
 struct Turns(Vec<(f64, UnitQuaternion<f64>)>);
 
 impl Turns {
-    /// The turn at a share of the cycle: slerped between keys, held beyond them.
+    /// The rotation at a fraction of the cycle: slerp between keys, constant beyond them.
     fn at(&self, share: f64) -> UnitQuaternion<f64> {
         let next = self.0.partition_point(|key| key.0 <= share);
         match (next.checked_sub(1).map(|k| self.0[k]), self.0.get(next)) {
@@ -33,16 +33,16 @@ impl Turns {
     }
 }
 
-/// Reads a VRML 97 or X3D (XML) file for a skeleton: every OrientationInterpolator that a ROUTE
-/// leads to a joint turns that joint; joints are known by their H-Anim names, as the name of the
-/// Joint node or its DEF with or without `hanim_`. A PositionInterpolator led to the root moves
-/// the body. The TimeSensor gives the length (one second without it) and whether it is a loop.
-/// Bones point as the file's do where it has joints with centres; else a figure with hanging arms
-/// is meant. Where several TimeSensors lead to interpolators of joints, each is a clip, and the
-/// first is taken. Also tells what was left out.
+/// Reads a VRML 97 or X3D (XML) file and maps its motion to a skeleton. Every OrientationInterpolator that a
+/// ROUTE connects to a joint rotates that joint. Joints are recognised by their H-Anim names, from the name
+/// field of the Joint node or its DEF, with or without `hanim_`. A PositionInterpolator connected to the root
+/// moves the body. The TimeSensor gives the duration (one second without it) and whether the clip loops.
+/// Bones point as in the file if its joints have centres; otherwise a figure with hanging arms is assumed. If
+/// several TimeSensors drive interpolators of joints, each is a clip, and the first is taken. Also returns
+/// notes on everything left out.
 ///
 /// # Errors
-/// What is wrong, in which line or node, and the remedy; a file that turns no joint.
+/// The fault, the line or node of it and the remedy; also a file that rotates no joint.
 pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Clip, Vec<String>), FormatError> {
     let scene = read_scene(text)?;
     let clip = Animation::of(&scene)?;
@@ -81,7 +81,7 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Clip, Vec<String>), 
     Ok((motion, clip.notes))
 }
 
-/// Reads either encoding, by how the file begins.
+/// Reads XML or the classic encoding, depending on how the file begins.
 fn read_scene(text: &str) -> Result<Scene, FormatError> {
     let start = text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
     if start.starts_with('<') {
@@ -97,7 +97,7 @@ fn read_scene(text: &str) -> Result<Scene, FormatError> {
     }
 }
 
-/// The rotations and translations of joints in one clip.
+/// The rotations and translations of one clip.
 struct Animation<'a> {
     clock: Option<&'a Node>,
     turns: BTreeMap<Joint, Turns>,
@@ -167,7 +167,7 @@ impl<'a> Animation<'a> {
         Ok(clip)
     }
 
-    /// Its length (s), and whether it is a loop.
+    /// Duration of the clip (s), and whether it loops.
     fn cycle(&self) -> Result<(f64, bool), FormatError> {
         let Some(clock) = self.clock else {
             return Ok((1.0, false));
@@ -188,16 +188,16 @@ impl<'a> Animation<'a> {
 /// A route from an interpolator to a node.
 struct JointRoute<'a> {
     by: &'a Node,
-    /// The joint that the node is, if it is one of ours.
+    /// The joint that the target node stands for, if the skeleton has it.
     joint: Option<Joint>,
-    /// Name of the node.
+    /// Name of the target node.
     to: &'a str,
     /// Names of the TimeSensors that drive the interpolator.
     clocks: Vec<&'a str>,
 }
 
 impl JointRoute<'_> {
-    /// Whether it turns a joint of ours.
+    /// Whether the route rotates a joint of the skeleton.
     fn turns(&self) -> bool {
         self.by.kind == "OrientationInterpolator" && self.joint.is_some()
     }
@@ -249,7 +249,7 @@ fn lost(line: usize, name: &str) -> FormatError {
     )
 }
 
-/// Our joint of an H-Anim name, also of a DEF such as `hanim_l_hip`.
+/// The joint of an H-Anim name, or of a DEF such as `hanim_l_hip`.
 fn joint_called(name: &str) -> Option<Joint> {
     let name = name.strip_prefix("hanim_").unwrap_or(name);
     let name = name.strip_suffix("_joint").unwrap_or(name);
@@ -259,13 +259,13 @@ fn joint_called(name: &str) -> Option<Joint> {
     }
 }
 
-/// The joint a node is: by its own name, else its DEF.
+/// The joint that a node stands for: by its name field, else by its DEF.
 fn joint_of(node: &Node) -> Option<Joint> {
     let own = node.text("name").and_then(joint_called);
     own.or_else(|| joint_called(&node.name))
 }
 
-/// Joint nodes of the scene with their centres.
+/// Centres of the joint nodes in the scene.
 fn joint_nodes(scene: &Scene) -> Result<BTreeMap<Joint, Vec3>, FormatError> {
     let is_joint = |node: &&Node| matches!(node.kind.as_str(), "Joint" | "HAnimJoint");
     let mut centres = BTreeMap::new();
@@ -277,8 +277,8 @@ fn joint_nodes(scene: &Scene) -> Result<BTreeMap<Joint, Vec3>, FormatError> {
     Ok(centres)
 }
 
-/// The file's figure as bones: its joints where they have centres, else our own skeleton's with
-/// arms and legs hanging.
+/// The file's figure as bones: the joints of the file if the needed ones have centres, else the program's own
+/// skeleton with hanging arms and legs.
 fn bones(centres: &BTreeMap<Joint, Vec3>, skeleton: &Skeleton) -> Vec<Bone> {
     let needed = [
         Joint::HumanoidRoot,
@@ -312,7 +312,7 @@ fn bones(centres: &BTreeMap<Joint, Vec3>, skeleton: &Skeleton) -> Vec<Bone> {
             true => centres.get(&joint).copied(),
             false => None,
         };
-        // What a file leaves out lies where it does on our own body, seen from the joint above.
+        // A joint that the file lacks has the same offset from its parent as in the program's skeleton.
         let at = own.unwrap_or_else(|| above.unwrap_or_default() + hanging(joint));
         place.insert(joint, at);
     }
@@ -332,7 +332,7 @@ fn bones(centres: &BTreeMap<Joint, Vec3>, skeleton: &Skeleton) -> Vec<Bone> {
         .collect()
 }
 
-/// Where the root is at rest, above the soles.
+/// Rest position of the root above the soles.
 fn rest_of_root(bones: &[Bone]) -> Vec3 {
     let mut place: Vec<Vec3> = Vec::new();
     for bone in bones {
@@ -347,7 +347,7 @@ fn rest_of_root(bones: &[Bone]) -> Vec3 {
     Vec3::new(0.0, place[0].y - low, 0.0)
 }
 
-/// Keys of an interpolator: as many as values of a width, in ascending order.
+/// Keys of an interpolator in ascending order, each with `width` values.
 fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> {
     let (key, value) = (node.numbers("key")?, node.numbers("keyValue")?);
     if key.is_empty() || key.len() * width != value.len() {
@@ -372,7 +372,7 @@ fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> 
         .into_iter()
         .zip(value.chunks(width).map(<[f64]>::to_vec))
         .collect();
-    // Of equal keys the last holds.
+    // Of equal keys the last one counts.
     rows.reverse();
     rows.dedup_by(|a, b| a.0 == b.0);
     rows.reverse();
@@ -448,12 +448,12 @@ mod tests {
             let frames = skeleton.frames(pose);
             (frames.centre(Joint::LKnee) - frames.centre(Joint::LHip)).normalize()
         };
-        // Hanging straight down, then lifted by a quarter turn to where the body faces.
+        // First hanging straight down, then lifted forward by a quarter turn.
         assert!((thigh(&a.at(0.0)) + Vec3::y()).norm() < 1e-6);
         assert!((thigh(&a.at(1.0)) - Vec3::z()).norm() < 1e-6);
         let half = thigh(&a.at(0.5));
         assert!((half.y + half.z).abs() < 1e-6, "{half:?}");
-        // Nothing else moves.
+        // No other joint moves.
         let frames = [0.0, 1.0].map(|t| skeleton.frames(&a.at(t)));
         let still = |joint: Joint| (frames[0].centre(joint) - frames[1].centre(joint)).norm();
         assert!(still(Joint::RKnee) < 1e-9 && still(Joint::LWrist) < 1e-9);
@@ -480,7 +480,7 @@ mod tests {
         assert!(error(&long).contains("TimeSensor"));
     }
 
-    /// A walk and a run of a figure whose joints are a prototype's, with a finger and a sequencer.
+    /// A walk and a run of a figure with joints from a prototype, with a finger joint and a sequencer.
     const CLIPS: &str = "#VRML V2.0 utf8\n\
         PROTO Joint [ exposedField SFVec3f center 0 0 0 exposedField SFString name \"\" ]\n\
         { Transform { center IS center } }\n\

@@ -3,7 +3,7 @@
 use crate::FormatError;
 use std::collections::BTreeMap;
 
-/// A node: its type, DEF and the fields that hold numbers or words.
+/// A node: type, DEF name, and the fields that hold numbers or words.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Node {
     pub(crate) kind: String,
@@ -13,12 +13,12 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// Where it stands, for messages.
+    /// Place of the node, for messages.
     pub(crate) fn place(&self) -> String {
         format!("line {}, {} {}", self.line, self.kind, self.name)
     }
 
-    /// The numbers of a field; none if the node does not have it.
+    /// The numbers of a field; empty if the node does not have the field.
     pub(crate) fn numbers(&self, field: &str) -> Result<Vec<f64>, FormatError> {
         let number = |word: &String| match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
@@ -32,12 +32,12 @@ impl Node {
         words.map(number).collect()
     }
 
-    /// A field's only word.
+    /// The first word of a field.
     pub(crate) fn text(&self, field: &str) -> Option<&str> {
         self.fields.get(field)?.first().map(String::as_str)
     }
 
-    /// Whether a field says so.
+    /// Whether a field is true.
     pub(crate) fn is_true(&self, field: &str) -> bool {
         self.text(field)
             .is_some_and(|word| word.eq_ignore_ascii_case("true"))
@@ -49,7 +49,7 @@ impl Node {
 pub(crate) struct Route {
     pub(crate) from: String,
     pub(crate) to: String,
-    /// The field that is set, without `set_`.
+    /// The target field, without the prefix `set_`.
     pub(crate) field: String,
     pub(crate) line: usize,
 }
@@ -65,7 +65,7 @@ impl Route {
     }
 }
 
-/// The nodes and routes of a file, prototypes left out.
+/// The nodes and routes of a file, without prototypes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Scene {
     pub(crate) nodes: Vec<Node>,
@@ -73,13 +73,13 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// The node of a DEF.
+    /// The node with a DEF name.
     pub(crate) fn named(&self, name: &str) -> Option<&Node> {
         self.nodes.iter().find(|node| node.name == name)
     }
 }
 
-/// Whether a field is kept.
+/// Whether the values of a field are kept.
 pub(crate) fn is_kept(field: &str) -> bool {
     matches!(
         field,
@@ -87,12 +87,12 @@ pub(crate) fn is_kept(field: &str) -> bool {
     )
 }
 
-/// A file that ends before something does.
+/// The error for a file that ends inside an element.
 pub(crate) fn ends_within(place: String) -> FormatError {
     FormatError::new(place, "the file ends within it", "export the motion again")
 }
 
-/// Something that is closed and was not opened.
+/// The error for a closing bracket without an opening one.
 pub(crate) fn not_open(line: usize) -> FormatError {
     FormatError::new(
         format!("line {line}"),

@@ -20,7 +20,7 @@ impl Token {
         *self == Self::Bracket(bracket)
     }
 
-    /// A word's or a string's letters.
+    /// The text of a word or string.
     fn text(&self) -> &str {
         match self {
             Self::Word(text) | Self::Quoted(text) => text,
@@ -29,7 +29,7 @@ impl Token {
     }
 }
 
-/// Tokens with their lines, comments left out.
+/// Tokens with their line numbers, without comments.
 fn tokens(text: &str) -> Result<Vec<(usize, Token)>, FormatError> {
     let mut all = Vec::new();
     let mut line = 1;
@@ -62,12 +62,12 @@ fn tokens(text: &str) -> Result<Vec<(usize, Token)>, FormatError> {
     Ok(all)
 }
 
-/// Whether a line ends with a letter: `\r\n` ends one, not two.
+/// Whether a line ends with this character; `\r\n` counts as one line end.
 fn ends_line(c: char, rest: &mut Peekable<Chars<'_>>) -> bool {
     c == '\n' || (c == '\r' && rest.peek() != Some(&'\n'))
 }
 
-/// The rest of a string that has begun; nothing if it does not end.
+/// The rest of a string after its opening quote; `None` if the string does not end.
 fn quoted(chars: &mut Peekable<Chars<'_>>, line: &mut usize) -> Option<String> {
     let mut string = String::new();
     loop {
@@ -121,7 +121,7 @@ pub(crate) fn read(text: &str) -> Result<Scene, FormatError> {
     }
 }
 
-/// The node whose bracket opens at a place.
+/// The node whose opening bracket is at an index.
 fn begun(tokens: &[(usize, Token)], at: usize) -> Node {
     let word = |back: usize| {
         let token = at.checked_sub(back).map(|k| &tokens[k].1);
@@ -135,7 +135,7 @@ fn begun(tokens: &[(usize, Token)], at: usize) -> Node {
     }
 }
 
-/// The place after a prototype: its fields are no node's, and its body is no part of the scene.
+/// The index after a prototype: its fields belong to no node, and its body is not part of the scene.
 fn after_prototype(tokens: &[(usize, Token)], at: usize) -> Result<usize, FormatError> {
     let (line, word) = (tokens[at].0, tokens[at].1.text());
     let name = tokens.get(at + 1).map_or("", |t| t.1.text());
@@ -147,8 +147,8 @@ fn after_prototype(tokens: &[(usize, Token)], at: usize) -> Result<usize, Format
     }
 }
 
-/// The place after the bracket that closes the one here, or here if there is none; nothing if it
-/// does not close.
+/// The index after the bracket that closes the one at `from`, or `from` if there is none; `None` if the
+/// bracket is not closed.
 fn after_brackets(tokens: &[(usize, Token)], from: usize) -> Option<usize> {
     let mut depth = 0;
     for (k, (_, token)) in tokens.iter().enumerate().skip(from) {
@@ -178,8 +178,8 @@ fn route(tokens: &[(usize, Token)], at: usize) -> Result<Route, FormatError> {
     Ok(Route::new(parts(at + 1).0, parts(at + 3), line))
 }
 
-/// The words of a field from a place on: those in brackets, or the numbers that follow, or one
-/// word; nothing for a field that a prototype gives. Also the place after them.
+/// The words of a field that starts at `from`: those in brackets, or consecutive numbers, or one word; `None`
+/// for a field taken from a prototype. Also returns the index after them.
 fn values(tokens: &[(usize, Token)], from: usize) -> (Option<Vec<String>>, usize) {
     let rest = tokens.get(from..).unwrap_or_default();
     let listed = |part: &[(usize, Token)]| {

@@ -8,7 +8,7 @@ use roxmltree::Node as Element;
 pub(crate) fn read(text: &str) -> Result<Scene, FormatError> {
     let xml = Xml::read(text, "export the motion again")?;
     let mut scene = Scene::default();
-    // Elements still to be read, each with the node it stands in.
+    // Elements still to be read, each with the node that contains it.
     let mut waiting = vec![(xml.root(), None)];
     while let Some((element, within)) = waiting.pop() {
         if element.tag_name().name() == "ProtoDeclare" {
@@ -21,7 +21,7 @@ pub(crate) fn read(text: &str) -> Result<Scene, FormatError> {
     Ok(scene)
 }
 
-/// Takes an element of a line up, which stands in a node; the number of its own node, if it is one.
+/// Adds an element inside the node `within` to the scene; returns the index of the new node, if it is one.
 fn take_up(
     scene: &mut Scene,
     element: Element<'_, '_>,
@@ -36,7 +36,7 @@ fn take_up(
             None
         }
         "fieldValue" => {
-            // A field of the instance of a prototype that this stands in.
+            // A field of the prototype instance that contains this element.
             let field = given("name");
             if let Some(node) = within.filter(|_| is_kept(field)) {
                 let words = words(given("value"));
@@ -47,7 +47,7 @@ fn take_up(
         kind => {
             let is_instance = kind == "ProtoInstance";
             let kept = element.attributes().filter(|field| {
-                // The name of an instance is that of its prototype.
+                // The attribute `name` of an instance is the name of its prototype.
                 is_kept(field.name()) && !(is_instance && field.name() == "name")
             });
             scene.nodes.push(Node {

@@ -3,29 +3,28 @@
 use crate::FormatError;
 use roxmltree::{Document, Error, Node, ParsingOptions};
 
-/// Most elements, comments and texts a file may hold: far more than any motion or table has.
+/// Largest number of elements, comments and texts in a file: far more than any motion or table has.
 const MAX_NODES: u32 = 20_000_000;
-/// Most letters that the entities a file declares may grow to.
+/// Limit for the text size of all expanded entities (bytes).
 const MAX_EXPANDED_BYTES: usize = 1 << 26;
-/// Most references to entities that the reader follows within one.
+/// Limit for the depth of entity references inside one entity.
 const MAX_DEPTH: usize = 256;
 
-/// A document and where its lines begin.
+/// A document with the offsets of its lines.
 pub(crate) struct Xml<'a> {
     document: Document<'a>,
-    /// Where each line after the first begins (bytes).
+    /// Offset of the start of each line after the first (bytes).
     starts: Vec<usize>,
     /// Lines of white space before the document.
     skipped: usize,
 }
 
 impl<'a> Xml<'a> {
-    /// Reads a text. It may have a document type with entities of its own; those of other files
-    /// are not fetched.
+    /// Parses a text. It may have a document type with entities of its own; external entities are not
+    /// fetched.
     ///
     /// # Errors
-    /// A fault of the syntax, its line and a remedy; entities that grow beyond all
-    /// measure.
+    /// A syntax error with its line and a remedy; entities that expand beyond the limit.
     pub fn read(text: &'a str, remedy: &str) -> Result<Self, FormatError> {
         let body = text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
         let skipped = text[..text.len() - body.len()].matches('\n').count();
@@ -64,25 +63,25 @@ impl<'a> Xml<'a> {
         })
     }
 
-    /// The element that holds all others.
+    /// The root element.
     pub fn root(&self) -> Node<'_, 'a> {
         self.document.root_element()
     }
 
-    /// Every element, in the order of the text.
+    /// Every element, in document order.
     pub fn elements(&self) -> impl Iterator<Item = Node<'_, 'a>> {
         self.document.descendants().filter(|node| node.is_element())
     }
 
-    /// The line an element begins in, from 1.
+    /// The line in which an element begins, from 1.
     pub fn line(&self, node: Node<'_, 'a>) -> usize {
         let at = node.range().start;
         1 + self.skipped + self.starts.partition_point(|&start| start <= at)
     }
 }
 
-/// The line of the first entity declared, if all of them, with the references there are to them,
-/// may grow beyond [`MAX_EXPANDED_BYTES`].
+/// The line of the first entity declaration, if all entities together, with all references to them, may
+/// expand beyond [`MAX_EXPANDED_BYTES`].
 fn entity_bomb(text: &str) -> Option<usize> {
     const DECLARATION: &str = "<!ENTITY";
     let first = text.find(DECLARATION)?;
@@ -135,7 +134,7 @@ mod tests {
         let xml = Xml::read(text, "mend it").unwrap();
         let node = xml.elements().next().unwrap();
         assert_eq!(node.attribute("b"), Some("42"));
-        // Each entity is ten of the one before.
+        // Each entity contains the one before ten times.
         let mut bomb = String::from("<!DOCTYPE a [\n<!ENTITY e0 'ha'>\n");
         for k in 1..10 {
             let tenfold = format!("&e{};", k - 1).repeat(10);
@@ -143,7 +142,7 @@ mod tests {
         }
         bomb += "]>\n<a>&e9;</a>";
         assert!(refusal(&bomb).what.contains("entit"), "{}", refusal(&bomb));
-        // One long entity, often.
+        // One long entity, referenced often.
         let long = "x".repeat(1_000_000);
         let often = "&e;".repeat(100_000);
         let flat = format!("<!DOCTYPE a [ <!ENTITY e '{long}'> ]>\n<a b='{often}'/>");
@@ -153,7 +152,7 @@ mod tests {
             ("line 1", "mend it")
         );
         assert!(error.what.contains("entities"), "{error}");
-        // An entity that holds itself.
+        // An entity that contains itself.
         let round = "<!DOCTYPE a [ <!ENTITY e '&e;'> ]>\n<a>&e;</a>";
         assert!(refusal(round).what.contains("entity"), "{}", refusal(round));
     }

@@ -1,30 +1,31 @@
-//! Where pieces that are let go by hand come to lie: against their neighbours, the edges of the fabric and its
-//! flaws, with the distance to each kept exactly, or where they were.
+//! Snapping of pieces that the user drops on a marker: they come to rest against neighbours, edges of the
+//! fabric and flaws at exactly the required distance, or stay where they were dropped.
 
 use crate::DocumentMarker;
 use toile_geometry::{Bounds2, Polygon, PreparedPolygon, Vec2, closest_on_segment};
 use toile_nesting::Strip;
 use toile_pattern::OrderedPiece;
 
-/// How exactly gaps are kept (m).
+/// Tolerance of the gaps (m).
 const EXACT: f64 = 1e-10;
-/// Most steps out of what a piece lies over, and to two neighbours at once.
+/// Largest number of steps to free a piece, and to place it against two neighbours at once.
 const STEPS: usize = 200;
-/// How far in all a piece that is let go may come (reaches): out of others, to an edge, along it, into a corner.
+/// Largest total move of a dropped piece (multiples of the reach): out of overlaps, to an edge, along it,
+/// into a corner.
 const MOVES: f64 = 5.0;
-/// Least sine of the angle between two directions in which a piece is stopped.
+/// Smallest sine of the angle between the two directions in which a piece is blocked.
 const MIN_SINE: f64 = 0.2;
 
-/// What becomes of pieces that are let go.
+/// Result of dropping pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LetGo {
-    /// Moved so far they lie apart from all others, and against what was near (m).
+    /// The pieces are moved by this vector (m): they overlap nothing, and touch a neighbour that was near.
     Apart(Vec2),
-    /// They lie over that, deeper than they are moved by themselves.
+    /// The pieces overlap this obstacle too deeply to be moved out of it automatically.
     Over(Obstacle),
 }
 
-/// What a piece may not lie over.
+/// An obstacle that a piece may not overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle {
     /// Another piece.
@@ -33,7 +34,7 @@ pub enum Obstacle {
     Flaw,
 }
 
-/// Something that a piece keeps away from.
+/// An obstacle or edge that a piece keeps its distance from.
 enum Neighbour {
     /// Another piece, or a flaw of the fabric.
     Outline {
@@ -42,27 +43,27 @@ enum Neighbour {
         gap: f64,
         is: Obstacle,
     },
-    /// An edge of the usable fabric: the direction to it, and how far it is along that (m).
+    /// An edge of the usable fabric: the direction to it, and its coordinate along that direction (m).
     Edge { own: usize, toward: Vec2, at: f64 },
 }
 
-/// How far something may still be moved toward a neighbour (m); negative where it is too near.
+/// Distance that a piece can still move toward a neighbour (m); negative if it is too near.
 #[derive(Clone, Copy, Debug)]
 struct Clearance {
     length: f64,
-    /// The unit direction to the neighbour.
+    /// Unit direction to the neighbour.
     toward: Vec2,
 }
 
-/// Pieces in hand, and what they keep away from.
+/// The dropped pieces and the neighbours that they keep their distance from.
 struct Surroundings {
     held: Vec<Polygon>,
     neighbours: Vec<Neighbour>,
 }
 
 impl DocumentMarker {
-    /// Where pieces that are let go as they lie come to rest: moved at most so far (m) to be free, and as far
-    /// again to lie against a neighbour and into the corner between two.
+    /// Position of dropped pieces: moved by at most `reach` (m) out of overlaps, and by as much again against
+    /// a neighbour and into the corner between two.
     pub fn let_go(&self, pieces: &[OrderedPiece], reach: f64) -> LetGo {
         let strip = self.strip();
         let laid: Vec<_> = self.outlines().collect();
@@ -100,13 +101,13 @@ impl DocumentMarker {
             held: held.collect(),
             neighbours,
         };
-        // What was laid well off the fabric is meant.
+        // A piece far off the fabric was put there on purpose.
         around.leave_out_edges(reach);
         around.let_go(reach)
     }
 }
 
-/// The edges of the usable fabric: the direction to each, and how far it is along that from the corner (m).
+/// The edges of the usable fabric: the direction to each, and its coordinate along that direction (m).
 fn edges(strip: &Strip) -> impl Iterator<Item = (Vec2, f64)> {
     let end = strip.max_length.map(|length| length - strip.end_margin);
     let sides = [
@@ -129,7 +130,7 @@ impl Surroundings {
         });
     }
 
-    /// How far it may be moved toward a neighbour, once it is moved by a way (m).
+    /// Distance that a piece can move toward a neighbour, after a displacement `way` (m).
     fn clearance(&self, neighbour: &Neighbour, way: Vec2) -> Clearance {
         match neighbour {
             Neighbour::Edge { own, toward, at } => to_edge(&self.held[*own], (*toward, *at), way),
@@ -150,7 +151,7 @@ impl Surroundings {
                 let across = outline.bounds().centre() - held.bounds().centre();
                 let toward = match length > EXACT {
                     true => between / length,
-                    // They touch: which way, is seen once they are apart.
+                    // Touching outlines: the direction is only known once they are apart.
                     false => across / across.norm().max(EXACT),
                 };
                 Clearance {
@@ -161,7 +162,7 @@ impl Surroundings {
         }
     }
 
-    /// The neighbour with the least clearance, of those that a condition takes.
+    /// The neighbour with the least clearance, among those that `takes` accepts.
     fn nearest(&self, way: Vec2, takes: impl Fn(usize) -> bool) -> Option<(usize, Clearance)> {
         let all = self.neighbours.iter().enumerate();
         let all = all.filter(|(k, _)| takes(*k));
@@ -178,14 +179,15 @@ impl Surroundings {
         let Some((first, near)) = nearest.filter(|(_, near)| near.length <= reach) else {
             return LetGo::Apart(way);
         };
-        // No point of the piece is moved farther than the nearest is away: nothing else is met.
+        // No point of the piece moves farther than the nearest neighbour is away, so it meets nothing else.
         let against = way + near.toward * near.length;
         let along = Vec2::new(-near.toward.y, near.toward.x);
         let slides = [along, -along].map(|along| self.slide(first, (against, along), reach));
         let slid = slides.into_iter().flatten();
         let nearer = |a: &Vec2, b: &Vec2| (a - against).norm().total_cmp(&(b - against).norm());
         let slid = slid.min_by(nearer);
-        // What touches one already, as the edge of the fabric, may leave it for another.
+        // A piece that already touches one neighbour, such as the edge of the fabric, may leave it for
+        // another.
         let moved = || match near.length > EXACT {
             true => None,
             false => self.against_next(way, reach),
@@ -193,7 +195,7 @@ impl Surroundings {
         LetGo::Apart(slid.or_else(moved).unwrap_or(against))
     }
 
-    /// The place against the nearest neighbour that it does not touch yet, if that is near and free.
+    /// Displacement to the nearest neighbour not yet touched, if that is within reach and free of overlaps.
     fn against_next(&self, way: Vec2, reach: f64) -> Option<Vec2> {
         let touches = |k: usize| self.clearance(&self.neighbours[k], way).length <= EXACT;
         let (_, near) = self.nearest(way, |k| !touches(k))?;
@@ -202,7 +204,7 @@ impl Surroundings {
         (near.length <= reach && least.1.length >= -EXACT).then_some(next)
     }
 
-    /// The place against one neighbour and, along it, against the next, if that is near.
+    /// Displacement along one neighbour up to the next one, if that is within reach.
     fn slide(&self, first: usize, (from, along): (Vec2, Vec2), reach: f64) -> Option<Vec2> {
         let mut way = from;
         for _ in 0..STEPS {
@@ -211,11 +213,11 @@ impl Surroundings {
                 let is_on = |way| self.clearance(&self.neighbours[first], way).length.abs() < EXACT;
                 return match is_on(way) {
                     true => Some(way),
-                    // The first is not straight there.
+                    // The outline of the first neighbour is not straight there.
                     false => self.against_both([first, next], (way, reach)),
                 };
             }
-            // Moved so far it meets nothing yet, however that lies.
+            // A move by the clearance meets no other neighbour, whatever its direction.
             way += along * near.length;
             if (way - from).norm() > reach {
                 return None;
@@ -224,7 +226,7 @@ impl Surroundings {
         None
     }
 
-    /// The way out of everything that it lies over or too near to; else something that it lies over.
+    /// Displacement out of all overlaps and gaps too small; if there is none, an obstacle that is overlapped.
     fn freed(&self, reach: f64) -> Result<Vec2, Obstacle> {
         let mut way = Vec2::zeros();
         let mut over = None;
@@ -243,11 +245,12 @@ impl Surroundings {
                 break;
             }
         }
-        // Held between edges alone it stays as it lies.
+        // A piece blocked by edges only stays where it lies.
         over.map_or(Ok(Vec2::zeros()), Err)
     }
 
-    /// The place against two neighbours at once, by Newton's method, if that is near and touches nothing else.
+    /// Displacement to touch two neighbours at once, by Newton's method, if that is near and free of
+    /// overlaps.
     fn against_both(&self, pair: [usize; 2], (from, reach): (Vec2, f64)) -> Option<Vec2> {
         let mut way = from;
         for _ in 0..STEPS {
@@ -274,7 +277,7 @@ impl Surroundings {
     }
 }
 
-/// How far a piece, moved by a way, may be moved toward an edge.
+/// Distance that a piece, displaced by `way`, can move toward an edge.
 fn to_edge(held: &Polygon, (toward, at): (Vec2, f64), way: Vec2) -> Clearance {
     let reaches = held.outer.iter().map(|p| toward.dot(&(p + way)));
     Clearance {
@@ -283,7 +286,7 @@ fn to_edge(held: &Polygon, (toward, at): (Vec2, f64), way: Vec2) -> Clearance {
     }
 }
 
-/// The shortest way from a polygon to another that it does not overlap (m).
+/// Shortest vector from a polygon to another that it does not overlap (m).
 fn nearest_way(from: &Polygon, to: &Polygon) -> Vec2 {
     let box_of = |edge: [Vec2; 2]| (edge, Bounds2::of(edge));
     let others: Vec<_> = to.edges().map(box_of).collect();
@@ -363,7 +366,7 @@ mod tests {
         ) {
             let stays = star(Vec2::zeros(), &a);
             let toward = Vec2::new(angle.cos(), angle.sin());
-            // From far away up to so near.
+            // The piece is brought from far away to the given distance.
             let mut held = star(toward * 0.5, &b);
             let far = Surroundings::clearance(&around(held.clone(), std::slice::from_ref(&stays)),
                 &around(held.clone(), std::slice::from_ref(&stays)).neighbours[0], Vec2::zeros());

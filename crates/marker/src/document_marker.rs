@@ -1,4 +1,4 @@
-//! A marker of the document with its pieces where they lie: quick check, search, files.
+//! A marker of the document with its placed pieces: quick check, search, files.
 
 use crate::ordered::MarkerPieces;
 use crate::progress::{SearchProgress, SearchWatcher};
@@ -10,15 +10,15 @@ use toile_geometry::Polygon;
 use toile_nesting::{Item, Locked, Pose, Search, Side, Strip, Unplaced, clashes};
 use toile_pattern::{Marker, OrderedPiece, PiecePlacement};
 
-/// A marker of a document with its pieces where they lie.
+/// A marker of a document with its placed pieces.
 pub struct DocumentMarker {
     marker: Arc<Marker>,
     pieces: Arc<MarkerPieces>,
-    /// Which of its rolls is shown, from 0.
+    /// Index of the displayed roll, from 0.
     roll: usize,
-    /// The placements on that; pieces that wait are listed as unplaced.
+    /// The placements on the displayed roll; pieces still to be laid are listed as unplaced.
     laid: toile_nesting::Marker,
-    /// The placement of the document that each of these is.
+    /// For each placement in `laid`, its index among the placements of the document.
     sources: Vec<usize>,
     suspended: Vec<OrderedPiece>,
 }
@@ -26,26 +26,27 @@ pub struct DocumentMarker {
 /// A piece on a marker.
 #[derive(Clone, Copy, Debug)]
 pub struct LaidPiece<'a> {
-    /// Which it is.
+    /// Identity of the piece in the order.
     pub piece: OrderedPiece,
-    /// Name to write on it.
+    /// Name written on the piece.
     pub name: &'a str,
-    /// What is drawn on it, in its own plane; on the fold of the fabric the half that is laid.
+    /// Drawing of the piece, in the piece's own plane; for a piece on the fold of the fabric only the half
+    /// that is laid.
     pub cut: &'a Arc<CutPiece>,
-    /// Marker from piece.
+    /// Transform from the piece to the marker.
     pub pose: Pose,
-    /// Whether it is locked.
+    /// Whether the piece is locked.
     pub locked: bool,
 }
 
-/// A piece of the order that is not laid.
+/// A piece of the order that is not laid yet.
 #[derive(Clone, Copy, Debug)]
 pub struct WaitingPiece<'a> {
-    /// Which it is.
+    /// Identity of the piece in the order.
     pub piece: OrderedPiece,
-    /// Name to write on it.
+    /// Name written on the piece.
     pub name: &'a str,
-    /// What is drawn on it, in its own plane.
+    /// Drawing of the piece, in the piece's own plane.
     pub cut: &'a Arc<CutPiece>,
 }
 
@@ -54,18 +55,18 @@ pub struct WaitingPiece<'a> {
 pub struct PieceOverlap {
     /// The pieces.
     pub pieces: [OrderedPiece; 2],
-    /// Where they overlap, in the plane of the fabric (m).
+    /// Region of the overlap, in the plane of the fabric (m).
     pub region: Vec<Polygon>,
 }
 
-/// A piece that reaches beyond the usable fabric.
+/// A piece that extends beyond the usable fabric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PieceOutside {
     /// The piece.
     pub piece: OrderedPiece,
-    /// Where.
+    /// Side of the fabric at which it extends beyond.
     pub side: Side,
-    /// By how much (m).
+    /// Distance by which it extends beyond (m).
     pub by: f64,
 }
 
@@ -74,40 +75,40 @@ pub struct PieceOutside {
 pub struct MarkerState {
     /// Pairs of pieces that overlap.
     pub overlaps: Vec<PieceOverlap>,
-    /// Pieces that reach beyond the usable fabric.
+    /// Pieces that extend beyond the usable fabric.
     pub outside: Vec<PieceOutside>,
-    /// Pieces laid.
+    /// Number of pieces laid.
     pub laid: usize,
-    /// Pieces that wait to be laid.
+    /// Number of pieces still to be laid.
     pub waiting: usize,
-    /// Fabric used, end margins included (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins, 0..=1; more where they
-    /// overlap.
+    /// Area of the pieces divided by width times length between the end margins (0 to 1, more if pieces
+    /// overlap).
     pub efficiency: f64,
-    /// Area of the pieces over width times length, 0..=1; more where they overlap.
+    /// Area of the pieces divided by width times length (0 to 1, more if pieces overlap).
     pub utilisation: f64,
-    /// Price of the fabric, all plies together, if a metre's is known.
+    /// Price of the fabric for all plies, if the price per metre is known.
     pub cost: Option<f64>,
 }
 
 /// The layout that a search starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
-    /// Only the locked pieces.
+    /// Only the locked pieces; all others are placed anew.
     #[default]
     Anew,
-    /// What lies on the marker: pieces that wait are added, overlaps taken apart. Where all lies
-    /// well the marker gets no longer.
+    /// The current layout: unplaced pieces are added and overlaps resolved. If the layout is complete and
+    /// valid, the marker does not get longer.
     AsItLies,
 }
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Where the pieces lie, for `plan::place_marker`.
+    /// Placements found, for `plan::place_marker`.
     pub placements: Vec<PiecePlacement>,
-    /// The marker in a few numbers, that of each roll.
+    /// Summary of the marker on each roll.
     pub summaries: Vec<MarkerSummary>,
 }
 
@@ -117,7 +118,7 @@ impl DocumentMarker {
         Self::on_roll(marker, pieces, 0)
     }
 
-    /// A marker with its pieces as they lie on one of its rolls, counted from 0; on the last where there are not so many.
+    /// A marker with the pieces on one of its rolls, counted from 0; the last roll if there are fewer.
     pub fn on_roll(marker: Arc<Marker>, pieces: Arc<MarkerPieces>, roll: usize) -> Self {
         let rolls = pieces.rolls().count();
         let roll = roll.min(rolls.saturating_sub(1));
@@ -143,7 +144,7 @@ impl DocumentMarker {
         }
         for (item, copies) in pieces.keys.iter().enumerate() {
             for (key, copy) in copies.iter().zip(0..) {
-                // What lies on a roll that is gone waits, too.
+                // Pieces on a roll that no longer exists are unplaced, too.
                 let placed = marker.placement(*key);
                 if placed.is_none_or(|placed| usize::from(placed.roll) >= rolls) {
                     laid.unplaced.push(Unplaced {
@@ -170,22 +171,22 @@ impl DocumentMarker {
         &self.marker
     }
 
-    /// Names of the rolls it is laid on, in their order; one without a name where there are none.
+    /// Names of the rolls in order; a single `None` if no rolls are defined.
     pub fn rolls(&self) -> impl Iterator<Item = Option<&str>> {
         self.pieces.rolls()
     }
 
-    /// The roll that is shown, from 0.
+    /// Index of the displayed roll, from 0.
     pub fn roll(&self) -> usize {
         self.roll
     }
 
-    /// The fabric as it lies: the roll that is shown.
+    /// The spread fabric of the displayed roll.
     pub fn strip(&self) -> &Strip {
         self.pieces.strip(self.roll)
     }
 
-    /// The pieces that are laid, in the order of the document.
+    /// The laid pieces, in the order of the document.
     pub fn laid(&self) -> impl Iterator<Item = LaidPiece<'_>> {
         let placed = self.laid.placements.iter().zip(&self.sources);
         placed.map(|(placement, &source)| {
@@ -202,7 +203,7 @@ impl DocumentMarker {
         })
     }
 
-    /// The pieces of the order that are not laid.
+    /// The pieces of the order that are not laid yet.
     pub fn waiting(&self) -> impl Iterator<Item = WaitingPiece<'_>> {
         self.laid.unplaced.iter().map(|unplaced| {
             let job = &self.pieces.job;
@@ -214,8 +215,8 @@ impl DocumentMarker {
         })
     }
 
-    /// Pieces with a place that are not laid now: their panel or size is gone, the order does not
-    /// cut them, or they are cut together with another.
+    /// Placed pieces that are not shown now: their panel or size was deleted, the order does not include
+    /// them, or they are cut together with another piece.
     pub fn suspended(&self) -> &[OrderedPiece] {
         &self.suspended
     }
@@ -225,8 +226,8 @@ impl DocumentMarker {
         &self.pieces.job.notes
     }
 
-    /// Overlaps and pieces off the fabric as all lies now, with length, efficiency and cost: quick
-    /// enough to be asked at every move.
+    /// Overlaps, pieces beyond the fabric, length, efficiency and cost of the current layout: fast enough to
+    /// be called at every move.
     pub fn state(&self) -> MarkerState {
         let job = &self.pieces.job;
         let found = clashes(&job.items, self.strip(), &self.laid);
@@ -252,7 +253,7 @@ impl DocumentMarker {
         }
     }
 
-    /// The marker as it lies, judged by all rules, to be drawn and written.
+    /// The current marker with the full check of all rules, to be drawn and written.
     pub fn finished(&self) -> FinishedMarker {
         let mut laid = self.laid.clone();
         let waiting = laid.unplaced.len();
@@ -262,7 +263,7 @@ impl DocumentMarker {
         finished
     }
 
-    /// What lies on other rolls.
+    /// The pieces that lie on other rolls.
     fn elsewhere(&self) -> impl Iterator<Item = Unplaced> {
         let rolls = self.rolls().count();
         let others = self.marker.placements.iter().filter_map(move |placed| {
@@ -277,8 +278,8 @@ impl DocumentMarker {
         })
     }
 
-    /// The same of every roll on which something lies, or of the first where nothing lies. What lies on none is missing
-    /// on the last of them.
+    /// The finished marker of every roll with pieces, or of the first roll if there are no pieces. Pieces
+    /// that lie on no roll are listed as missing on the last of these markers.
     pub fn finished_rolls(&self) -> Vec<FinishedMarker> {
         let rolls = 0..self.rolls().count();
         let each = rolls.map(|roll| Self::on_roll(self.marker.clone(), self.pieces.clone(), roll));
@@ -293,11 +294,11 @@ impl DocumentMarker {
         finished
     }
 
-    /// Lays the pieces in little length. Locked pieces stay where they are.
+    /// Searches for a short layout of the pieces. Locked pieces stay in place.
     ///
     /// # Errors
-    /// Pieces that cannot be laid, a locked one that cannot stay, in words; the search was stopped
-    /// before anything was found.
+    /// Pieces that cannot be laid or a locked piece that cannot stay, in words; the search was stopped before
+    /// it found a layout.
     pub fn search(
         &self,
         (start, search): (Start, Search),
@@ -318,7 +319,7 @@ impl DocumentMarker {
                 });
             }
         }
-        // Where nothing lies but what is locked, both ways begin alike.
+        // If only locked pieces are laid, both kinds of start are the same.
         let is_free = |&source: &usize| !self.marker.placements[source].locked;
         let goes_on = start == Start::AsItLies && self.sources.iter().any(is_free);
         let from = goes_on.then_some(&self.laid);
@@ -336,7 +337,7 @@ impl DocumentMarker {
         Ok(found(placements, &[finished], is_stopped))
     }
 
-    /// Lays the pieces on the rolls anew, one after another.
+    /// Places all pieces anew, roll after roll.
     fn search_on_rolls(
         &self,
         (start, search): (Start, Search),
@@ -377,7 +378,7 @@ impl DocumentMarker {
         Ok(found(placements, &finished, is_stopped))
     }
 
-    /// The marker as a search has it meanwhile, by its progress.
+    /// The intermediate marker of a running search, from its progress.
     pub fn under_way(&self, found: &toile_nesting::Marker) -> Self {
         let marker = Marker {
             placements: self.placements_of(found),
@@ -386,7 +387,7 @@ impl DocumentMarker {
         Self::on_roll(Arc::new(marker), self.pieces.clone(), self.roll)
     }
 
-    /// Where the pieces of the document lie on a marker that was found.
+    /// Placements of the document's pieces on a marker that was found.
     fn placements_of(&self, found: &toile_nesting::Marker) -> Vec<PiecePlacement> {
         let each = found.placements.iter().map(|placement| {
             let piece = self.pieces.keys[placement.item][placement.copy as usize];
@@ -403,7 +404,7 @@ impl DocumentMarker {
         each.collect()
     }
 
-    /// The pieces that are laid, each as the search takes it and its outline on the fabric (m).
+    /// The laid pieces, each with its item and its outline on the fabric (m).
     pub(crate) fn outlines(&self) -> impl Iterator<Item = (OrderedPiece, &Item, Polygon)> {
         let placed = self.laid.placements.iter().zip(&self.sources);
         placed.map(|(placement, &source)| {
@@ -414,7 +415,7 @@ impl DocumentMarker {
     }
 }
 
-/// The result of a search, and what is said where it was stopped.
+/// The result of a search, with a note if the search was stopped early.
 fn found(placements: Vec<PiecePlacement>, finished: &[FinishedMarker], is_stopped: bool) -> Found {
     let mut summaries: Vec<MarkerSummary> = finished.iter().map(FinishedMarker::summary).collect();
     if is_stopped {

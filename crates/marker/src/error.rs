@@ -1,35 +1,35 @@
-//! Why a marker could not be made.
+//! Errors of making, drawing and writing markers.
 
 use toile_interchange::FormatError;
 use toile_nesting::NestingError;
 
-/// Why a marker was not made, drawn or written.
+/// The reason why a marker was not made, drawn or written.
 #[derive(Debug, thiserror::Error)]
 pub enum MarkerError {
     /// The pieces cannot be laid.
     #[error("marker: {0}")]
     Nesting(NestingError),
-    /// A choice names something that is not there.
+    /// An option names something that does not exist.
     #[error("there is no {kind} {name:?}; {hint}")]
     Unknown {
-        /// What kind of thing, as in "fabric".
+        /// Kind of the thing, as in "fabric".
         kind: &'static str,
-        /// The name given.
+        /// Name that was given.
         name: String,
-        /// What there is instead.
+        /// The names that exist.
         hint: String,
     },
-    /// Things asked for that do not go together.
+    /// Options that contradict each other.
     #[error("{0}")]
     Conflict(String),
-    /// A number given makes no sense.
+    /// A given number is out of range.
     #[error("{what} is {value}; {hint}")]
     Number {
-        /// What it is.
+        /// Meaning of the number.
         what: &'static str,
-        /// The value given.
+        /// Value that was given.
         value: f64,
-        /// What would be right.
+        /// The valid values.
         hint: &'static str,
     },
     /// A piece of a pattern has no cut line.
@@ -37,7 +37,7 @@ pub enum MarkerError {
     Piece {
         /// Name of the pattern.
         pattern: String,
-        /// The piece and what is wrong with it.
+        /// The piece and its fault.
         fault: String,
     },
     /// A marker cannot be written in a format.
@@ -45,7 +45,7 @@ pub enum MarkerError {
     Write {
         /// Name of the file.
         file: &'static str,
-        /// What is wrong.
+        /// The fault.
         error: FormatError,
     },
     /// The search was told to stop.
@@ -54,7 +54,7 @@ pub enum MarkerError {
 }
 
 impl MarkerError {
-    /// Whether what was given is at fault, and not the work on it.
+    /// Whether the input is at fault, not the processing.
     pub fn is_bad_input(&self) -> bool {
         !matches!(
             self,

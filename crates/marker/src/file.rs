@@ -1,4 +1,4 @@
-//! Writes markers as files, in every format asked for.
+//! Writes markers as files, in every requested format.
 
 use crate::{FinishedMarker, MarkerError};
 use toile_interchange::{
@@ -6,7 +6,7 @@ use toile_interchange::{
     write_marker_pdf, write_marker_report, write_marker_svg,
 };
 
-/// A file a marker is written as.
+/// A file format of markers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkerFormat {
     /// `marker.svg`: a drawing at true size.
@@ -21,13 +21,12 @@ pub enum MarkerFormat {
     Report,
     /// `marker.plt`: HPGL/2.
     Hpgl,
-    /// `marker-instance.json`: the pieces and the usable width as a nesting instance, for other
-    /// programs.
+    /// `marker-instance.json`: the pieces and the usable width as a nesting instance for other programs.
     Instance,
 }
 
-/// The files of markers: `marker.svg`, `marker.json` and others asked for, numbered from the second
-/// marker on. Returns for each marker what a format could not carry over.
+/// The files of markers: `marker.svg`, `marker.json` and the other requested formats, numbered from the
+/// second marker on. Returns for each marker the properties that a format could not hold.
 ///
 /// # Errors
 /// A marker that a format cannot hold.
@@ -37,7 +36,7 @@ pub fn marker_files(
     files: &mut Vec<(String, Vec<u8>)>,
 ) -> Result<Vec<Vec<String>>, MarkerError> {
     let mut lost = vec![Vec::new(); finished_markers.len()];
-    // In other formats letters are codes, and the reader's fonts draw them.
+    // The other formats store characters as codes, and the reader's fonts draw them.
     let drawn = [MarkerFormat::Pdf, MarkerFormat::Hpgl, MarkerFormat::Report];
     let draws_letters = formats.iter().any(|format| drawn.contains(format));
     for (k, finished) in finished_markers.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Checks a marker file as it stands, also after somebody edited it.
+//! Checks a marker file as it is, even after manual edits.
 
 use crate::MarkerSummary;
 use std::collections::BTreeMap;
@@ -8,18 +8,18 @@ use toile_geometry::{Polygon, Vec2, total_area};
 use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece};
 use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Violation, judge};
 
-/// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap
-/// by so much (m).
+/// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap by this much
+/// (m).
 const ROUNDING: f64 = 3e-6;
 
-/// Most that a grain may lie off the warp on fabric with a nap (rad): what lies farther off does
-/// not run along it.
+/// Largest deviation of a grain from the warp on fabric with a nap (rad): a piece beyond it does not run
+/// along the warp at all.
 const MAX_TILT: f64 = FRAC_PI_4;
 
 /// The result of a check of a marker file.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// The marker in a few numbers.
+    /// Summary of the marker.
     pub summary: MarkerSummary,
     /// Faults in words; empty if the marker can be cut.
     pub faults: Vec<String>,
@@ -27,8 +27,8 @@ pub struct Judged {
     pub drawing: MarkerDrawing,
 }
 
-/// Judges a marker by its own outlines: overlaps, gaps, margins, nap of each garment, print, flaws.
-/// What only the pattern knows (tilt allowed, folds, pairs, locks) is not judged.
+/// Checks a marker by the outlines in its file: overlaps, gaps, margins, nap of each garment, print, flaws.
+/// Rules known only to the pattern (allowed tilt, folds, pairs, locks) are not checked.
 pub fn judge_file(file: &MarkerFile) -> Judged {
     let items = items_of(file);
     let mut marker = file.marker();
@@ -77,7 +77,7 @@ pub fn judge_file(file: &MarkerFile) -> Judged {
     }
 }
 
-/// Every piece as an item of its own, back in its own plane.
+/// Every piece as an item of its own, transformed back to its own plane.
 fn items_of(file: &MarkerFile) -> Vec<Item> {
     let has_nap = file.strip().nap != Nap::None;
     let item = |piece: &toile_interchange::MarkerFilePiece| {
@@ -159,7 +159,7 @@ fn drawing_of(
     }
 }
 
-/// Whether a violation may come of the rounding of the file.
+/// Whether a violation may be due to rounding in the file.
 fn within_rounding(violation: &Violation) -> bool {
     match violation {
         Violation::Overlap { depth, .. } => *depth < ROUNDING,

@@ -1,4 +1,4 @@
-//! A finished marker with its verdict, and the summary, drawing and file made of it.
+//! A finished marker with its verdict, and the summary, drawing and file made from it.
 
 use crate::MarkerSummary;
 use std::sync::Arc;
@@ -8,14 +8,14 @@ use toile_interchange::{
 };
 use toile_nesting::{Item, Marker, Strip, Verdict};
 
-/// A marker made, with everything a drawing of it needs.
+/// A finished marker, with everything needed to draw it.
 #[derive(Clone, Debug)]
 pub struct FinishedMarker {
     /// Name of the fabric.
     pub fabric: String,
-    /// Pieces by their cut outline.
+    /// Items with the cut outlines of the pieces.
     pub items: Vec<Item>,
-    /// Their drawings, in the order of the items.
+    /// Drawings of the pieces, in the order of the items.
     pub pieces: Vec<Arc<CutPiece>>,
     /// The fabric.
     pub strip: Strip,
@@ -23,18 +23,18 @@ pub struct FinishedMarker {
     pub marker: Marker,
     /// The verdict of the referee.
     pub verdict: Verdict,
-    /// Copies that lie on no marker of this fabric, by the items and copies of the whole fabric.
+    /// Copies that lie on no marker of the fabric, by item and copy of the whole fabric.
     pub missing: Vec<MarkerFileUnplaced>,
-    /// Which of the rolls of its fabric it lies on, from 0.
+    /// Index of the roll among those of the fabric, from 0.
     pub roll: usize,
-    /// On a roll: of each item, its index among those of the whole fabric, and its copies there.
+    /// For a roll: for each item, its index among the items of the whole fabric, and its copies there.
     pub sources: Option<Vec<(usize, Vec<u32>)>>,
     /// Roll, plies, price and notes.
     pub facts: MarkerFacts,
 }
 
 impl FinishedMarker {
-    /// A few numbers.
+    /// Summary of the marker.
     pub fn summary(&self) -> MarkerSummary {
         let yardage = self.marker.length * f64::from(self.facts.plies);
         MarkerSummary {
@@ -57,7 +57,7 @@ impl FinishedMarker {
         }
     }
 
-    /// Faults that keep it from being cut, in words.
+    /// Faults of the marker that forbid cutting it, in words.
     pub fn faults(&self) -> Vec<String> {
         let name = |k: usize| {
             let laid = &self.marker.placements[k];
@@ -69,7 +69,7 @@ impl FinishedMarker {
             .collect()
     }
 
-    /// Area of the pieces that were laid, seam allowance included (m2).
+    /// Area of the laid pieces, seam allowance included (m2).
     pub fn cut_area(&self) -> f64 {
         let area = |p: &toile_nesting::Placement| self.items[p.item].outline.area().abs();
         self.marker.placements.iter().map(area).sum()
@@ -122,14 +122,14 @@ impl FinishedMarker {
         }
     }
 
-    /// The item and the copy of the whole fabric that an item and a copy of this marker are.
+    /// Item and copy of the whole fabric for an item and a copy of this marker.
     pub(crate) fn of_fabric(&self, item: usize, copy: u32) -> (usize, u32) {
         let source = self.sources.as_ref().and_then(|s| s.get(item));
         let own = source.and_then(|(item, copies)| Some((*item, *copies.get(copy as usize)?)));
         own.unwrap_or((item, copy))
     }
 
-    /// Names of the copies that lie nowhere, and why.
+    /// Names of the copies that could not be placed, each with the reason.
     fn reasons(&self) -> Vec<[String; 2]> {
         let reason = |u: &MarkerFileUnplaced| [u.name.clone(), u.reason.clone()];
         self.missing.iter().map(reason).collect()

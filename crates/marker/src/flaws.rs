@@ -1,23 +1,23 @@
-//! Flaws of the fabric: measured on it laid open, mapped to where they lie once it is spread.
+//! Flaws of the fabric: measured on the open fabric, mapped to their positions on the spread fabric.
 
 use crate::MarkerError;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_pattern::{Flaw, Spread};
 
-/// What a flaw may reach beyond the edge of the fabric and count as within (m).
+/// Tolerance by which a flaw may extend beyond the edge of the fabric (m).
 const ROUNDING: f64 = 1e-9;
 
 /// A flaw given on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenFlaw {
-    /// The fabric it is on; not needed where there is one only.
+    /// Name of the fabric with the flaw; not needed if there is only one fabric.
     pub fabric: Option<String>,
-    /// On the fabric laid open: x along the warp and y across of its corner, length and width (m).
+    /// Corner (x along the warp, y across it), length and width on the open fabric (m).
     pub place: [f64; 4],
 }
 
 impl GivenFlaw {
-    /// A flaw of the only fabric, from x, y, length and width (m).
+    /// A flaw of the only fabric, given by x, y, length and width (m).
     pub fn at(place: [f64; 4]) -> Self {
         Self {
             fabric: None,
@@ -25,7 +25,7 @@ impl GivenFlaw {
         }
     }
 
-    /// The flaw.
+    /// The flaw without the name of its fabric.
     pub(crate) fn flaw(&self) -> Flaw {
         let [x, y, length, width] = self.place;
         Flaw {
@@ -41,7 +41,8 @@ impl GivenFlaw {
     }
 }
 
-/// A flaw that names no fabric where there are several, or one nothing is cut from, is a mistake.
+/// Refuses a flaw without fabric name if there are several fabrics, and one of a fabric that nothing is cut
+/// from.
 pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), MarkerError> {
     for flaw in flaws {
         match flaw.fabric.as_deref() {
@@ -65,8 +66,8 @@ pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), M
     Ok(())
 }
 
-/// The flaws of a fabric of a width laid open (m), in the plane of the fabric as it is spread. One
-/// across a fold lies on both sides of it.
+/// The flaws of a fabric with an open width (m), in the plane of the spread fabric. A flaw across a fold
+/// gives one on each layer.
 pub(crate) fn flaws_on(
     flaws: &[Flaw],
     (fabric, width): (&str, f64),
@@ -100,8 +101,8 @@ pub(crate) fn flaws_on(
     Ok(spread_flaws)
 }
 
-/// Where a span across the open fabric lies once that is spread (m). Folded, the middle of the
-/// fabric is the fold at 0 and the selvedges meet; a tube is measured round from its fold at 0.
+/// Positions on the spread fabric of a span across the open fabric (m). On folded fabric the middle of the
+/// open fabric is the fold, at 0, and the selvedges meet; a tube is measured round from its fold at 0.
 fn as_spread([low, high]: [f64; 2], width: f64, spread: Spread) -> Vec<[f64; 2]> {
     let middle = 0.5 * width;
     if matches!(spread, Spread::Open | Spread::FaceToFace) {
@@ -117,7 +118,7 @@ fn as_spread([low, high]: [f64; 2], width: f64, spread: Spread) -> Vec<[f64; 2]>
         (false, false) => [width - high, width - low],
     };
     if high <= middle || low >= middle {
-        // All on one side, or without any width, which the referee of the job refuses.
+        // All on one layer, or a span of zero width, which the job's check refuses.
         return vec![placed([low, high])];
     }
     vec![placed(lower), placed(upper)]

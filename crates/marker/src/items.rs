@@ -1,5 +1,4 @@
-//! The pieces of one fabric as the search takes them: cut outlines, copies, what may be done with
-//! them.
+//! The pieces of one fabric as items of the search: cut outlines, copies, allowed positions.
 
 use crate::marks::turned;
 use crate::matching::match_up;
@@ -17,10 +16,10 @@ use toile_nesting::{
 };
 use toile_pattern::Spread;
 
-/// Items, of each which piece to cut it is and its drawing, and notes for the cutter.
+/// Items; for each its index among the pieces to cut and its drawing; notes for the cutter.
 type Items = (Vec<Item>, Vec<(usize, Arc<CutPiece>)>, Vec<String>);
 
-/// The pieces of one fabric as they are laid on it.
+/// The pieces of one fabric as items to lay on it.
 pub(crate) fn items_on(
     to_cut: &[PieceToCut],
     plan: &FabricPlan,
@@ -30,7 +29,7 @@ pub(crate) fn items_on(
     let mut drawn = Vec::new();
     let mut notes: Vec<String> = Vec::new();
     for note in to_cut.iter().flat_map(|to_cut| &to_cut.notes) {
-        // Garments that are matched each in itself have the same pieces again.
+        // Garments that are matched separately repeat the notes of the same pieces.
         if !notes.contains(note) {
             notes.push(note.clone());
         }
@@ -80,7 +79,7 @@ pub(crate) fn items_on(
     Ok((items, drawn, notes))
 }
 
-/// What is said where pieces have holes: a search lays nothing into them.
+/// A note about pieces with holes, since a search lays nothing into them.
 fn holes_left(items: &[Item]) -> Option<String> {
     let holed = items.iter().filter(|item| !item.outline.holes.is_empty());
     let mut names: Vec<&str> = holed.map(|item| &*item.name).collect();
@@ -91,8 +90,9 @@ fn holes_left(items: &[Item]) -> Option<String> {
     })
 }
 
-/// Lays a piece half as often, or as often if one of two is the wrong way round; how many more come
-/// out than are needed. Where each garment runs one way, two at once belong to one garment.
+/// Adapts a piece that is cut twice at each placement: half as many placements, or all of them if one of the
+/// two cuts is mirrored wrongly (`spare`). Returns the number of surplus cuts. If the pieces of each garment
+/// must point one way, both cuts belong to one garment.
 fn two_at_once(item: &mut Item, spare: bool, each_alone: bool) -> u32 {
     let count = item.quantity;
     item.allowed.mirror = Mirror::Free;
@@ -111,17 +111,17 @@ fn two_at_once(item: &mut Item, spare: bool, each_alone: bool) -> u32 {
     2 * item.quantity - count
 }
 
-/// The role of a piece on fabric of several layers.
+/// The role of a piece on fabric with two layers.
 enum Role {
     /// Cut as it is laid.
     Alone,
-    /// Either way up.
+    /// One of a pair, laid either face up or face down.
     Paired,
-    /// Cut together with its mirror image, which is laid instead.
+    /// Cut together with its mirror image, which is laid instead of it.
     Twin,
-    /// Half of it on the fold.
+    /// Half of the piece is laid on the fold.
     Half(HalfPlane),
-    /// Each placement gives two; `spare` if one of them is the wrong way round.
+    /// Each placement gives two pieces; with `spare`, one of them is mirrored wrongly.
     Two { spare: bool },
 }
 
@@ -174,11 +174,11 @@ fn roles(to_cut: &[PieceToCut], plan: &FabricPlan) -> Result<Vec<Role>, MarkerEr
         .collect())
 }
 
-/// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
+/// The item of a piece: cut outline, grain, allowed positions, and the point that must match the print.
 fn item_of(to_cut: &PieceToCut, print: bool, (plan, options): (&FabricPlan, &NestOptions)) -> Item {
     let (piece, settings) = (&to_cut.cut, &to_cut.settings);
     let outline = piece.polygon();
-    // Back to the grain's own axes: the hem lies where the grain starts.
+    // Rotated to the axes of the grain: the hem lies at the start of the grain.
     let bounds = outline.rotated(-piece.grain).bounds();
     let hem = turned(Vec2::new(bounds.min.x, bounds.centre().y), piece.grain);
     let turns = match &settings.rule.turns {
@@ -218,7 +218,7 @@ fn item_of(to_cut: &PieceToCut, print: bool, (plan, options): (&FabricPlan, &Nes
     }
 }
 
-/// Half of a piece, for the fold.
+/// Half of a piece, to be laid on the fold.
 fn halved(mut item: Item, piece: &CutPiece, half: HalfPlane) -> (Item, Arc<CutPiece>) {
     let drawn = piece.halved(&half);
     item.outline = drawn.polygon();

@@ -19,7 +19,7 @@ use toile_nesting::{
 };
 use toile_pattern::{DisplayUnit, Fabric, OrderedPiece, SizeId, Spread};
 
-/// Receives the progress of the search on one fabric; returns whether to go on.
+/// Receives the progress of the search on one fabric; returns whether to continue.
 type Report<'a> = &'a mut dyn FnMut(SearchProgress) -> bool;
 
 /// The pieces to lay on one fabric, with its rolls.
@@ -28,12 +28,12 @@ pub(crate) struct FabricJob {
     plan: FabricPlan,
     pub items: Vec<Item>,
     pub pieces: Vec<Arc<CutPiece>>,
-    /// Of each item, the number of its first copy among those of its panel.
+    /// For each item, the number of its first copy among the copies of its panel.
     first_copies: Vec<u32>,
     pub notes: Vec<String>,
-    /// The unit numbers are shown in.
+    /// The unit of displayed lengths.
     unit: DisplayUnit,
-    /// The marker to start from.
+    /// The marker that the search starts from.
     start: Option<Marker>,
 }
 
@@ -76,7 +76,7 @@ impl FabricJob {
         })
     }
 
-    /// All markers of the fabric. Stops when the flag is set or `report` returns false.
+    /// Makes all markers of the fabric. Stops if the flag is set or `report` returns false.
     pub fn lay(
         &self,
         options: &NestOptions,
@@ -90,7 +90,7 @@ impl FabricJob {
         Ok(vec![self.whole(marker, 0)])
     }
 
-    /// The items, some of them locked, on the only roll: anew, or from a start.
+    /// Lays the items, some of them locked, on the only roll: from scratch, or from a start.
     pub fn made(
         &self,
         (items, start): (&[Item], Option<&Marker>),
@@ -120,7 +120,7 @@ impl FabricJob {
         }
     }
 
-    /// A marker of all pieces on a roll.
+    /// The finished marker with all pieces on one roll.
     pub fn whole(&self, marker: Marker, roll: usize) -> FinishedMarker {
         let missing = named(&self.items, &marker.unplaced);
         let of = (self.items.clone(), self.pieces.clone());
@@ -130,33 +130,34 @@ impl FabricJob {
         }
     }
 
-    /// A roll as it lies.
+    /// The spread fabric of a roll.
     pub fn strip(&self, roll: usize) -> &Strip {
         &self.plan.rolls[roll].strip
     }
 
-    /// All rolls as they lie.
+    /// The spread fabrics of all rolls.
     pub fn strips(&self) -> impl Iterator<Item = &Strip> {
         self.plan.rolls.iter().map(|roll| &roll.strip)
     }
 
-    /// Names of the rolls; one without a name where there are none.
+    /// Names of the rolls; a single `None` if no rolls are defined.
     pub fn roll_names(&self) -> impl Iterator<Item = Option<&str>> {
         self.plan.rolls.iter().map(|roll| roll.name.as_deref())
     }
 
-    /// Whether rolls were given, so that pieces may be left over.
+    /// Whether rolls were given, so that some pieces may not fit.
     pub fn is_on_rolls(&self) -> bool {
         self.plan.rolled
     }
 
-    /// Price of a length of a roll (m), all plies together, if a metre's is known.
+    /// Price of a length of a roll (m) for all plies, if the price per metre is known.
     pub fn cost(&self, length: f64, roll: usize) -> Option<f64> {
         let price = self.plan.rolls[roll].price_per_metre;
         price.map(|price| price * length * f64::from(self.plan.plies))
     }
 
-    /// Which piece of an order each copy of each item is. The order is that of the garments laid.
+    /// For each copy of each item, its piece in the order. `order` lists the garments in the order they were
+    /// laid.
     pub fn keys(&self, order: &[(Option<SizeId>, u32)]) -> Vec<Vec<OrderedPiece>> {
         let garments: Vec<(Option<SizeId>, u32)> = order
             .iter()
@@ -164,7 +165,7 @@ impl FabricJob {
             .collect();
         let items = self.items.iter().zip(&self.pieces).zip(&self.first_copies);
         let keys = items.map(|((item, piece), first_copy)| {
-            // Several copies of a garment's piece are numbered on.
+            // Further copies within one garment get consecutive numbers.
             let mut seen: HashMap<u32, u32> = HashMap::new();
             let mut own = Vec::with_capacity(item.bundles.len());
             for bundle in &item.bundles {
@@ -185,7 +186,7 @@ impl FabricJob {
         keys.collect()
     }
 
-    /// How far a search is. On rolls nothing is known of the whole before the end.
+    /// Progress of a search. On rolls the total length is unknown until the end.
     fn progress(&self, progress: Progress) -> SearchProgress {
         let length = Some(progress.length).filter(|length| length.is_finite());
         let whole = length.filter(|_| !self.plan.rolled);
@@ -204,7 +205,7 @@ impl FabricJob {
         }
     }
 
-    /// All pieces on the rolls, one after another.
+    /// Lays all pieces on the rolls, one roll after the other.
     pub fn lay_on_rolls(
         &self,
         search: Search,
@@ -275,7 +276,7 @@ impl FabricJob {
     }
 }
 
-/// Copies that found no place, by name.
+/// Copies that could not be placed, with their names.
 fn named(items: &[Item], unplaced: &[toile_nesting::Unplaced]) -> Vec<MarkerFileUnplaced> {
     let name = |u: &toile_nesting::Unplaced| MarkerFileUnplaced {
         name: items[u.item].name.clone(),

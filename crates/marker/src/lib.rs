@@ -1,8 +1,8 @@
-//! Markers of patterns: pieces of drafts as they are cut, laid on fabric by the rules of the trade.
+//! Markers of patterns: the cut pieces of drafts, laid on fabric by the rules of the trade.
 //!
 //! [`lay`] makes markers of drafts, one for each fabric and roll; a [`FinishedMarker`] is one of them, with
-//! its summary, drawing and file. A [`DocumentMarker`] is a marker of a document with its pieces. Lengths in
-//! metres, x along the warp.
+//! its summary, drawing and file. A [`DocumentMarker`] is a marker of a document with its pieces. Lengths are
+//! in metres, x runs along the warp.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 

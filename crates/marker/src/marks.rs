@@ -1,10 +1,10 @@
-//! The marks of a pattern that lie on a print, by their names.
+//! Finds the marks of a pattern that must match a print, by their names.
 
 use crate::NestOptions;
 use toile_geometry::Vec2;
 use toile_pattern::{MarkRef, Notch, NotchId, Panel, PanelId, Pattern};
 
-/// The marks of a pattern: number of the set, panel and notch. Those that are not there are left out.
+/// The marks of a pattern: number of the set, panel and notch. Marks that do not exist are left out.
 pub(crate) fn resolve_marks(
     pattern: &Pattern,
     options: &NestOptions,

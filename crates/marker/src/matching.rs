@@ -1,9 +1,9 @@
-//! Marks of pieces that lie on the same place of a print, so that stripes and checks meet at seams.
+//! Matches marks of pieces to the same place of a print, so that stripes and checks meet at seams.
 //!
-//! An item has one match point in one set. Marks that share pieces are joined into one set: where
-//! piece i has mark m of a set and anchor a, piece j with mark m' of that set has the anchor
-//! a' = a - m + m', all in the grain's own axes. That holds if i and j lie the same way up, so
-//! pieces with several marks make their garment run one way.
+//! An item has one match point in one set. Sets of marks that share pieces are joined into one set: if piece
+//! i has mark m of a set and anchor a, then piece j with mark m' of that set has the anchor a' = a - m + m',
+//! in the axes of the grain. This holds only if i and j lie the same way up, so pieces with several marks
+//! make their garment run one way.
 
 use crate::MarkerError;
 use crate::marks::turned;
@@ -13,10 +13,10 @@ use std::collections::BTreeMap;
 use toile_geometry::Vec2;
 use toile_nesting::{Item, MatchPoint, Mirror, NestingError, Phase, Stripes};
 
-/// How far marks of one set may miss each other (m).
+/// Tolerance for marks of one set (m).
 const MISS: f64 = 1e-6;
 
-/// Gives every item with marks its match point. `order` gives the piece to cut of each item.
+/// Sets the match point of every item with marks. `order` gives the piece to cut of each item.
 pub(crate) fn match_up(
     items: &mut [Item],
     order: &[usize],
@@ -85,12 +85,12 @@ pub(crate) fn match_up(
     Ok(())
 }
 
-/// Whether pieces must lie the same way up because one has several marks.
+/// Whether pieces must lie the same way up because a piece has several marks.
 pub(crate) fn runs_one_way(to_cut: &[PieceToCut]) -> bool {
     to_cut.iter().any(|w| w.marks.len() > 1)
 }
 
-/// Whether an offset is no whole number of repeats.
+/// Whether an offset differs from a whole number of repeats.
 fn missed(apart: Vec2, stripes: &Stripes) -> bool {
     (0..2).any(|axis| {
         let repeat = stripes.repeat[axis];

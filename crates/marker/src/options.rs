@@ -1,5 +1,5 @@
-//! How markers are made: what was given on the command line, else in the settings, else the
-//! pattern's own, else usual.
+//! Options for making markers. Each value comes from the command line, else the settings, else the pattern,
+//! else a default.
 
 use crate::MarkerError;
 use crate::file::MarkerFormat;
@@ -13,35 +13,35 @@ use toile_pattern::{
     SizeSelection, Spread,
 };
 
-/// How markers are made. What is not given is the fabric's own, or usual.
+/// Options for making markers. A missing value is taken from the fabric, else a default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NestOptions {
-    /// Which sizes, and how many garments of each.
+    /// The sizes to cut, and the number of garments of each.
     pub sizes: SizeSelection,
-    /// How the fabrics are laid: what is given here comes before all else.
+    /// Settings of the fabric; values given here override all others.
     pub cloth: ClothSettings,
-    /// Flaws of fabrics laid open, beside those that are said elsewhere.
+    /// Flaws of the open fabrics, in addition to flaws given elsewhere.
     pub flaws: Vec<GivenFlaw>,
-    /// What is said by name of fabrics and pieces.
+    /// Settings by name of fabrics and pieces.
     pub settings: MarkerSettings,
-    /// The marker of the document that is laid: its cloth, rules and marks are those of its pattern, and settings by name
-    /// say nothing.
+    /// The document's marker that is laid. Fabric, rules and marks are then taken from it, and settings by
+    /// name have no effect.
     pub marker: Option<Arc<Marker>>,
-    /// Markers to go on from.
+    /// Existing markers that the search starts from.
     pub from: Vec<MarkerFile>,
-    /// Names of pieces that stay where those markers have them.
+    /// Names of pieces that keep the positions that they have on those markers.
     pub locked: Vec<String>,
-    /// Whether a search that the watcher stops ends with the best marker so far, not with an error.
+    /// Whether a search stopped by the watcher ends with the best marker so far instead of an error.
     pub keep_best: bool,
     /// Files to write.
     pub formats: Vec<MarkerFormat>,
-    /// When the search ends.
+    /// Limit at which the search ends.
     pub budget: Budget,
-    /// Searches side by side; 0 as usual.
+    /// Number of parallel searches; 0 for the default.
     pub islands: usize,
-    /// Threads; 0 for as many as the machine has.
+    /// Number of threads; 0 for as many as the machine has.
     pub threads: usize,
-    /// Start of the sequences of chance.
+    /// Seed of the random number generators.
     pub seed: u64,
 }
 
@@ -66,32 +66,32 @@ impl Default for NestOptions {
     }
 }
 
-/// One fabric as it is laid.
+/// The plan for laying one fabric.
 #[derive(Clone, Debug)]
 pub(crate) struct FabricPlan {
     pub spread: Spread,
     pub plies: u32,
-    /// How far the grain of a piece may lie off the warp where nothing else is said of it (rad).
+    /// Largest deviation of a piece's grain from the warp, unless the piece has its own limit (rad).
     pub tilt: f64,
-    /// Currency of prices.
+    /// Currency of the prices.
     pub currency: String,
-    /// What the pieces are laid on, one after another.
+    /// The rolls that pieces are laid on, one after the other.
     pub rolls: Vec<PlannedRoll>,
-    /// Whether rolls were given, so that pieces may be left over.
+    /// Whether rolls were given, so that some pieces may not fit.
     pub rolled: bool,
 }
 
 /// A roll to lay pieces on.
 #[derive(Clone, Debug)]
 pub(crate) struct PlannedRoll {
-    /// Its name, if there are several.
+    /// Name of the roll, if there are several.
     pub name: Option<String>,
     pub strip: Strip,
     pub price_per_metre: Option<f64>,
 }
 
 impl NestOptions {
-    /// How hard to search.
+    /// Parameters of the search.
     pub fn search(&self) -> Search {
         Search {
             budget: self.budget,
@@ -101,7 +101,8 @@ impl NestOptions {
         }
     }
 
-    /// What is asked of a piece: what its own rule leaves open is that of its panel's, then of all.
+    /// Settings of a piece. Gaps in its own settings are filled from those of its panel, then from those of
+    /// all pieces.
     pub(crate) fn piece(&self, pattern: &Pattern, piece: &Piece) -> PieceSettings {
         let Some(marker) = &self.marker else {
             let panel = pattern.panel(piece.id.panel);
@@ -134,7 +135,7 @@ impl NestOptions {
         }
     }
 
-    /// Whether marks lie on the same place of the print in every garment, so that each is laid in itself.
+    /// Whether marks must match the print in every garment, so that each garment is matched separately.
     pub(crate) fn matches_marks(&self) -> bool {
         match &self.marker {
             Some(marker) => !marker.matched.is_empty(),
@@ -142,7 +143,7 @@ impl NestOptions {
         }
     }
 
-    /// How a fabric is laid, by name; its own figures where nothing else is said.
+    /// The plan for laying a fabric given by name; missing values are taken from the fabric itself.
     pub(crate) fn plan(&self, name: &str, own: Option<&Fabric>) -> Result<FabricPlan, MarkerError> {
         let entry = |name: &str| self.settings.fabrics.get(name).cloned().unwrap_or_default();
         let below = match &self.marker {
@@ -211,7 +212,7 @@ impl NestOptions {
         })
     }
 
-    /// Refuses a width or length for all rolls where rolls have their own.
+    /// Refuses a width or length for all rolls if rolls have their own.
     fn check_rolls(&self, name: &str, rolls: &[Roll]) -> Result<(), MarkerError> {
         if self.cloth.rolls.is_some() {
             return Ok(());
@@ -229,7 +230,7 @@ impl NestOptions {
     }
 }
 
-/// One roll, with what it has of its own.
+/// Plan of one roll, with its own width, length and price.
 fn planned_roll(
     cloth: &LaidCloth,
     (number, roll): (usize, &Roll),
@@ -249,7 +250,7 @@ fn planned_roll(
     })
 }
 
-/// Fabric as it lies, with its flaws and some that are added.
+/// The spread fabric, with its own flaws and additional ones.
 fn strip(cloth: &LaidCloth, (name, added): (&str, &[Flaw])) -> Result<Strip, MarkerError> {
     let flaws: Vec<Flaw> = cloth.flaws.iter().chain(added).copied().collect();
     Ok(Strip {
@@ -276,7 +277,7 @@ fn strip(cloth: &LaidCloth, (name, added): (&str, &[Flaw])) -> Result<Strip, Mar
     })
 }
 
-/// Width of fabric as it lies, from its full width (m).
+/// Width of the spread fabric, from the full width (m).
 fn folded(width: f64, spread: Spread) -> f64 {
     match spread {
         Spread::Open | Spread::FaceToFace => width,

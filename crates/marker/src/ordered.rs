@@ -1,4 +1,4 @@
-//! The pieces that the order of a document's marker asks for, ready to be laid.
+//! The pieces that the order of a document's marker requires, ready to be laid.
 
 use crate::job::FabricJob;
 use crate::pieces::{Garments, pieces_to_cut};
@@ -10,32 +10,31 @@ use toile_pattern::{
     Draft, Fabric, GarmentCloth, Marker, OrderedPiece, OrderedSize, Pattern, SizeId,
 };
 
-/// A pattern drafted to the sizes of an order; nothing stands for the wearer's.
+/// Drafts of a pattern, one for each size of an order; `None` stands for the wearer's own measurements.
 pub type SizeDrafts = [(Option<SizeId>, Arc<Draft>)];
 
-/// The pieces that a marker of a document cuts, as they are cut and as its fabric lies. It stays the
-/// same while pieces are moved.
+/// The pieces that a marker of a document cuts, with outlines and spread fabric. They do not change while
+/// pieces are moved.
 pub struct MarkerPieces {
-    /// The marker they were made for, without placements.
+    /// The marker that the pieces were made for, without placements.
     marker: Arc<Marker>,
     fabric: Fabric,
-    /// What tells the wearer's pieces from those of sizes, where both are cut.
+    /// Label that distinguishes the wearer's pieces from those of sizes, if both are cut.
     whose: Option<String>,
     pub(crate) job: FabricJob,
-    /// Which piece of the order each copy of each item is.
+    /// For each copy of each item, its piece in the order.
     pub(crate) keys: Vec<Vec<OrderedPiece>>,
-    /// The item and copy of each piece.
+    /// Item and copy of each piece in the order.
     pub(crate) index: HashMap<OrderedPiece, (usize, u32)>,
 }
 
 impl MarkerPieces {
-    /// The pieces of a marker of a pattern on what its garment is cut from, by the drafts to the sizes of the
-    /// order; where sizes are cut with them, pieces of the wearer's carry the words that say whose they are. Sizes that
-    /// are gone are passed over.
+    /// The pieces of a pattern's marker on the garment's fabric, from drafts of the ordered sizes. If sizes
+    /// are cut with them, the pieces of the wearer carry the label `whose`. Deleted sizes are skipped.
     ///
     /// # Errors
-    /// The fabric is gone, a size was not drafted, nothing is cut from the fabric, a piece has no cut
-    /// line or cannot be cut from fabric so spread.
+    /// The fabric was deleted, a size was not drafted, nothing is cut from the fabric, a piece has no cut
+    /// line or cannot be cut from fabric with this spread.
     pub fn new(
         (pattern, garment): (&Pattern, &GarmentCloth),
         marker: &Marker,
@@ -98,7 +97,7 @@ impl MarkerPieces {
         })
     }
 
-    /// Whether these are to the bit the pieces and the fabric of others.
+    /// Whether pieces and fabric are identical to those of `other`, bit by bit.
     pub fn is_same(&self, other: &Self) -> bool {
         cut_alike(&self.marker, &other.marker)
             && self.whose == other.whose
@@ -107,18 +106,18 @@ impl MarkerPieces {
             && self.job.strips().eq(other.job.strips())
     }
 
-    /// Names of the rolls it is laid on, in their order; one without a name where there are none.
+    /// Names of the rolls in order; a single `None` if no rolls are defined.
     pub fn rolls(&self) -> impl Iterator<Item = Option<&str>> {
         self.job.roll_names()
     }
 
-    /// The fabric as it lies, of a roll.
+    /// The spread fabric of a roll.
     pub fn strip(&self, roll: usize) -> &Strip {
         self.job.strip(roll)
     }
 
-    /// Whether a marker of a pattern cuts the same pieces from fabric that lies alike, as long as the drafts are
-    /// the same.
+    /// Whether a marker of a pattern cuts the same pieces from equally spread fabric, provided that the
+    /// drafts are the same.
     pub fn serve(
         &self,
         (pattern, garment): (&Pattern, &GarmentCloth),
@@ -130,7 +129,7 @@ impl MarkerPieces {
     }
 }
 
-/// Whether two markers cut the same pieces from fabric that lies alike.
+/// Whether two markers cut the same pieces from equally spread fabric.
 fn cut_alike(one: &Marker, other: &Marker) -> bool {
     let settings = |marker: &Marker| Marker {
         placements: Vec::new(),
@@ -140,13 +139,13 @@ fn cut_alike(one: &Marker, other: &Marker) -> bool {
     settings(one) == settings(other)
 }
 
-/// Whose the wearer's pieces are, where an order cuts sizes beside them.
+/// Label of the wearer's pieces, if the order also contains sizes.
 fn told<'a>(order: &[OrderedSize], whose: &'a str) -> Option<&'a str> {
     let is_mixed = order.len() > 1 && order.iter().any(|one| one.size.is_none());
     is_mixed.then_some(whose)
 }
 
-/// The sizes of an order that are there, and how many garments of each.
+/// The sizes of an order that exist, with the number of garments of each.
 pub(crate) fn ordered(pattern: &Pattern, order: &[OrderedSize]) -> Vec<(Option<SizeId>, u32)> {
     let known = |id: SizeId| pattern.sizes.iter().any(|size| size.id == id);
     let there = order.iter().filter(|one| one.size.is_none_or(known));

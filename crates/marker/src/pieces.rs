@@ -1,4 +1,4 @@
-//! The pieces of drafts that are to be laid: what is cut, from which fabric, for which garments.
+//! The pieces of drafts that are to be laid, with their fabric and garments.
 
 use crate::marks::resolve_marks;
 use crate::{MarkerError, NestOptions};
@@ -14,11 +14,11 @@ use toile_pattern::{Diagnostic, DisplayUnit, Draft, Pattern, Piece};
 pub struct Garments<'a> {
     /// The pattern.
     pub pattern: &'a Pattern,
-    /// It drafted to a size.
+    /// The pattern drafted to a size.
     pub draft: &'a Draft,
-    /// How many.
+    /// Number of garments.
     pub count: u32,
-    /// Added to the names of its pieces to distinguish them from those of other drafts; a size, for example.
+    /// Label added to the names of the pieces to distinguish them from other drafts, such as a size.
     pub label: Option<&'a str>,
 }
 
@@ -26,25 +26,25 @@ pub struct Garments<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct PieceToCut {
     pub fabric: String,
-    /// Number of its first copy: of what is cut besides, counted on from those of the panel.
+    /// Number of the first copy; copies from additional fabrics are numbered after those of the panel.
     pub first_copy: u32,
     pub cut: Arc<CutPiece>,
     pub settings: PieceSettings,
-    /// Name for messages and on the marker.
+    /// Name on the marker and in messages.
     pub name: String,
     /// The garment of each copy.
     pub bundles: Vec<u32>,
-    /// Marks on the print: number of the set, and the point (m).
+    /// Marks to match with the print: number of the set, and the point (m).
     pub marks: Vec<(usize, Vec2)>,
-    /// The unit of its pattern.
+    /// Display unit of the pattern.
     pub unit: DisplayUnit,
-    /// Faults of its cut line, in words.
+    /// Faults of the cut line, in words.
     pub notes: Vec<String>,
 }
 
-/// Everything that is to be cut, in the order of the drafts. Where pieces are matched, every
-/// garment's pieces stand alone, as each garment is matched in itself. If a fabric is named, what
-/// is cut from it alone.
+/// All pieces to be cut, in the order of the drafts. If marks are matched, the pieces of every garment are
+/// listed separately, since each garment is matched separately. If a fabric is named, only pieces of that
+/// fabric.
 pub(crate) fn pieces_to_cut(
     garments: &[Garments<'_>],
     options: &NestOptions,
@@ -124,7 +124,7 @@ pub(crate) fn pieces_to_cut(
     Ok(all)
 }
 
-/// A piece of a draft with the block round it.
+/// A piece of a draft with its block.
 fn cut_piece(
     garment: &Garments<'_>,
     number: usize,
@@ -145,7 +145,7 @@ fn cut_piece(
     })
 }
 
-/// What the cutter should know in words, each with the label of its garment.
+/// Notes for the cutter in words, each with the label of its garment.
 fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
     let of = label.map_or_else(String::new, |label| format!("{label}: "));
     let words = |one: &Diagnostic| format!("{of}{}; {}", one.message, one.hint);
@@ -153,7 +153,7 @@ fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
     told.map(words).collect()
 }
 
-/// More pieces than can be laid at once are refused before any list of them is made.
+/// Refuses more pieces than can be laid at once, before any list of them is made.
 fn check_count(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), MarkerError> {
     let of = |garment: &Garments<'_>| {
         let each = |piece: &Piece| {
@@ -171,7 +171,7 @@ fn check_count(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), M
     }
 }
 
-/// Settings, locks and marks that name nothing are mistakes.
+/// Refuses settings, locks and marks with names that do not exist.
 fn check_piece_names(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), MarkerError> {
     let mut names: Vec<String> = Vec::new();
     let mut marks: Vec<String> = Vec::new();

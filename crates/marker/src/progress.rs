@@ -7,16 +7,16 @@ use toile_nesting::Marker;
 /// Progress of a search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SearchProgress {
-    /// Part of the work done, 0..=1.
+    /// Fraction of the work done (0 to 1).
     pub done: f64,
-    /// Length of the best marker so far (m); nothing before the first.
+    /// Length of the best marker so far (m); `None` before the first.
     pub length: Option<f64>,
-    /// Its efficiency if all pieces lie on it, 0..=1.
+    /// Efficiency of the best marker if all pieces lie on it (0 to 1).
     pub efficiency: Option<f64>,
-    /// Price of its fabric, all plies together, if a metre's is known.
+    /// Price of the fabric for all plies, if the price per metre is known.
     pub cost: Option<f64>,
-    /// The best marker so far, for [`DocumentMarker::under_way`](crate::DocumentMarker::under_way); nothing before
-    /// the first, and on rolls. It is the same where nothing is new.
+    /// The best marker so far, for [`DocumentMarker::under_way`](crate::DocumentMarker::under_way); `None`
+    /// before the first, and on rolls. The same `Arc` as before if there is no improvement.
     pub marker: Option<Arc<Marker>>,
 }
 
@@ -32,7 +32,7 @@ impl SearchProgress {
 
 /// Receives the progress of a search, and may stop it.
 pub struct SearchWatcher<'a> {
-    /// Called repeatedly with the progress; returns whether to go on.
+    /// Called repeatedly with the progress; returns whether to continue.
     pub report: &'a mut dyn FnMut(&SearchProgress) -> bool,
     /// A flag that any thread may set to stop the search.
     pub stop: Arc<AtomicBool>,

@@ -1,4 +1,4 @@
-//! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
+//! Makes markers of drafts: one for each fabric and each roll of it.
 
 use crate::finished_marker::FinishedMarker;
 use crate::flaws::check_given;
@@ -12,12 +12,12 @@ use toile_interchange::ANY_NAME;
 use toile_nesting::{Budget, NestingError};
 use toile_pattern::Fabric;
 
-/// Lays all pieces of one or more drafts, each fabric on its own markers, fabrics in the order in
+/// Lays all pieces of one or more drafts, each fabric on markers of its own. Fabrics come in the order in
 /// which pieces first name them.
 ///
 /// # Errors
-/// Something that cannot be laid, in words, before anything is searched for; the search was stopped
-/// and its best is not to be kept.
+/// Pieces or options that cannot be laid, in words, reported before the search begins; the search was stopped
+/// and its best marker is not to be kept.
 pub fn lay(
     garments: &[Garments<'_>],
     options: &NestOptions,
@@ -38,7 +38,7 @@ pub fn lay(
     check_given(&options.flaws, &names)?;
     let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
     check_names(&options.from, &options.locked)?;
-    // Everything is refused before anything is searched for.
+    // Every error in the input is reported before the search begins.
     let jobs: Vec<FabricJob> = groups
         .iter()
         .map(|(name, to_cut)| {
@@ -67,7 +67,7 @@ pub fn lay(
             return Err(MarkerError::Cancelled);
         }
         finished_markers.extend(match laid {
-            // Earlier fabrics are done: this one gets the first marker that is found.
+            // Earlier fabrics are done: this one gets the first marker found.
             Err(MarkerError::Cancelled) if !finished_markers.is_empty() => {
                 stopped = true;
                 let mut shortly = options.clone();
@@ -88,7 +88,7 @@ pub fn lay(
     Ok(finished_markers)
 }
 
-/// Settings of a fabric that nothing is cut from are a mistake.
+/// Refuses settings of a fabric that nothing is cut from.
 fn check_fabric_names(
     groups: &[(String, Vec<PieceToCut>)],
     options: &NestOptions,

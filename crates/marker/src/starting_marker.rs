@@ -1,10 +1,10 @@
-//! Starts a search from an existing marker: reads its places and locks.
+//! Starts a search from an existing marker: reads its placements and locks.
 
 use crate::MarkerError;
 use toile_interchange::MarkerFile;
 use toile_nesting::{Item, Locked, Marker, Placement, Strip, Unplaced};
 
-/// Refuses a name to lock that no marker gone on from has.
+/// Refuses a name to lock that is on none of the starting markers.
 pub(crate) fn check_names(starts: &[MarkerFile], locked: &[String]) -> Result<(), MarkerError> {
     let laid = || starts.iter().flat_map(|file| &file.pieces);
     let is_there = |name: &str| laid().any(|piece| piece.name == name);
@@ -23,8 +23,8 @@ pub(crate) fn check_names(starts: &[MarkerFile], locked: &[String]) -> Result<()
     }
 }
 
-/// The start on a fabric that has pieces of these names, if any: the one with the most, the first
-/// of equal ones. A file that names no fabric may be of any.
+/// The starting marker for a fabric: the one with the most pieces of these names, the first of equals, `None`
+/// if none has any. A file that names no fabric fits every fabric.
 pub(crate) fn start_of(
     starts: &[MarkerFile],
     fabric: &str,
@@ -42,7 +42,7 @@ pub(crate) fn start_of(
     best
 }
 
-/// A file's placements as those of items: by number and name, or by name alone.
+/// The placements of a file assigned to items: by number and name, or by name alone.
 fn start_from(file: &MarkerFile, items: &[Item], strip: &Strip) -> Marker {
     let mut marker = Marker::default();
     let mut left: Vec<Vec<u32>> = items.iter().map(|i| (0..i.quantity).collect()).collect();
@@ -73,7 +73,7 @@ fn start_from(file: &MarkerFile, items: &[Item], strip: &Strip) -> Marker {
     marker
 }
 
-/// A name to lock that no marker gone on from has on the fabric where the piece is laid.
+/// Refuses a name to lock if its piece is on no starting marker of its fabric.
 pub(crate) fn check_locks<'a>(
     items: impl Iterator<Item = &'a Item>,
     names: &[String],
@@ -90,7 +90,7 @@ pub(crate) fn check_locks<'a>(
     }
 }
 
-/// Locks the pieces of some names where a marker has them.
+/// Locks the pieces with certain names that lie on the starting marker.
 pub(crate) fn lock(items: &mut [Item], start: &Marker, names: &[String]) {
     for placement in &start.placements {
         let item = &mut items[placement.item];

@@ -7,34 +7,34 @@ use toile_pattern::DisplayUnit;
 pub struct MarkerSummary {
     /// Name of the fabric.
     pub fabric: String,
-    /// The roll it is cut from, if there are several.
+    /// The roll that the marker is cut from, if there are several.
     pub roll: Option<String>,
-    /// Pieces laid.
+    /// Number of pieces laid.
     pub pieces: usize,
-    /// Pieces that found no place on any marker of the fabric.
+    /// Number of pieces that lie on no marker of the fabric.
     pub unplaced: usize,
-    /// Their names, and why.
+    /// Names of the unplaced pieces, each with the reason.
     pub missing: Vec<[String; 2]>,
-    /// Fabric used (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
     /// Width of the fabric (m).
     pub width: f64,
-    /// Layers cut at once; a fold does not count.
+    /// Number of layers cut at once; the two layers of folded fabric count as one.
     pub plies: u32,
-    /// Fabric needed, all plies together (m).
+    /// Length of fabric needed for all plies together (m).
     pub yardage: f64,
-    /// Its price, if a metre's is known.
+    /// Price of the fabric, if the price per metre is known.
     pub cost: Option<f64>,
     /// Currency of the price.
     pub currency: String,
-    /// Area of the pieces over width times length between the end margins, 0..=1.
+    /// Area of the pieces divided by width times length between the end margins (0 to 1).
     pub efficiency: f64,
-    /// Area of the pieces over width times length, 0..=1.
+    /// Area of the pieces divided by width times length (0 to 1).
     pub utilisation: f64,
-    /// The unit numbers are shown in.
+    /// The unit of displayed lengths.
     pub unit: DisplayUnit,
     /// Notes for the cutter.
     pub notes: Vec<String>,
-    /// Whether the referee found no overlap and nothing outside the fabric.
+    /// Whether the check found no fault, so that the marker can be cut.
     pub sound: bool,
 }

@@ -23,7 +23,7 @@ fn check_outline(item: &Item) -> Option<ItemProblem> {
     };
     let found = item.outline.defects().iter().find_map(problem);
     if found == Some(ItemProblem::Empty) {
-        // A bow tie has no area either: where its lines cross is the better remedy.
+        // A bow tie has no net area either: the place of the crossing is the better remedy.
         let crossings = item.outline.crossings(16);
         let crossing = crossings.iter().find(|c| c.kind == CrossingKind::Cross);
         return crossing.map(|c| ItemProblem::Crosses(c.point)).or(found);
@@ -169,15 +169,15 @@ fn check_strip(strip: &Strip) -> Option<String> {
     None
 }
 
-/// Everything that keeps a job from being done.
+/// Refuses a job that cannot be done, with all its faults.
 pub(crate) fn check(items: &[Item], strip: &Strip) -> Result<(), NestingError> {
     check_numbered(items, strip, &|_, copy| copy)
 }
 
-/// The number by which a copy of an item is called.
+/// Function that gives the displayed number of a copy of an item.
 type Number<'a> = &'a dyn Fn(usize, u32) -> u32;
 
-/// The same, with copies called by other numbers.
+/// Does the same check, with other displayed numbers for copies.
 pub(crate) fn check_numbered(
     items: &[Item],
     strip: &Strip,
@@ -211,7 +211,7 @@ pub(crate) fn check_numbered(
     }
 }
 
-/// Locked copies as a marker of their own: what is wrong there can never be mended.
+/// Checks the locked copies as a marker of their own: a fault there cannot be repaired by the search.
 fn check_places(items: &[Item], strip: &Strip, number: Number<'_>) -> Vec<Refusal> {
     let placed = |(item, what): (usize, &Item)| {
         let place = move |lock: &crate::Locked| Placement {
@@ -261,7 +261,8 @@ fn check_places(items: &[Item], strip: &Strip, number: Number<'_>) -> Vec<Refusa
     refusals
 }
 
-/// A locked placement whose garment runs a way that another piece of it may not, and why.
+/// A locked placement that forces its garment to run in a direction that another piece of the garment may not
+/// take, with the reason.
 fn stranded(items: &[Item], strip: &Strip, marker: &Marker) -> Option<(usize, String)> {
     let mut ways: BTreeMap<u32, (usize, bool)> = BTreeMap::new();
     for (k, placement) in marker.placements.iter().enumerate() {

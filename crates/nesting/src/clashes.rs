@@ -1,24 +1,24 @@
-//! A quick check, for pieces moved by hand: which overlap, and which reach beyond the fabric.
+//! A quick check for pieces moved by hand: finds overlaps and pieces beyond the fabric.
 
 use crate::referee::sides;
 use crate::violation::beyond_limit;
 use crate::{Item, Marker, PENETRATION_LIMIT, Side, Strip};
 use toile_geometry::{Polygon, PreparedPolygon, intersection, total_area};
 
-/// Pieces that cannot be cut where they lie, with length and efficiency of the marker. Placements are named by
-/// their index in the marker.
+/// Pieces that cannot be cut in their positions, with length and efficiency of the marker. Placements are
+/// given by their index in the marker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clashes {
     /// Pairs of pieces that overlap.
     pub overlaps: Vec<Overlap>,
-    /// Pieces that reach beyond the usable fabric.
+    /// Pieces that extend beyond the usable fabric.
     pub outside: Vec<Outside>,
-    /// Fabric used, end margins included (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins, 0..=1; more where they
-    /// overlap.
+    /// Area of the pieces divided by width times length between the end margins (0 to 1, more if pieces
+    /// overlap).
     pub efficiency: f64,
-    /// Area of the pieces over width times length, 0..=1; more where they overlap.
+    /// Area of the pieces divided by width times length (0 to 1, more if pieces overlap).
     pub utilisation: f64,
 }
 
@@ -27,41 +27,41 @@ pub struct Clashes {
 pub struct Overlap {
     /// The placements, the lower index first.
     pub pair: [usize; 2],
-    /// Where they overlap, in the plane of the fabric (m).
+    /// Region of the overlap, in the plane of the fabric (m).
     pub region: Vec<Polygon>,
 }
 
-/// A piece that reaches beyond the usable fabric.
+/// A piece that extends beyond the usable fabric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outside {
     /// The placement.
     pub placement: usize,
     /// The edge of the fabric that it crosses.
     pub side: Side,
-    /// By how much (m).
+    /// Distance by which the piece extends beyond (m).
     pub by: f64,
 }
 
 impl Clashes {
-    /// Whether all lies on the fabric and apart.
+    /// Whether there are no overlaps and no pieces beyond the fabric.
     pub fn is_empty(&self) -> bool {
         self.overlaps.is_empty() && self.outside.is_empty()
     }
 }
 
-/// Whether two outlines that share a region lie deeper in each other than the limit. A move d that
-/// parts them sweeps the whole region with the boundary of either, so area <= d * perimeter: where
-/// the area is larger the costly depth need not be known.
+/// Whether two overlapping outlines penetrate each other deeper than the limit. A translation d that
+/// separates them sweeps the whole region with the boundary of either, so area <= d * perimeter: if the area
+/// is larger, the costly penetration depth is not needed.
 fn is_deep([a, b]: [&PreparedPolygon; 2], region: &[Polygon]) -> bool {
     let perimeter = a.polygon().perimeter().min(b.polygon().perimeter());
     total_area(region) > 2.0 * PENETRATION_LIMIT * perimeter
         || a.penetration_depth(b) > PENETRATION_LIMIT
 }
 
-/// Overlapping pairs and pieces off the fabric, by the referee's limits and exact predicates.
-/// Gaps, orientations, print and flaws are not looked at. Placements that name no item, or whose
-/// place is not finite, are passed over. Costs a sweep along the warp, an exact test for each
-/// pair whose boxes meet, and what each overlapping pair shares.
+/// Overlapping pairs and pieces beyond the fabric, by the referee's limits and exact predicates. Gaps,
+/// orientations, print and flaws are not checked. Placements of unknown items or without finite position are
+/// skipped. Cost: a sweep along the warp, an exact test for each pair with overlapping boxes, and the
+/// intersection of each overlapping pair.
 pub fn clashes(items: &[Item], strip: &Strip, marker: &Marker) -> Clashes {
     let mut measured = marker.clone();
     measured.measure(items, strip);

@@ -1,15 +1,15 @@
-//! Losses of one shape at regular moves from another.
+//! Losses of one shape at positions on a regular grid relative to another.
 
-/// Numbers added at once: rows of rasters and maps are padded to whole groups.
+/// Numbers processed at once by SIMD: rows of rasters and maps are padded to multiples of it.
 pub(crate) const LANES: usize = 16;
 
-/// Losses of one shape at regular moves from another.
+/// Losses of one shape at positions on a regular grid relative to another.
 #[derive(Clone, Debug)]
 pub(crate) struct DepthRaster {
-    /// First column and row, in cells from no move.
+    /// First column and first row, in cells from zero offset.
     pub first: [i32; 2],
     pub columns: usize,
-    /// Numbers from row to row: the columns, then zeros to at least one whole group more.
+    /// Distance between rows in `values`: the columns, then zeros for at least one whole SIMD group.
     pub stride: usize,
     pub values: Vec<f32>,
 }

@@ -1,17 +1,17 @@
-//! Why a marker is not made.
+//! Errors of marker making.
 
 use toile_geometry::Vec2;
 
-/// Most pieces of a marker: tables of all pairs grow with their square, a hundred megabytes for
-/// each island at this number.
+/// Largest number of pieces of a marker: tables of all pairs grow with its square, to a hundred megabytes per
+/// island at this number.
 pub const MAX_PIECES: u32 = 2_000;
-/// Most points of an outline: more are a mistake, and no-fit polygons grow with their square.
+/// Largest number of points of an outline: more are a mistake, and no-fit polygons grow with its square.
 pub(crate) const MAX_POINTS: usize = 10_000;
 
-/// Why a marker was not made.
+/// The reason why a marker was not made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NestingError {
-    /// There is nothing to lay.
+    /// There are no pieces to lay.
     #[error("there are no pieces to lay: mark at least one piece to be cut from this fabric")]
     NoItems,
     /// More pieces than can be laid at once.
@@ -19,29 +19,29 @@ pub enum NestingError {
         "there are {0} pieces to lay; at most {MAX_PIECES} can be laid at once: make several markers"
     )]
     TooManyPieces(u64),
-    /// The search makes no sense.
+    /// The search parameters are invalid.
     #[error("search: {0}")]
     Search(String),
-    /// So many or so large shapes that tables of all pairs cannot be held.
+    /// Too many or too large shapes for the tables of all pairs.
     #[error(
         "{outlines} different outlines, in {orientations} orientations together, are more than the search can hold; allow fewer turns, give flaws as fewer areas, or make several markers"
     )]
     TooManyShapes {
-        /// Outlines of pieces and flaws that differ.
+        /// Number of different outlines of pieces and flaws.
         outlines: usize,
-        /// Orientations of all of them together, with few turns each.
+        /// Total number of their orientations, with few turns each.
         orientations: usize,
     },
-    /// The fabric makes no sense.
+    /// The fabric is invalid.
     #[error("fabric: {0}")]
     Strip(String),
     /// Pieces that cannot be laid.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Refused(Vec<Refusal>),
-    /// The marker found does not pass the referee.
+    /// The marker found does not pass the referee's check.
     #[error("the marker found is not sound ({0}); try another seed, and report this job")]
     Unsound(String),
-    /// The search was told to stop.
+    /// The search was stopped.
     #[error("stopped before a marker was found")]
     Cancelled,
 }
@@ -52,14 +52,14 @@ pub enum NestingError {
 pub struct Refusal {
     /// Index of the item.
     pub item: usize,
-    /// Its name.
+    /// Name of the item.
     pub name: String,
-    /// What is wrong and what helps.
+    /// The fault and the remedy.
     pub problem: ItemProblem,
 }
 
 impl NestingError {
-    /// The same with all lengths in another unit: for jobs that were scaled.
+    /// The error with all lengths converted to another unit, for jobs that were scaled.
     pub fn scaled(mut self, by: f64) -> Self {
         let Self::Refused(refusals) = &mut self else {
             return self;
@@ -82,19 +82,19 @@ impl NestingError {
     }
 }
 
-/// What is wrong with a piece.
+/// The fault of a piece.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ItemProblem {
     /// A coordinate, angle or gap is not a finite number.
     #[error("{0} is not a finite number; redraw it")]
     NotFinite(&'static str),
-    /// No outline, or one without area.
+    /// No outline, or an outline without area.
     #[error("its outline encloses no area; draw at least three corners")]
     Empty,
     /// The outline crosses itself.
     #[error("its outline crosses itself at ({:.1}, {:.1}) mm; move the points there apart", .0.x * 1e3, .0.y * 1e3)]
     Crosses(Vec2),
-    /// A hole that is not inside.
+    /// A hole outside the outline.
     #[error("hole {0} is not inside its outline; move or delete the hole")]
     StrayHole(usize),
     /// Quantity 0.
@@ -114,36 +114,36 @@ pub enum ItemProblem {
     /// More copies than can be laid at once.
     #[error("its quantity is {0}; at most {MAX_PIECES} pieces can be laid at once")]
     TooMany(u32),
-    /// So many points that its no-fit polygons cannot be held.
+    /// Too many points to hold the no-fit polygons.
     #[error(
         "its outline has {0} points; at most {MAX_POINTS} can be laid: draw curves with fewer points"
     )]
     TooManyPoints(usize),
-    /// It must lie on a fold and there is none.
+    /// The piece must lie on a fold and there is none.
     #[error(
         "it is cut on a fold and the fabric lies open; fold the fabric, or unfold the piece to its whole outline"
     )]
     NoFold,
-    /// No orientation brings its fold edge to the fold.
+    /// No orientation brings the piece's fold edge to the fold.
     #[error(
         "no allowed orientation brings its fold edge to the fold; allow half a turn, or turning over"
     )]
     WrongSide,
-    /// It may be tilted and must lie on a fold.
+    /// The piece may be tilted but must lie on a fold.
     #[error("it is cut on a fold and may not be tilted; set its tilt to 0")]
     TiltOnFold,
     /// Tilt out of range.
     #[error("its tilt is {:.1} degrees; give 0 to 45", .0.to_degrees())]
     Tilt(f64),
-    /// A locked copy that does not exist, or not in an orientation it may take, or twice.
+    /// A locked copy that does not exist, is locked twice, or has an orientation that is not allowed.
     #[error("locked copy {0} does not exist, or may not lie so; unlock it or correct it")]
     Locked(u32),
-    /// A locked copy that breaks a rule of the marker where it is.
+    /// A locked copy that breaks a rule of the marker in its position.
     #[error("locked copy {copy} cannot stay there: {why}")]
     LockedBadly {
         /// Number of the copy.
         copy: u32,
-        /// What is wrong and what helps.
+        /// The fault and the remedy.
         why: String,
     },
     /// Too wide for the fabric.
@@ -152,11 +152,11 @@ pub enum ItemProblem {
         .needed * 1e3, .usable * 1e3, .fabric * 1e3
     )]
     TooWide {
-        /// Least extent across the fabric in any allowed orientation (m).
+        /// Smallest extent across the fabric over all allowed orientations (m).
         needed: f64,
         /// Width between the selvedges (m).
         usable: f64,
-        /// Least full width of fabric that takes it, laid open (m).
+        /// Smallest full width of an open fabric that fits the piece (m).
         fabric: f64,
     },
     /// Too long for the fabric.
@@ -165,7 +165,7 @@ pub enum ItemProblem {
         .needed * 1e3, .usable * 1e3
     )]
     TooLong {
-        /// Least extent along the fabric in an orientation that fits its width (m).
+        /// Smallest extent along the fabric over the orientations that fit its width (m).
         needed: f64,
         /// Length between the end margins (m).
         usable: f64,

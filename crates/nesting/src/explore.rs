@@ -1,5 +1,5 @@
-//! Shorter and shorter strips (after Gardeyn and Wauters 2025): the strip is cut down, the overlaps
-//! are taken apart, and where that fails another layout is tried.
+//! Search for shorter strips (after Gardeyn and Wauters 2025): the strip is shortened, the overlaps are
+//! resolved, and if that fails another layout is tried.
 
 use crate::job::Job;
 use crate::layout::Layout;
@@ -7,7 +7,7 @@ use crate::random::SplitMix64;
 use crate::separate::{Limit, Outcome, Patience, Separator, TOLERANCE};
 use toile_geometry::Vec2;
 
-/// Patience while searching for shorter strips, and while pressing the best one.
+/// Patience while searching for shorter strips, and while compressing the best one.
 const EXPLORE: Patience = Patience {
     rounds: 100,
     strikes: 2,
@@ -16,33 +16,33 @@ const PRESS: Patience = Patience {
     rounds: 30,
     strikes: 2,
 };
-/// Parts by which the strip is shortened: at most, and at least.
+/// Fractions by which the strip is shortened: largest and smallest.
 const STEPS: [f64; 2] = [0.04, 0.0005];
-/// Parts of the strip by which the best one is pressed, at first and at last.
+/// Fractions by which the best strip is compressed: first and last.
 const PRESSES: [f64; 2] = [0.0005, 0.00002];
-/// Failures after which a job is settled, for every pair of pieces.
+/// Number of failures, for every pair of pieces, after which a small job counts as solved.
 const TRIES: usize = 25;
-/// By how much the strip may be longer to take touching pieces truly apart, over its width.
+/// Additions to the strip length (relative to its width) to separate touching pieces completely.
 const LONGER: [f64; 3] = [3e-7, 2e-6, 1e-5];
-/// How often the ends of a failed layout are exchanged rather than two pieces.
+/// Probability that the ends of a failed layout are exchanged, rather than two pieces.
 const ENDS: f64 = 0.2;
-/// How often a garment is turned round when the strip is cut down.
+/// Probability that a garment is turned round when the strip is shortened.
 const TURNED: f64 = 0.1;
-/// Most failed layouts kept.
+/// Largest number of failed layouts kept.
 const POOL: usize = 24;
 
-/// One line of search with its own chance.
+/// One independent search with its own random numbers.
 pub(crate) struct Island<'a> {
     pub(crate) separator: Separator<'a>,
     /// The best layout without overlaps.
     pub best: Option<Layout>,
-    /// What the next strip is shorter by, as a part.
+    /// Fraction by which the next strip is shorter.
     step: f64,
-    /// Failed layouts at the present length, least loss first.
+    /// Failed layouts at the current length, in order of increasing loss.
     pool: Vec<(f64, Layout)>,
-    /// Length now tried (m); 0 before the first.
+    /// Strip length of the current attempt (m); 0 before the first.
     target: f64,
-    /// Attempts that failed since the last that did not.
+    /// Number of consecutive failed attempts.
     failures: usize,
 }
 
@@ -58,12 +58,12 @@ impl<'a> Island<'a> {
         }
     }
 
-    /// Queries made so far.
+    /// Number of queries made so far.
     pub fn queries(&self) -> u64 {
         self.separator.queries
     }
 
-    /// Area left over (m2), then length of the best layout (m): less is better.
+    /// Area of the pieces not laid (m2), then length of the best layout (m): less is better.
     pub fn score(&self) -> (f64, f64) {
         let job = self.separator.job;
         let score = |b: &Layout| (b.missing_area(job), b.length);
@@ -72,8 +72,8 @@ impl<'a> Island<'a> {
             .map_or((f64::INFINITY, f64::INFINITY), score)
     }
 
-    /// Takes a better layout from elsewhere. A try for a strip shorter still goes on; one to lay a
-    /// piece more beside the old best does not.
+    /// Adopts a better layout of another island. An attempt at a strip that is shorter still continues; an
+    /// attempt to insert a piece into the old best layout is given up.
     pub fn adopt(&mut self, layout: &Layout) {
         self.best = Some(layout.clone());
         if self.target <= 0.0 || self.target >= layout.length {
@@ -83,7 +83,7 @@ impl<'a> Island<'a> {
         }
     }
 
-    /// Keeps the layout in hand as the best.
+    /// Stores the current layout as the best.
     pub(crate) fn keep(&mut self) {
         self.separator.slide();
         let mut layout = self.separator.layout.clone();
@@ -93,8 +93,8 @@ impl<'a> Island<'a> {
         self.failures = 0;
     }
 
-    /// Tries to do better until the limit, or until nothing more can be hoped for: to lay what is
-    /// left over, then shorter strips.
+    /// Improves until the limit, or until no improvement is possible: first inserts missing pieces, then
+    /// shortens the strip.
     pub fn explore(&mut self, limit: &Limit<'_>) {
         while !self.is_over(limit) && !self.is_settled() {
             let Some(best) = &self.best else {
@@ -124,12 +124,12 @@ impl<'a> Island<'a> {
         }
     }
 
-    /// Whether every piece of the layout in hand is laid.
+    /// Whether every piece of the current layout is laid.
     fn is_whole(&self) -> bool {
         !self.separator.layout.present.contains(&false)
     }
 
-    /// Takes a layout up and lays what is missing where it overlaps least.
+    /// Loads a layout and lays its missing pieces in the positions of least overlap.
     fn load(&mut self, layout: Layout) {
         let laid = |k: &usize| layout.present[*k];
         let missing: Vec<usize> = (0..layout.at.len()).filter(|k| !laid(k)).collect();
@@ -139,7 +139,7 @@ impl<'a> Island<'a> {
         }
     }
 
-    /// Loads the best layout on a shorter strip, cut anywhere.
+    /// Loads the best layout on a shorter strip, which is cut at a random position.
     fn shorten(&mut self, target: f64) {
         let Some(mut layout) = self.best.clone() else {
             return;
@@ -159,17 +159,17 @@ impl<'a> Island<'a> {
         self.failures += 1;
     }
 
-    /// Puts a layout that could not be taken apart aside.
+    /// Keeps a layout with overlaps that could not be resolved in the pool.
     fn fail(&mut self) {
         self.failures += 1;
         if self.step > STEPS[1] {
-            // Too much at once: from the best again, with less.
+            // The step was too large: restart from the best layout with a smaller one.
             self.step = (self.step * 0.5).max(STEPS[1]);
             self.pool.clear();
             self.target = 0.0;
             return;
         }
-        // What lacks a piece is worse than any overlap.
+        // A layout with missing pieces is worse than any overlap.
         let total = match self.is_whole() {
             true => self.separator.total(),
             false => f64::INFINITY,
@@ -192,7 +192,7 @@ impl<'a> Island<'a> {
         (whole && best.length <= shortest * (1.0 + 1e-9)) || self.failures > TRIES * count * count
     }
 
-    /// One of the better failed layouts with something changed.
+    /// Loads one of the better failed layouts with a random change.
     fn restart(&mut self) {
         let separator = &mut self.separator;
         let chance = separator.sequence.unit();
@@ -205,7 +205,8 @@ impl<'a> Island<'a> {
         self.load(layout);
     }
 
-    /// Presses the best layout by less and less until the limit. `done` says how far the press is.
+    /// Compresses the best layout in smaller and smaller steps until the limit. `done` gives the progress of
+    /// this phase.
     pub fn press(&mut self, limit: &Limit<'_>, done: &dyn Fn(u64) -> f64) {
         while !self.is_over(limit) && !self.is_settled() {
             let Some(best) = &self.best else {
@@ -229,16 +230,16 @@ impl<'a> Island<'a> {
         }
     }
 
-    /// Moves the pieces of the best layout that touch within rounding truly apart, where there is
-    /// room for that, on a strip longer by as little as it takes.
+    /// Separates pieces of the best layout that touch within rounding, if there is room, on a strip that is
+    /// longer by as little as needed.
     ///
-    /// Where the limit comes first they stay as near as they are, which the referee allows.
+    /// If the limit is reached first, the pieces stay as close as they are, which the referee accepts.
     pub fn polish(&mut self, limit: &Limit<'_>) {
         let Some(best) = self.best.clone() else {
             return;
         };
         let job = self.separator.job;
-        // Rounding of the no-fit polygons stays under half of what touching pieces keep.
+        // Rounding of the no-fit polygons is less than half of the distance kept between touching pieces.
         self.separator.tolerance = 0.5 * job.safe();
         for more in LONGER {
             let mut layout = best.clone();
@@ -258,8 +259,8 @@ impl<'a> Island<'a> {
     }
 }
 
-/// Changes a layout thoroughly: a garment is turned round, a matched set moved within the repeat,
-/// the ends of the strip or two large pieces exchanged.
+/// Changes a layout at random: turns a garment round, moves a matched set within the repeat, or exchanges the
+/// ends of the strip or two large pieces.
 fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     match sequence.below(4) {
         0 if job.bundles > 0 => {
@@ -279,7 +280,7 @@ fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     }
 }
 
-/// Moves a matched set to another place in the repeat, if all its pieces find a place there.
+/// Moves a matched set to another place in the repeat, if all its pieces have an allowed position there.
 fn move_set(job: &Job<'_>, layout: &mut Layout, (set, phase): (usize, Vec2)) {
     let mut moved = layout.clone();
     moved.phases[set] = phase;
@@ -295,7 +296,7 @@ fn move_set(job: &Job<'_>, layout: &mut Layout, (set, phase): (usize, Vec2)) {
     *layout = moved;
 }
 
-/// Cuts the strip anywhere and exchanges its two parts.
+/// Cuts the strip at a random position and exchanges its two parts.
 fn swap_ends(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     let cut = sequence.unit() * layout.length;
     let movable = |&k: &usize| job.pieces[k].locked.is_none() && layout.present[k];
@@ -314,7 +315,7 @@ fn swap_ends(job: &Job<'_>, layout: &mut Layout, sequence: &mut SplitMix64) {
     }
 }
 
-/// Puts a piece anywhere.
+/// Moves a piece to a random position and orientation.
 fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut SplitMix64) {
     let shapes = job.pieces[piece].shapes.iter().copied();
     let allowed: Vec<usize> = shapes.filter(|&s| layout.allows(job, piece, s)).collect();
@@ -329,8 +330,8 @@ fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut Spli
     }
 }
 
-/// Turns the pieces of a garment the other way, each about its middle, if all of them may and find
-/// a place so.
+/// Turns the pieces of a garment the other way, each about its centre, if every piece has an allowed
+/// orientation and position.
 fn turn_round(job: &Job<'_>, layout: &mut Layout, bundle: usize) {
     let mut turned = layout.clone();
     turned.forward[bundle] = !turned.forward[bundle];
@@ -357,7 +358,7 @@ fn turn_round(job: &Job<'_>, layout: &mut Layout, bundle: usize) {
     *layout = turned;
 }
 
-/// Puts a shape where its middle is near a point. Whether there is a place for it.
+/// Moves a shape so that its centre is near a point; returns whether there is an allowed position.
 fn move_middle(
     job: &Job<'_>,
     layout: &mut Layout,
@@ -417,7 +418,7 @@ mod tests {
         }
     }
 
-    /// What has no place on the shorter strip is off the strip, not beyond its end.
+    /// A piece without an allowed position on the shorter strip is removed, not left beyond its end.
     #[test]
     fn a_shorter_strip_holds_no_piece_that_sticks_out() {
         let items = [item(0.5, 0.3, 2), item(0.2, 0.2, 3)];

@@ -1,7 +1,7 @@
-//! A job ready for the search: every piece in every orientation, with the constraints of each pair.
+//! A job prepared for the search: every piece in every orientation, with the constraints of each pair.
 //!
-//! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of the usable
-//! fabric: selvedges and end margins lie outside of all that is searched.
+//! Shapes are translated so that their bounding boxes start at the origin. Positions are relative to the
+//! corner of the usable fabric: selvedges and end margins lie outside the searched region.
 
 use crate::depth_raster::DepthRaster;
 use crate::error::NestingError;
@@ -16,44 +16,43 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use toile_geometry::{Polygon, Vec2, no_fit_polygon};
 
-/// How far outlines may grow when they are simplified, over the width of the fabric: a tenth of a
-/// millimetre on the roll.
+/// Largest growth of simplified outlines, relative to the width of the fabric: 0.1 mm on a roll.
 pub(crate) const SIMPLIFY: f64 = 6e-5;
-/// Distance kept between touching pieces over the width of the fabric: above the rounding of the
-/// no-fit polygons, far under what can be cut.
+/// Distance kept between touching pieces, relative to the width of the fabric: more than the rounding of the
+/// no-fit polygons, far less than the accuracy of cutting.
 pub(crate) const SAFE: f64 = 6e-8;
-/// How far outside of a no-fit polygon its edges are still found, over the width of the fabric.
+/// Distance outside a no-fit polygon up to which its edges are found, relative to the width of the fabric.
 const WINDOW: f64 = 0.02;
-/// One copy to lay, or something that lies already.
+/// One copy to lay, or an obstacle that lies there already.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    /// The item; nothing for a flaw.
+    /// Index of the item; `None` for a flaw.
     pub item: Option<usize>,
     pub copy: u32,
-    /// Orientations it may take.
+    /// Shapes of the allowed orientations.
     pub shapes: Vec<usize>,
-    /// The only place it may have.
+    /// The shape and position of a locked piece.
     pub locked: Option<(usize, Vec2)>,
-    /// Number of its garment, if that must run one way.
+    /// Index of the garment, if its pieces must run one way.
     pub bundle: Option<usize>,
-    /// Number of its set of matched pieces.
+    /// Index of the set of matched pieces.
     pub set: Option<usize>,
     /// Area of the outline (m2).
     pub area: f64,
 }
 
 impl Piece {
-    /// Whether some shape of it fits a strip of a length (m) by its box.
+    /// Whether the bounding box of some shape of the piece fits a strip length (m).
     pub fn fits(&self, job: &Job<'_>, length: f64) -> bool {
         let snug = length + SNUG;
         self.shapes.iter().any(|&s| job.shapes[s].size.x <= snug)
     }
 }
 
-/// Outlines, angle between them (rad), and whether one of them is turned over.
+/// A pair of outlines, the angle between them (rad), and whether one of them is mirrored.
 pub(crate) type Key = (usize, usize, f64, bool);
 
-/// What a coordinate of a piece's place may be.
+/// Allowed values of a coordinate of a piece's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Axis {
     Free,
@@ -62,7 +61,7 @@ pub(crate) enum Axis {
 }
 
 impl Axis {
-    /// The allowed value nearest to one, from 0 to `end`.
+    /// The allowed value from 0 to `end` that is nearest to `value`.
     pub fn nearest(self, value: f64, end: f64) -> Option<f64> {
         match self {
             Self::Free => Some(value.clamp(0.0, end)),
@@ -77,19 +76,19 @@ impl Axis {
     }
 }
 
-/// A job with its tables; shared by threads.
+/// A job with its tables, shared by threads.
 pub(crate) struct Job<'a> {
     pub items: &'a [Item],
     pub strip: &'a Strip,
     pub shapes: Vec<Shape>,
     pub pieces: Vec<Piece>,
-    /// Usable width (m).
+    /// Usable width of the fabric (m).
     pub height: f64,
-    /// Greatest gap (m).
+    /// Largest gap (m).
     pub widest_gap: f64,
-    /// Spacing of the loss maps (m).
+    /// Grid spacing of the loss maps (m).
     pub spacing: f64,
-    /// Numbers of garments and of matched sets.
+    /// Number of garments, and of matched sets.
     pub bundles: usize,
     pub sets: usize,
     pub(crate) pairs: Vec<Pair>,
@@ -100,11 +99,11 @@ pub(crate) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// Poses every copy in every allowed orientation, in fewer where the tables of all pairs would
-    /// be too large. Items and strip are sound.
+    /// Creates shapes of every copy in every allowed orientation, or in fewer if the tables of all pairs
+    /// would be too large. Items and strip must have passed the check.
     ///
     /// # Errors
-    /// Even with few turns the tables are too large, or `stop` says so.
+    /// The tables are too large even with few turns, or `stop` returned true.
     pub fn new(
         items: &'a [Item],
         strip: &'a Strip,
@@ -144,8 +143,8 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Which way a garment runs at first: the only way in which all its pieces may; where both are
-    /// possible every second garment runs backwards.
+    /// Initial direction of a garment: the only one that all its pieces allow; if both are allowed, every
+    /// second garment runs backwards.
     pub fn starts_forward(&self, bundle: usize) -> bool {
         let may = |forward: bool| {
             let mut own = self.pieces.iter().filter(|p| p.bundle == Some(bundle));
@@ -158,7 +157,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Whether locked pieces fix where a matched set lies.
+    /// Whether locked pieces fix the place of a matched set in the repeat.
     pub fn is_fixed(&self, set: usize) -> bool {
         let fixes = |p: &Piece| p.set == Some(set) && p.locked.is_some();
         self.pieces.iter().any(fixes)
@@ -169,14 +168,14 @@ impl<'a> Job<'a> {
         Vec2::new(self.strip.end_margin, self.strip.lower())
     }
 
-    /// Greatest length between the end margins (m).
+    /// Largest length between the end margins (m).
     pub fn longest(&self) -> f64 {
         self.strip
             .max_length
             .map_or(f64::INFINITY, |l| l - 2.0 * self.strip.end_margin)
     }
 
-    /// Least length on which all movable pieces could lie (m).
+    /// Lower bound of the length needed for all movable pieces (m).
     pub fn shortest(&self) -> f64 {
         let least = |p: &Piece| {
             let lengths = p.shapes.iter().map(|&s| self.shapes[s].size.x);
@@ -187,7 +186,7 @@ impl<'a> Job<'a> {
         movable.map(least).fold(area / self.height, f64::max)
     }
 
-    /// A length on which the pieces could lie one behind the other (m).
+    /// A length that is certain to hold all pieces one behind the other (m).
     pub fn ample(&self) -> f64 {
         let longest = |p: &Piece| {
             let shapes = p.shapes.iter().chain(p.locked.as_ref().map(|l| &l.0));
@@ -217,17 +216,17 @@ impl<'a> Job<'a> {
         gap + self.safe()
     }
 
-    /// What touching pieces are kept apart (m).
+    /// Distance kept between touching pieces (m).
     pub fn safe(&self) -> f64 {
         SAFE * self.height
     }
 
-    /// How far from touching two shapes are still seen (m).
+    /// Distance up to which the search evaluates a pair of shapes (m).
     pub fn window(&self) -> f64 {
         WINDOW * self.height
     }
 
-    /// How much larger than its outline a shape may be taken (m).
+    /// Largest growth of a simplified outline for a pair of shapes (m).
     pub fn growth(&self) -> f64 {
         2.0 * SIMPLIFY * self.height
     }
@@ -242,7 +241,7 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// The pair of a fixed and a moving shape; nothing if they may overlap.
+    /// The pair of a fixed and a moving shape; `None` if they may overlap.
     #[inline]
     pub fn pair(&self, fixed: usize, moving: usize) -> Option<PairQuery<'_>> {
         let pair = &self.pairs[fixed * self.shapes.len() + moving];
@@ -254,22 +253,22 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// How much nearer than allowed a moving shape lies to a fixed one (m), 0 or more.
+    /// Amount by which a moving shape is nearer to a fixed one than allowed (m), 0 or more.
     #[inline]
     pub fn loss(&self, fixed: usize, moving: usize, apart: Vec2) -> f64 {
         self.pair(fixed, moving)
             .map_or(0.0, |pair| pair.loss(apart))
     }
 
-    /// The outline of a shape as the search takes it, from the corner of its box (m).
+    /// The simplified outline of a shape, relative to the corner of its bounding box (m).
     pub fn taken(&self, shape: usize) -> Polygon {
         let shape = &self.shapes[shape];
         let ring = turned(&self.rings[shape.ring], shape.turn, shape.mirrored);
         Polygon::new(ring).translated(-shape.offset)
     }
 
-    /// Makes all no-fit polygons, on as many threads as asked, and says so now and then; stops
-    /// early if `stop` says so: those left are made when they are needed.
+    /// Computes all no-fit polygons on a number of threads and calls `told` at intervals. Stops early if
+    /// `stop` returns true: the rest is computed when needed.
     pub fn prepare(
         &self,
         threads: usize,
@@ -290,7 +289,7 @@ impl<'a> Job<'a> {
         side_by_side((0..threads).collect(), &work, told);
     }
 
-    /// Whether a shape of a piece has any place at all, for the phases chosen for the sets.
+    /// Whether a shape of a piece has any allowed position, for the given phases of the sets.
     pub fn can_lie(&self, piece: usize, shape: usize, phases: &[Vec2]) -> bool {
         let room = Vec2::new(self.longest(), self.height) - self.shapes[shape].size;
         let axes = self.axes(piece, shape, phases);
@@ -298,7 +297,7 @@ impl<'a> Job<'a> {
         (0..2).all(|k| room[k] >= snug && axes[k].nearest(0.0, room[k].max(0.0)).is_some())
     }
 
-    /// What the coordinates of a piece's place may be, for the phases chosen for the sets.
+    /// Allowed coordinates of a piece's position, for the given phases of the sets.
     pub fn axes(&self, piece: usize, shape: usize, phases: &[Vec2]) -> [Axis; 2] {
         let (piece, shape) = (&self.pieces[piece], &self.shapes[shape]);
         let mut axes = [Axis::Free; 2];
@@ -350,7 +349,7 @@ mod tests {
         Polygon::new(points.iter().map(|&(x, y)| Vec2::new(x, y)).collect())
     }
 
-    /// Every query against the exact answer on the outlines themselves.
+    /// Compares every query with the exact answer on the outlines themselves.
     #[test]
     fn queries_of_pairs_in_all_poses_are_exact() {
         let triangle = [(0.0, 0.0), (0.3, 0.05), (0.1, 0.2)];
@@ -395,7 +394,7 @@ mod tests {
         }
     }
 
-    /// Garments whose pieces are matched are items of their own, and yet alike.
+    /// Matched garments have items of their own, but equal pieces share their shapes.
     #[test]
     fn pieces_of_many_matched_garments_share_their_shapes() {
         let item = |garment: u32| Item {
@@ -429,7 +428,7 @@ mod tests {
         assert_eq!(job.shapes.len(), 20, "another gap, another shape");
     }
 
-    /// Loss maps stay fine enough to mean something, however many shapes there are.
+    /// Loss maps keep a useful resolution, however many shapes there are.
     #[test]
     fn many_turns_do_not_coarsen_the_loss_maps_without_end() {
         let item = |k: u32| {
@@ -442,7 +441,7 @@ mod tests {
                 ..Item::new("piece", Polygon::new(points))
             }
         };
-        // Along the diagonal of the strip only: at the second turn, or the fourteenth.
+        // The bar fits only along the diagonal of the strip: with the second turn, or the fourteenth.
         let bar = Item {
             grain: -10f64.to_radians(),
             ..Item::new(

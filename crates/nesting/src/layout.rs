@@ -1,10 +1,10 @@
-//! A layout: where all pieces lie, overlaps allowed.
+//! A layout: positions of all pieces, overlaps allowed.
 
 use crate::job::{Axis, Job, Piece};
 use crate::marker::Phase;
 use toile_geometry::Vec2;
 
-/// The place of a piece that is not laid: far from the strip and from all other pieces.
+/// Position of a piece that is not laid: far from the strip and from all other pieces.
 fn off_strip(job: &Job<'_>, piece: usize) -> Vec2 {
     let extent = job
         .shapes
@@ -14,30 +14,30 @@ fn off_strip(job: &Job<'_>, piece: usize) -> Vec2 {
     Vec2::new(-10.0 * extent * (2.0 + piece as f64), 0.0)
 }
 
-/// Phases tried along either axis of the repeat.
+/// Number of phases tried along each axis of the repeat.
 const PHASES: usize = 32;
 
-/// A layout on a strip of some length.
+/// A layout on a strip with a given length.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layout {
-    /// The shape of every piece.
+    /// Index of the shape of every piece.
     pub shape: Vec<usize>,
-    /// Where the corner of its box lies (m).
+    /// Position of the lower left corner of each bounding box (m).
     pub at: Vec<Vec2>,
-    /// Extents of the boxes (m).
+    /// Sizes of the bounding boxes (m).
     pub size: Vec<Vec2>,
     /// Length of the strip between the end margins (m).
     pub length: f64,
-    /// Which way each garment runs: whether along +x.
+    /// Whether each garment runs along +x.
     pub forward: Vec<bool>,
-    /// Where in the repeat each matched set lies (m).
+    /// Place of each matched set within the repeat (m).
     pub phases: Vec<Vec2>,
-    /// Which pieces are laid; the others lie far outside.
+    /// Whether each piece is laid; the others are far outside.
     pub present: Vec<bool>,
 }
 
 impl Layout {
-    /// No piece laid but the locked ones. Garments run either way in turn, where they may.
+    /// A layout with only the locked pieces laid. Garments alternate in direction if they allow both.
     pub fn new(job: &Job<'_>, length: f64) -> Self {
         let forward: Vec<bool> = (0..job.bundles).map(|b| job.starts_forward(b)).collect();
         let as_garment = |p: &Piece| {
@@ -67,8 +67,8 @@ impl Layout {
         layout
     }
 
-    /// Moves the matched sets that have a piece without a place, where another phase gives all of
-    /// them one: phases are tried evenly over the repeat.
+    /// Changes the phase of matched sets that have a piece without an allowed position, if another phase
+    /// gives all pieces of the set one. Phases are tried on a regular grid over the repeat.
     pub fn ease_phases(&mut self, job: &Job<'_>) {
         let Some(stripes) = job.strip.stripes else {
             return;
@@ -90,7 +90,7 @@ impl Layout {
         }
     }
 
-    /// Whether every piece of a matched set has a place, as its garment runs now.
+    /// Whether every piece of a matched set has an allowed position in the current direction of its garment.
     fn set_can_lie(&self, job: &Job<'_>, set: usize) -> bool {
         let lies = |piece: usize| {
             let mut shapes = job.pieces[piece].shapes.iter();
@@ -113,7 +113,7 @@ impl Layout {
         }
     }
 
-    /// Where in the repeat a matched set lies follows from one of its pieces.
+    /// Sets the phase of a matched set from the position of one of its pieces.
     pub fn set_phase(&mut self, job: &Job<'_>, piece: usize) {
         let (Some(set), Some(stripes)) = (job.pieces[piece].set, job.strip.stripes) else {
             return;
@@ -141,7 +141,7 @@ impl Layout {
         missing.map(|k| job.pieces[k].area).sum()
     }
 
-    /// Puts a piece at a place.
+    /// Places a piece with a shape at a position.
     pub fn put(&mut self, job: &Job<'_>, piece: usize, shape: usize, at: Vec2) {
         self.present[piece] = true;
         self.shape[piece] = shape;
@@ -149,20 +149,20 @@ impl Layout {
         self.at[piece] = at;
     }
 
-    /// Greatest moves of a shape on this strip (m); nothing if it does not fit.
+    /// Largest coordinates of a shape on this strip (m); `None` if it does not fit.
     pub fn room(&self, job: &Job<'_>, shape: usize) -> Option<Vec2> {
         let room = Vec2::new(self.length, job.height) - job.shapes[shape].size;
         let snug = -crate::shape::SNUG;
         (room.x >= snug && room.y >= snug).then(|| room.sup(&Vec2::zeros()))
     }
 
-    /// Whether a piece may take a shape as its garment runs now.
+    /// Whether a piece may have a shape in the current direction of its garment.
     pub fn allows(&self, job: &Job<'_>, piece: usize, shape: usize) -> bool {
         let bundle = job.pieces[piece].bundle;
         bundle.is_none_or(|b| self.forward[b] == job.shapes[shape].forward)
     }
 
-    /// The allowed place of a shape of a piece nearest to one.
+    /// The allowed position of a piece's shape that is nearest to `at`.
     pub fn nearest_allowed(
         &self,
         job: &Job<'_>,
@@ -182,7 +182,7 @@ impl Layout {
         Some(Vec2::new(x, y))
     }
 
-    /// How far the pieces reach (m).
+    /// End of the last piece along the strip (m).
     pub fn reach(&self, job: &Job<'_>) -> f64 {
         let laid = |k: &usize| self.present[*k] && job.pieces[*k].item.is_some();
         let ends = (0..self.at.len()).filter(laid);
@@ -190,7 +190,7 @@ impl Layout {
             .fold(0.0, f64::max)
     }
 
-    /// Where the movable pieces must at least reach because of locked ones (m).
+    /// End of the last locked piece along the strip, a lower bound of the length (m).
     pub fn least_reach(&self, job: &Job<'_>) -> f64 {
         let locked = |k: &usize| job.pieces[*k].item.is_some() && job.pieces[*k].locked.is_some();
         let ends = (0..self.at.len()).filter(locked);
@@ -198,8 +198,8 @@ impl Layout {
             .fold(0.0, f64::max)
     }
 
-    /// Shortens or lengthens the strip: what lies beyond `cut` moves along (m); what has no place
-    /// on it as it lies is taken off.
+    /// Changes the length of the strip (m). Pieces beyond `cut` move with its end; pieces without an allowed
+    /// position on the new strip are removed.
     pub fn resize(&mut self, job: &Job<'_>, length: f64, cut: f64) {
         let by = length - self.length;
         self.length = length;

@@ -1,4 +1,4 @@
-//! Turns a layout into a marker, and a marker into a layout to start from.
+//! Converts a layout to a marker, and a marker to a layout to start from.
 
 use crate::explore::Island;
 use crate::job::Job;
@@ -7,19 +7,19 @@ use crate::separate::{Limit, Outcome, Patience};
 use crate::{Marker, Placement, Unplaced};
 use std::f64::consts::TAU;
 
-/// Patience with a start layout that is not sound.
+/// Patience while repairing a start layout.
 const REPAIR: Patience = Patience {
     rounds: 60,
     strikes: 3,
 };
-/// Factor by which the strip grows where the overlaps of a start layout cannot be removed.
+/// Factor by which the strip grows if the overlaps of a start layout cannot be removed.
 const LONGER: f64 = 1.02;
-/// Cost of a metre of distance from the start of the strip, for a missing piece (m).
+/// Cost per metre of distance from the start of the strip, when a missing piece is laid (m).
 const BIAS: f64 = 0.02;
-/// Tries before a first layout is made anew.
+/// Number of repairs tried before a new first layout is made.
 const TRIES: usize = 20;
 
-/// The marker of a layout, with the pieces that were not laid and why.
+/// The marker of a layout; lists the pieces that were not laid, with the reason.
 pub(crate) fn finish(job: &Job<'_>, layout: &Layout) -> Marker {
     let strip = job.strip;
     let (mut placements, mut unplaced) = (Vec::new(), Vec::new());
@@ -67,7 +67,8 @@ fn between(a: f64, b: f64) -> f64 {
     apart.min(TAU - apart)
 }
 
-/// The layout of a marker: its pieces that can be laid, in the nearest orientation allowed. It may overlap or reach beyond the strip.
+/// The layout of a marker: every piece that exists, in the nearest allowed orientation. It may have overlaps
+/// or extend beyond the strip.
 pub(crate) fn layout_of(job: &Job<'_>, marker: &Marker) -> Layout {
     let mut layout = Layout::new(job, 0.0);
     for placement in &marker.placements {
@@ -110,8 +111,8 @@ pub(crate) fn layout_of(job: &Job<'_>, marker: &Marker) -> Layout {
 }
 
 impl Island<'_> {
-    /// Starts from a layout: as it is if it is sound, else repaired on a strip of the same length, or a
-    /// longer one where that fails; from a new first layout if all repairs fail.
+    /// Starts from a layout: unchanged if it is valid, else repaired on a strip of the same length, or on
+    /// longer ones if that fails; from a new first layout if all repairs fail.
     pub fn start_from(&mut self, given: &Layout, limit: &Limit<'_>) {
         let job = self.separator.job;
         let longest = job.longest().min(job.ample());
@@ -133,8 +134,7 @@ impl Island<'_> {
         self.start(limit);
     }
 
-    /// Loads a layout moved onto a strip of a length (m), with the missing pieces laid where they overlap
-    /// least.
+    /// Loads a layout on a strip of a length (m), with the missing pieces in the positions of least overlap.
     fn load_given(&mut self, given: &Layout, length: f64) {
         let job = self.separator.job;
         let mut layout = given.clone();

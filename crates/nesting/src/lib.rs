@@ -1,11 +1,11 @@
-//! Marker making on plain outlines: pieces are laid on a strip of fabric without overlap, on
-//! their grain, in little length. Knows nothing of patterns, files or screens.
+//! Marker making on plain outlines: places pieces on a strip of fabric without overlap, on grain, in the
+//! shortest length. Independent of patterns, files and screens.
 //!
-//! The strip runs along +x: x is the warp (the length of the roll) from 0, y the weft from one
-//! selvedge at 0 to the other at the width. A piece's own grain is turned to lie along +x.
+//! The strip runs along +x: x is the warp (the length of the roll) from 0, y the weft from one selvedge at 0
+//! to the other at the width. The grain of a piece is rotated to lie along +x.
 //!
-//! [`make_marker`] lays the pieces, [`improve_marker`] goes on from a marker; [`judge`] checks any marker on the original outlines and
-//! shares no code with the placing but the geometry.
+//! [`make_marker`] lays the pieces, [`improve_marker`] continues from a marker; [`judge`] checks any marker
+//! on the original outlines and shares only the geometry functions with the placing.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod check;

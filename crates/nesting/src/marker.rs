@@ -1,45 +1,45 @@
-//! Items, the strip they are laid on, and the marker that results.
+//! Items, the strip they are laid on, and the resulting marker.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_geometry::{Polygon, Vec2};
 
-/// How copies of a piece may be turned over.
+/// Rule for turning over the copies of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Mirror {
-    /// Every copy as drawn.
+    /// Every copy lies face up, as drawn.
     #[default]
     Never,
-    /// Left and right: copies 1, 3, 5... are mirrored.
+    /// Left and right pieces: copies 1, 3, 5... are mirrored.
     Pairs,
-    /// Every copy face down.
+    /// Every copy lies face down.
     Always,
-    /// Each copy either way, as the marker likes.
+    /// Each copy lies face up or down, as the search chooses.
     Free,
 }
 
-/// The orientations a piece may take on the fabric.
+/// The orientations that a piece may have on the fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allowed {
     /// Angles between the piece's grain and the warp (rad), counter-clockwise.
     pub turns: Vec<f64>,
-    /// Whether it may be turned over.
+    /// Rule for turning the piece over.
     pub mirror: Mirror,
-    /// How far the grain may lie off each of the angles, to either side (rad).
+    /// Largest deviation of the grain from each of the angles, to either side (rad).
     pub tilt: f64,
 }
 
 impl Allowed {
-    /// Grain along the warp, one way only.
+    /// Grain along the warp, in one direction.
     pub fn one_way() -> Self {
         Self::turned(vec![0.0])
     }
 
-    /// Grain along the warp, either way.
+    /// Grain along the warp, in either direction.
     pub fn two_way() -> Self {
         Self::turned(vec![0.0, PI])
     }
 
-    /// A list of angles (rad), as drawn, without tilt.
+    /// A list of angles (rad), not turned over, without tilt.
     pub fn turned(turns: Vec<f64>) -> Self {
         Self {
             turns,
@@ -48,84 +48,84 @@ impl Allowed {
         }
     }
 
-    /// The same with another rule for turning over.
+    /// The same orientations with another rule for turning over.
     pub fn mirrored(self, mirror: Mirror) -> Self {
         Self { mirror, ..self }
     }
 }
 
-/// A piece to lay, by its cut outline.
+/// A piece to lay, with its cut outline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     /// Name for messages.
     pub name: String,
-    /// Cut outline, curves flattened, with the holes cut into it (m). A search lays no piece into
-    /// the holes of another; one that lies there is sound.
+    /// Cut outline, curves flattened, with the holes cut into it (m). The search lays no piece into the holes
+    /// of another, but a marker with one there is valid.
     pub outline: Polygon,
     /// Direction of the warp in the outline's plane (rad), counter-clockwise from +x.
     pub grain: f64,
     /// Number of copies.
     pub quantity: u32,
-    /// Orientations it may take.
+    /// Orientations that the piece may have.
     pub allowed: Allowed,
-    /// Free fabric this piece needs to any other (m); the strip's gap holds where it is larger.
+    /// Distance this piece needs to any other (m); the gap of the strip applies if it is larger.
     pub gap: f64,
-    /// The garment each copy belongs to, for a nap that runs one way in each garment; copies
-    /// beyond the list belong to garment 0.
+    /// The garment of each copy, for fabric on which each garment must run one way; copies beyond the list
+    /// belong to garment 0.
     pub bundles: Vec<u32>,
-    /// The side of the outline, grain along +x and as drawn, that must lie on a fold of the
-    /// fabric. The outline is then half of the piece.
+    /// The side of the outline that must lie on a fold of the fabric, as drawn and with the grain along +x.
+    /// The outline is then half of the piece.
     pub fold_edge: Option<FoldEdge>,
-    /// The point that must lie on the stripes.
+    /// The point that must match the print.
     pub match_point: Option<MatchPoint>,
-    /// Whether it may be cut from flawed fabric (a pocket bag, an inner yoke).
+    /// Whether the piece may be cut from flawed fabric (a pocket bag, an inner yoke).
     pub over_flaws: bool,
-    /// Copies that have their place already.
+    /// Copies with a fixed position.
     pub locked: Vec<Locked>,
 }
 
-/// A side of an outline that lies along the grain.
+/// A side of an outline along the grain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldEdge {
-    /// At its least y, once the grain lies along +x.
+    /// The side with the smallest y, when the grain lies along +x.
     Lower,
-    /// At its greatest y.
+    /// The side with the largest y, when the grain lies along +x.
     Upper,
 }
 
-/// A point of a piece that must lie where the print of the fabric wants it.
+/// A point of a piece that must lie at a given place of the print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchPoint {
-    /// In the plane of the outline (m).
+    /// Position in the plane of the outline (m).
     pub point: Vec2,
-    /// Where in the repeat.
+    /// Place within the repeat.
     pub phase: Phase,
 }
 
 /// A place within the repeat of a print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// This far after the lines of the print, along the warp and across (m).
+    /// At this offset from the lines of the print, along the warp and across it (m).
     At(Vec2),
-    /// The same place for all pieces of this set, wherever that is: what is sewn together matches.
+    /// At the same place for all pieces of this set, wherever that is, so that the print matches at seams.
     Set(u32),
 }
 
-/// A copy that must stay where it is.
+/// A copy with a fixed position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Locked {
     /// Number of the copy, from 0.
     pub copy: u32,
     /// Angle from the warp to the piece's grain (rad).
     pub turn: f64,
-    /// Whether it lies face down.
+    /// Whether the copy lies face down.
     pub mirrored: bool,
-    /// Move after turning (m).
+    /// Translation after the rotation (m).
     pub translation: Vec2,
 }
 
 impl Item {
-    /// One copy, grain along +x, either way.
+    /// One copy with the grain along +x in the outline, in either direction on the warp.
     pub fn new(name: impl Into<String>, outline: Polygon) -> Self {
         Self {
             name: name.into(),
@@ -147,7 +147,8 @@ impl Item {
         self.bundles.get(copy as usize).copied().unwrap_or(0)
     }
 
-    /// The least turn of the piece's grain from one of its angles, counter-clockwise (rad).
+    /// The smallest signed angle of the piece's grain from one of the allowed angles, counter-clockwise
+    /// (rad).
     pub(crate) fn tilt_of(&self, turn: f64) -> f64 {
         let off = |allowed: &f64| {
             let apart = (turn - allowed).rem_euclid(TAU);
@@ -158,45 +159,45 @@ impl Item {
     }
 }
 
-/// Whether the fabric looks the same from both ends.
+/// The directions in which pieces may lie on the fabric, because of its nap or print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Nap {
-    /// It does.
+    /// No nap: the fabric looks the same from both ends.
     #[default]
     None,
-    /// It has a nap or a one-way print: every piece keeps turn 0.
+    /// A nap or a one-way print: every piece has turn 0.
     OneWay,
-    /// It has a nap, and each garment may run either way, but all its pieces the same.
+    /// A nap: each garment may run either way, but all its pieces the same way.
     PerBundle,
 }
 
-/// Where the fabric is folded in two along the warp.
+/// Folds of the fabric along the warp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Fold {
-    /// Nowhere: it lies open.
+    /// No fold: the fabric lies open.
     #[default]
     Open,
-    /// At y = 0; the selvedges lie on each other at y = width.
+    /// Folded at y = 0; the selvedges lie on each other at y = width.
     Lower,
-    /// At y = 0 and at y = width: tubular fabric.
+    /// Folded at y = 0 and at y = width: tubular fabric.
     Both,
 }
 
-/// A print that repeats.
+/// A repeating print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripes {
-    /// Length of a repeat along the warp and across (m); 0 where it does not repeat.
+    /// Length of a repeat along the warp and across it (m); 0 in a direction without repeat.
     pub repeat: Vec2,
-    /// A point where lines of the print cross (m).
+    /// A point at which lines of the print cross (m).
     pub origin: Vec2,
 }
 
 /// A flaw in the fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
-    /// What is flawed (m), in the plane of the strip.
+    /// Outline of the flawed area (m), in the plane of the strip.
     pub outline: Polygon,
-    /// Distance pieces keep from it (m).
+    /// Clearance between pieces and the flaw (m).
     pub clearance: f64,
 }
 
@@ -205,22 +206,21 @@ pub struct Flaw {
 pub struct Strip {
     /// Full width, selvedges included (m).
     pub width: f64,
-    /// Unusable edge at either side (m).
+    /// Width of the unusable edge on either side (m).
     pub selvedge: f64,
     /// Fabric left free at either end (m).
     pub end_margin: f64,
-    /// Least distance between two pieces (m).
+    /// Smallest distance between two pieces (m).
     pub gap: f64,
-    /// Length at hand, end margins included (m); nothing means as long as it takes.
+    /// Length available, end margins included (m); `None` for no limit.
     pub max_length: Option<f64>,
-    /// Nap.
+    /// Nap of the fabric.
     pub nap: Nap,
-    /// Folds; where the fabric is folded, width is that of the folded fabric, and there is no
-    /// selvedge at a fold.
+    /// Folds. The width of folded fabric is that after folding, and there is no selvedge at a fold.
     pub fold: Fold,
-    /// Print that pieces with a match point must meet.
+    /// Print that the match points of pieces must meet.
     pub stripes: Option<Stripes>,
-    /// Flaws.
+    /// Flaws that pieces must avoid.
     pub flaws: Vec<Flaw>,
 }
 
@@ -240,7 +240,7 @@ impl Strip {
         }
     }
 
-    /// Least y a piece may reach (m).
+    /// Smallest y that a piece may reach (m).
     pub fn lower(&self) -> f64 {
         match self.fold {
             Fold::Open => self.selvedge,
@@ -248,7 +248,7 @@ impl Strip {
         }
     }
 
-    /// Greatest y a piece may reach (m).
+    /// Largest y that a piece may reach (m).
     pub fn upper(&self) -> f64 {
         match self.fold {
             Fold::Open | Fold::Lower => self.width - self.selvedge,
@@ -256,7 +256,7 @@ impl Strip {
         }
     }
 
-    /// Layers of one ply: two where it is folded.
+    /// Number of layers in one ply: two if the fabric is folded.
     pub(crate) fn layers(&self) -> f64 {
         match self.fold {
             Fold::Open => 1.0,
@@ -269,13 +269,14 @@ impl Strip {
         self.upper() - self.lower()
     }
 
-    /// Least distance two items must keep (m).
+    /// Smallest distance between two items (m).
     pub fn gap_between(&self, a: &Item, b: &Item) -> f64 {
         self.gap.max(a.gap).max(b.gap)
     }
 }
 
-/// Marker from piece: grain to +x, then turned over (y changes sign), then turned, then moved.
+/// Transform from the piece to the marker: the grain is rotated to +x, the piece is turned over (y changes
+/// sign), rotated by `turn`, then translated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Direction of the warp in the piece (rad).
@@ -284,7 +285,7 @@ pub struct Pose {
     pub turn: f64,
     /// Whether the piece lies face down.
     pub mirrored: bool,
-    /// Move after turning (m).
+    /// Translation after the rotation (m).
     pub translation: Vec2,
 }
 
@@ -304,7 +305,7 @@ fn cos_sin(angle: f64) -> (f64, f64) {
 }
 
 impl Pose {
-    /// The columns of the linear part: where the piece's x and y directions go.
+    /// Columns of the linear part: images of the piece's x and y directions.
     pub fn axes(&self) -> [Vec2; 2] {
         let (cg, sg) = cos_sin(-self.grain);
         let (ct, st) = cos_sin(self.turn);
@@ -313,20 +314,20 @@ impl Pose {
         [turned(cg, flip * sg), turned(-sg, flip * cg)]
     }
 
-    /// Where a point of the piece lies on the marker (m).
+    /// Position on the marker of a point of the piece (m).
     pub fn apply(&self, point: Vec2) -> Vec2 {
         let [x, y] = self.axes();
         x * point.x + y * point.y + self.translation
     }
 
-    /// A whole polygon laid on the marker.
+    /// A polygon of the piece, laid on the marker.
     pub fn lay(&self, polygon: &Polygon) -> Polygon {
         let [x, y] = self.axes();
         polygon.mapped(|p| x * p.x + y * p.y + self.translation)
     }
 }
 
-/// A ring turned over across the x axis if `mirrored`, then turned (rad).
+/// A ring mirrored at the x axis if `mirrored`, then rotated (rad).
 pub(crate) fn turned(ring: &[Vec2], turn: f64, mirrored: bool) -> Vec<Vec2> {
     let pose = Pose {
         grain: 0.0,
@@ -337,7 +338,7 @@ pub(crate) fn turned(ring: &[Vec2], turn: f64, mirrored: bool) -> Vec<Vec2> {
     ring.iter().map(|&p| pose.apply(p)).collect()
 }
 
-/// One piece laid.
+/// The position of one copy of an item.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// Index of the item.
@@ -346,14 +347,14 @@ pub struct Placement {
     pub copy: u32,
     /// Angle from the warp to the piece's grain (rad).
     pub turn: f64,
-    /// Whether it lies face down.
+    /// Whether the copy lies face down.
     pub mirrored: bool,
-    /// Move after turning (m).
+    /// Translation after the rotation (m).
     pub translation: Vec2,
 }
 
 impl Placement {
-    /// Marker from piece.
+    /// Transform from the piece to the marker.
     pub fn pose(&self, item: &Item) -> Pose {
         Pose {
             grain: item.grain,
@@ -364,34 +365,34 @@ impl Placement {
     }
 }
 
-/// A copy that found no place.
+/// A copy that could not be placed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unplaced {
     /// Index of the item.
     pub item: usize,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Why, and what helps.
+    /// The reason, and the remedy.
     pub reason: String,
 }
 
 /// Pieces laid on fabric.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marker {
-    /// What lies where, by item and copy.
+    /// Positions of the laid copies.
     pub placements: Vec<Placement>,
-    /// Fabric used, end margins included (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins, 0..=1.
+    /// Area of the pieces divided by width times length between the end margins (0 to 1).
     pub efficiency: f64,
-    /// Area of the pieces over width times length, 0..=1.
+    /// Area of the pieces divided by width times length (0 to 1).
     pub utilisation: f64,
-    /// Copies that found no place.
+    /// Copies that could not be placed.
     pub unplaced: Vec<Unplaced>,
 }
 
 impl Marker {
-    /// Sets length, efficiency and utilisation from what is laid.
+    /// Computes length, efficiency and utilisation from the placements.
     pub fn measure(&mut self, items: &[Item], strip: &Strip) {
         let laid = || {
             self.placements

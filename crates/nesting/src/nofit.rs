@@ -1,17 +1,18 @@
-//! One no-fit polygon with a grid that answers signed distances at once.
+//! A no-fit polygon with a grid for fast queries of the signed distance.
 //!
-//! Each cell of the grid lists the edges that can be the nearest to some point in it, so a query
-//! looks at two or three edges whatever the polygon, and is exact.
+//! Each cell of the grid lists the edges that can be nearest to some point of the cell. A query therefore
+//! examines two or three edges, however many the polygon has, and is exact.
 
 use toile_geometry::{Bounds2, Polygon, Vec2};
 
-/// Fewest cells along either side of the grid.
+/// Smallest number of cells along each side of the grid.
 const MIN_CELLS: usize = 16;
-/// Points of an outline nearer to each other than this part of its extent are one: rounding of the
-/// polygon operations leaves such pairs.
+/// Points of an outline that are nearer to each other than this fraction of its extent are merged: rounding
+/// in the polygon operations leaves such pairs.
 const REPEATED: f64 = 8e-9;
 
-/// Most cells along the grids of so many no-fit polygons: together they stay under some 600 MB.
+/// Largest number of grid cells per side for a number of no-fit polygons: together they stay below about 600
+/// MB.
 pub(crate) fn most_cells(no_fits: usize) -> usize {
     match no_fits {
         0..=4_000 => 64,
@@ -20,7 +21,7 @@ pub(crate) fn most_cells(no_fits: usize) -> usize {
     }
 }
 
-/// An edge with the region at its left, in one line of the processor's cache.
+/// An edge with the region on its left, in one cache line of the processor.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Edge {
@@ -28,36 +29,37 @@ struct Edge {
     /// Unit direction.
     along: Vec2,
     length: f64,
-    /// Numbers of the edges before and after it.
+    /// Indices of the edges before and after this one.
     beside: [u32; 2],
 }
 
-/// Where a move lies with respect to a no-fit polygon.
+/// Position of a translation relative to a no-fit polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Probe {
-    /// Distance to the boundary, positive inside (m): the shortest move that ends the overlap.
+    /// Distance to the boundary, positive inside (m): length of the shortest translation that ends the
+    /// overlap.
     pub depth: f64,
-    /// Direction of that move.
+    /// Direction of that translation.
     pub normal: Vec2,
 }
 
-/// The moves of one shape at which it overlaps another that stays.
+/// The translations of one shape at which it overlaps another, fixed one.
 #[derive(Clone, Debug)]
 pub(crate) struct NoFit {
     edges: Vec<Edge>,
-    /// For every cell where its list stands in `lists`.
+    /// For every cell, the start of its list in `lists`.
     cells: Vec<u32>,
-    /// Cells along either side.
+    /// Number of cells along each side.
     count: usize,
-    /// Each list is the number of its edges, then these. The first one is empty.
+    /// Each list is the number of its edges, then their indices. The first list is empty.
     lists: Vec<u32>,
     corner: Vec2,
     per_metre: Vec2,
 }
 
 impl NoFit {
-    /// Prepares the polygon for queries as far as `reach` (m) outside of it, with so many cells
-    /// along the grid at most, 16 or more.
+    /// Prepares the polygon for queries up to `reach` (m) outside of it, with at most `most_cells` cells
+    /// along each side of the grid (16 or more).
     pub fn new(regions: &[Polygon], reach: f64, most_cells: usize) -> Self {
         let mut edges = Vec::new();
         for region in regions {
@@ -87,7 +89,7 @@ impl NoFit {
         no_fit
     }
 
-    /// Fills the lists of a square block of cells from the edges that matter to it.
+    /// Fills the lists of a square block of cells with the edges that can be nearest there.
     fn divide(&mut self, [column, row]: [usize; 2], count: usize, edges: &[u32], reach: f64) {
         let cell = Vec2::new(1.0 / self.per_metre.x, 1.0 / self.per_metre.y);
         let half = cell * (count as f64 / 2.0);
@@ -161,7 +163,7 @@ impl NoFit {
         }
     }
 
-    /// Where a move lies; nothing if it is farther outside than the reach. Exact but for rounding.
+    /// Probes a translation; `None` if it is farther outside than the reach. Exact except for rounding.
     #[inline]
     pub fn probe(&self, at: Vec2) -> Option<Probe> {
         let cell = (at - self.corner).component_mul(&self.per_metre);
@@ -184,7 +186,7 @@ impl Edge {
     }
 }
 
-/// Whether a point seen from a corner lies at the left of the outline that turns there.
+/// Whether a point, given relative to a corner, lies on the left of the outline that turns there.
 fn in_corner([before, after]: [Vec2; 2], away: Vec2) -> bool {
     let (first, second) = (before.perp(&away) > 0.0, after.perp(&away) > 0.0);
     if before.perp(&after) >= 0.0 {
@@ -194,8 +196,8 @@ fn in_corner([before, after]: [Vec2; 2], away: Vec2) -> bool {
     }
 }
 
-/// The points of a ring without those that repeat but for rounding, and without whiskers: slits of
-/// no width, which a shape fits only in theory.
+/// The points of a ring without near duplicates, and without whiskers: slits of zero width, which a shape
+/// fits only in theory.
 fn cleaned(ring: &[Vec2], least: f64) -> Vec<Vec2> {
     let superfluous = |points: &[Vec2], k: usize| {
         let n = points.len();
@@ -222,7 +224,7 @@ fn cleaned(ring: &[Vec2], least: f64) -> Vec<Vec2> {
     points
 }
 
-/// Adds the edges of a ring whose points are right to about `least` (m).
+/// Adds the edges of a ring with points that are accurate to about `least` (m).
 fn push_ring(edges: &mut Vec<Edge>, ring: &[Vec2], least: f64) {
     let points = cleaned(ring, least);
     let n = points.len();

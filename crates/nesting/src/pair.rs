@@ -1,22 +1,22 @@
-//! One pair of shapes: the transformation of its no-fit polygon from a shared one, and distance queries.
+//! One pair of shapes: the transform from a shared no-fit polygon to that of the pair, and distance queries.
 
 use crate::nofit::{NoFit, Probe};
 use toile_geometry::Vec2;
 
-/// The transformation that gives the no-fit polygon of two shapes from a shared one.
+/// The transform from a shared no-fit polygon to that of two shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub no_fit: u32,
-    /// Number of its depth raster.
+    /// Index of the pair's depth raster.
     pub raster: u32,
-    /// Columns of the map from the shared polygon's plane.
+    /// Columns of the linear map from the plane of the shared polygon.
     pub axes: [Vec2; 2],
     pub shift: Vec2,
-    /// Distance the shapes keep (m); minus infinity if they may overlap.
+    /// Distance that the shapes must keep (m); minus infinity if they may overlap.
     pub gap: f64,
 }
 
-/// The data of a query of one pair of shapes.
+/// The data for queries of one pair of shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairQuery<'a> {
     pub no_fit: &'a NoFit,
@@ -26,8 +26,8 @@ pub(crate) struct PairQuery<'a> {
 }
 
 impl PairQuery<'_> {
-    /// Where the moving shape lies to the fixed one at a move from it, and the gap they need;
-    /// nothing if they are farther apart than the window.
+    /// Probes the moving shape at an offset from the fixed one, and returns the gap that they need; `None` if
+    /// they are farther apart than the window.
     #[inline]
     pub fn probe(&self, apart: Vec2) -> Option<(Probe, f64)> {
         let [x, y] = self.axes;
@@ -37,7 +37,7 @@ impl PairQuery<'_> {
         Some((probe, self.gap))
     }
 
-    /// How much nearer than allowed the moving shape lies to the fixed one (m), 0 or more.
+    /// Amount by which the moving shape is nearer to the fixed one than allowed (m), 0 or more.
     #[inline]
     pub fn loss(&self, apart: Vec2) -> f64 {
         let [x, y] = self.axes;

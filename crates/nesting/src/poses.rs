@@ -10,24 +10,24 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use toile_geometry::{Polygon, Vec2};
 
-/// Outlines of more corners are not compared with each other.
+/// Outlines with more corners are not compared with each other.
 const MAX_CORNERS: usize = 500;
 
-/// Outline, whether it is turned over and may cover flaws, and all lengths and angles: what makes
-/// two shapes the same to the search.
+/// Properties that make two shapes equal for the search: outline, whether it is mirrored, whether it may
+/// cover flaws, and all lengths and angles.
 type Alike = (usize, bool, bool, [u64; 9]);
 
-/// Indices of the shapes made so far.
+/// Indices of the shapes created so far.
 #[derive(Default)]
 struct Known {
-    /// By item, angle and side.
+    /// Shape by item, angle and side.
     of_item: BTreeMap<(usize, i64, bool), usize>,
-    /// By outline, angle and side: the first of each.
+    /// First shape by outline, angle and side.
     by_outline: BTreeMap<(usize, i64, bool), usize>,
     alike: BTreeMap<Alike, usize>,
 }
 
-/// The key by which shapes are the same to the search.
+/// The key of a shape: shapes with equal keys are the same for the search.
 fn alike(item: &Item, shape: &Shape) -> Alike {
     let none = Vec2::repeat(f64::NAN);
     let anchor = shape.anchor.unwrap_or(none);
@@ -104,8 +104,8 @@ impl Job<'_> {
         self.drop_misfits();
     }
 
-    /// The number of a shape of an item, the old one if there is one just alike; nothing if the
-    /// orientation does not bring its fold edge to a fold.
+    /// Index of a shape of an item; an equal existing shape is reused. `None` if the orientation does not
+    /// bring the piece's fold edge to a fold.
     fn shape(
         &mut self,
         (kind, ring): (usize, usize),
@@ -130,7 +130,7 @@ impl Job<'_> {
         Some(number)
     }
 
-    /// Takes shapes from pieces that have no place on the print as they lie, where others have.
+    /// Removes shapes without an allowed position on the print from pieces that have other shapes.
     fn drop_misfits(&mut self) {
         for piece in 0..self.pieces.len() {
             let point = self.pieces[piece]
@@ -148,7 +148,7 @@ impl Job<'_> {
         }
     }
 
-    /// The number of an outline, the old one if there is one just alike.
+    /// Index of an outline; an equal existing outline is reused.
     fn ring(&mut self, ring: Vec<Vec2>) -> usize {
         let known = self.rings.iter().position(|old| *old == ring);
         known.unwrap_or_else(|| {
@@ -157,8 +157,8 @@ impl Job<'_> {
         })
     }
 
-    /// Shapes without those that look like an earlier one: a rectangle turned half round is the
-    /// same to everything but a garment that runs one way.
+    /// Removes shapes that look like an earlier one: a rectangle rotated by half a turn is the same, except
+    /// for a garment that must run one way.
     fn distinct(&self, item: &Item, shapes: Vec<usize>) -> Vec<usize> {
         let corners = item.outline.outer.len();
         if self.strip.nap == Nap::PerBundle || corners > MAX_CORNERS {
@@ -181,8 +181,7 @@ impl Job<'_> {
         kept.into_iter().map(|(index, _)| index).collect()
     }
 
-    /// Adds the flaws of the strip as shapes that do not move: the search keeps the pieces clear of them by
-    /// `Job::gap`.
+    /// Adds the flaws of the strip as fixed shapes. The search keeps pieces clear of them through `Job::gap`.
     pub(crate) fn add_defects(&mut self) {
         for (k, flaw) in self.strip.flaws.iter().enumerate() {
             let outline = flaw.outline.oriented();

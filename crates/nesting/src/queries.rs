@@ -1,4 +1,4 @@
-//! Pair queries of the search, made public for benchmarks and for tests against exact ones.
+//! Pair queries of the search, public for benchmarks and for tests against exact results.
 
 use crate::check::check;
 use crate::error::NestingError;
@@ -8,10 +8,10 @@ use crate::random::SplitMix64;
 use crate::{Item, Strip};
 use toile_geometry::{PreparedPolygon, Vec2};
 
-/// Poses in which a pair is queried before the next pair.
+/// Number of poses in which a pair is queried before the next pair.
 const POSES: usize = 16;
 
-/// Distance from a place at which it is tested whether a pair fits (m), and number of directions.
+/// Distance from a position at which fitting is tested (m), and number of directions.
 const PINPOINT: f64 = 1e-7;
 const SIDES: usize = 128;
 
@@ -20,23 +20,23 @@ const SIDES: usize = 128;
 struct PosedPair<'a> {
     fixed: usize,
     moving: usize,
-    /// How far the moving shape lies from the fixed one (m).
+    /// Offset of the moving shape from the fixed one (m).
     apart: Vec2,
     pair: PairQuery<'a>,
 }
 
-/// Queries of random pairs of pieces, each in several random poses in which their boxes meet, as
-/// a move of the search asks for one pair in many places.
+/// Queries of random pairs of pieces, each in several random poses with overlapping boxes, as a move of the
+/// search queries one pair at many positions.
 ///
-/// A query is one signed penetration depth: how far a pair must move to touch, positive if it
-/// overlaps. The search makes nothing else; [`PairQueries::exact`] finds the same number by
-/// polygon operations.
+/// A query is one signed penetration depth: the distance that the pair must move until it just touches,
+/// positive for an overlap. The search uses no other kind of query; [`PairQueries::exact`] computes the same
+/// number by polygon operations.
 pub struct PairQueries<'a> {
     job: &'a Job<'a>,
     posed: Vec<PosedPair<'a>>,
 }
 
-/// Runs `work` with so many random queries of the pieces of a job.
+/// Runs `work` with `count` random queries of the pieces of a job.
 ///
 /// # Errors
 /// The job cannot be done, as in [`crate::make_marker`].
@@ -71,12 +71,12 @@ pub fn with_pair_queries<R>(
 }
 
 impl PairQueries<'_> {
-    /// How many there are.
+    /// Number of queries.
     pub fn count(&self) -> usize {
         self.posed.len()
     }
 
-    /// Makes all queries, in order; the sum of the depths (m).
+    /// Runs all queries in order; returns the sum of the depths (m).
     pub fn sum(&self) -> f64 {
         let depth = |ask: &PosedPair<'_>| {
             ask.pair
@@ -86,15 +86,14 @@ impl PairQueries<'_> {
         self.posed.iter().map(depth).sum()
     }
 
-    /// The depth of one of them (m); nothing if the pair lies farther apart than the search
-    /// looks.
+    /// The depth of one query (m); `None` if the pair is farther apart than the search window.
     pub fn depth(&self, number: usize) -> Option<f64> {
         let ask = self.posed.get(number)?;
         ask.pair.probe(ask.apart).map(|(probe, _)| probe.depth)
     }
 
-    /// The exact depth (m) of the outlines as the search takes them: with fewer points, larger
-    /// than the original ones by [`PairQueries::growth`] at the most.
+    /// The exact depth (m) of the simplified outlines. They have fewer points than the original ones and are
+    /// larger by at most [`PairQueries::growth`].
     pub fn exact(&self, number: usize) -> Option<f64> {
         let [fixed, moving] = self.pair(number)?;
         Some(match fixed.overlaps(&moving) {
@@ -103,8 +102,9 @@ impl PairQueries<'_> {
         })
     }
 
-    /// Whether the exact depth ends at a pinpoint: a place where the pair fits in theory only, since a
-    /// tenth of a micrometre from it, on 128 sides, it overlaps. The search does not go there.
+    /// Whether the exact depth ends at a pinpoint: a position at which the pair fits only in theory, since it
+    /// overlaps at a tenth of a micrometre from there in all 128 directions. The search does not use such
+    /// positions.
     pub fn ends_at_a_pinpoint(&self, number: usize) -> bool {
         let Some([fixed, moving]) = self.pair(number) else {
             return false;
@@ -126,7 +126,7 @@ impl PairQueries<'_> {
         Some([fixed, PreparedPolygon::new(&moving)])
     }
 
-    /// How much the search takes outlines larger than they are, at most, for a pair (m).
+    /// Largest growth of simplified outlines for a pair (m).
     pub fn growth(&self) -> f64 {
         self.job.growth()
     }

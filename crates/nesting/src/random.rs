@@ -23,7 +23,7 @@ impl SplitMix64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Brings a list into another order (Fisher and Yates 1938).
+    /// Shuffles a list (Fisher and Yates 1938).
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for k in (1..list.len()).rev() {
             list.swap(k, self.below(k + 1));

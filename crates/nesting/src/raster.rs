@@ -1,35 +1,35 @@
-//! The weighted loss of a piece at all places at once, on a coarse grid (after Sato, Martins, Gomes
-//! and Tsuzuki 2019): rasters of the pairs' losses, computed once each, are added up.
+//! The weighted loss of a piece at all positions of a coarse grid (after Sato, Martins, Gomes and Tsuzuki
+//! 2019): a sum of loss rasters of pairs, each computed once.
 
 use crate::depth_raster::{DepthRaster, LANES, padded};
 use crate::random::SplitMix64;
 use pulp::{Arch, Simd, WithSimd};
 use toile_geometry::Vec2;
 
-/// Side of the blocks of which each yields its best cell.
+/// Side of the square blocks that each yield one best cell (cells).
 const BLOCK: usize = 8;
-/// Part by which chance may raise a cell's score.
+/// Largest random increase of a cell's score (fraction).
 const CHANCE: f32 = 0.1;
 
-/// The weighted loss of a shape at every cell of the room it may move in.
+/// The weighted loss of a shape at every cell of its range of positions.
 pub(crate) struct LossMap {
     columns: usize,
     rows: usize,
-    /// Numbers from row to row; those after the columns mean nothing.
+    /// Distance between rows in `values`; numbers after the columns are padding.
     stride: usize,
     values: Vec<f32>,
-    /// Least value of each column of a row of blocks.
+    /// Smallest value of each column in a row of blocks.
     least: Vec<f32>,
     arch: Arch,
 }
 
-/// A cell worth a closer look.
+/// A cell to examine more closely.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
-    /// Loss there, about.
+    /// Approximate loss at the cell.
     pub score: f32,
     pub shape: usize,
-    /// Move there (m).
+    /// Position of the cell (m).
     pub at: Vec2,
 }
 
@@ -45,7 +45,7 @@ impl LossMap {
         }
     }
 
-    /// No loss anywhere in a room of an extent (cells).
+    /// Resets the map to zero loss, with a size in cells.
     pub fn clear(&mut self, columns: usize, rows: usize) {
         (self.columns, self.rows) = (columns, rows);
         self.stride = padded(columns);
@@ -53,7 +53,7 @@ impl LossMap {
         self.values.resize(self.stride * rows, 0.0);
     }
 
-    /// Adds a raster times a weight, with no move at a cell.
+    /// Adds a raster times a weight, with its zero offset at `cell`.
     pub fn add(&mut self, raster: &DepthRaster, cell: [i32; 2], weight: f32) {
         let left = raster.first[0] + cell[0];
         let low = raster.first[1] + cell[1];
@@ -77,8 +77,8 @@ impl LossMap {
         });
     }
 
-    /// The best cells, one of a block at most, with a trifle of chance between equal ones: those
-    /// better than the worst of the `most` already found replace it.
+    /// Collects the best cells, at most one per block, with a small random increase to decide between equal
+    /// ones. A cell better than the worst of the `most` cells already found replaces it.
     pub fn collect(
         &mut self,
         (shape, spacing, room): (usize, f64, Vec2),
@@ -129,7 +129,7 @@ impl LossMap {
         }
     }
 
-    /// The least value of each column between two rows.
+    /// Computes the smallest value of each column between two rows.
     fn least_of_rows(&mut self, low: usize, high: usize) {
         self.least.clear();
         self.least.resize(self.stride, f32::INFINITY);
@@ -140,13 +140,13 @@ impl LossMap {
     }
 }
 
-/// Adds rows of one table, times a weight, to rows of another.
+/// Adds weighted rows of one table to rows of another.
 struct AddRows<'a> {
     target: &'a mut [f32],
     source: &'a [f32],
-    /// Numbers from row to row of the target and of the source.
+    /// Distance between rows in the target and in the source.
     strides: [usize; 2],
-    /// Numbers of a row, whole groups.
+    /// Length of a row, a multiple of the SIMD group.
     count: usize,
     rows: usize,
     weight: f32,
@@ -170,7 +170,7 @@ impl WithSimd for AddRows<'_> {
     }
 }
 
-/// The least number of each column.
+/// Smallest number of each column.
 struct LeastOfRows<'a> {
     values: &'a [f32],
     least: &'a mut [f32],

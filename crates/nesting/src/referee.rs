@@ -1,26 +1,26 @@
-//! The referee: is this a marker that can be cut?
+//! The referee: an independent check whether a marker can be cut.
 //!
-//! Decided on the original outlines with exact predicates; nothing of the placing is used.
+//! It works on the original outlines with exact predicates and uses nothing of the placing.
 
 use crate::rules::{Laid, check_rules};
 use crate::violation::{PENETRATION_LIMIT, Side, Violation, beyond_limit};
 use crate::{Item, Marker, Strip};
 use toile_geometry::{Bounds2, Polygon, PreparedPolygon, intersection, total_area};
 
-/// What the referee found.
+/// The result of a check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    /// Everything that is wrong; empty for a sound marker.
+    /// All violations; empty for a valid marker.
     pub violations: Vec<Violation>,
-    /// Deepest overlap, below the limit too (m).
+    /// Deepest overlap, even if below the limit (m).
     pub deepest: f64,
-    /// Fabric used twice (m2).
+    /// Area of fabric that would be cut twice (m2).
     pub overlap_area: f64,
-    /// What is used twice, by the pairs of placements that share it.
+    /// Regions that would be cut twice, with the pairs of placements that share them.
     pub overlaps: Vec<([usize; 2], Vec<Polygon>)>,
-    /// Least distance between two pieces (m); infinite for one piece.
+    /// Smallest distance between two pieces (m); infinite for one piece.
     pub nearest: f64,
-    /// Fabric used, end margins included (m).
+    /// Length of fabric used, end margins included (m).
     pub length: f64,
 }
 
@@ -31,9 +31,9 @@ impl Verdict {
     }
 }
 
-/// Checks every piece and every pair of a marker: no penetration deeper than
-/// [`PENETRATION_LIMIT`], gaps kept, between selvedges and end margins, allowed orientations, every
-/// copy laid or listed once, length as stated.
+/// Checks every piece and every pair of a marker: no penetration deeper than [`PENETRATION_LIMIT`], gaps
+/// kept, pieces between selvedges and end margins, orientations allowed, every copy laid or listed once,
+/// length as stated.
 pub fn judge(items: &[Item], strip: &Strip, marker: &Marker) -> Verdict {
     let mut verdict = Verdict {
         nearest: f64::INFINITY,
@@ -88,7 +88,7 @@ fn check_copies(items: &[Item], marker: &Marker, verdict: &mut Verdict) {
     }
 }
 
-/// How far bounds reach beyond each side of the usable fabric (m); below 0 where they do not.
+/// Distance by which bounds extend beyond each side of the usable fabric (m); negative if they do not.
 pub(crate) fn sides(strip: &Strip, bounds: Bounds2) -> [(Side, f64); 4] {
     let end = strip.max_length.unwrap_or(f64::INFINITY) - strip.end_margin;
     [

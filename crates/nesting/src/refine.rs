@@ -1,61 +1,61 @@
-//! The exact step from a rough place to a good one.
+//! Exact local improvement of an approximate position.
 //!
-//! Near a place the loss is a sum of ramps, one for each piece that is too near, so its least value
-//! lies where two pieces touch, or one piece and an edge of the fabric, or where one ramp ends.
-//! Those points are tried, and from the best one again.
+//! Near a position the loss is a sum of ramps, one for each piece that is too near. Its minimum therefore
+//! lies at a point where two pieces are just touched, or one piece and an edge of the fabric, or where one
+//! ramp ends. Those points are tried, and the search repeats from the best one.
 
 use crate::job::{Axis, Job};
 use crate::layout::Layout;
 use crate::pair::PairQuery;
 use toile_geometry::Vec2;
 
-/// Most steps from point to point.
+/// Largest number of steps from point to point.
 const STEPS: usize = 8;
-/// Most pieces looked at around a place.
+/// Largest number of contact lines considered around a position.
 const LINES: usize = 8;
-/// Most points tried at every step, the most promising first.
+/// Largest number of points tried in a step, the most promising first.
 const TRIALS: usize = 4;
-/// Longest step over the width of the fabric, and over the deepest overlap.
+/// Longest step, relative to the width of the fabric and to the deepest overlap.
 const REACH: f64 = 0.25;
 const STRIDE: f64 = 4.0;
 
-/// The line on which the moving piece just touches another: `normal . move = level`.
+/// The line of positions at which the moving piece just touches another: `normal . move = level`.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     normal: Vec2,
     level: f64,
     weight: f64,
-    /// Weighted loss; 0 for one that is only near.
+    /// Weighted loss; 0 for a piece that is only near.
     loss: f64,
-    /// How far the line is from the place (m).
+    /// Distance of the line from the current position (m).
     apart: f64,
 }
 
-/// A piece that may move among the others.
+/// A piece to be moved among the others.
 pub(crate) struct Mover<'a, 'j> {
     pub job: &'j Job<'j>,
     pub layout: &'a Layout,
     pub piece: usize,
-    /// Weights of this piece's pairs.
+    /// Weights of the pairs of this piece.
     pub weights: &'a [f64],
-    /// Queries made.
+    /// Number of queries made.
     pub queries: u64,
     pub scratch: &'a mut Scratch<'j>,
 }
 
-/// Another piece within reach of a place.
+/// Another piece near a position.
 #[derive(Clone, Copy, Debug)]
 struct Neighbour<'a> {
     at: Vec2,
-    /// Extent (m).
+    /// Size of the bounding box (m).
     size: Vec2,
     weight: f64,
     pair: PairQuery<'a>,
 }
 
 impl Neighbour<'_> {
-    /// How far a place lies from this piece, where the box of a piece of `size` there comes nearer
-    /// than `more` to its box (m).
+    /// Offset of a position from this piece (m), if the bounding box of a piece of `size` there is nearer
+    /// than `more` to the box of this piece.
     #[inline(always)]
     fn apart(&self, at: Vec2, size: Vec2, more: f64) -> Option<Vec2> {
         let apart = at - self.at;
@@ -67,7 +67,7 @@ impl Neighbour<'_> {
     }
 }
 
-/// Lists used again and again.
+/// Reusable lists.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<'a> {
     neighbours: Vec<Neighbour<'a>>,
@@ -76,7 +76,7 @@ pub(crate) struct Scratch<'a> {
 }
 
 impl Mover<'_, '_> {
-    /// Finds the pieces that a shape can meet no farther than `reach` from a place (m).
+    /// Finds the pieces that a shape can meet within `reach` of a position (m).
     pub fn gather(&mut self, shape: usize, at: Vec2, reach: f64) {
         let size = self.job.shapes[shape].size;
         let neighbours = &mut self.scratch.neighbours;
@@ -105,7 +105,7 @@ impl Mover<'_, '_> {
         }
     }
 
-    /// Weighted loss at a place within reach, or something above `limit` as soon as it is.
+    /// Weighted loss at a position within reach; stops early with a value above `limit`.
     #[inline]
     pub fn loss(&mut self, shape: usize, at: Vec2, limit: f64) -> f64 {
         let size = self.job.shapes[shape].size;
@@ -124,7 +124,7 @@ impl Mover<'_, '_> {
         sum
     }
 
-    /// The loss at a place and the lines round it, the heaviest first.
+    /// Computes the loss at a position and the contact lines around it, sorted by decreasing loss.
     fn lines(&mut self, shape: usize, at: Vec2) -> f64 {
         let size = self.job.shapes[shape].size;
         let window = self.job.window();
@@ -160,14 +160,14 @@ impl Mover<'_, '_> {
         sum
     }
 
-    /// Lists the lines round a place and all pieces within a step of it; the loss there.
+    /// Finds the pieces within a step of a position and the contact lines around it; returns the loss there.
     fn look_around(&mut self, shape: usize, at: Vec2) -> f64 {
         let step = REACH * self.job.height;
         self.gather(shape, at, step + self.job.widest_gap + self.job.window());
         self.lines(shape, at)
     }
 
-    /// The best place found near one, with its loss. Stops once it cannot be improved.
+    /// The best position found near a given one, with its loss. Stops when there is no improvement.
     pub fn refine(&mut self, shape: usize, from: Vec2) -> Option<(f64, Vec2)> {
         let room = self.layout.room(self.job, shape)?;
         let axes = self.job.axes(self.piece, shape, &self.layout.phases);
@@ -213,14 +213,14 @@ impl Mover<'_, '_> {
     }
 }
 
-/// Takes the most promising target out of a list.
+/// Removes the most promising target from a list.
 fn least(targets: &mut Vec<(f64, Vec2)>) -> Option<(f64, Vec2)> {
     let best = (0..targets.len()).min_by(|&a, &b| targets[a].0.total_cmp(&targets[b].0))?;
     Some(targets.swap_remove(best))
 }
 
-/// Points near a place where lines end or cross, with what they would lose if the lines went on
-/// straight.
+/// Proposes points near a position at which ramps end or contact lines cross, each with the loss predicted by
+/// linear extrapolation.
 fn propose(
     lines: &[Line],
     (at, reach): (Vec2, f64),
@@ -241,7 +241,7 @@ fn propose(
         if line.loss > 0.0 {
             add(at + line.normal * missing);
         }
-        // Along the axes: to the line, for pieces that may move along one only.
+        // Along each axis to the line, for pieces that can move along one axis only.
         for axis in 0..2 {
             let held = axes[1 - axis] != Axis::Free;
             if (held || line.loss > 0.0) && line.normal[axis].abs() > 1e-3 {
@@ -261,7 +261,7 @@ fn propose(
                 add(Vec2::new(x, y) / cross);
             }
         }
-        // Where the line meets an edge of the fabric.
+        // Intersection of the line with an edge of the fabric.
         for axis in 0..2 {
             for wall in [0.0, room[axis]] {
                 let other = 1 - axis;

@@ -1,4 +1,4 @@
-//! Several pieces of fabric of given width and length, filled one after another.
+//! Several rolls of given width and length, filled one after the other.
 
 use crate::check::{check_locks, check_numbered};
 use crate::error::{NestingError, Refusal};
@@ -12,34 +12,33 @@ use crate::{
 pub struct RollMarker {
     /// Index of the roll.
     pub roll: usize,
-    /// What was to be laid on it: items of the job with the copies that were left, which the
-    /// marker counts anew from 0.
+    /// Items of the job with the copies that were left for this roll; the marker numbers these copies from 0.
     pub items: Vec<Item>,
     /// For each of these items, its index in the job and the numbers of its copies there.
     pub sources: Vec<(usize, Vec<u32>)>,
-    /// What lies where. Copies it lists as unplaced were passed on to the next roll.
+    /// The marker. Copies that it lists as unplaced were passed on to the next roll.
     pub marker: Marker,
 }
 
 /// Markers on several rolls.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RolledOut {
-    /// One for each roll that has a piece on it, in the order of the rolls.
+    /// One marker for each roll with pieces, in the order of the rolls.
     pub markers: Vec<RollMarker>,
-    /// Copies that lie on no roll, by item and copy, with the reason each roll has.
+    /// Copies that lie on no roll, by item and copy, with the reason for each roll.
     pub unplaced: Vec<Unplaced>,
 }
 
-/// Lays all pieces on rolls of fabric, which are filled in the order given; what finds no place on
-/// one goes to the next. A roll without a length takes all that is left, in little length. Locked
-/// copies lie on the first roll.
+/// Lays all pieces on rolls of fabric, which are filled in the given order; pieces that do not fit on one go
+/// to the next. A roll of unlimited length takes all remaining pieces in the shortest length. Locked copies
+/// lie on the first roll.
 ///
-/// The budget is shared out by the area that each roll can take. Every marker has passed the
+/// The budget is divided in proportion to the area that each roll can take. Every marker has passed the
 /// referee.
 ///
 /// # Errors
-/// There is no roll or no piece, a roll makes no sense, a piece is damaged, or the search is stopped.
-/// A piece that is only too large for a roll is no error: it is listed.
+/// There is no roll or no piece, a roll is invalid, a piece is damaged, or the search is stopped. A piece
+/// that is only too large for a roll is not an error: it is listed as unplaced.
 pub fn make_markers_on_rolls(
     items: &[Item],
     rolls: &[Strip],
@@ -80,7 +79,7 @@ pub fn make_markers_on_rolls(
             };
             let made = make_marker(&laid, strip, part(search, shares[roll]), &mut control);
             if made == Err(NestingError::Cancelled) && !out.markers.is_empty() {
-                // Stopped with some rolls done: the rest is said not to be laid.
+                // Stopped after some rolls: the remaining pieces are reported as not laid.
                 for source in &sources {
                     left[source.0].reasons = vec!["the search was stopped; go on".to_owned()];
                 }
@@ -110,13 +109,14 @@ pub fn make_markers_on_rolls(
     Ok(out)
 }
 
-/// Copies of an item that are not laid yet, and what the rolls so far had against them.
+/// Copies of an item that are not laid yet, with the reasons of the rolls so far.
 struct Remainder {
     copies: Vec<u32>,
     reasons: Vec<String>,
 }
 
-/// The part of the search each roll gets: by the area it takes of what is there to lay.
+/// Fraction of the search budget for each roll: in proportion to the area that it takes of the remaining
+/// pieces.
 fn shares(items: &[Item], rolls: &[Strip]) -> Vec<f64> {
     let area = |item: &Item| item.outline.area() * f64::from(item.quantity);
     let mut left: f64 = items.iter().map(area).sum();
@@ -133,7 +133,7 @@ fn shares(items: &[Item], rolls: &[Strip]) -> Vec<f64> {
         .collect();
     let last = taken.iter().rposition(|&t| t > 0.0);
     let most = taken.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    // A roll after the last that is needed by area takes what the others could not hold.
+    // A roll after the last one that the area requires takes pieces that did not fit on the others.
     let late = last.map_or(0, |l| rolls.len() - 1 - l) as f64;
     let spare = if late > 0.0 { 0.2 } else { 0.0 };
     let share = |(k, t): (usize, &f64)| match last {
@@ -151,10 +151,10 @@ fn part(search: Search, share: f64) -> Search {
     Search { budget, ..search }
 }
 
-/// Locks of copies that do not exist would lie on no roll.
+/// Refuses locks of copies that do not exist, since they would lie on no roll.
 fn check_all_locks(items: &[Item]) -> Result<(), NestingError> {
     let refusal = |(k, item): (usize, &Item)| {
-        // What has no copies is refused for that.
+        // An item without copies is refused for that reason instead.
         let problem = check_locks(item).filter(|_| item.quantity > 0)?;
         Some(Refusal {
             item: k,
@@ -169,15 +169,15 @@ fn check_all_locks(items: &[Item]) -> Result<(), NestingError> {
     }
 }
 
-/// What is left to lay on a roll.
+/// The items to lay on one roll.
 struct RollJob {
     laid: Vec<Item>,
-    /// For each, its index in the job and the numbers of its copies there.
+    /// For each item, its index in the job and the numbers of its copies there.
     sources: Vec<(usize, Vec<u32>)>,
 }
 
 impl RollJob {
-    /// What is left, less what is too large for the roll; the reason for that is noted.
+    /// The remaining items without those too large for the roll, whose reason is noted.
     fn new(
         items: &[Item],
         left: &mut [Remainder],
@@ -189,7 +189,7 @@ impl RollJob {
         };
         for (k, item) in items.iter().enumerate() {
             if item.quantity == 0 {
-                // Refused below with its name.
+                // Refused below, with its name.
                 job.laid.push(item.clone());
                 job.sources.push((k, Vec::new()));
             }
@@ -237,14 +237,14 @@ impl RollJob {
     }
 }
 
-/// Copies that may lie alike: of a pair the even ones and the odd ones.
+/// Groups of copies with the same orientations: for a pair the even and the odd copies.
 fn groups(item: &Item, copies: &[u32]) -> Vec<Vec<u32>> {
     let whole = item.allowed.mirror != Mirror::Pairs;
     let (even, odd): (Vec<u32>, Vec<u32>) = copies.iter().partition(|&&c| whole || c % 2 == 0);
     [even, odd].into_iter().filter(|g| !g.is_empty()).collect()
 }
 
-/// An item with some of its copies only.
+/// An item with only some of its copies.
 fn part_of(item: &Item, copies: &[u32], roll: usize) -> Item {
     let mut part = item.clone();
     part.quantity = copies.len() as u32;
@@ -265,7 +265,7 @@ fn part_of(item: &Item, copies: &[u32], roll: usize) -> Item {
     part
 }
 
-/// Takes the pieces on a roll off the list, and notes why the others found no place.
+/// Removes the pieces laid on a roll from the remaining ones, and notes why the others were not placed.
 fn note_result(
     marker: &Marker,
     sources: &[(usize, Vec<u32>)],

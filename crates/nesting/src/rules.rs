@@ -6,13 +6,13 @@ use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, Placement, Strip};
 use std::collections::BTreeMap;
 use toile_geometry::{PreparedPolygon, Vec2, intersection, total_area};
 
-/// Angles that differ by less are the same (rad).
+/// Angles that differ by less than this count as equal (rad).
 const SAME_ANGLE: f64 = 1e-9;
 
-/// Index of a placement, its item, and its outline on the strip.
+/// Index of a placement, with its item and its outline on the strip.
 pub(crate) type Laid<'a> = (usize, &'a Item, PreparedPolygon);
 
-/// Everything that has to do with one piece, the print, and garments that run one way.
+/// Checks all rules for single pieces, the print, and garments that run one way.
 pub(crate) fn check_rules(
     strip: &Strip,
     laid: &[Laid<'_>],
@@ -78,7 +78,7 @@ fn check_orientation(
     })
 }
 
-/// The straight edge that is to lie on a fold must be there, and the piece at its inner side.
+/// Checks that the straight edge of a piece lies on the fold, with the piece on the inner side.
 fn check_fold(
     index: usize,
     placement: &Placement,
@@ -87,7 +87,7 @@ fn check_fold(
 ) -> Option<Violation> {
     let edge = item.fold_edge?;
     let bounds = outline.bounds();
-    // Turning half round and turning over each bring the upper side down.
+    // Half a turn and turning over each bring the upper side down.
     let flipped = placement.mirrored != (placement.turn.cos() < 0.0);
     let lower = (edge == FoldEdge::Lower) != flipped;
     let along = placement.turn.sin().abs() < SAME_ANGLE;

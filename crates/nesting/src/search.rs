@@ -1,5 +1,5 @@
-//! The search within its budget: independent searches (islands) run in parallel and sometimes take over the
-//! best layout.
+//! The search within its budget: independent searches (islands) run in parallel and sometimes adopt the best
+//! layout.
 
 use crate::check::check;
 use crate::error::NestingError;
@@ -14,27 +14,27 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// When a search ends.
+/// Limit at which a search ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Budget {
-    /// After so many evaluations of a pair of pieces: the same job gives the same marker.
+    /// After this number of evaluations of a pair of pieces: the same job gives the same marker.
     Evaluations(u64),
-    /// After so many seconds (s): for a person who waits.
+    /// After this time (s), for interactive use.
     Seconds(f64),
 }
 
-/// How hard to search.
+/// Parameters of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
-    /// When it ends.
+    /// Limit at which the search ends.
     pub budget: Budget,
-    /// Start of the sequences of chance; the same seed gives the same marker.
+    /// Seed of the random numbers; the same seed gives the same marker.
     pub seed: u64,
-    /// Independent searches in parallel; their number changes the marker, the number of processors does not.
-    /// 0 for two, or for one a processor where the clock decides.
+    /// Number of independent parallel searches. It changes the marker, while the number of processors does
+    /// not. 0 means two, or with a time limit one per processor.
     pub islands: usize,
-    /// Threads; 0 for as many as the machine has. The search uses one an island at most, the
-    /// tables made before it as many as the machine has at most.
+    /// Number of threads; 0 for as many as the machine has. The search uses at most one per island, the
+    /// preparation of tables at most as many as the machine has.
     pub threads: usize,
 }
 
@@ -70,43 +70,44 @@ impl Search {
 /// Progress of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Part of the budget used, 0..=1.
+    /// Fraction of the budget used (0 to 1).
     pub done: f64,
-    /// Pairs of pieces evaluated.
+    /// Number of evaluations of a pair of pieces.
     pub evaluations: u64,
-    /// Length of the best so far, end margins included (m); infinite before the first.
+    /// Length of the best marker so far, end margins included (m); infinite before the first.
     pub length: f64,
-    /// The best so far; nothing before the first, and on rolls. It is the same where nothing is new.
+    /// The best marker so far; `None` before the first, and on rolls. The same `Arc` as before if its length
+    /// did not change.
     pub marker: Option<Arc<Marker>>,
 }
 
 /// Receives the progress of a search, and may stop it.
 pub struct Control<'a> {
-    /// Called some twenty times a second, with the same numbers where nothing is new.
+    /// Called about twenty times a second, with unchanged numbers if there is no news.
     pub progress: &'a mut dyn FnMut(Progress),
     /// A flag that any thread may set: the search ends with the best marker so far, or with
     /// [`NestingError::Cancelled`] if there is none yet.
     pub cancel: &'a AtomicBool,
 }
 
-/// Most islands.
+/// Largest number of islands.
 const MAX_ISLANDS: usize = 64;
-/// Most pairs of pieces that all islands hold together, 24 bytes each: 1 GB.
+/// Largest number of pairs of pieces in all islands together, 24 bytes each: 1 GB.
 const PAIRS_HELD: usize = 40_000_000;
-/// Islands where the bytes must not depend on the machine, and the fewest anywhere.
+/// Number of islands if the result must not depend on the machine, and the smallest number otherwise.
 const DEFAULT_ISLANDS: usize = 2;
-/// Part of the time in which no-fit polygons are made beforehand; the rest are made when needed.
+/// Fraction of the time for computing no-fit polygons in advance; the rest is computed when needed.
 const PREPARING: f64 = 0.3;
-/// Part of the time after which the last touch ends too.
+/// Fraction of the time after which the final polishing ends, too.
 const POLISHING: f64 = 1.1;
-/// Part of the budget spent on new layouts; the rest presses the best one.
+/// Fraction of the budget for finding new layouts; the rest is for compressing the best one.
 const EXPLORING: f64 = 0.8;
 /// Evaluations of an island between two exchanges.
 const EPOCH: u64 = 3_000_000;
-/// Time between two exchanges where the clock decides (s).
+/// Time between two exchanges, with a time limit (s).
 const EPOCH_SECONDS: f64 = 0.25;
 
-/// Measures how much of the budget is used.
+/// Measures the fraction of the budget used.
 struct Meter<'a> {
     search: Search,
     cancel: &'a AtomicBool,
@@ -114,7 +115,7 @@ struct Meter<'a> {
 }
 
 impl Meter<'_> {
-    /// Part of the budget used.
+    /// Fraction of the budget used.
     fn done(&self, queries: u64) -> f64 {
         match self.search.budget {
             Budget::Evaluations(all) => queries as f64 / all.max(1) as f64,
@@ -122,7 +123,7 @@ impl Meter<'_> {
         }
     }
 
-    /// Whether the clock says that a part of the budget is used up.
+    /// Whether the search was cancelled or a fraction of the time limit has passed.
     fn stops(&self, part: f64) -> bool {
         self.cancel.load(Ordering::Relaxed)
             || match self.search.budget {
@@ -133,7 +134,7 @@ impl Meter<'_> {
             }
     }
 
-    /// When the next exchange is due, if the clock decides.
+    /// Time of the next exchange, with a time limit.
     fn end_of_epoch(&self) -> Option<Instant> {
         match self.search.budget {
             Budget::Evaluations(_) => None,
@@ -144,7 +145,7 @@ impl Meter<'_> {
         }
     }
 
-    /// Evaluations of one island when a part of the budget is used up.
+    /// Number of evaluations of one island for a fraction of the budget.
     fn share(&self, part: f64) -> u64 {
         match self.search.budget {
             Budget::Evaluations(all) => {
@@ -155,11 +156,11 @@ impl Meter<'_> {
     }
 }
 
-/// Lays all pieces on the strip in little length.
+/// Lays all pieces on the strip in the shortest length.
 ///
-/// With a budget in evaluations the same input gives the same marker. Refuses a job that cannot be
-/// done, naming every piece and the remedy. Copies that find no place on a strip of limited length
-/// are listed in the marker. Every marker has passed the referee on the original outlines.
+/// With a budget in evaluations, the same input gives the same marker. Refuses a job that cannot be done,
+/// naming every faulty piece and the remedy. Copies that do not fit on a strip of limited length are listed
+/// in the marker. Every marker has passed the referee on the original outlines.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;
@@ -185,12 +186,12 @@ pub fn make_marker(
     run(items, strip, None, (search, control))
 }
 
-/// Goes on from a marker: one made before, stopped before its time, or changed by hand.
+/// Continues from a marker: a finished one, one stopped early, or one changed by hand.
 ///
-/// Pieces of the start may overlap, lie beside the strip, be turned otherwise than allowed, or be
-/// missing: they are taken apart, brought back, turned to the nearest orientation allowed, and
-/// laid. Locked copies lie where they are locked. Where the start is sound, the marker is no
-/// longer than it. Otherwise as [`make_marker`].
+/// Pieces of the start may overlap, lie outside the strip, have an orientation that is not allowed, or be
+/// missing: they are separated, moved back, rotated to the nearest allowed orientation, and laid. Locked
+/// copies have their locked positions. If the start is valid, the marker is at most as long. Otherwise like
+/// [`make_marker`].
 pub fn improve_marker(
     items: &[Item],
     strip: &Strip,
@@ -221,7 +222,7 @@ fn run(
     let found = search_for((items, strip, &copies), start, (&meter, control));
     let marker = match (found, start) {
         (Ok(marker), _) => marker,
-        // Stopped before anything was found: a sound start is something.
+        // Stopped before a layout was found: a valid start is better than none.
         (Err(NestingError::Cancelled), Some(start)) if judge(items, strip, start).is_sound() => {
             return Ok(start.clone());
         }
@@ -246,7 +247,7 @@ fn run(
     }
 }
 
-/// Makes the tables and searches.
+/// Prepares the tables and searches.
 fn search_for(
     (items, strip, copies): (&[Item], &Strip, &[(usize, u32)]),
     start: Option<&Marker>,
@@ -262,7 +263,7 @@ fn search_for(
     Ok(finish(&job, &best))
 }
 
-/// The progress before the first layout.
+/// Progress before the first layout.
 const BEGUN: Progress = Progress {
     done: 0.0,
     evaluations: 0,
@@ -270,7 +271,7 @@ const BEGUN: Progress = Progress {
     marker: None,
 };
 
-/// A search that can be made with so many pieces and flaws, with its islands counted.
+/// Checks the parameters for a number of pieces and flaws, and sets the number of islands.
 fn checked(mut search: Search, count: usize) -> Result<Search, NestingError> {
     let refuse = |what: String| Err(NestingError::Search(what));
     if let Budget::Seconds(seconds) = search.budget
@@ -299,7 +300,7 @@ fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Whether a marker has more laid than another, or as much on clearly less fabric.
+/// Whether a marker has more pieces laid than another, or as many on clearly less fabric.
 fn is_ahead(marker: &Marker, other: &Marker) -> bool {
     let (left, other_left) = (marker.unplaced.len(), other.unplaced.len());
     let shorter = marker.length < other.length - PENETRATION_LIMIT;
@@ -313,7 +314,7 @@ fn threads(search: Search) -> usize {
     }
 }
 
-/// Islands of a search, each with a seed of its own.
+/// The islands of a search, each with its own seed.
 fn islands<'a>(job: &'a Job<'a>, search: Search) -> Vec<Island<'a>> {
     let seed = search.seed.wrapping_mul(0x1000_0000_01b3);
     let count = search.islands.max(1) as u64;
@@ -322,7 +323,8 @@ fn islands<'a>(job: &'a Job<'a>, search: Search) -> Vec<Island<'a>> {
         .collect()
 }
 
-/// Starts all islands, then lets them search with exchanges until the budget is used; the best layout.
+/// Starts all islands, then lets them search with exchanges until the budget is used; returns the best
+/// layout.
 fn run_islands(
     job: &Job<'_>,
     start: Option<&Layout>,
@@ -357,7 +359,7 @@ fn run_islands(
             last = report_progress(&islands, last, meter, control);
             let now = islands.iter().map(Island::queries).max().unwrap_or(0);
             if now == most {
-                // Nothing is left to try.
+                // No island made another query.
                 break;
             }
         }
@@ -399,10 +401,10 @@ fn epoch(
     each(islands, threads(meter.search), (&work, told));
 }
 
-/// Work on one island.
+/// A function that works on one island.
 type Work<'w, 'a> = &'w (dyn Fn(&mut Island<'a>) + Sync);
 
-/// Works on all islands, on so many threads.
+/// Runs `work` on all islands with a number of threads.
 fn each<'a>(
     islands: &mut [Island<'a>],
     threads: usize,
@@ -414,7 +416,7 @@ fn each<'a>(
     side_by_side(chunks, &chunk, told);
 }
 
-/// Gives the best layout to islands that are clearly worse.
+/// Copies the best layout to islands with worse ones.
 fn share(islands: &mut [Island<'_>]) {
     let Some(first) = best_of(islands) else {
         return;
@@ -427,13 +429,13 @@ fn share(islands: &mut [Island<'_>]) {
     }
 }
 
-/// The island with the best layout, the first of equal ones.
+/// The island with the best layout, the first of equals.
 fn best_of(islands: &[Island<'_>]) -> Option<usize> {
     let order = |a: (f64, f64), b: (f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
     (0..islands.len()).min_by(|&a, &b| order(islands[a].score(), islands[b].score()))
 }
 
-/// Reports the progress of all islands since the last, and returns it.
+/// Reports the progress of all islands and returns it; reuses the marker of `last` if the length is the same.
 fn report_progress(
     islands: &[Island<'_>],
     last: Progress,

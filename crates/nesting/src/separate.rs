@@ -1,6 +1,6 @@
-//! Overlaps are taken apart by guided local search (Voudouris and Tsang 1999; for nesting Umetani
-//! and others 2009, Gardeyn and Wauters 2025): pieces that overlap move where the weighted loss is
-//! least, and pairs that stay overlapping gain weight until one of them has to go elsewhere.
+//! Overlaps are resolved by guided local search (Voudouris and Tsang 1999; for nesting Umetani and others
+//! 2009, Gardeyn and Wauters 2025): overlapping pieces move to the position of least weighted loss, and pairs
+//! that keep overlapping gain weight until one of them moves elsewhere.
 
 use crate::job::Job;
 use crate::layout::Layout;
@@ -9,64 +9,65 @@ use crate::raster::{Candidate, LossMap};
 use crate::refine::{Mover, Scratch};
 use toile_geometry::Vec2;
 
-/// Cells of the loss maps that get a closer look, for every move.
+/// Number of cells of the loss maps examined closely at every move.
 const LOOKS: usize = 4;
-/// How weights of overlapping pairs grow, the least and the deepest overlap, and how others decay.
+/// Growth factors of the weights of overlapping pairs, for the smallest and the deepest overlap; decay factor
+/// of the others.
 const GROWTH: [f64; 2] = [1.2, 2.0];
 const DECAY: f64 = 0.95;
 
-/// Loss that counts as none, over the distance touching pieces keep: so much that four pieces that
-/// fill the width exactly, with three such distances between them, count as apart.
+/// Loss that counts as none, relative to the distance kept between touching pieces: large enough that four
+/// pieces that fill the width exactly, with three such distances between them, count as separate.
 pub(crate) const TOLERANCE: f64 = 3.5;
-/// Cells of a loss map that cost as much as one query.
+/// Number of cells of a loss map that cost as much as one query.
 const CELLS_A_QUERY: usize = 64;
-/// Large pieces are harder to move, so their pairs weigh more: area over the mean to this power.
+/// Pairs of large pieces weigh more, since large pieces are harder to move: exponent of area over mean area.
 const AREA_POWER: f64 = 0.3;
 
-/// When to give up.
+/// Limits after which an attempt is given up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patience {
-    /// Rounds without a better layout before one strike.
+    /// Rounds without improvement before a strike.
     pub rounds: usize,
-    /// Strikes in a row.
+    /// Number of consecutive strikes.
     pub strikes: usize,
 }
 
-/// How far a search may go.
+/// Limits of a search.
 pub(crate) struct Limit<'a> {
-    /// Queries after which it stops.
+    /// Number of queries after which it stops.
     pub queries: u64,
-    /// Whether it is to stop at once.
+    /// Function that returns true to stop at once.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// How a try to take a layout apart stands.
+/// State of an attempt to resolve the overlaps of a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// Nothing overlaps.
     Apart,
-    /// Patience is at its end.
+    /// Patience is exhausted.
     Failed,
-    /// The limit is reached; the next call goes on.
+    /// The limit is reached; the next call continues.
     Paused,
 }
 
-/// A try under way.
+/// An attempt in progress.
 #[derive(Clone, Debug)]
 struct Attempt {
-    /// Least loss so far, and its layout.
+    /// Smallest loss so far, with its layout.
     best: (f64, Layout),
-    /// Least loss at the last strike.
+    /// Smallest loss at the last strike.
     before: f64,
     strikes: usize,
     rounds: usize,
 }
 
-/// A layout under repair.
+/// A layout with overlaps to be resolved.
 pub(crate) struct Separator<'a> {
     pub job: &'a Job<'a>,
     pub layout: Layout,
-    /// Queries made so far.
+    /// Number of queries made so far.
     pub queries: u64,
     pub sequence: SplitMix64,
     /// Loss that counts as none (m).
@@ -100,7 +101,7 @@ impl<'a> Separator<'a> {
         separator
     }
 
-    /// Takes another layout, with all weights even.
+    /// Loads another layout and resets all weights.
     pub fn load(&mut self, layout: Layout) {
         self.layout = layout;
         self.weights.clone_from(&self.least_weights);
@@ -123,7 +124,7 @@ impl<'a> Separator<'a> {
         let locked = stays(piece);
         for other in 0..count {
             let apart = at - self.layout.at[other];
-            // Two that lie already lie as they do.
+            // Two fixed pieces cannot be separated, so their overlap is ignored.
             let loss = if other == piece || (locked && stays(other)) {
                 0.0
             } else {
@@ -141,31 +142,31 @@ impl<'a> Separator<'a> {
         row.iter().any(|&loss| loss > self.tolerance)
     }
 
-    /// Sum of all losses that count (m).
+    /// Sum of all losses above the tolerance (m).
     pub fn total(&self) -> f64 {
         let counts = self.losses.iter().filter(|&&loss| loss > self.tolerance);
         0.5 * counts.sum::<f64>()
     }
 
-    /// Sum of the losses of one piece that count (m).
+    /// Sum of the losses of one piece above the tolerance (m).
     pub fn loss_of(&self, piece: usize) -> f64 {
         let count = self.layout.at.len();
         let row = self.losses[piece * count..][..count].iter();
         row.filter(|&&loss| loss > self.tolerance).sum()
     }
 
-    /// Whether a try was paused.
+    /// Whether an attempt was paused.
     pub fn is_paused(&self) -> bool {
         self.attempt.is_some()
     }
 
-    /// Forgets a paused try.
+    /// Discards a paused attempt.
     pub fn give_up(&mut self) {
         self.attempt = None;
     }
 
-    /// Moves pieces until nothing overlaps or patience is at its end; then the best layout found
-    /// is in place. Pauses at the limit.
+    /// Moves pieces until nothing overlaps or patience is exhausted; the layout is then the best one found.
+    /// Pauses at the limit.
     pub fn separate(&mut self, patience: Patience, limit: &Limit<'_>) -> Outcome {
         let mut attempt = self.attempt.take().unwrap_or_else(|| Attempt {
             best: (self.total(), self.layout.clone()),
@@ -210,7 +211,7 @@ impl<'a> Separator<'a> {
         self.queries >= limit.queries || (limit.stop)()
     }
 
-    /// Moves every piece that overlaps once.
+    /// Moves every overlapping piece once.
     fn round(&mut self) {
         let movable = |&k: &usize| self.job.pieces[k].locked.is_none() && self.overlaps(k);
         let mut order: Vec<usize> = (0..self.layout.at.len()).filter(movable).collect();
@@ -222,8 +223,8 @@ impl<'a> Separator<'a> {
         }
     }
 
-    /// Moves a piece to the best place found: of the best cells of its loss maps and the place
-    /// where it is, each made exact. `bias` is added for every metre from the start of the strip.
+    /// Moves a piece to the best position found, starting from the best cells of its loss maps and from its
+    /// current position, each refined exactly. `bias` is the cost per metre from the start of the strip.
     pub fn move_piece(&mut self, piece: usize, bias: f64) {
         let count = self.layout.at.len();
         self.survey(piece, bias);
@@ -254,7 +255,7 @@ impl<'a> Separator<'a> {
         }
     }
 
-    /// The best cells of a piece's loss maps.
+    /// Finds the best cells of a piece's loss maps.
     fn survey(&mut self, piece: usize, bias: f64) {
         let count = self.layout.at.len();
         let spacing = self.job.spacing;
@@ -282,7 +283,7 @@ impl<'a> Separator<'a> {
         }
     }
 
-    /// Pairs that overlap gain weight in proportion, the others lose some.
+    /// Increases the weights of overlapping pairs in proportion to the overlap, and decreases the others.
     fn reweigh(&mut self) {
         let deepest = self.losses.iter().copied().fold(0.0, f64::max);
         if deepest <= 0.0 {
@@ -303,7 +304,7 @@ impl<'a> Separator<'a> {
     }
 }
 
-/// What each pair weighs at least.
+/// Smallest weight of each pair.
 fn least_weights(job: &Job<'_>) -> Vec<f64> {
     let count = job.pieces.len();
     let mean = job.pieces.iter().map(|p| p.area).sum::<f64>() / count as f64;

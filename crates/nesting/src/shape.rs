@@ -3,7 +3,7 @@
 use crate::{Fold, FoldEdge, Item, Pose, Strip};
 use toile_geometry::{Polygon, Vec2};
 
-/// Rounding allowed when a piece is exactly as wide as the fabric (m).
+/// Rounding tolerance for a piece exactly as wide as the fabric (m).
 pub(crate) const SNUG: f64 = 1e-9;
 
 /// A piece in one orientation.
@@ -11,27 +11,27 @@ pub(crate) const SNUG: f64 = 1e-9;
 pub(crate) struct Shape {
     /// Index of the item, or of the flaw after all items.
     pub kind: usize,
-    /// Number of its outline, which other items may share.
+    /// Index of the outline, which other items may share.
     pub ring: usize,
-    /// The first shape with the same outline that lies alike.
+    /// The first shape with the same outline and orientation.
     pub look: usize,
     /// Angle from the warp to the grain (rad).
     pub turn: f64,
     pub mirrored: bool,
-    /// From the box's corner to the origin of the posed outline, negated (m).
+    /// Lower left corner of the bounding box of the posed outline, relative to its origin (m).
     pub offset: Vec2,
-    /// Extent (m).
+    /// Size of the bounding box (m).
     pub size: Vec2,
     /// Whether the grain points along +x rather than -x.
     pub forward: bool,
-    /// The match point from the box's corner (m).
+    /// Match point relative to the corner of the bounding box (m).
     pub anchor: Option<Vec2>,
-    /// The only y it may have (m): that of the fold.
+    /// The only allowed y (m), for a piece on a fold.
     pub on_fold: Option<f64>,
 }
 
 impl Shape {
-    /// Nothing if the orientation does not bring the fold edge to a fold.
+    /// `None` if the orientation does not bring the fold edge to a fold.
     pub fn new(
         kind: usize,
         item: &Item,
@@ -66,7 +66,7 @@ impl Shape {
         })
     }
 
-    /// The outline from the box's corner (m).
+    /// The outline relative to the corner of the bounding box (m).
     pub fn outline(&self, item: &Item) -> Polygon {
         let pose = Pose {
             grain: item.grain,
@@ -78,7 +78,7 @@ impl Shape {
     }
 }
 
-/// Extent of an item in an orientation (m).
+/// Size of an item's bounding box in an orientation (m).
 pub(crate) fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
     let pose = Pose {
         grain: item.grain,
@@ -89,8 +89,8 @@ pub(crate) fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
     pose.lay(&item.outline).bounds().size()
 }
 
-/// Whether an orientation brings the fold edge of a piece to the lower or upper fold, if it has one
-/// and if there is such a fold: `Some(None)` if there is none.
+/// The fold, lower or upper, on which an orientation puts the fold edge of a piece: `None` for a piece
+/// without fold edge, `Some(None)` if there is no such fold.
 pub(crate) fn folds_up(
     item: &Item,
     strip: &Strip,
@@ -106,7 +106,7 @@ pub(crate) fn folds_up(
     })
 }
 
-/// Whether two rings have the same corners, in whatever order, to a tolerance (m).
+/// Whether two rings have the same corners, in any order, to a tolerance (m).
 pub(crate) fn coincide(a: &[Vec2], b: &[Vec2], tolerance: f64) -> bool {
     let found = |p: &Vec2| b.iter().any(|q| (p - q).amax() <= tolerance);
     a.len() == b.len() && a.iter().all(found)

@@ -1,12 +1,12 @@
-//! Runs work on threads in parallel, and calls back at intervals.
+//! Runs work on parallel threads, and calls back at intervals.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Time between two calls back.
+/// Interval of the calls.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Works on every part on a thread of its own; meanwhile calls `told` now and then.
+/// Works on every part in a thread of its own; meanwhile calls `told` at intervals.
 pub(crate) fn side_by_side<T: Send>(
     parts: Vec<T>,
     work: &(dyn Fn(T) + Sync),
@@ -19,7 +19,7 @@ pub(crate) fn side_by_side<T: Send>(
             let ends = ends.clone();
             scope.spawn(move || {
                 work(part);
-                // Nobody listens any more if another part has failed.
+                // Nobody receives the message if another part has failed.
                 let _ = ends.send(());
             });
         }

@@ -2,12 +2,12 @@
 
 use toile_geometry::{Polygon, Vec2, orient2d, point_segment_distance};
 
-/// A ring with fewer points whose region holds the old one and grows by no more than about
-/// `tolerance` (m) (after de Berg, van Kreveld and Schirra 1998: only moves that add area).
+/// A ring with fewer points that contains the old one and grows by at most about `tolerance` (m) (after de
+/// Berg, van Kreveld and Schirra 1998: only moves that add area).
 ///
-/// Two moves: a hollow corner is cut off by its chord; an edge between two bulging corners is
-/// replaced by the point where its neighbours meet. A vertex carries the distance moved so far.
-/// Returns the ring itself if the result would touch itself. Rings run counter-clockwise.
+/// There are two moves: a concave corner is cut off by its chord; an edge between two convex corners is
+/// replaced by the intersection of its neighbours. A vertex carries the distance moved so far. Returns the
+/// ring itself if the result would touch itself. Rings run counter-clockwise.
 pub(crate) fn simplify_outward(ring: &[Vec2], tolerance: f64) -> Vec<Vec2> {
     let mut points: Vec<(Vec2, f64)> = ring.iter().map(|&p| (p, 0.0)).collect();
     while points.len() > 3 {
@@ -30,7 +30,7 @@ pub(crate) fn simplify_outward(ring: &[Vec2], tolerance: f64) -> Vec<Vec2> {
 struct Move {
     cost: f64,
     at: usize,
-    /// The point that replaces this vertex and the next; nothing if the vertex goes.
+    /// The point that replaces this vertex and the next; `None` if the vertex is removed.
     joint: Option<Vec2>,
 }
 
@@ -54,7 +54,7 @@ impl Move {
     }
 }
 
-/// Cutting off vertex `k` if the outline turns right (or not at all) there.
+/// Cuts off vertex `k` if the outline turns right or runs straight there.
 fn cut_hollow(points: &[(Vec2, f64)], k: usize) -> Option<Move> {
     let n = points.len();
     let ((a, _), (b, moved), (c, _)) = (points[(k + n - 1) % n], points[k], points[(k + 1) % n]);
@@ -65,7 +65,7 @@ fn cut_hollow(points: &[(Vec2, f64)], k: usize) -> Option<Move> {
     })
 }
 
-/// Replacing the edge from `k` if the outline turns left at both ends.
+/// Replaces the edge from `k` if the outline turns left at both ends.
 fn close_edge(points: &[(Vec2, f64)], k: usize) -> Option<Move> {
     let n = points.len();
     let at = |step: usize| points[(k + n - 1 + step) % n];
@@ -75,13 +75,13 @@ fn close_edge(points: &[(Vec2, f64)], k: usize) -> Option<Move> {
     }
     let (u, v) = (b - a, d - c);
     let cross = u.perp(&v);
-    // Neighbours that run apart, or nearly parallel, meet nowhere near.
+    // Neighbours that diverge or are nearly parallel do not meet nearby.
     if cross <= 1e-9 * u.norm() * v.norm() {
         return None;
     }
     let joint = b + u * ((c - b).perp(&v) / cross);
     let cost = point_segment_distance(joint, [b, c]) + moved_b.max(moved_c);
-    // Rounding may put the joint a trifle inside: it must see the old edge at its left.
+    // Rounding may put the joint slightly inside: the old edge must be on its left.
     let outside = orient2d(a, joint, b) >= 0.0 || point_segment_distance(b, [a, joint]) < 1e-12;
     (cost.is_finite() && outside).then_some(Move {
         cost,

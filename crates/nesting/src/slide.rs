@@ -1,16 +1,16 @@
-//! Compaction: every piece slides towards the start until it touches.
+//! Compaction: every piece slides towards the start until it touches another.
 
 use crate::job::Axis;
 use crate::refine::Mover;
 use crate::separate::Separator;
 
-/// Rounds over all pieces.
+/// Number of rounds over all pieces.
 const ROUNDS: usize = 2;
-/// First and last step over the width of the fabric.
+/// First and last step, relative to the width of the fabric.
 const STEPS: [f64; 2] = [1e-2, 1e-9];
 
 impl Separator<'_> {
-    /// Slides pieces towards the start, the first ones first, where that costs nothing.
+    /// Slides pieces towards the start of the strip, the first ones first, as long as the loss does not grow.
     pub fn slide(&mut self) {
         let count = self.layout.at.len();
         let even = vec![1.0; count];

@@ -1,19 +1,19 @@
-//! The first layout, and what to do where not all pieces find room.
+//! The first layout, and leaving out pieces if not all of them fit.
 
 use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;
 use crate::separate::{Limit, Outcome, Patience};
 
-/// Density at which the first layout is tried.
+/// Density of the first layout that is tried.
 const FIRST_DENSITY: f64 = 0.76;
-/// By how much the strip grows where that fails.
+/// Factor by which the strip grows if that fails.
 const LONGER: f64 = 1.06;
-/// What a metre from the start of the strip costs while pieces are laid one by one (m).
+/// Cost per metre from the start of the strip, while pieces are laid one by one (m).
 const BIAS: f64 = 0.02;
-/// Part of the fabric at hand that is filled at first where not all pieces can be laid.
+/// Fraction of the available fabric that is filled first if not all pieces fit.
 const FILLING: f64 = 0.9;
-/// Patience with a first layout, and with one piece too many: little, as there is another way.
+/// Patience with a first layout, and with one piece too many: little, since there are alternatives.
 const FIRST: Patience = Patience {
     rounds: 40,
     strikes: 1,
@@ -24,8 +24,9 @@ const CROWDED: Patience = Patience {
 };
 
 impl Island<'_> {
-    /// Finds a first layout: pieces are laid where they overlap least, the largest first, and taken
-    /// apart; on a longer strip where that fails; on the longest, pieces are left out.
+    /// Finds a first layout: pieces are laid in the positions of least overlap, the largest first, and the
+    /// overlaps are resolved. If that fails a longer strip is tried; on the longest strip pieces are left
+    /// out.
     pub fn start(&mut self, limit: &Limit<'_>) {
         let job = self.separator.job;
         let longest = job.longest().min(job.ample());
@@ -48,7 +49,7 @@ impl Island<'_> {
         }
     }
 
-    /// Lays one piece after the other.
+    /// Lays the pieces one after the other.
     fn construct(&mut self, length: f64, order: &[usize]) {
         let job = self.separator.job;
         self.separator.load(Layout::new(job, length));
@@ -57,7 +58,7 @@ impl Island<'_> {
         }
     }
 
-    /// Fills the longest strip and takes pieces out until nothing overlaps.
+    /// Fills the longest strip and removes pieces until nothing overlaps.
     fn leave_out(&mut self, longest: f64, limit: &Limit<'_>) {
         let job = self.separator.job;
         let mut room = FILLING * longest * job.height;
@@ -90,7 +91,7 @@ impl Island<'_> {
         self.keep();
     }
 
-    /// Tries to lay one of the pieces left over beside the others.
+    /// Tries to insert one of the missing pieces.
     pub(crate) fn insert(&mut self, limit: &Limit<'_>) {
         if !self.separator.is_paused() {
             self.add_one();
@@ -102,13 +103,13 @@ impl Island<'_> {
         }
     }
 
-    /// Whether the layout in hand has more laid than the best.
+    /// Whether more area is laid in the current layout than in the best.
     fn is_better(&self) -> bool {
         let missing_area = self.separator.layout.missing_area(self.separator.job);
         missing_area < self.score().0
     }
 
-    /// Loads the best layout with one more piece, overlaps allowed.
+    /// Loads the best layout with one more piece, which may overlap.
     fn add_one(&mut self) {
         let job = self.separator.job;
         let Some(mut layout) = self.best.clone() else {
@@ -124,7 +125,7 @@ impl Island<'_> {
     }
 }
 
-/// Movable pieces by area.
+/// Movable pieces in order of decreasing area.
 fn largest_first(job: &Job<'_>) -> Vec<usize> {
     let mut order: Vec<usize> = (0..job.pieces.len()).collect();
     order.retain(|&k| job.pieces[k].locked.is_none());

@@ -1,4 +1,4 @@
-//! No-fit polygons and depth rasters of all pairs of shapes, within limits of memory.
+//! No-fit polygons and depth rasters of all pairs of shapes, within memory limits.
 
 use crate::depth_raster::{DepthRaster, LANES, padded};
 use crate::job::Job;
@@ -10,20 +10,20 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 use toile_geometry::Vec2;
 
-/// Most pairs of shapes, 64 bytes each: 256 MB.
+/// Largest number of pairs of shapes, 64 bytes each: 256 MB.
 const MAX_PAIRS: usize = 4_000_000;
-/// Most rows of the loss maps.
+/// Largest number of rows of the loss maps.
 const ROWS: f64 = 64.0;
-/// Fewest numbers a depth raster holds: three rows of two groups.
+/// Smallest size of a depth raster: three rows of two SIMD groups.
 const MIN_NUMBERS: f64 = 96.0;
 
-/// Stands for the polygon of two shapes that may overlap.
+/// Marks a pair of shapes that may overlap and has no polygon.
 const NO_POLYGON: u32 = u32::MAX;
 
 impl Job<'_> {
-    /// With N(a, b) = a + (-b) and an isometry Q: N(Qa, Qb) = Q N(a, b) and N(b, a) = -N(a, b), so
-    /// one polygon serves all pairs that lie alike. Whether the tables can be held, with so many
-    /// polygons at most; says no as soon as they cannot, or `stop` says so.
+    /// Assigns no-fit polygons to all pairs. With N(a, b) = a + (-b) and an isometry Q, N(Qa, Qb) = Q N(a, b)
+    /// and N(b, a) = -N(a, b), so one polygon serves all pairs in equal relative positions. Returns false as
+    /// soon as more than `most` polygons or too much memory would be needed, or if `stop` returns true.
     pub(crate) fn pair_up(&mut self, most: usize, stop: &dyn Fn() -> bool) -> bool {
         self.keys.clear();
         let count = self.shapes.len();
@@ -85,8 +85,8 @@ impl Job<'_> {
         self.no_fits.len() <= most
     }
 
-    /// Chooses the spacing of the loss maps so that the depth rasters stay small. Whether they can
-    /// be held.
+    /// Chooses the grid spacing of the loss maps so that the depth rasters stay small; returns whether they
+    /// fit into memory.
     pub(crate) fn choose_spacing(&mut self, maps: Maps) -> bool {
         let count = self.shapes.len();
         let mut seen = vec![false; self.rasters.len()];
@@ -109,7 +109,7 @@ impl Job<'_> {
         sum <= maps.numbers
     }
 
-    /// The losses of a moving shape at regular moves from a fixed one.
+    /// The losses of a moving shape at grid positions relative to a fixed one.
     pub fn raster(&self, fixed: usize, moving: usize) -> &DepthRaster {
         let number = self.pairs[fixed * self.shapes.len() + moving].raster;
         self.rasters[number as usize].get_or_init(|| DepthRaster::new(self, fixed, moving))
@@ -127,14 +127,14 @@ impl DepthRaster {
         ]
     }
 
-    /// First cell of a pair's raster, its columns and its rows.
+    /// First cell of a pair's raster, with the number of columns and rows.
     fn extent(job: &Job<'_>, pair: (usize, usize)) -> ([i32; 2], usize, usize) {
         let [x, y] = [0, 1].map(|axis| Self::ends(job, pair, axis));
         let count = |[low, high]: [f64; 2]| (high - low + 1.0) as usize;
         ([x[0] as i32, y[0] as i32], count(x), count(y))
     }
 
-    /// Numbers that the raster of a pair holds, however many.
+    /// Size of a pair's raster (numbers), as a float that cannot overflow.
     fn numbers(job: &Job<'_>, pair: (usize, usize)) -> f64 {
         let count = |axis: usize| {
             let [low, high] = Self::ends(job, pair, axis);
@@ -144,7 +144,7 @@ impl DepthRaster {
         ((count(0) / lanes).ceil() + 1.0) * lanes * count(1)
     }
 
-    /// Samples a pair of shapes at every cell where it may lose.
+    /// Samples the loss of a pair of shapes at every cell where it may be positive.
     fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
         let (first, columns, rows) = Self::extent(job, (fixed, moving));
         let stride = padded(columns);

@@ -1,25 +1,25 @@
-//! The orientations a piece is tried in: all of them, or fewer where there are many pieces.
+//! The orientations in which a piece is tried: all allowed ones, or fewer if there are many pieces.
 
 use crate::maps::Maps;
 use crate::shape::{SNUG, extent, folds_up};
 use crate::{Item, Mirror, Nap, Strip};
 
-/// How finely orientations are tried.
+/// Resolution at which orientations are tried.
 #[derive(Debug)]
 pub(crate) struct Fineness {
-    /// Where within its tolerance the grain is tried.
+    /// Tilts of the grain that are tried, as fractions of its tolerance.
     tilts: &'static [f64],
-    /// Most turns of a piece.
+    /// Largest number of turns of a piece.
     turns: usize,
-    /// Most no-fit polygons that this may need, 50 kB each, 12 kB where there are many.
+    /// Largest number of no-fit polygons at this level, 50 kB each, or 12 kB if there are many.
     pub no_fits: usize,
 }
 
 const TILTS: [&[f64]; 3] = [&[0.0, -0.5, 0.5, -1.0, 1.0], &[0.0, -1.0, 1.0], &[0.0]];
-/// No-fit polygons above which fewer tilts are tried, and the most that are held.
+/// Number of no-fit polygons above which fewer tilts are tried, and the largest number held.
 const NO_FITS: [usize; 2] = [4_000, 40_000];
 
-/// The finest first.
+/// Levels from fine to coarse.
 const LEVELS: [Fineness; 6] = [
     Fineness::new(TILTS[0], usize::MAX, NO_FITS[0]),
     Fineness::new(TILTS[1], usize::MAX, NO_FITS[0]),
@@ -30,7 +30,7 @@ const LEVELS: [Fineness; 6] = [
 ];
 
 impl Fineness {
-    /// Everything.
+    /// All orientations.
     const ALL: Self = Self::new(TILTS[0], usize::MAX, usize::MAX);
 
     const fn new(tilts: &'static [f64], turns: usize, no_fits: usize) -> Self {
@@ -41,8 +41,8 @@ impl Fineness {
         }
     }
 
-    /// What to try in turn, without what makes no difference to some items, and how coarse the
-    /// loss maps may get for it: fewer turns come before maps that hardly tell places apart.
+    /// The levels to try in order, without those that make no difference for the items, with the resolution
+    /// limits of the loss maps: the number of turns is reduced before maps become too coarse to be useful.
     pub fn levels(items: &[Item]) -> Vec<(&'static Self, Maps)> {
         let tilted = items.iter().any(|item| item.allowed.tilt > 0.0);
         let turns = items.iter().map(|item| item.allowed.turns.len());
@@ -60,12 +60,12 @@ impl Fineness {
     }
 }
 
-/// Turns and sides an item's copy may take on a strip, without repeats.
+/// Turns and sides that a copy of an item may have on a strip, without repetitions.
 pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, bool)> {
     orientations_within(item, strip, (copy, &Fineness::ALL))
 }
 
-/// The same, some of them only.
+/// Turns and sides that a copy may have, reduced to a resolution.
 pub(crate) fn orientations_within(
     item: &Item,
     strip: &Strip,
@@ -100,7 +100,7 @@ pub(crate) fn orientations_within(
     found
 }
 
-/// So many of a piece's turns at most, evenly taken; all of them if it fits in none of those.
+/// At most `most` of a piece's turns, evenly chosen; all turns if the piece fits in none of those.
 fn thinned(
     turns: Vec<f64>,
     (item, strip, sides): (&Item, &Strip, &[bool]),

@@ -1,12 +1,12 @@
-//! Reasons why a marker is not sound, and how far off still counts as sound.
+//! Reasons why a marker is not valid, and the tolerance of the check.
 
 use toile_geometry::Vec2;
 
-/// Deepest overlap of two pieces, nearest they may come below their gap, and furthest they may
-/// stick out, that still counts as sound (m).
+/// Tolerance of the check (m): depth of an overlap, distance below the gap, and distance beyond the fabric
+/// that still count as valid.
 pub const PENETRATION_LIMIT: f64 = 1e-6;
 
-/// What is not a number counts as beyond.
+/// Whether an excess (m) is beyond the limit; a value that is not a number is.
 pub(crate) fn beyond_limit(excess: f64) -> bool {
     excess.is_nan() || excess > PENETRATION_LIMIT
 }
@@ -14,9 +14,9 @@ pub(crate) fn beyond_limit(excess: f64) -> bool {
 /// A side of the usable fabric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Before the first end margin.
+    /// In the end margin at the start.
     Start,
-    /// Beyond the marker's length, or the fabric's, less the end margin.
+    /// In the end margin at the end of the marker or of the fabric.
     End,
     /// In the selvedge at y = 0.
     Lower,
@@ -24,48 +24,48 @@ pub enum Side {
     Upper,
 }
 
-/// One reason why a marker is not sound. Placements are named by their index in the marker.
+/// A reason why a marker is not valid. Placements are given by their index in the marker.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Violation {
     /// Two pieces overlap.
     Overlap {
         /// The placements.
         pair: [usize; 2],
-        /// Length of the shortest move that ends it (m).
+        /// Length of the shortest translation that ends the overlap (m).
         depth: f64,
-        /// Fabric used twice (m2).
+        /// Area that would be cut twice (m2).
         area: f64,
         /// A point of the overlap (m).
         at: Vec2,
     },
-    /// Two pieces lie nearer than their gap.
+    /// Two pieces are nearer to each other than their gap.
     Gap {
         /// The placements.
         pair: [usize; 2],
-        /// Their distance (m).
+        /// Distance of the pieces (m).
         distance: f64,
-        /// The gap they need (m).
+        /// Gap that the pieces need (m).
         needed: f64,
     },
-    /// A piece sticks out.
+    /// A piece extends beyond the usable fabric.
     Outside {
         /// The placement.
         placement: usize,
-        /// Where.
+        /// Side of the fabric at which it extends beyond.
         side: Side,
-        /// By how much (m).
+        /// Distance by which it extends beyond (m).
         by: f64,
     },
-    /// A piece lies in an orientation it may not take.
+    /// A piece has an orientation that is not allowed.
     Orientation {
         /// The placement.
         placement: usize,
-        /// Its turn (rad).
+        /// Turn of the piece (rad).
         turn: f64,
-        /// Whether it lies face down.
+        /// Whether the piece lies face down.
         mirrored: bool,
     },
-    /// Two pieces of one garment run opposite ways on fabric with a nap.
+    /// Two pieces of one garment run in opposite directions on fabric with a nap.
     Nap {
         /// The placements.
         pair: [usize; 2],
@@ -76,26 +76,26 @@ pub enum Violation {
     OffFold {
         /// The placement.
         placement: usize,
-        /// How far it is from the nearest fold (m); infinite if there is none.
+        /// Distance from the nearest fold (m); infinite if there is none.
         by: f64,
     },
-    /// A match point lies beside the print.
+    /// A match point does not lie at its place of the print.
     OffPrint {
         /// The placement.
         placement: usize,
-        /// How far along the warp and across (m).
+        /// Deviation along the warp and across it (m).
         by: Vec2,
     },
-    /// A piece lies on a flaw, or nearer to it than it may.
+    /// A piece overlaps a flaw, or is nearer to it than its clearance.
     OnFlaw {
         /// The placement.
         placement: usize,
-        /// Number of the flaw.
+        /// Index of the flaw.
         flaw: usize,
-        /// Flawed area in the piece (m2).
+        /// Area of the flaw inside the piece (m2).
         area: f64,
     },
-    /// A locked copy does not lie where it must.
+    /// A locked copy does not have its locked position.
     Moved {
         /// The placement.
         placement: usize,
@@ -106,19 +106,19 @@ pub enum Violation {
         item: usize,
         /// Number of the copy.
         copy: u32,
-        /// How often it is laid or listed.
+        /// Number of times that it is laid or listed.
         count: usize,
     },
-    /// A placement names no item, or its place is not a finite number.
+    /// A placement names an unknown item, or its position is not finite.
     Nonsense {
         /// The placement.
         placement: usize,
     },
     /// The stated length is not the length used.
     Length {
-        /// As stated (m).
+        /// Stated length (m).
         stated: f64,
-        /// As found, end margins included (m).
+        /// Length used, end margins included (m).
         found: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! The referee's violations phrased for people.
+//! The referee's violations in sentences.
 
 use crate::{Side, Violation};
 
@@ -7,7 +7,7 @@ fn mm(metres: f64) -> String {
 }
 
 impl Violation {
-    /// What is wrong, where, and what helps. `name` tells what a placement is called.
+    /// The fault, the place and the remedy. `name` gives the name of a placement.
     pub fn in_words(&self, name: &dyn Fn(usize) -> String) -> String {
         match self {
             Self::Overlap {
@@ -64,7 +64,7 @@ impl Violation {
         }
     }
 
-    /// The words of what concerns one piece alone.
+    /// The sentence for a violation that concerns a single piece.
     fn of_one(&self, name: &dyn Fn(usize) -> String) -> String {
         match self {
             Self::Orientation {

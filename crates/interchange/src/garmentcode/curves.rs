@@ -5,17 +5,16 @@ use crate::FormatError;
 use serde_json::{Value, json};
 use toile_geometry::{Curve, Vec2};
 
-/// How control points are given.
+/// The coordinates in which control points are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coordinates {
-    /// In the frame of the edge: along it, and to its left, as shares of its length.
+    /// In the frame of the edge: along it and to its left, as fractions of its length.
     Relative,
     /// In the panel's plane, in file units.
     Absolute,
 }
 
-/// Reads the curvature of the edge from `start` to `end` (m); `metres` is the size of a file
-/// unit (m).
+/// Reads the curvature of the edge from `start` to `end` (m); `metres` is the size of a file unit (m).
 pub(super) fn read_curve(
     curvature: Option<&At>,
     [start, end]: [Vec2; 2],
@@ -84,8 +83,8 @@ pub(super) fn read_curve(
     }
 }
 
-/// An arc by its radius: the flags say whether it is the larger of the two arcs, and whether it
-/// bulges to the right of start to end.
+/// An arc by its radius. The flags say whether it is the larger of the two arcs, and whether it bulges to the
+/// right of the direction from start to end.
 fn circle(
     [start, end]: [Vec2; 2],
     radius: f64,
@@ -120,8 +119,8 @@ fn circle(
     })
 }
 
-/// Curvature of a curve in relative coordinates; nothing for a line. `metres` is the size of a
-/// file unit (m).
+/// Curvature of a curve in relative coordinates; `None` for a straight line. `metres` is the size of a file
+/// unit (m).
 pub(super) fn write_curve(curve: &Curve, metres: f64) -> Option<Value> {
     let (start, end) = (curve.start(), curve.end());
     let along = end - start;

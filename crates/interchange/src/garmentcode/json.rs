@@ -3,7 +3,7 @@
 use crate::FormatError;
 use serde_json::Value;
 
-/// A value and the path that leads to it.
+/// A JSON value and the path to it.
 #[derive(Clone)]
 pub(super) struct At<'a> {
     pub value: &'a Value,
@@ -18,7 +18,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// An error here.
+    /// An error at this value.
     pub fn error(&self, what: impl Into<String>, hint: &str) -> FormatError {
         let place = if self.path.is_empty() {
             "the file"
@@ -46,7 +46,7 @@ impl<'a> At<'a> {
         )
     }
 
-    /// A field, if it is there and not null.
+    /// A field, if it is present and not null.
     pub fn optional(&self, name: &str) -> Option<Self> {
         let value = self.value.get(name).filter(|v| !v.is_null())?;
         let path = if self.path.is_empty() {
@@ -57,7 +57,7 @@ impl<'a> At<'a> {
         Some(Self { value, path })
     }
 
-    /// A field that must be there.
+    /// A field that must be present.
     pub fn field(&self, name: &str) -> Result<Self, FormatError> {
         if !self.value.is_object() {
             return Err(self.expected("an object"));
@@ -70,7 +70,7 @@ impl<'a> At<'a> {
         })
     }
 
-    /// Fields of an object.
+    /// The fields of an object.
     pub fn entries(&self) -> Result<Vec<(&'a str, Self)>, FormatError> {
         let object = self
             .value
@@ -85,7 +85,7 @@ impl<'a> At<'a> {
             .collect())
     }
 
-    /// Elements of a list.
+    /// The elements of a list.
     pub fn items(&self) -> Result<Vec<Self>, FormatError> {
         let list = self
             .value
@@ -101,7 +101,7 @@ impl<'a> At<'a> {
             .collect())
     }
 
-    /// A list of so many finite numbers.
+    /// A list of exactly `N` finite numbers.
     pub fn numbers<const N: usize>(&self) -> Result<[f64; N], FormatError> {
         let items = self.items()?;
         if items.len() != N {
@@ -117,7 +117,7 @@ impl<'a> At<'a> {
         Ok(numbers)
     }
 
-    /// A finite number of a size that a garment may need.
+    /// A finite number, below 1e7 in magnitude.
     pub fn number(&self) -> Result<f64, FormatError> {
         // Python writes flags as true and false or as 1 and 0.
         let flag = self.value.as_bool().map(|flag| f64::from(u8::from(flag)));
@@ -146,7 +146,7 @@ impl<'a> At<'a> {
         self.value.as_str().ok_or_else(|| self.expected("a text"))
     }
 
-    /// Fields this reader does not know.
+    /// Notes the fields that this reader does not know.
     pub fn unknown_fields(&self, known: &[&str], notes: &mut Vec<FormatError>) {
         for name in self.value.as_object().into_iter().flat_map(|o| o.keys()) {
             if !known.contains(&name.as_str()) {

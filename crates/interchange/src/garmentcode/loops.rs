@@ -1,13 +1,13 @@
 //! Orders edges that come in any order into closed loops.
 
-/// An edge of a loop: its index in the file, and whether it is walked backwards.
+/// An edge of a loop: its index in the file, and whether the loop walks it backwards.
 pub(super) type LoopEdge = (usize, bool);
 
-/// Why edges are no closed loops: the edge at fault and what is wrong with it.
+/// The reason why edges form no closed loops: the edge at fault and the fault.
 pub(super) type LoopError = (usize, String);
 
-/// Arranges edges, given by their end vertices, into closed loops, each in the direction of its
-/// first edge. Edges that are in order already, as files of this kind have them, stay so.
+/// Sorts edges, given by their end vertices, into closed loops. Each loop has the direction of its first
+/// edge. Edges that are already in order, as in GarmentCode's own files, keep their order.
 pub(super) fn closed_loops(edges: &[[usize; 2]]) -> Result<Vec<Vec<LoopEdge>>, LoopError> {
     let vertex_count = edges.iter().flatten().max().map_or(0, |&v| v + 1);
     let mut at_vertex: Vec<Vec<usize>> = vec![Vec::new(); vertex_count];

@@ -1,4 +1,4 @@
-//! A specification as a pattern document.
+//! Converts a specification to a pattern document.
 
 use super::specification::{self, SpecPanel, SpecStitch, Specification};
 use crate::FormatError;
@@ -11,13 +11,13 @@ use toile_pattern::{
     PointId, PointRule, Seam, SeamId, Span, WornRule,
 };
 
-/// A seam whose sides differ by more than this ratio is gathered on purpose.
+/// A seam with sides that differ in length by more than this ratio counts as gathered on purpose.
 const GATHER_RATIO: f64 = 1.05;
-/// A seam is reported as perhaps twisted when its edges run against each other in space, the
-/// cosine of the angle between them being less than this.
+/// Limit for the cosine of the angle between two sewn edges, both in the direction of sewing: below it the
+/// seam is reported as perhaps twisted.
 const TWIST_COSINE: f64 = -0.7;
-/// The places of two edges tell which ends meet where the cosine of the angle between them is beyond
-/// this.
+/// Limit for the cosine of the angle between two edges: the positions in space tell which ends meet only
+/// where its magnitude is above this.
 const CLEAR_COSINE: f64 = 0.7;
 
 /// The result of reading a file.
@@ -25,22 +25,22 @@ const CLEAR_COSINE: f64 = 0.7;
 pub struct GarmentCodeReading {
     /// The pattern.
     pub pattern: Pattern,
-    /// Notes on parts that were left out or assumed, with their places in the file.
+    /// Notes on parts that were left out or assumed, with the place in the file.
     pub notes: Vec<FormatError>,
 }
 
 /// Reads a GarmentCode specification.
 ///
-/// Coordinates become metres. Panels keep their winding and their place in space: a clockwise
-/// panel is one drawn from its wrong side. A stitch sews the start of one edge to the end of the
-/// other, which puts right sides together and keeps the garment orientable; `right_wrong` sews
-/// start to start. Files of the older kind (curvatures as bare lists, or absolute coordinates)
-/// are wound either way, so there the direction that leaves the ends nearer to each other in
-/// space is taken. Edges of one panel that share a vertex (a dart) keep it. Sides whose lengths
-/// differ by more than 5 % are gathered, smaller differences are ease.
+/// Coordinates are converted to metres. Panels keep their winding and their placement in space: a clockwise
+/// panel is one drawn from its wrong side. A stitch sews the start of one edge to the end of the other, which
+/// puts right sides together and keeps the garment orientable; `right_wrong` sews start to start. Files of
+/// the older kind (curvatures as bare lists, or absolute coordinates) may be wound either way; for them the
+/// sewing direction is the one that leaves the ends nearer to each other in space. Edges of one panel that
+/// share a vertex (a dart) keep it. A seam with sides that differ in length by more than 5 % is gathered;
+/// smaller differences are ease.
 ///
 /// # Errors
-/// Text that is not such a specification, with the path of the place and a remedy.
+/// Text that is not such a specification: the path of the place and a remedy.
 pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
     let specification = specification::read(text)?;
     let mut builder = Builder::default();
@@ -74,7 +74,7 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
     })
 }
 
-/// Where an edge of the file went: its id, and whether the document walks it backwards.
+/// Edge of the document made from an edge of the file: its id, and whether it is walked backwards there.
 type Place = (EdgeId, bool);
 
 #[derive(Default)]
@@ -82,13 +82,13 @@ struct Builder {
     pattern: Pattern,
     notes: Vec<FormatError>,
     names: BTreeSet<String>,
-    /// For each panel of the file, where its edges went.
+    /// For each panel of the file, the document's edge of each of its edges.
     edges: Vec<Vec<Option<Place>>>,
-    /// Of older files, whether all outlines are wound as seen from the right side.
+    /// Whether all outlines of an older file are wound as seen from the right side.
     right_sides_out: bool,
 }
 
-/// A name a part may have, unique among those taken.
+/// A valid name for a part, different from all names taken.
 fn part_name(wanted: &str, taken: &mut BTreeSet<String>) -> String {
     let clean: String = wanted
         .chars()
@@ -262,7 +262,7 @@ impl Builder {
                 [vec![first], vec![second]],
             );
             seam.gathered = longer > GATHER_RATIO * shorter;
-            // Rounded up to whole micrometres, so that the check against it always holds.
+            // Rounded up to whole micrometres, so that the check of the ease always passes.
             seam.ease = (((longer - shorter) * 1e6).ceil() * 1e-6 + 1e-6).into();
             seam.right_sides_together = !stitch.right_wrong;
             seam.multi_ply = stitch.sides.iter().any(|side| uses[side] > 1);
@@ -306,11 +306,11 @@ impl Builder {
     }
 }
 
-/// Both edges of a stitch as they are placed in space.
+/// The two edges of a stitch as placed in space.
 struct PlacedStitch {
-    /// Cosine of the angle between them.
+    /// Cosine of the angle between the edges.
     cosine: f64,
-    /// Whether start and end are nearer to each other than start and start.
+    /// Whether the ends lie nearer to each other with start sewn to end than with start sewn to start.
     nearer_ends_run_against: bool,
 }
 
@@ -332,15 +332,15 @@ impl PlacedStitch {
         }
     }
 
-    /// Whether places tell which ends meet: edges square to each other, as of a hood's side and the
-    /// neck, have neither ends nearer by design.
+    /// Whether the positions in space tell which ends meet. For edges at right angles, such as a hood's side
+    /// and the neck, neither pairing of ends is nearer by design.
     fn is_clear(&self) -> bool {
         self.cosine.abs() > CLEAR_COSINE
     }
 }
 
-/// Whether all outlines are wound as seen from the right side: wherever places tell, edges of two panels
-/// are sewn against each other.
+/// Whether all outlines are wound as seen from the right side: wherever the positions in space tell, the
+/// edges of two panels are sewn start to end.
 fn right_sides_out(specification: &Specification) -> bool {
     let between = |stitch: &&SpecStitch| stitch.sides[0].0 != stitch.sides[1].0;
     let stitches = specification.stitches.iter().filter(between);
@@ -364,7 +364,7 @@ fn label_counts(panel: &SpecPanel) -> BTreeMap<String, usize> {
     counts
 }
 
-/// Whether a loop of a panel turns counter-clockwise.
+/// Whether a loop of a panel is wound counter-clockwise.
 fn turning(panel: &SpecPanel, index: usize) -> bool {
     specification::loop_area(&panel.edges, &panel.loops[index]) > 0.0
 }

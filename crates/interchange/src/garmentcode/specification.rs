@@ -9,12 +9,12 @@ use toile_geometry::{Curve, Rigid, Vec2, Vec3};
 /// More panels, edges or stitches than this are refused: no garment has them.
 const MAX_PARTS: usize = 100_000;
 
-/// A whole file.
+/// The content of a whole file.
 #[derive(Debug, Default)]
 pub(super) struct Specification {
     pub panels: Vec<SpecPanel>,
     pub stitches: Vec<SpecStitch>,
-    /// Whether the file is of the older kind, whose outlines may be wound either way.
+    /// Whether the file is of the older kind, in which outlines may be wound either way.
     pub older: bool,
     pub notes: Vec<FormatError>,
 }
@@ -23,11 +23,11 @@ pub(super) struct Specification {
 #[derive(Debug)]
 pub(super) struct SpecPanel {
     pub name: String,
-    /// World from panel.
+    /// Transform from the panel's plane to the world.
     pub place: Rigid,
-    /// Edges as in the file.
+    /// Edges in the order of the file.
     pub edges: Vec<SpecEdge>,
-    /// Closed loops of edges: the outline first.
+    /// Closed loops of edges, the outline first.
     pub loops: Vec<Vec<LoopEdge>>,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct SpecEdge {
 pub(super) struct SpecStitch {
     /// Panel and edge of each side.
     pub sides: [(usize, usize); 2],
-    /// Whether a right side lies on a wrong side.
+    /// Whether a right side is sewn onto a wrong side.
     pub right_wrong: bool,
     pub path: String,
 }
@@ -156,7 +156,7 @@ fn settings(root: &At, notes: &mut Vec<FormatError>) -> Result<Settings, FormatE
     Ok(settings)
 }
 
-/// Sorts panels as `panel_order` says; panels it does not name come last.
+/// Sorts panels in the order of `panel_order`; panels that it does not name come last.
 fn order_panels(pattern: &At, entries: &mut [(&str, At)]) -> Result<(), FormatError> {
     let Some(order) = pattern.optional("panel_order") else {
         return Ok(());
@@ -171,7 +171,7 @@ fn order_panels(pattern: &At, entries: &mut [(&str, At)]) -> Result<(), FormatEr
     Ok(())
 }
 
-/// Whether an edge has a curvature without a kind, as before the second version of the format.
+/// Whether a panel has an edge with a curvature that names no type, as before version 2 of the format.
 fn is_older(panel: &At) -> bool {
     let edges = panel.value.get("edges").and_then(|e| e.as_array());
     edges.into_iter().flatten().any(|edge| {
@@ -225,8 +225,7 @@ fn read_panel(
     })
 }
 
-/// Area inside the polygon of a loop's corners and control points (m2), to tell the outline
-/// from holes.
+/// Signed area of a loop (m2), from eight points on each of its curves; positive if counter-clockwise.
 pub(super) fn loop_area(edges: &[SpecEdge], walk: &[LoopEdge]) -> f64 {
     let mut points = Vec::new();
     for &(edge, backwards) in walk {
@@ -278,8 +277,8 @@ fn read_edge(
     Ok(SpecEdge { ends, curve, label })
 }
 
-/// World from panel: `R = Rz Ry Rx` of angles in degrees, then the translation, as readers of
-/// the format apply it.
+/// Transform from the panel's plane to the world: the rotation `R = Rz Ry Rx` of angles in degrees, then the
+/// translation, as other readers of the format apply it.
 fn read_place(
     panel: &At,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! Hand-made specifications, damaged ones, and the way out and back.
+//! Hand-made specifications, damaged ones, and a round trip of writing and reading.
 
 use super::{read_garmentcode, write_garmentcode};
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use toile_geometry::{Curve, Vec2};
 use toile_measure::Measurements;
 use toile_pattern::{CurveRule, Draft, Worn};
 
-/// Two panels with every kind of curve, placed apart, sewn once straight and once turned.
+/// Two panels with every kind of curve, placed apart and sewn twice: once start to end, once reversed.
 const SAMPLE: &str = r#"{
   "pattern": {
     "panels": {
@@ -64,7 +64,7 @@ fn curves_units_and_places_are_read() {
             end: Vec2::new(0.2, 0.0)
         }
     );
-    // Half way along an upward edge of 30 cm, a tenth of it to the left.
+    // Half-way along an upward edge of 30 cm, and a tenth of its length to the left.
     let quadratic = Curve::Quadratic {
         start: Vec2::new(0.2, 0.0),
         control: Vec2::new(0.17, 0.15),
@@ -77,7 +77,7 @@ fn curves_units_and_places_are_read() {
     let Curve::Arc { bulge, .. } = front.outline[3].curve else {
         panic!("{:?}", front.outline[3].curve);
     };
-    // The chord of 30 cm in a circle of 20 cm radius, bulging right of its downward way.
+    // A chord of 30 cm of a circle of 20 cm radius, bulging to the right of its downward direction.
     assert!((bulge - (0.5 * 0.75f64.asin()).tan()).abs() < 1e-12);
     assert!(front.outline[3].curve.point(0.5).x < -0.05);
     let Worn::Placed(place) = front.worn else {
@@ -122,7 +122,7 @@ fn stitches_run_start_to_end_unless_marked() {
 
 #[test]
 fn older_files_are_sewn_by_place_in_space() {
-    // Bare curvature lists; both panels wound alike, so that the nearer ends run alike.
+    // Bare curvature lists; both panels are wound alike, so that the nearer ends pair start with start.
     let older = SAMPLE
         .replace(
             r#"{ "type": "quadratic", "params": [[0.5, 0.1]] }"#,
@@ -146,7 +146,7 @@ fn older_files_are_sewn_by_place_in_space() {
 #[test]
 fn lengths_that_differ_are_ease_or_gathers() {
     let pattern = read_garmentcode(SAMPLE).unwrap().pattern;
-    // A straight side of 30 cm to one bent by less than 5 %.
+    // A straight side of 30 cm sewn to a curved one that is less than 5 % longer.
     assert!(!pattern.seams[0].gathered && pattern.seams[0].ease.value().unwrap() > 1e-4);
     let gathered = SAMPLE.replace("[20, 30], [20, 0]]", "[35, 30], [35, -20]]");
     assert!(read_garmentcode(&gathered).unwrap().pattern.seams[0].gathered);
@@ -285,7 +285,7 @@ fn turned_panels_are_turned_about_z_last() {
     else {
         panic!("not placed");
     };
-    // Up in the panel is tipped to +z by the turn about x, and stays there about z.
+    // The rotation about x tips the panel's up direction to +z, and the rotation about z leaves it there.
     let up = place.rotation * toile_geometry::Vec3::y();
     assert!((up - toile_geometry::Vec3::z()).norm() < 1e-12, "{up}");
     let right = place.rotation * toile_geometry::Vec3::x();
@@ -369,7 +369,7 @@ proptest! {
             let (draft, _) = reading.pattern.resolve(&Measurements::new());
             let writing = write_garmentcode(&draft);
             prop_assert!(read_garmentcode(&writing.text).is_ok() || draft.pieces.iter().all(|p| !p.sewn));
-            // Meshing what a damaged file holds must not panic either; its size is bounded.
+            // Meshing a damaged file must not panic either; the size of the mesh is bounded.
             let _ = toile_assembly::mesh_pieces(&draft, 0.05);
         } else {
             let error = read_garmentcode(&text).unwrap_err();

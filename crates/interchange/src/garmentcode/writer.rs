@@ -6,11 +6,11 @@ use serde_json::{Map, Value, json};
 use toile_geometry::{Curve, Rigid, Vec3};
 use toile_pattern::{Draft, DraftSeam, Facing, Piece, PieceEdge, Worn};
 
-/// Size of the unit written (m): centimetres.
+/// Size of the file unit, the centimetre (m).
 const UNIT: f64 = 0.01;
-/// Cuts nearer to each other than this fraction of an edge are one.
+/// Cuts nearer to each other than this fraction of an edge are the same cut.
 const SAME_CUT: f64 = 1e-7;
-/// Rounds of carrying cuts across seams.
+/// Limit for the rounds of carrying cuts across seams.
 const MAX_ROUNDS: usize = 32;
 
 /// A written file.
@@ -18,14 +18,14 @@ const MAX_ROUNDS: usize = 32;
 pub struct GarmentCodeWriting {
     /// The JSON text.
     pub text: String,
-    /// Notes on parts that the format cannot hold, with the piece or seam they were left out of.
+    /// Notes on parts that the format cannot hold, with the piece or seam they belong to.
     pub lost: Vec<FormatError>,
 }
 
 /// Writes the sewn pieces of a draft.
 ///
-/// The format stitches whole edges one to one, so edges are cut where a seam's span ends. Curves
-/// are cut exactly. Everything else the format cannot hold is listed.
+/// The format stitches whole edges one to one, so edges are cut at the ends of seam spans. Curves are cut
+/// exactly. Everything else that the format cannot hold is listed.
 pub fn write_garmentcode(draft: &Draft) -> GarmentCodeWriting {
     let mut writer = Writer {
         draft,
@@ -70,12 +70,13 @@ pub fn write_garmentcode(draft: &Draft) -> GarmentCodeWriting {
 
 struct Writer<'a> {
     draft: &'a Draft,
-    /// For each piece and edge, the fractions where it is cut, ends included.
+    /// For each piece and edge, the fractions of the edge at which it is cut, 0 and 1 included.
     cuts: Vec<Vec<Vec<f64>>>,
     lost: Vec<FormatError>,
 }
 
-/// One span of a seam's chain with the chain fractions of its ends.
+/// One span of a seam's side, with its ends as fractions of the side's length (`start`, `end`) and of the
+/// edge (`from`, `to`).
 struct Stretch {
     piece: usize,
     edge: usize,
@@ -139,7 +140,7 @@ impl Writer<'_> {
         ));
     }
 
-    /// Cuts edges at the ends of spans, and carries every cut across every seam until stable.
+    /// Cuts edges at the ends of spans, and carries every cut across every seam until nothing changes.
     fn find_cuts(&mut self) {
         let start = |piece: &Piece| edges(piece).map(|_| vec![0.0, 1.0]).collect();
         self.cuts = self.draft.pieces.iter().map(start).collect();
@@ -171,7 +172,7 @@ impl Writer<'_> {
         );
     }
 
-    /// Chain fractions of the cuts on a stretch, its ends included, in walking order.
+    /// Cuts on a stretch, its ends included, as fractions of the seam's side in ascending order.
     fn places(&self, stretch: &Stretch) -> Vec<f64> {
         let (low, high) = (stretch.from.min(stretch.to), stretch.from.max(stretch.to));
         let inside = self.cuts[stretch.piece][stretch.edge]
@@ -256,7 +257,7 @@ impl Writer<'_> {
         }
     }
 
-    /// World from panel. Pieces the program would wrap round the body are put flat beside it.
+    /// Transform from the panel's plane to the world. Pieces to be wrapped round the body lie flat beside it.
     fn place(&mut self, piece: &Piece) -> Rigid {
         let (facing, level) = match piece.worn {
             Worn::Placed(place) => return place,
@@ -327,7 +328,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// Piece and number of the written edge that holds a fraction of a stretch's edge.
+    /// Piece, and index of the written edge that contains a fraction of the stretch's edge.
     fn part(&self, stretch: &Stretch, fraction: f64) -> (usize, usize) {
         let before: usize = self.cuts[stretch.piece][..stretch.edge]
             .iter()
@@ -339,7 +340,7 @@ impl Writer<'_> {
     }
 }
 
-/// The pieces of a curve between arc-length fractions; the whole curve untouched.
+/// The parts of a curve between arc-length fractions; without inner cuts the curve unchanged.
 fn cut_curve(curve: &Curve, cuts: &[f64]) -> Vec<Curve> {
     if cuts.len() == 2 {
         return vec![*curve];

@@ -1,44 +1,44 @@
-//! How a pattern's garment is tried on, as its file keeps it.
+//! The fitting of a pattern's garment as stored in its file: wearer, size, fabric, other garments.
 
 use std::ops::RangeInclusive;
 use toile_body::Figure;
 use toile_measure::Measurements;
 use toile_pattern::SizeId;
 
-/// Widths that fabric may have (m).
+/// Allowed widths of fabric (m).
 pub const FABRIC_WIDTHS: RangeInclusive<f64> = 0.05..=20.0;
 
-/// How a garment is tried on: on whom, in which size and cloth, with what else. What is as the
-/// pattern says is left out. Files are named by a path from the pattern's own folder, with `/`.
+/// The fitting of a garment: wearer, size, fabric and garments worn with it. Values equal to the pattern's
+/// are left out. Files are named by their path relative to the pattern's folder, with `/`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fitting {
-    /// Whose body it is.
+    /// The body that wears the garment.
     pub wearer: FittingWearer,
-    /// The size it is drafted in.
+    /// The size that the pattern is drafted in.
     pub size: Option<SizeId>,
-    /// The fabric that takes the place of every panel's.
+    /// A fabric that replaces the fabric of every panel.
     pub fabric: Option<FittingFabric>,
     /// Width of the fabric (m).
     pub width: Option<f64>,
-    /// Layer of the garment itself among those worn with it: larger numbers lie farther out.
+    /// Layer of the garment among those worn together: larger numbers lie farther out.
     pub layer: u16,
-    /// Garments worn with it.
+    /// Garments worn together with it.
     pub worn_with: Vec<FittingLayer>,
 }
 
-/// Whose body a garment is tried on.
+/// The body that a garment is tried on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum FittingWearer {
-    /// As the pattern says.
+    /// The body that the pattern asks for.
     #[default]
     OfPattern,
-    /// A figure with its average measurements.
+    /// A figure with average measurements.
     Figure(Figure),
-    /// A body of measurements.
+    /// A body made from measurements.
     Measured {
-        /// The figure it is grown from.
+        /// The figure that the body is adapted from.
         figure: Figure,
-        /// The file they were read from, if they are its own.
+        /// The file that the measurements were read from; `None` if they come from no file.
         file: Option<String>,
         /// The measurements (m), (rad).
         measurements: Measurements,
@@ -50,20 +50,20 @@ pub enum FittingWearer {
     },
 }
 
-/// A fabric that takes the place of every panel's.
+/// A fabric that replaces the fabric of every panel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FittingFabric {
-    /// One of the pattern's or of the library, by name.
+    /// A fabric of the pattern or of the library, by name.
     Named(String),
-    /// One of a file.
+    /// A fabric from a file.
     File(String),
 }
 
-/// A garment that is worn with the pattern's.
+/// A garment worn together with the pattern's garment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FittingLayer {
-    /// The file of its pattern.
+    /// The pattern file of the garment.
     pub file: String,
-    /// Its layer.
+    /// Layer of the garment.
     pub layer: u16,
 }

@@ -1,4 +1,4 @@
-//! Typed access to a JSON value that knows where it stands, so that every refusal can say so.
+//! Typed access to a JSON value that knows its path, so that every error can name the place.
 
 use super::json::{Node, Value};
 use super::units;
@@ -8,14 +8,14 @@ use toile_pattern::{
     Code, Diagnostic, DisplayUnit, Formula, Place, Severity, is_part_name, nearest,
 };
 
-/// A value and its path from the root.
+/// A value and the path to it from the root.
 #[derive(Clone)]
 pub struct Item<'a> {
     pub node: &'a Node,
     pub path: String,
 }
 
-/// A number as it is written: a value (m), (rad) or plain, or the text of a formula.
+/// A number as written: a value (m), (rad) or plain, or the text of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Written<'a> {
     Value(f64),
@@ -72,7 +72,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A text that may name a part.
+    /// A text that is a valid name of a part.
     pub fn name(&self) -> Result<&'a str, FormatError> {
         let name = self.text()?;
         self.check_name(name)?;
@@ -115,7 +115,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A list of exactly so many items.
+    /// A list of exactly `wanted` items.
     pub fn exactly(&self, wanted: usize) -> Result<Vec<Item<'a>>, FormatError> {
         let items = self.list()?;
         match items.len() {
@@ -140,7 +140,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The fields, unknown ones noted.
+    /// The fields; unknown ones are noted.
     pub fn object(
         &self,
         known: &[&str],
@@ -179,7 +179,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The fields, whatever they are called.
+    /// The fields, with any names.
     pub fn fields(&self) -> Result<Object<'a>, FormatError> {
         match &self.node.value {
             Value::Object(fields) => Ok(Object {
@@ -248,7 +248,7 @@ impl<'a> Item<'a> {
         matches!(self.node.value, Value::Null)
     }
 
-    /// A number that may not be a formula.
+    /// A number, not a formula.
     pub fn plain_value(&self) -> Result<f64, FormatError> {
         match &self.node.value {
             Value::Number(raw) => units::read_plain(raw).ok_or_else(|| self.not_finite()),
@@ -258,7 +258,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A length or angle that may not be a formula (m) or (rad).
+    /// A length or angle (m) or (rad), not a formula.
     pub fn fixed(&self, number: &Written<'_>) -> Result<f64, FormatError> {
         match number {
             Written::Value(value) => Ok(*value),
@@ -283,7 +283,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// One of a closed list of words: its place in the list.
+    /// A word of a closed list; returns the index in the list.
     pub fn word(&self, words: &[&str]) -> Result<usize, FormatError> {
         let word = self.text()?;
         let found = words.iter().position(|known| *known == word);
@@ -313,8 +313,9 @@ impl<'a> Object<'a> {
         })
     }
 
-    /// The kind whose telling fields it has, the first of several. One that has fields of two kinds is refused, of which
-    /// one would be lost, and one of none where that is not one of the kinds.
+    /// The kind of the object: the first kind whose distinguishing fields are all present. An object with
+    /// fields of two kinds is refused, since the fields of one would be lost. So is one of no kind, if
+    /// `clash` says so.
     pub fn kind(&self, kinds: &[Kind], clash: &Clash) -> Result<Option<usize>, FormatError> {
         let tells = |kind: &Kind| match kind.told {
             Told::Field(_) | Told::By(_) => {
@@ -351,7 +352,7 @@ impl<'a> Object<'a> {
         Ok(Some(chosen))
     }
 
-    /// The items of a list; none if it is not there.
+    /// The items of a list; empty if the field is missing.
     pub fn items(&self, name: &str) -> Result<Vec<Item<'a>>, FormatError> {
         self.get(name).map_or(Ok(Vec::new()), |item| item.list())
     }

@@ -4,10 +4,10 @@
 use crate::FormatError;
 use std::collections::BTreeSet;
 
-/// Deepest nesting that is read. No file of ours nests deeper than ten.
+/// Deepest nesting that is read. No file of this program nests deeper than ten.
 const DEEPEST: usize = 64;
 
-/// A value and where it stands.
+/// A value and its position in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// The value.
@@ -36,7 +36,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What it is, in words.
+    /// Kind of the value in words.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Null => "null",
@@ -359,10 +359,10 @@ impl Parser<'_> {
     }
 }
 
-/// Widest line of a file.
+/// Largest line length of a file (characters).
 const LINE_WIDTH: usize = 100;
 
-/// Writes a value: short lists and objects on one line, longer ones a line per item.
+/// Writes a value: short lists and objects on one line, longer ones with one line per item.
 pub fn write(value: &Value) -> String {
     let mut text = String::new();
     lay_out(value, 0, 0, &mut text);
@@ -423,7 +423,7 @@ fn lay_out(value: &Value, indent: usize, used: usize, text: &mut String) {
     }
 }
 
-/// Writes a value on one line; says whether it fits into the room.
+/// Writes a value on one line; returns whether it fits into the room.
 fn inline(value: &Value, room: usize, line: &mut String) -> bool {
     match value {
         Value::Null => line.push_str("null"),

@@ -6,7 +6,7 @@ use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{Diagnostic, DisplayUnit};
 
-/// A table of measurements.
+/// Reads a table of measurements.
 pub fn measurements(
     item: &Item<'_>,
     unit: DisplayUnit,

@@ -1,7 +1,7 @@
 //! The native formats: readable, versioned JSON.
 //!
-//! A pattern file (`*.toile.json`) names its unit once; bare numbers in it are lengths in that
-//! unit and angles in degrees, texts are formulas. Parts are referred to by id, in formulas by name.
+//! A pattern file (`*.toile.json`) declares its unit once. Bare numbers in it are lengths in that unit or
+//! angles in degrees; texts are formulas. Parts are referred to by id, in formulas by name.
 
 mod fitting;
 pub(crate) mod item;
@@ -26,14 +26,14 @@ use toile_pattern::{Diagnostic, Pattern};
 /// The version of the format.
 const VERSION: u32 = 2;
 
-/// A pattern's file: the pattern, and how its garment is tried on.
+/// The content of a pattern file: the pattern and the fitting of its garment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatternFile {
     /// The pattern.
     pub pattern: Pattern,
-    /// How its garment is tried on.
+    /// The fitting of the garment.
     pub fitting: Fitting,
-    /// Fields that are not known here.
+    /// Notes on unknown fields.
     pub notes: Vec<Diagnostic>,
 }
 
@@ -49,14 +49,13 @@ pub fn read_pattern(text: &str) -> Result<(Pattern, Vec<Diagnostic>), FormatErro
 /// Writes a pattern in the native format. Reading it back gives the same pattern.
 ///
 /// # Errors
-/// The pattern has a name that no part may have, or a number that is not finite. Documents that
-/// were only changed by edits have neither.
+/// The pattern has an invalid part name or a number that is not finite. Documents changed only through edits
+/// have neither.
 pub fn write_pattern(pattern: &Pattern) -> Result<String, FormatError> {
     write_document(pattern, &Fitting::default())
 }
 
-/// Writes a pattern in the native format with how its garment is tried on. Reading it back gives
-/// both.
+/// Writes a pattern and the fitting of its garment in the native format. Reading gives back both.
 ///
 /// # Errors
 /// Those of [`write_pattern`].
@@ -66,11 +65,11 @@ pub fn write_document(pattern: &Pattern, tried_on: &Fitting) -> Result<String, F
 
 /// Reads a file in the native format (`*.toile.json`).
 ///
-/// Fields this version does not know are named in the diagnostics; everything else that is not
-/// understood is refused with its line, column, path and remedy.
+/// Fields unknown to this version are named in the diagnostics; everything else that is not understood is
+/// refused with line, column, path and remedy.
 ///
 /// # Errors
-/// The text is not JSON, not a pattern of this version, or refers to parts it does not have.
+/// The text is not JSON, is not a pattern of this version, or refers to parts it does not have.
 pub fn read_document(text: &str) -> Result<PatternFile, FormatError> {
     let node = json::parse(text)?;
     let root = Item::root(&node);

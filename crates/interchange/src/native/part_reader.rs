@@ -11,7 +11,7 @@ use toile_pattern::fields::{
 };
 use toile_pattern::{AnyId, Mark, Number, Want};
 
-/// Reads a part; what is wrong with it is the reader's fault then.
+/// Reads a part; an error is stored as the reader's fault.
 pub fn read_part<'a>(reader: &mut Reader<'a>, item: Item<'a>, part: &mut dyn Fields) {
     let mut own = PartReader::new(reader, item.clone(), Vec::new());
     own.choose_kind(part);
@@ -32,7 +32,7 @@ pub fn read_part<'a>(reader: &mut Reader<'a>, item: Item<'a>, part: &mut dyn Fie
     }
 }
 
-/// Reads the whole document, of which some fields are read elsewhere.
+/// Reads the whole document, without the fields in `elsewhere`.
 pub fn read_root<'a>(
     reader: &mut Reader<'a>,
     item: Item<'a>,
@@ -44,18 +44,18 @@ pub fn read_root<'a>(
     own.note_unknown();
 }
 
-/// Where the next field is looked for.
+/// The place in which the next field is looked up.
 enum Place<'a> {
-    /// In an object, or it is the item itself.
+    /// In an object, or in the item itself.
     Part {
         item: Item<'a>,
         object: Option<Object<'a>>,
-        /// The fields that are known: those asked for, and those of other kinds.
+        /// The known fields: those asked for, and those of the part's other kinds.
         known: Vec<&'static str>,
-        /// Whether the item is a value of its own, whose fields are not those of a part.
+        /// Whether the item is a value of its own, so that its fields are not fields of a part.
         is_value: bool,
     },
-    /// In a list: the next item of it.
+    /// In a list, in which the next item is taken.
     List(std::vec::IntoIter<Item<'a>>),
 }
 
@@ -75,7 +75,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         Self { reader, place }
     }
 
-    /// Keeps the first thing that is wrong.
+    /// Keeps the first error.
     fn take<T>(&mut self, result: Result<T, FormatError>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
@@ -86,7 +86,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
     }
 
-    /// The item at a field; nothing where it is left out, or something is wrong.
+    /// The item of a field; `None` if the field is left out, or after an error.
     fn child(&mut self, key: &'static str, may_lack: bool) -> Option<Item<'a>> {
         if self.reader.fault.is_some() {
             return None;
@@ -124,7 +124,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
     }
 
-    /// Makes a part be of the kind that the present item tells, and knows the fields of all kinds.
+    /// Changes the part to the kind that the item has, and marks the fields of all kinds as known.
     fn choose_kind(&mut self, part: &mut dyn Fields) {
         let kinds = part.kinds();
         let Place::Part { item, known, .. } = &mut self.place else {
@@ -149,7 +149,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
     }
 
-    /// Notes the fields of the present object that are not known.
+    /// Notes the unknown fields of the current object.
     fn note_unknown(self) {
         let Place::Part {
             item,
@@ -166,7 +166,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
     }
 
-    /// Reads what stands within a field; all that is wrong with it may be said in its own words.
+    /// Reads the content of a field; the group may replace any error by a message of its own.
     fn within(&mut self, group: Group, read: impl FnOnce(&mut Reader<'a>, Item<'a>)) {
         let Some(item) = self.child(group.key, group.may_lack) else {
             return;
@@ -308,7 +308,7 @@ impl<'a> VisitorMut for PartReader<'_, 'a> {
     }
 }
 
-/// Sets a value to what an item says.
+/// Sets a value from an item.
 fn set_value(
     reader: &Reader<'_>,
     (item, field): (&Item<'_>, ValueField),
@@ -352,7 +352,7 @@ fn set_value(
     Ok(())
 }
 
-/// Sets a value that a file leaves out, where that is not what an empty part has.
+/// Sets a value that the file leaves out, if that means something else than in an empty part.
 fn set_absent(field: ValueField, value: ValueMut<'_>) {
     if let (ValueMut::Flag(flag), Some(absent)) = (value, field.absent_flag) {
         *flag = absent;

@@ -22,7 +22,7 @@ pub fn write_part(writer: &Writer, part: &dyn Fields) -> Result<Json, FormatErro
     own.done()
 }
 
-/// What a part is written as.
+/// The form in which a part is written.
 enum Form {
     Object(Object),
     List(Vec<Json>),
@@ -32,7 +32,7 @@ enum Form {
 struct PartWriter<'w> {
     writer: &'w Writer,
     form: Form,
-    /// What the part is called, for messages.
+    /// Name of the part, for messages.
     part: String,
     fault: Option<FormatError>,
 }
@@ -65,7 +65,7 @@ impl PartWriter<'_> {
         }
     }
 
-    /// One that writes within this part.
+    /// A writer for a value inside this part.
     fn inner(&self, form: Form) -> Self {
         Self {
             writer: self.writer,

@@ -1,4 +1,4 @@
-//! Reads a pattern file: the pattern by its fields, and how its garment is tried on.
+//! Reads a pattern file: the pattern by its fields, and the fitting of its garment.
 
 use super::fitting::Fitting;
 use super::item::Item;
@@ -8,16 +8,16 @@ use crate::FormatError;
 use toile_pattern::fields::Choice;
 use toile_pattern::{Diagnostic, DisplayUnit, Names, Pattern};
 
-/// Reads how the garment is tried on.
+/// Function that reads the fitting of the garment.
 pub type FittingReader = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<Fitting, FormatError>;
 
-/// Reads the pattern at the root of a file, and by `fitting` how it is tried on.
+/// Reads the pattern at the root of a file, and by `fitting` the fitting of its garment.
 pub fn read(
     root: &Item<'_>,
     fitting: FittingReader,
     notes: &mut Vec<Diagnostic>,
 ) -> Result<(Pattern, Fitting), FormatError> {
-    // Formulas name parts, so the parts come first: names are bound in a second round.
+    // Formulas name parts, so all parts must be known first: names are resolved in a second pass.
     let (unbound, _) = document(&mut Reader::new(Names::default()), root, fitting)?;
     let mut reader = Reader::new(Names::new(&unbound));
     let document = document(&mut reader, root, fitting)?;
@@ -25,7 +25,7 @@ pub fn read(
     Ok(document)
 }
 
-/// Fields of the root that are not the pattern's.
+/// Fields of the root that do not belong to the pattern.
 const BESIDES: &[&str] = &["toile", "kind", "fitting"];
 
 fn document<'a>(

@@ -1,4 +1,4 @@
-//! Reads how a garment is tried on.
+//! Reads the fitting of a garment.
 
 use super::fitting::{FABRIC_WIDTHS, Fitting, FittingFabric, FittingLayer, FittingWearer};
 use super::item::Item;
@@ -10,7 +10,7 @@ use toile_measure::Measurements;
 use toile_pattern::fields::{Clash, Kind};
 use toile_pattern::{SizeId, Want};
 
-/// Reads how the garment is tried on.
+/// Reads the fitting of the garment.
 pub fn fitting<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Fitting, FormatError> {
     let known = &["wearer", "size", "fabric", "width", "layer", "worn_with"];
     let fields = item.object(known, &mut reader.notes)?;
@@ -77,7 +77,7 @@ fn wearer<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<FittingWearer,
     })
 }
 
-/// Measurements of a person, of whom every length is above zero.
+/// Measurements of a wearer; every length must be above zero.
 fn measurements<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Measurements, FormatError> {
     let table = reader.measurements(item)?;
     let Some((name, value)) = table.impossible() else {
@@ -107,7 +107,7 @@ fn fabric<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<FittingFabric,
     }
 }
 
-/// The path of a file.
+/// The path of a file, which must not be empty.
 fn file(item: &Item<'_>) -> Result<String, FormatError> {
     match item.text()? {
         "" => Err(item.error(

@@ -1,4 +1,4 @@
-//! The state of reading a pattern file: its unit, ids and names; numbers and formulas in them.
+//! The state of reading a pattern file: unit, ids and names; reads numbers and formulas.
 
 use super::item::{Item, Written};
 use super::json::Value;
@@ -13,13 +13,13 @@ use toile_pattern::{AnyId, Diagnostic, DisplayUnit, Formula, Names, Number, Part
 /// State of the reader.
 pub struct Reader<'a> {
     pub notes: Vec<Diagnostic>,
-    /// The first thing that is wrong with what is read by its fields; nothing is read after it.
+    /// The first error found in the fields of a part; nothing is read after it.
     pub fault: Option<FormatError>,
     pub unit: DisplayUnit,
     names: Names,
-    /// Ids that parts of the file have.
+    /// Ids of the parts in the file.
     given: HashMap<u32, PartId>,
-    /// Ids that are referred to, with their places.
+    /// Ids that are referred to, with the place of the reference.
     referred: Vec<(PartId, Item<'a>)>,
 }
 
@@ -35,12 +35,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A table of measurements.
+    /// Reads a table of measurements.
     pub fn measurements(&mut self, item: &Item<'a>) -> Result<Measurements, FormatError> {
         measurements(item, self.unit, &mut self.notes)
     }
 
-    /// The id of a part of the file.
+    /// Reads the id of a part.
     pub fn own(&mut self, item: &Item<'a>, id: &mut dyn AnyId) -> Result<(), FormatError> {
         let number = item.count()?;
         id.set_number(number);
@@ -53,15 +53,15 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The id of a part that is referred to.
+    /// Reads a reference to a part by its id.
     pub fn reference(&mut self, item: &Item<'a>, id: &mut dyn AnyId) -> Result<(), FormatError> {
         id.set_number(item.count()?);
         self.referred.push((id.part(), item.clone()));
         Ok(())
     }
 
-    /// Refuses ids of another kind, and ids that were never given. A part that was removed may be
-    /// referred to: what refers to it waits for its return.
+    /// Refuses references to an id of another kind or to one never given. A reference to a deleted part is
+    /// allowed: it becomes valid when the part is restored.
     pub fn check_ids(&self, item: &Item<'_>, next: u32) -> Result<(), FormatError> {
         if let Some((highest, id)) = self.given.iter().max_by_key(|(number, _)| **number)
             && *highest >= next
@@ -84,7 +84,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// A number: a value, a formula, an adjusted formula, a value a size.
+    /// Reads a number: a value, a formula, an adjusted formula, or one value per size.
     pub fn number(&mut self, item: &Item<'a>, want: Want) -> Result<Number, FormatError> {
         if let Value::Object(_) = item.node.value {
             let fields = item.fields()?;
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A number that is a value.
+    /// A number that must be a plain value.
     pub fn value(&self, item: &Item<'_>, want: Want) -> Result<f64, FormatError> {
         item.fixed(&self.written(item, want)?)
     }
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Kinds of numbers that are objects.
+/// The kinds of numbers that are written as objects.
 fn numbers() -> &'static [Kind] {
     static KINDS: OnceLock<Vec<Kind>> = OnceLock::new();
     let kinds: [(&'static str, &[&'static str]); 4] = [

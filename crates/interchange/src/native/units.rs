@@ -1,11 +1,11 @@
-//! Numbers of a file in the unit it declares, so that every value in memory comes back to the bit.
+//! Numbers of a file in its declared unit, so that every value in memory is read back bit by bit.
 
 use toile_pattern::DisplayUnit;
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
 
-/// Powers of ten from metres to the unit, if it is decimal.
+/// Power of ten from metres to the unit, for decimal units.
 fn decimals(unit: DisplayUnit) -> Option<i32> {
     match unit {
         DisplayUnit::Metre => Some(0),
@@ -15,7 +15,7 @@ fn decimals(unit: DisplayUnit) -> Option<i32> {
     }
 }
 
-/// The length that a number of a file means (m); nothing if it is not finite.
+/// The length of a number in a file (m); `None` if it is not finite.
 pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
     let value = match decimals(unit) {
         Some(places) => shifted(raw, -places)?,
@@ -24,10 +24,10 @@ pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Larger lengths (m) might leave the range of numbers that other programs read.
+/// Larger lengths (m) might exceed the number range of other programs.
 const LARGEST: f64 = 1e290;
 
-/// The number a length (m) is written as; nothing if none means it to the bit.
+/// The number for a length (m); `None` if no number is read back exactly.
 pub fn write_length(value: f64, unit: DisplayUnit) -> Option<String> {
     if value.abs() > LARGEST {
         return None;
@@ -40,29 +40,29 @@ pub fn write_length(value: f64, unit: DisplayUnit) -> Option<String> {
     candidates.into_iter().find(exact)
 }
 
-/// The angle that a number of degrees in a file means (rad); nothing if it is not finite.
+/// The angle of a number of degrees in a file (rad); `None` if it is not finite.
 pub fn read_degrees(raw: &str) -> Option<f64> {
     let degrees: f64 = raw.parse().ok()?;
     degrees.is_finite().then(|| degrees.to_radians())
 }
 
-/// The number of degrees an angle (rad) is written as; nothing if none means it to the bit.
+/// The number of degrees for an angle (rad); `None` if no number is read back exactly.
 pub fn write_degrees(value: f64) -> Option<String> {
     let exact = |raw: &String| read_degrees(raw).map(f64::to_bits) == Some(value.to_bits());
     neighbours(value.to_degrees()).into_iter().find(exact)
 }
 
-/// A plain number of a file; nothing if it is not finite.
+/// A plain number of a file; `None` if it is not finite.
 pub fn read_plain(raw: &str) -> Option<f64> {
     raw.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-/// A plain number as it is written: the shortest text that means it.
+/// The shortest text that is read back as the number.
 pub fn write_plain(value: f64) -> String {
     decimal(value, 0)
 }
 
-/// A round text near the value first, then the value, then its neighbours.
+/// Candidates: a round number near the value, the value, then its neighbours.
 fn neighbours(value: f64) -> Vec<String> {
     let round: f64 = format!("{value:.12e}").parse().unwrap_or(value);
     [
@@ -89,7 +89,7 @@ fn shifted(raw: &str, places: i32) -> Option<f64> {
         .ok()
 }
 
-/// The shortest decimal that means the value, its point moved to the right by `places`.
+/// The shortest decimal that is read back as the value, with its point moved right by `places`.
 fn decimal(value: f64, places: i32) -> String {
     let text = format!("{value:e}");
     let Some((mantissa, exponent)) = text.split_once('e') else {

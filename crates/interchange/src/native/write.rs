@@ -1,4 +1,4 @@
-//! Writes a pattern file: the pattern by its fields, and how its garment is tried on.
+//! Writes a pattern file: the pattern by its fields, and the fitting of its garment.
 
 use super::VERSION;
 use super::json::{self, Value};
@@ -7,7 +7,7 @@ use super::writer::{Object, Writer, count, text};
 use crate::FormatError;
 use toile_pattern::Pattern;
 
-/// Writes a pattern, and what `fitting` gives of how its garment is tried on.
+/// Writes a pattern, and the fitting of its garment that `fitting` returns.
 pub fn write(
     pattern: &Pattern,
     fitting: impl FnOnce(&Writer) -> Result<Option<Value>, FormatError>,
@@ -28,7 +28,7 @@ fn document(
     if let Value::Object(fields) = write_part(writer, pattern)? {
         root.0.extend(fields);
     }
-    // How it is tried on stands before the next id, which comes last.
+    // The fitting is written before the next id, which comes last.
     let next_id = root.0.pop();
     root.put_if("fitting", tried_on);
     root.0.extend(next_id);

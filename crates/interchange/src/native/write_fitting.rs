@@ -1,4 +1,4 @@
-//! Writes how a garment is tried on.
+//! Writes the fitting of a garment.
 
 use super::fitting::{Fitting, FittingFabric, FittingWearer};
 use super::json::Value;
@@ -6,7 +6,7 @@ use super::writer::{Object, Writer, count, text};
 use crate::FormatError;
 use toile_pattern::{Number, Want};
 
-/// How the garment is tried on; nothing where all is as the pattern says.
+/// The fitting of the garment; `None` if it is entirely the pattern's own.
 pub fn fitting(writer: &Writer, fitting: &Fitting) -> Result<Option<Value>, FormatError> {
     if *fitting == Fitting::default() {
         return Ok(None);

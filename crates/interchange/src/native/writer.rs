@@ -1,4 +1,4 @@
-//! The state of writing a pattern file: its unit and names; numbers, formulas and tables in them.
+//! The state of writing a pattern file: unit and names; writes numbers, formulas and tables.
 
 use super::json::{Node, Value};
 use super::units::{write_degrees, write_length, write_plain};
@@ -6,11 +6,11 @@ use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{DisplayUnit, Names, Number, Pattern, Want};
 
-/// An object in the making.
+/// A JSON object being built.
 #[derive(Default)]
 pub struct Object(pub Vec<(String, Node)>);
 
-/// A value without a place.
+/// A value without a position in a text.
 pub fn node(value: Value) -> Node {
     Node {
         value,
@@ -34,7 +34,7 @@ impl Object {
         Value::Object(self.0)
     }
 
-    /// A list, unless it is empty.
+    /// Adds a list, unless it is empty.
     pub fn put_list(&mut self, name: &str, values: Vec<Value>) {
         if !values.is_empty() {
             self.put(name, list(values));
@@ -62,7 +62,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// A writer of a pattern.
+    /// A writer with the unit and the names of a pattern.
     pub fn new(pattern: &Pattern) -> Self {
         Self {
             unit: pattern.unit,
@@ -91,7 +91,7 @@ impl Writer {
         fields.done()
     }
 
-    /// A number: a value, a formula, an adjusted formula, a value a size.
+    /// Writes a number: a value, a formula, an adjusted formula, or one value per size.
     pub fn number(&self, number: &Number, want: Want, place: &str) -> Result<Value, FormatError> {
         let value = |value: f64| -> Result<Value, FormatError> {
             finite(value, place)?;
@@ -139,7 +139,7 @@ pub fn plain_value(value: f64) -> Value {
     Value::Number(write_plain(value))
 }
 
-/// In the file's unit if that is exact, else in metres.
+/// The length in the file's unit if that is exact, else in metres.
 fn length_value(value: f64, unit: DisplayUnit) -> Value {
     match write_length(value, unit) {
         Some(raw) => Value::Number(raw),
@@ -147,7 +147,7 @@ fn length_value(value: f64, unit: DisplayUnit) -> Value {
     }
 }
 
-/// In degrees if that is exact, else in radians.
+/// The angle in degrees if that is exact, else in radians.
 fn angle_value(value: f64) -> Value {
     match write_degrees(value) {
         Some(raw) => Value::Number(raw),

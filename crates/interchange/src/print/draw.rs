@@ -10,26 +10,27 @@ use toile_geometry::{Polygon, Vec2};
 pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
 const BLUE: Ink = [0.12, 0.31, 0.62];
 const PURPLE: Ink = [0.55, 0.2, 0.55];
-/// Least width of a line that a projector shows, and of one to cut along (m).
+/// Smallest width of lines on a projector, and of lines to cut along (m).
 const PROJECTED: [f64; 2] = [0.0012, 0.002];
-/// Letters beside the fold, and beside the grain line (m).
+/// Letter sizes beside the fold and beside the grain line (m).
 const FOLD_LETTERS: f64 = 0.005;
 const GRAIN_LETTERS: f64 = 0.0035;
-/// Places along a line that are tried for its words, the most usual first (share of its length).
+/// Positions along a line that are tried for its text, the preferred first (fraction of its length).
 const ALONG_PLACES: [f64; 5] = [0.5, 0.38, 0.62, 0.26, 0.74];
-/// Their size over the length of the line at the most: the words then fit.
+/// Largest letter size relative to the length of the line, so that the text fits.
 const ALONG_SHARE: f64 = 0.1;
 
-/// Largest letters of a piece's words (m).
+/// Largest letter size of a piece's texts (m).
 const LETTERS: f64 = 0.012;
-/// Length of an arrow to where a dart or a pleat is pressed at the most (m), and over the width of what is folded
-/// there; the length of its head, and half the width of that over it.
+/// Arrow in the direction in which a dart or pleat is pressed: largest length (m), largest length relative to
+/// the width of the folded part, length of the head relative to the arrow, half width of the head relative to
+/// its length.
 const ARROW: f64 = 0.018;
 const ARROW_SHARE: f64 = 0.9;
 const HEAD: f64 = 0.3;
 const HEAD_WIDTH: f64 = 0.5;
 
-/// Ink and dash of each size's lines, one after another: told apart in colour and in black and white.
+/// Colour and dash length (m) of each size's lines, in turn: they differ in colour and in black and white.
 const SIZES: [(Ink, f64); 8] = [
     ([0.07, 0.07, 0.07], 0.0),
     ([0.75, 0.1, 0.15], 0.012),
@@ -41,7 +42,7 @@ const SIZES: [(Ink, f64); 8] = [
     ([0.8, 0.35, 0.55], 0.024),
 ];
 
-/// The style of the lines of a kind in a size.
+/// Line style of a kind of stroke in a size.
 pub(crate) fn style(job: &PrintJob, kind: StrokeKind, layer: usize) -> LineStyle {
     let several = job.layers.len() > 1;
     let (ink, dash) = match several {
@@ -50,7 +51,7 @@ pub(crate) fn style(job: &PrintJob, kind: StrokeKind, layer: usize) -> LineStyle
     };
     let (ink, width, dash) = match kind {
         StrokeKind::Cut => (ink, 0.0005, dash),
-        // Fine and even, so that it is told from the line to cut along.
+        // Fine and solid, to differ from the line to cut along.
         StrokeKind::Sew => (if several { ink } else { [0.35; 3] }, 0.0002, 0.0),
         StrokeKind::Inside => (if several { ink } else { [0.35; 3] }, 0.0002, 0.004),
         StrokeKind::Notch => (ink, 0.000_35, 0.0),
@@ -73,7 +74,7 @@ pub(crate) fn style(job: &PrintJob, kind: StrokeKind, layer: usize) -> LineStyle
     }
 }
 
-/// Whether lines of a kind are printed.
+/// Whether strokes of a kind are printed.
 fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
     !matches!(
         (job.lines, kind),
@@ -81,8 +82,8 @@ fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
     )
 }
 
-/// A piece in all its sizes. Words and grain line are those of the smallest, for all; words lie on none of some lines,
-/// and there are none where none are given.
+/// Draws a piece in all its sizes. Texts and grain line are drawn once, for the smallest size. Texts keep
+/// clear of the lines `clear_of`; without that list no texts are drawn.
 pub(crate) fn piece_marks(
     job: &PrintJob,
     piece: &PrintPiece,
@@ -147,8 +148,7 @@ pub(crate) fn piece_marks(
     marks
 }
 
-/// The notches that are cut, as marks on the seam line: without the line to cut along they would
-/// stand beside nothing.
+/// Notches drawn as marks on the seam line, for prints without the cut line that they belong to.
 fn seam_marks(
     job: &PrintJob,
     cut: &CutPiece,
@@ -168,7 +168,7 @@ fn seam_marks(
     lines.into_iter().map(mark).collect()
 }
 
-/// How darts and pleats are folded: lines where they meet the line to cut along, and arrows to where they are pressed.
+/// Fold marks of darts and pleats: ticks at the cut line, and arrows in the direction of pressing.
 fn press_marks(
     job: &PrintJob,
     cut: &CutPiece,
@@ -189,7 +189,7 @@ fn press_marks(
             ));
         }
     }
-    // Seen as well as a notch, and not cut along.
+    // As visible as a notch, but not cut.
     let cut_like = style(job, StrokeKind::Notch, layer);
     let drawn = style(job, StrokeKind::Mark, layer);
     let style = LineStyle {
@@ -227,8 +227,8 @@ fn words_mark(words: Words) -> Mark {
     }
 }
 
-/// Words along the fold or the grain line, inside the piece: in its middle, or beside that where they lie on none of
-/// some lines.
+/// A text along the fold or the grain line, inside the piece: at the middle, or at another position if it
+/// would cross one of the lines `clear_of` there.
 fn words_along(
     [from, to]: [Vec2; 2],
     (text, letters, ink): (&str, f64, Ink),
@@ -239,7 +239,7 @@ fn words_along(
     let left = Vec2::new(-way.y, way.x) * size;
     let middle = (from + to) * 0.5;
     let inside = fill.is_some_and(|fill| fill.contains(middle + left));
-    // Letters stand with their feet towards the fold, read from below or from the right.
+    // The feet of the letters point to the fold, and the text is read from below or from the right.
     let (way, above) = if inside { (way, left) } else { (-way, -left) };
     let upside_down = way.x < -1e-6;
     let (way, above) = match upside_down {

@@ -5,19 +5,19 @@ use crate::pdf::{Align, Ink};
 use toile_geometry::{Bounds2, Vec2};
 use toile_lettering::width;
 
-/// Ink, width and dashes of a line.
+/// Colour, width and dashes of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineStyle {
     pub ink: Ink,
-    /// (m)
+    /// Line width (m).
     pub width: f64,
-    /// Length of a dash (m); 0 for a line without.
+    /// Length of a dash (m); 0 for a solid line.
     pub dash: f64,
-    /// The purpose of a line of a piece.
+    /// Purpose of the line, for lines of a piece.
     pub layer: Option<Layer>,
 }
 
-/// A line or words.
+/// A line or a text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Shape {
     Line {
@@ -28,7 +28,7 @@ pub(crate) enum Shape {
     Text {
         text: String,
         at: Vec2,
-        /// Height of the letters (m).
+        /// Letter height (m).
         size: f64,
         /// Direction of the baseline (rad).
         angle: f64,
@@ -37,14 +37,14 @@ pub(crate) enum Shape {
     },
 }
 
-/// A shape on a layer: the number of a size, or none for what belongs to all.
+/// A shape on a layer: the index of a size, or `None` for shapes common to all sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mark {
     pub layer: Option<usize>,
     pub shape: Shape,
 }
 
-/// A page: what lies inside its window, and what is drawn on top wherever it lies.
+/// A page: marks clipped to the window, and marks drawn on top without clipping.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Page {
     pub size: Vec2,
@@ -70,7 +70,7 @@ impl Mark {
         }
     }
 
-    /// Words for all sizes, that start or have their middle at a place, on a level baseline.
+    /// A horizontal text common to all sizes, aligned at a position.
     pub fn text(text: &str, (at, align): (Vec2, Align), (size, ink): (f64, Ink)) -> Self {
         Self {
             layer: None,
@@ -91,7 +91,7 @@ impl Mark {
         (corners.map(Vec2::from).to_vec(), true)
     }
 
-    /// A box that holds it, words in a wider font too (m).
+    /// Bounding box (m); that of a text has room for wider fonts.
     pub fn bounds(&self) -> Bounds2 {
         match &self.shape {
             Shape::Line { points, .. } => Bounds2::of(points.iter().copied()),

@@ -1,7 +1,7 @@
 //! Cut pieces on paper at true size: sheets to join by their marks, or one page; PDF or SVG.
 //!
-//! Pieces lie on a drawing, as wide as it takes, whose lower left corner is the origin. Sheets show
-//! windows of it that overlap by 10 mm. Every size is a layer.
+//! The pieces lie on a drawing of any size with its lower left corner at the origin. Sheets show windows of
+//! the drawing that overlap by 10 mm. Every size is a layer.
 
 mod draw;
 mod mark;
@@ -24,7 +24,7 @@ use toile_geometry::{Bounds2, Vec2};
 use toile_lettering::{missing_letters, missing_note, width};
 use toile_nesting::Pose;
 
-/// Which lines of a piece are printed.
+/// The lines of a piece that are printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lines {
     /// The cut lines.
@@ -36,32 +36,32 @@ pub enum Lines {
     Both,
 }
 
-/// A size: a layer of the print.
+/// A size, which is a layer of the print.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PrintLayer {
-    /// Name to show, as in "size M".
+    /// Name displayed, as in "size M".
     pub name: String,
 }
 
-/// A piece to print, in one size or several that lie on each other as they were drafted.
+/// A piece to print, in one size or in several that are stacked as drafted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintPiece {
-    /// The number of the size, and the piece in it.
+    /// Index of each size, with the piece in that size.
     pub sizes: Vec<(usize, Arc<CutPiece>)>,
-    /// What is written on it.
+    /// Lines of text written on the piece.
     pub words: Vec<String>,
-    /// Drawing from piece, once that is scaled.
+    /// Transform from the scaled piece to the drawing.
     pub pose: Pose,
 }
 
-/// Pieces to print.
+/// A print: pieces, paper and title block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintJob {
-    /// What it is printed on.
+    /// The paper.
     pub paper: Paper,
-    /// Length on paper over length of cloth.
+    /// Length on paper divided by length of cloth.
     pub scale: f64,
-    /// Which lines are printed.
+    /// The lines of the pieces that are printed.
     pub lines: Lines,
     /// Size of the drawing (m).
     pub size: Vec2,
@@ -75,25 +75,25 @@ pub struct PrintJob {
     pub title_at: Vec2,
 }
 
-/// Arm of a cross by which sheets are joined (m).
+/// Arm length of the crosses at which sheets are joined (m).
 const CROSS: f64 = 0.004;
 const GREY: [f32; 3] = [0.55, 0.55, 0.55];
-/// Lines of frames and crosses.
+/// Line style of frames and crosses.
 const JOIN: LineStyle = LineStyle {
     layer: None,
     ink: GREY,
     width: 0.000_15,
     dash: 0.0,
 };
-/// Between lines that words do not lie on (m): less than the smallest letters are high.
+/// Spacing of the lines that texts keep clear of (m): less than the height of the smallest letters.
 const ACROSS: f64 = 0.001;
-/// White between words and where sheets overlap (m).
+/// Distance between texts and the overlap of sheets (m).
 const BESIDE: f64 = 0.004;
-/// Letters of a sheet's row and column (m).
+/// Letter size of a sheet's row and column (m).
 const PLACE_LETTERS: f64 = 0.004;
 
 impl PrintJob {
-    /// The sheets, rows from above: those with something on them.
+    /// The sheets with content, row by row from the top.
     ///
     /// # Errors
     /// A number is not finite.
@@ -102,7 +102,7 @@ impl PrintJob {
         Ok(self.tiles_of(&self.marks()))
     }
 
-    /// The file as PDF; sizes are optional content.
+    /// The print as PDF; sizes are optional content.
     ///
     /// # Errors
     /// A number is not finite.
@@ -114,7 +114,7 @@ impl PrintJob {
         ))
     }
 
-    /// The file as SVG, sheets side by side; sizes are layers of Inkscape.
+    /// The print as SVG with the sheets side by side; sizes are Inkscape layers.
     ///
     /// # Errors
     /// A number is not finite.
@@ -126,7 +126,7 @@ impl PrintJob {
         ))
     }
 
-    /// What to tell of letters of its texts that no font has.
+    /// Warning about characters of the print's texts that no font has.
     pub fn missing_note(&self) -> Option<String> {
         let words = self.pieces.iter().flat_map(|piece| &piece.words);
         let layers = self.layers.iter().map(|layer| &layer.name);
@@ -156,7 +156,7 @@ impl PrintJob {
         Ok(())
     }
 
-    /// Everything on the drawing but what depends on the sheets.
+    /// All marks of the drawing that do not depend on the division into sheets.
     fn marks(&self) -> Vec<Mark> {
         let clear_of = self.between_sheets();
         let mut marks = Vec::new();
@@ -167,15 +167,15 @@ impl PrintJob {
         marks
     }
 
-    /// Lines that words do not lie on: along every overlap of sheets, and across sheets that show no line of a piece and
-    /// are left out.
+    /// Lines that texts keep clear of: along every overlap of sheets, and across sheets that are left out
+    /// because they show no line of a piece.
     fn between_sheets(&self) -> Vec<[Vec2; 2]> {
         let (Some(step), Some(window)) = (self.paper.step(), self.paper.window()) else {
             return Vec::new();
         };
         let bare = self.pieces.iter();
         let bare = bare.flat_map(|piece| draw::piece_marks(self, piece, None));
-        // Where the grain line lies depends on the words.
+        // The position of the grain line depends on the texts.
         let is_grain = |mark: &Mark| match &mark.shape {
             Shape::Line { style, .. } => style.layer == Some(Layer::Grain),
             Shape::Text { .. } => false,
@@ -197,7 +197,7 @@ impl PrintJob {
             for k in 1..=(self.size[axis] / step[axis]) as usize {
                 let count = ((OVERLAP + 2.0 * BESIDE) / ACROSS).round() as usize;
                 for n in 0..=count {
-                    // Columns are counted from the left, rows from above.
+                    // Columns are counted from the left, rows from the top.
                     let at = k as f64 * step[axis] - BESIDE + n as f64 * ACROSS;
                     lines.push(match axis {
                         0 => [Vec2::new(at, 0.0), Vec2::new(at, self.size.y)],
@@ -265,8 +265,8 @@ impl PrintJob {
     }
 }
 
-/// Where words of a length (m) cross nothing on a page: along its lower edge, then higher up; in
-/// the lower left corner if they cross something everywhere.
+/// A position for a text of a given length (m) that crosses nothing on a page: first along the lower edge,
+/// then higher up; the lower left corner if there is none.
 fn free_place(page: &Page, length: f64) -> Vec2 {
     let low = page.window.min + Vec2::repeat(1.5 * PLACE_LETTERS);
     let room =

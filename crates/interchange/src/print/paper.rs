@@ -3,11 +3,11 @@
 use strum::{EnumCount, IntoStaticStr, VariantArray};
 use toile_geometry::{Bounds2, Vec2};
 
-/// White that printers leave at every side (m).
+/// Unprintable margin of printers on every side (m).
 const MARGIN: f64 = 0.010;
 /// Width of the overlap of neighbouring sheets (m).
 pub(crate) const OVERLAP: f64 = 0.010;
-/// White round a drawing on one page (m).
+/// White border round a drawing on one page (m).
 const BORDER: f64 = 0.010;
 
 /// The paper.
@@ -20,22 +20,22 @@ pub enum Paper {
     Letter,
     /// Sheets of 841 x 1189 mm.
     A0,
-    /// One page as large as it takes.
+    /// One page as large as the drawing needs.
     Page,
-    /// One page as large as it takes, with lines that a projector shows.
+    /// One page as large as the drawing needs, with lines that a projector can show.
     Projector,
 }
 
 impl Paper {
-    /// Every kind, in the order in which it is offered.
+    /// Every paper, in the order in which it is offered.
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// Its name.
+    /// Name of the paper.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// Size of a sheet (m); nothing for one page as large as it takes.
+    /// Size of a sheet (m); `None` for a single page of any size.
     pub fn sheet(self) -> Option<Vec2> {
         match self {
             Self::A4 => Some(Vec2::new(0.210, 0.297)),
@@ -45,36 +45,36 @@ impl Paper {
         }
     }
 
-    /// The window of the drawing on a sheet (m).
+    /// Size of the part of the drawing that a sheet shows (m).
     pub fn window(self) -> Option<Vec2> {
         Some(self.sheet()? - Vec2::repeat(2.0 * MARGIN))
     }
 
-    /// From a sheet to the next (m).
+    /// Distance between neighbouring sheets on the drawing (m).
     pub fn step(self) -> Option<Vec2> {
         Some(self.window()? - Vec2::repeat(OVERLAP))
     }
 
-    /// Height of a drawing that fills so many rows of sheets (m).
+    /// Height of a drawing that fills a number of rows of sheets (m).
     pub fn height_of(self, rows: u32) -> Option<f64> {
         Some(f64::from(rows) * self.step()?.y + OVERLAP)
     }
 }
 
-/// A sheet's part of a drawing.
+/// A sheet and the part of the drawing that it shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
-    /// Row from above, from 1; column from the left, from 1.
+    /// Row from the top and column from the left, both from 1.
     pub place: [u32; 2],
-    /// Its window of the drawing (m).
+    /// Part of the drawing shown on the sheet (m).
     pub window: Bounds2,
     /// Size of the sheet (m).
     pub sheet: Vec2,
-    /// Page from drawing: what is added to a point (m).
+    /// Translation from the drawing to the page (m).
     pub shift: Vec2,
 }
 
-/// Part of the drawing for which one sheet alone answers: up to the middle of the overlap with the next.
+/// Part of the drawing that belongs to one sheet only: up to the middle of the overlap with the next sheet.
 fn cell(tile: &Tile, last: [u32; 2]) -> Bounds2 {
     let half = 0.5 * OVERLAP;
     let [row, column] = tile.place;
@@ -85,8 +85,8 @@ fn cell(tile: &Tile, last: [u32; 2]) -> Bounds2 {
     }
 }
 
-/// The sheets of a drawing of a size that has its lower left corner at the origin, rows from above;
-/// those on which `shows` finds nothing are left out.
+/// The sheets of a drawing with its lower left corner at the origin, row by row from the top. Sheets on which
+/// `shows` finds nothing are left out.
 pub(crate) fn tiles(paper: Paper, size: Vec2, shows: impl Fn(&Bounds2) -> bool) -> Vec<Tile> {
     let (Some(sheet), Some(window), Some(step)) = (paper.sheet(), paper.window(), paper.step())
     else {
@@ -126,7 +126,7 @@ pub(crate) fn tiles(paper: Paper, size: Vec2, shows: impl Fn(&Bounds2) -> bool) 
     all
 }
 
-/// Where neighbouring sheets have a cross in common: in the middle of their overlap, at its ends and
+/// Positions of the crosses that neighbouring sheets share: in the middle of their overlap, at its ends and
 /// half-way.
 pub(crate) fn crosses(tile: &Tile) -> Vec<Vec2> {
     let half = 0.5 * OVERLAP;
@@ -149,7 +149,7 @@ pub(crate) fn crosses(tile: &Tile) -> Vec<Vec2> {
     .to_vec()
 }
 
-/// The parts of a line inside a window.
+/// The parts of a polyline inside a window.
 pub(crate) fn clipped(points: &[Vec2], closed: bool, window: &Bounds2) -> Vec<Vec<Vec2>> {
     let ends = points.iter().copied().zip(points.iter().copied().skip(1));
     let back = points.last().zip(points.first()).filter(|_| closed);
@@ -224,7 +224,7 @@ mod tests {
         let shared = all[0].window.max.x - all[1].window.min.x;
         assert!((shared - OVERLAP).abs() < 1e-12);
         assert!(all[14].window.max.x > 0.9 && all[14].window.min.y.abs() < 1e-9);
-        // Crosses of neighbours lie on each other.
+        // The crosses of neighbouring sheets coincide.
         let met = |p: Vec2| crosses(&all[1]).iter().any(|q| (p - q).norm() < 1e-12);
         assert_eq!(crosses(&all[0]).into_iter().filter(|&p| met(p)).count(), 3);
     }

@@ -3,7 +3,7 @@
 use super::mark::{Mark, Page, Shape};
 use crate::pdf::{PdfPage, PdfSheets, PdfText};
 
-/// The PDF of pages whose marks lie on layers of these names.
+/// Writes pages as PDF; `layers` are the names of the layers of their marks.
 pub(crate) fn write_pdf(title: &str, pages: &[Page], layers: &[String]) -> Vec<u8> {
     let mut sheets = PdfSheets::with_layers(layers);
     for page in pages {

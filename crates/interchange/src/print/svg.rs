@@ -6,10 +6,10 @@ use crate::svg_text::{escape, number};
 use std::fmt::Write as _;
 use toile_geometry::Vec2;
 
-/// Between two pages (m).
+/// Distance between two pages (m).
 const GAP: f64 = 0.02;
 
-/// The SVG text of pages whose marks lie on layers of these names.
+/// Writes pages as SVG; `layers` are the names of the layers of their marks.
 pub(crate) fn write_svg(title: &str, pages: &[Page], layers: &[String]) -> String {
     let mut corners = Vec::with_capacity(pages.len());
     let (mut right, mut high) = (0.0_f64, 0.0_f64);

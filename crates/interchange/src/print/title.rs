@@ -1,4 +1,4 @@
-//! The title block: what is printed, how lines look, how sheets lie, and a box to measure.
+//! The title block: name and facts, legend of lines, map of the sheets, and a test box to measure.
 
 use super::draw::{BLACK, style};
 use super::mark::{LineStyle, Mark};
@@ -16,19 +16,19 @@ use toile_pattern::DisplayUnit;
 pub struct TitleBlock {
     /// Name of the pattern.
     pub name: String,
-    /// Further lines.
+    /// Further lines of text.
     pub facts: Vec<String>,
-    /// The unit of the box to measure.
+    /// Unit of the test box.
     pub unit: DisplayUnit,
 }
 
-/// Room inside the block's border (m).
+/// Distance of the content from the block's border (m).
 const INSET: f64 = 0.004;
 const WIDTH: f64 = 0.172;
 const TITLE_LETTERS: f64 = 0.007;
 const LETTERS: f64 = 0.0035;
 const LINE: f64 = 0.0055;
-/// Most lines of facts and of the legend.
+/// Largest number of lines of facts and of the legend.
 const MAX_LINES: usize = 10;
 
 const THIN: LineStyle = LineStyle {
@@ -39,14 +39,14 @@ const THIN: LineStyle = LineStyle {
 };
 
 impl TitleBlock {
-    /// Size of the block (m), for so many sizes.
+    /// Size of the block (m), for a number of sizes.
     pub fn size(&self, sizes: usize) -> Vec2 {
         let rows = self.facts_within().len().max(legend_rows(sizes));
         let height = TITLE_LETTERS + LINE * rows as f64 + self.test_box().0.y + 6.0 * INSET;
         Vec2::new(WIDTH, height)
     }
 
-    /// The box by which a print's scale is checked (m), and its words.
+    /// The box to check the scale of a print (m), and its caption.
     fn test_box(&self) -> (Vec2, &'static str) {
         match Shown(self.unit).is_inch() {
             true => (Vec2::new(0.1016, 0.0508), "2 x 4 in"),
@@ -71,7 +71,7 @@ fn legend_rows(sizes: usize) -> usize {
     (if sizes > 1 { sizes } else { 0 } + 2).min(MAX_LINES)
 }
 
-/// Everything of the block but the map of sheets.
+/// Everything in the block except the map of sheets.
 pub(crate) fn block_marks(job: &PrintJob) -> Vec<Mark> {
     let size = job.title.size(job.layers.len());
     let (low, high) = (job.title_at, job.title_at + size);
@@ -97,7 +97,7 @@ pub(crate) fn block_marks(job: &PrintJob) -> Vec<Mark> {
     marks
 }
 
-/// Samples of lines with what they are, below a place.
+/// The legend: samples of lines with their meaning, below a position.
 fn legend(job: &PrintJob, at: Vec2) -> Vec<Mark> {
     let several = job.layers.len() > 1;
     let mut rows: Vec<(StrokeKind, usize, String)> = Vec::new();
@@ -133,7 +133,7 @@ fn legend(job: &PrintJob, at: Vec2) -> Vec<Mark> {
     marks
 }
 
-/// The box to measure, at true size whatever the scale.
+/// The test box, at true size whatever the scale of the print.
 fn test_box(low: Vec2, (size, name): (Vec2, &str)) -> Vec<Mark> {
     let bounds = Bounds2 {
         min: low,
@@ -156,7 +156,7 @@ fn test_box(low: Vec2, (size, name): (Vec2, &str)) -> Vec<Mark> {
     ]
 }
 
-/// How the sheets lie, right of the test box.
+/// A map of the sheets, right of the test box.
 pub(crate) fn map_marks(job: &PrintJob, tiles: &[Tile]) -> Vec<Mark> {
     let rows = tiles.iter().map(|t| t.place[0]).max().unwrap_or(1);
     let columns = tiles.iter().map(|t| t.place[1]).max().unwrap_or(1);
