@@ -9,7 +9,7 @@ use crate::material::{Access, FIGURES, Figure, Material};
 pub struct FigureFault {
     /// Name of the number, with its unit.
     pub field: String,
-    /// Its value (SI).
+    /// Value of the number (SI).
     pub value: f64,
     /// The remedy.
     pub remedy: &'static str,
@@ -21,7 +21,7 @@ impl Figure {
         FIGURES.iter().find(|figure| figure.name == name)
     }
 
-    /// Its numbers in a material: one for each component, none where an optional one is absent.
+    /// Numbers of the figure in a material: one for each component, none where an optional one is absent.
     pub fn numbers(&self, material: &Material) -> Vec<f64> {
         match self.access {
             Access::Numbers { get, .. } => get(material).to_vec(),

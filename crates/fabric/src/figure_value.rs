@@ -23,7 +23,7 @@ pub enum FigureValue {
     Absent,
 }
 
-/// How a figure is written.
+/// Form in which a figure is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// As a single number.
@@ -54,7 +54,7 @@ impl<'de> DeserializeSeed<'de> for Shape {
 }
 
 impl Figure {
-    /// How it is written.
+    /// Form in which the figure is written.
     pub fn shape(&self) -> Shape {
         match (self.access, self.components.len()) {
             (Access::Compression { .. }, _) => Shape::Word,
@@ -69,7 +69,7 @@ impl Figure {
         }
     }
 
-    /// Its value in a material.
+    /// Value of the figure in a material.
     pub fn value(&self, material: &Material) -> FigureValue {
         if let Access::Compression { get, .. } = self.access {
             return FigureValue::Word(get(material).word().to_owned());

@@ -11,7 +11,7 @@ use crate::sources::FabricSources;
 /// A fabric of the library.
 #[derive(Clone, Copy, Debug)]
 pub struct LibraryFabric {
-    /// Its name in files and on the command line.
+    /// Name in files and on the command line.
     pub name: &'static str,
     /// A short description.
     pub about: &'static str,
@@ -31,7 +31,7 @@ pub struct LibraryFabric {
     pub bend: [f64; 3],
     /// Coulomb friction coefficient (1).
     pub friction: f64,
-    /// Where each figure comes from.
+    /// Sources of the figures.
     pub sources: FabricSources,
 }
 
