@@ -71,9 +71,9 @@ pub(crate) fn body_of(
 
 /// The description of a project's body, whatever it was chosen by.
 pub(crate) fn description_of(project: &Project) -> Description {
-    match &project.body {
-        BodyChoice::Shaped { description, .. } => (**description).clone(),
-        _ => Description {
+    match project.body.description() {
+        Some(description) => (**description).clone(),
+        None => Description {
             figure: project.figure(),
             measurements: project.body_measurements(),
             primitives: Vec::new(),

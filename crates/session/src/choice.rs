@@ -78,6 +78,16 @@ impl BodyChoice {
         }
     }
 
+    /// Description of a body of its own primitives; none of a body that is grown to measurements.
+    pub(crate) fn description(&self) -> Option<&Arc<Description>> {
+        match self {
+            Self::Shaped { description, .. } => Some(description),
+            Self::OfPattern | Self::Sample(_) | Self::Measured { .. } | Self::Missing { .. } => {
+                None
+            }
+        }
+    }
+
     /// Whether the body is as the pattern says.
     pub fn is_of_pattern(&self) -> bool {
         matches!(self, Self::OfPattern | Self::Missing { .. })

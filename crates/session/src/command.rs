@@ -146,6 +146,18 @@ pub struct OtherGarment {
     pub layer: u16,
 }
 
+/// The files that a command names.
+enum NamedFiles<'a> {
+    /// A file or folder that is written.
+    Output(&'a mut PathBuf),
+    /// A file that is read, if any.
+    Input(Option<&'a mut PathBuf>),
+    /// Garments, whose patterns are read.
+    Garments(&'a mut [OtherGarment]),
+    /// A fabric: its name, or the file that it is read from.
+    Fabric(Option<&'a mut String>),
+}
+
 impl Command {
     /// Sews the garment and drapes it to rest with nobody touching it.
     pub fn drape() -> Self {
@@ -157,77 +169,94 @@ impl Command {
         Self::Export(Export::made(dir))
     }
 
-    /// Where it writes a file or a folder, if it does.
-    pub(crate) fn output_mut(&mut self) -> Option<&mut PathBuf> {
+    /// The files that the command names.
+    fn files(&mut self) -> NamedFiles<'_> {
         match self {
-            Self::SavePattern { path } | Self::SaveBody { path } => Some(path),
-            Self::Export(export) => Some(&mut export.dir),
-            Self::OpenPattern { .. }
-            | Self::SetOrigin { .. }
+            Self::SavePattern { path } | Self::SaveBody { path } => NamedFiles::Output(path),
+            Self::Export(export) => NamedFiles::Output(&mut export.dir),
+            Self::OpenPattern { path } => NamedFiles::Input(Some(path)),
+            Self::SetBody { measurements, .. } => NamedFiles::Input(measurements.as_mut()),
+            Self::SetLayers { others, .. } => NamedFiles::Garments(others),
+            Self::SetFabric { fabric } => NamedFiles::Fabric(fabric.as_mut()),
+            Self::SetOrigin { .. }
             | Self::NewPattern { .. }
             | Self::RestorePattern { .. }
+            | Self::Edit { .. }
+            | Self::Undo
+            | Self::Redo
+            | Self::SetMeasurements { .. }
+            | Self::EditBody { .. }
+            | Self::SetSize { .. }
+            | Self::SetWidth { .. }
+            | Self::SetQuality { .. }
+            | Self::Check
+            | Self::Nest
+            | Self::Assemble
+            | Self::Drape { .. } => NamedFiles::Input(None),
+        }
+    }
+
+    /// The file or folder that the command writes, if it does.
+    pub(crate) fn output_mut(&mut self) -> Option<&mut PathBuf> {
+        match self.files() {
+            NamedFiles::Output(path) => Some(path),
+            NamedFiles::Input(_) | NamedFiles::Garments(_) | NamedFiles::Fabric(_) => None,
+        }
+    }
+
+    /// Passes every file that the command reads to `take`.
+    pub(crate) fn each_input(&mut self, take: &mut dyn FnMut(&mut PathBuf)) {
+        match self.files() {
+            NamedFiles::Input(path) => path.into_iter().for_each(take),
+            NamedFiles::Garments(others) => others.iter_mut().for_each(|o| take(&mut o.path)),
+            NamedFiles::Fabric(Some(name)) => {
+                let mut path = PathBuf::from(&*name);
+                take(&mut path);
+                *name = path.to_string_lossy().into_owned();
+            }
+            NamedFiles::Output(_) | NamedFiles::Fabric(None) => {}
+        }
+    }
+
+    /// Stage that the time of the command is counted under, and its rough share of the work of making a garment.
+    fn work(&self) -> (Option<&'static str>, f64) {
+        match self {
+            Self::OpenPattern { .. } => (Some("open"), 1.0),
+            Self::Check => (Some("check"), 1.0),
+            Self::Nest => (Some("nest"), LAYING),
+            Self::Assemble => (Some("assemble"), 4.0),
+            Self::Drape { .. } => (Some("drape"), DRAPING),
+            Self::Export(export) => {
+                let hung = if export.takes_garment() { DRAPING } else { 0.0 };
+                let laid = if export.takes_marker() { LAYING } else { 0.0 };
+                (Some("export"), WRITING + hung + laid)
+            }
+            Self::SetOrigin { .. }
+            | Self::NewPattern { .. }
+            | Self::RestorePattern { .. }
+            | Self::SavePattern { .. }
             | Self::Edit { .. }
             | Self::Undo
             | Self::Redo
             | Self::SetBody { .. }
             | Self::SetMeasurements { .. }
             | Self::EditBody { .. }
+            | Self::SaveBody { .. }
             | Self::SetSize { .. }
             | Self::SetFabric { .. }
             | Self::SetWidth { .. }
             | Self::SetQuality { .. }
-            | Self::SetLayers { .. }
-            | Self::Check
-            | Self::Nest
-            | Self::Assemble
-            | Self::Drape { .. } => None,
+            | Self::SetLayers { .. } => (None, 0.1),
         }
     }
 
-    /// Gives every file that it reads; a fabric is one where it is no name.
-    pub(crate) fn each_input(&mut self, take: &mut dyn FnMut(&mut PathBuf)) {
-        match self {
-            Self::OpenPattern { path } => take(path),
-            Self::SetBody {
-                measurements: Some(path),
-                ..
-            } => take(path),
-            Self::SetLayers { others, .. } => others.iter_mut().for_each(|o| take(&mut o.path)),
-            Self::SetFabric { fabric: Some(name) } => {
-                let mut path = PathBuf::from(&*name);
-                take(&mut path);
-                *name = path.to_string_lossy().into_owned();
-            }
-            _ => {}
-        }
-    }
-
-    /// The stage its time is counted under.
+    /// Stage that the time of the command is counted under.
     pub(crate) fn stage(&self) -> Option<&'static str> {
-        match self {
-            Self::OpenPattern { .. } => Some("open"),
-            Self::Check => Some("check"),
-            Self::Nest => Some("nest"),
-            Self::Assemble => Some("assemble"),
-            Self::Drape { .. } => Some("drape"),
-            Self::Export(_) => Some("export"),
-            _ => None,
-        }
+        self.work().0
     }
 
     /// Rough share of the work of making a garment, for progress.
     pub(crate) fn weight(&self) -> f64 {
-        match self {
-            Self::Drape { .. } => DRAPING,
-            Self::Nest => LAYING,
-            Self::Export(export) => {
-                let hung = if export.takes_garment() { DRAPING } else { 0.0 };
-                let laid = if export.takes_marker() { LAYING } else { 0.0 };
-                WRITING + hung + laid
-            }
-            Self::Assemble => 4.0,
-            Self::Check | Self::OpenPattern { .. } => 1.0,
-            _ => 0.1,
-        }
+        self.work().1
     }
 }

@@ -14,7 +14,7 @@ use crate::{Project, SessionError, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Mannequin};
-use toile_drape::{Aspect, DrapeError, Finding, Input};
+use toile_drape::{Aspect, Finding, Input};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_marker::{FinishedMarker, Garments};
@@ -342,7 +342,7 @@ impl Derived {
             return Ok(drape.clone());
         }
         let made = match drape(self.job(project)?, inputs, watcher) {
-            Err(SessionError::Drape(DrapeError::LeftBody { .. })) => {
+            Err(error) if error.has_left_body() => {
                 self.drape_otherwise(project, inputs, watcher)?
             }
             made => made?,
@@ -361,11 +361,9 @@ impl Derived {
     ) -> Result<Drape, SessionError> {
         let (put_on, [first, second]) = PutOn::otherwise(&self.sound_parts(project)?)
             .map_err(|place| SessionError::falls_off(&place, None))?;
-        let fell = |error| match error {
-            SessionError::Drape(DrapeError::LeftBody { .. }) => {
-                SessionError::falls_off(first, Some(second))
-            }
-            error => error,
+        let fell = |error: SessionError| match error.has_left_body() {
+            true => SessionError::falls_off(first, Some(second)),
+            false => error,
         };
         let given = self.outfit(project)?;
         let outfit = self.outfit_put_on(project, &put_on)?;
@@ -386,7 +384,7 @@ impl Derived {
 
 /// What is said where the arms are held as the sleeves are placed.
 fn arms_follow_sleeves(project: &Project) -> Option<String> {
-    if matches!(project.body, BodyChoice::Shaped { .. }) {
+    if project.body.description().is_some() {
         return None;
     }
     let angle = measurements_for_sleeves(project).1?.to_degrees();
@@ -441,13 +439,14 @@ fn assembled(
 
 /// A body's error, with the file its measurements came from.
 fn body_error(project: &Project, error: BodyError) -> SessionError {
-    match &project.body {
-        BodyChoice::Measured {
-            path: Some(path), ..
-        } => SessionError::Format {
-            path: path.clone(),
-            error: FormatError::new("measurements", error.to_string(), "correct the file"),
-        },
-        _ => SessionError::Body(error),
+    let BodyChoice::Measured {
+        path: Some(path), ..
+    } = &project.body
+    else {
+        return SessionError::Body(error);
+    };
+    SessionError::Format {
+        path: path.clone(),
+        error: FormatError::new("measurements", error.to_string(), "correct the file"),
     }
 }

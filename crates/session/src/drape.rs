@@ -61,7 +61,7 @@ impl Drape {
             steps: run.steps(),
             seam_gap: match run.progress().stage {
                 Stage::Sewing => run.progress().gap,
-                _ => run.gap_before_merging(),
+                Stage::Swinging | Stage::Settling | Stage::Finished => run.gap_before_merging(),
             },
             tally: run.cloth_tally(),
             target: run.target().to_vec(),

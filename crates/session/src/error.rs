@@ -1,7 +1,9 @@
 //! Why a command failed.
 
 use std::path::PathBuf;
+use toile_drape::DrapeError;
 use toile_interchange::{FileError, FormatError};
+use toile_marker::MarkerError;
 
 /// Why a command was not done. The project is unchanged.
 #[derive(Debug, thiserror::Error)]
@@ -75,10 +77,10 @@ pub enum SessionError {
     Assembly(#[from] toile_assembly::AssemblyError),
     /// The pieces cannot be laid.
     #[error("{0}")]
-    Marker(toile_marker::MarkerError),
+    Marker(MarkerError),
     /// The garment cannot be sewn or draped.
     #[error("{0}")]
-    Drape(toile_drape::DrapeError),
+    Drape(DrapeError),
     /// The garment falls off the body whichever way it is put on.
     #[error(
         "the garment falls off the body: it was put on {tried}; give it a waist, straps or shoulders that hold it, or say where its panels are worn"
@@ -127,32 +129,48 @@ impl SessionError {
             Self::File(error) => error.action == "read",
             Self::Drape(error) => matches!(
                 error,
-                toile_drape::DrapeError::Mesh { .. }
-                    | toile_drape::DrapeError::EmptyTriangle { .. }
-                    | toile_drape::DrapeError::Material { .. }
-                    | toile_drape::DrapeError::Scene { .. }
+                DrapeError::Mesh { .. }
+                    | DrapeError::EmptyTriangle { .. }
+                    | DrapeError::Material { .. }
+                    | DrapeError::Scene { .. }
             ),
             Self::Marker(error) => error.is_bad_input(),
             Self::Write { .. } | Self::Picture(_) | Self::Cancelled => false,
-            _ => true,
+            Self::Format { .. }
+            | Self::Faults { .. }
+            | Self::Edit(_)
+            | Self::Unknown { .. }
+            | Self::Conflict(_)
+            | Self::Number { .. }
+            | Self::Measurement { .. }
+            | Self::Body(_)
+            | Self::Assembly(_)
+            | Self::FallsOff { .. }
+            | Self::Nothing { .. }
+            | Self::Journal { .. } => true,
+        }
+    }
+
+    /// Whether the garment fell off the body while it was draped.
+    pub(crate) fn has_left_body(&self) -> bool {
+        matches!(self, Self::Drape(DrapeError::LeftBody { .. }))
+    }
+}
+
+impl From<MarkerError> for SessionError {
+    fn from(error: MarkerError) -> Self {
+        match matches!(error, MarkerError::Cancelled) {
+            true => Self::Cancelled,
+            false => Self::Marker(error),
         }
     }
 }
 
-impl From<toile_marker::MarkerError> for SessionError {
-    fn from(error: toile_marker::MarkerError) -> Self {
-        match error {
-            toile_marker::MarkerError::Cancelled => Self::Cancelled,
-            other => Self::Marker(other),
-        }
-    }
-}
-
-impl From<toile_drape::DrapeError> for SessionError {
-    fn from(error: toile_drape::DrapeError) -> Self {
-        match error {
-            toile_drape::DrapeError::Cancelled => Self::Cancelled,
-            other => Self::Drape(other),
+impl From<DrapeError> for SessionError {
+    fn from(error: DrapeError) -> Self {
+        match matches!(error, DrapeError::Cancelled) {
+            true => Self::Cancelled,
+            false => Self::Drape(error),
         }
     }
 }

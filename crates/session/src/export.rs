@@ -6,6 +6,7 @@ use crate::journal::{Entry, MAX_COMMANDS};
 use crate::journal_files::journal_beside;
 use crate::outfit::DraftedPart;
 use crate::output::{File, cannot};
+use crate::printing::print_bytes;
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
 use crate::stored_marker::stored;
@@ -209,13 +210,8 @@ impl Session {
             let mut part = ProgressShare::new(watcher, DONE[1], DONE[2]);
             let (job, printed) = print_job(&self.project, &options, &mut part)?;
             let mut notes = printed.notes;
-            let bytes = match format {
-                ExportFormat::PiecesSvg => job.svg().map(String::into_bytes),
-                _ => {
-                    notes.extend(job.missing_note());
-                    job.pdf()
-                }
-            };
+            let is_svg = format == ExportFormat::PiecesSvg;
+            let bytes = print_bytes(&job, is_svg, &mut notes);
             files.push((format.file().into(), bytes.map_err(cannot(format.file()))?));
             events.extend(Event::warnings(&notes));
         }

@@ -128,7 +128,10 @@ fn file_name(path: &Path, folder: Option<&Path>) -> Result<String, FormatError> 
 pub(crate) fn files_to_try_on(project: &Project) -> Vec<PathBuf> {
     let body = match &project.body {
         BodyChoice::Shaped { path, .. } => path.clone(),
-        _ => None,
+        BodyChoice::OfPattern
+        | BodyChoice::Sample(_)
+        | BodyChoice::Measured { .. }
+        | BodyChoice::Missing { .. } => None,
     };
     let fabric = match &project.fabric {
         Some(FabricChoice::File { path, .. }) => Some(path.clone()),

@@ -147,9 +147,9 @@ fn morphed((old, new): (&MeshedPart, &DraftedPart)) -> Option<MeshedPart> {
 }
 
 fn cannot_be_made(error: SessionError) -> CannotFollow {
-    match error {
-        SessionError::Faults { .. } => CannotFollow::Faults,
-        other => CannotFollow::NotMade(other.to_string()),
+    match matches!(error, SessionError::Faults { .. }) {
+        true => CannotFollow::Faults,
+        false => CannotFollow::NotMade(error.to_string()),
     }
 }
 

@@ -58,7 +58,7 @@ impl HandInput {
                 vertex: vertex.vertex,
                 pull,
             }),
-            _ => None,
+            Spot::Vertex(_) | Spot::Triangle { .. } => None,
         }
     }
 }

@@ -4,6 +4,7 @@
 //! Only the [`Project`] is edited, saved and undone. Draft, marker, garment and drape are derived
 //! from it, kept while it does not change, and may be thrown away.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod bodies;
 mod choice;

@@ -1,7 +1,6 @@
 //! What a mannequin is made from.
 
 use crate::Project;
-use crate::choice::BodyChoice;
 use crate::placed_panels::sleeve_angle;
 use std::sync::Arc;
 use toile_body::{BodyError, Description, Figure, Mannequin};
@@ -18,9 +17,9 @@ pub(crate) enum MannequinSource {
 
 impl MannequinSource {
     pub fn of(project: &Project) -> Self {
-        match &project.body {
-            BodyChoice::Shaped { description, .. } => Self::Shaped(description.clone()),
-            _ => Self::Grown(project.figure(), measurements_for_sleeves(project).0),
+        match project.body.description() {
+            Some(description) => Self::Shaped(description.clone()),
+            None => Self::Grown(project.figure(), measurements_for_sleeves(project).0),
         }
     }
 

@@ -99,15 +99,22 @@ pub fn print_pattern(
     let (job, mut printed) = print_job(project, options, watcher)?;
     report_progress(watcher, "writing", ARRANGED, "")?;
     let is_svg = to.to_string_lossy().to_lowercase().ends_with(".svg");
-    let bytes = match is_svg {
-        true => job.svg().map(String::into_bytes),
-        false => {
-            printed.notes.extend(job.missing_note());
-            job.pdf()
-        }
-    };
-    write_atomically(to, &bytes.map_err(unprintable)?)?;
+    let bytes = print_bytes(&job, is_svg, &mut printed.notes).map_err(unprintable)?;
+    write_atomically(to, &bytes)?;
     Ok(printed)
+}
+
+/// The content of a print as SVG or PDF; adds a note on characters that a PDF cannot show.
+pub(crate) fn print_bytes(
+    job: &PrintJob,
+    is_svg: bool,
+    notes: &mut Vec<String>,
+) -> Result<Vec<u8>, FormatError> {
+    if is_svg {
+        return job.svg().map(String::into_bytes);
+    }
+    notes.extend(job.missing_note());
+    job.pdf()
 }
 
 fn unprintable(error: FormatError) -> SessionError {
@@ -391,7 +398,7 @@ fn facts(
     if options.paper.sheet().is_some() {
         let overlap = match unit {
             DisplayUnit::Inch => "0.39 in (10 mm)",
-            _ => "10 mm",
+            DisplayUnit::Millimetre | DisplayUnit::Centimetre | DisplayUnit::Metre => "10 mm",
         };
         facts.push(format!(
             "Join the sheets so that frames overlap by {overlap} and crosses meet."

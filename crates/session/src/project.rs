@@ -183,10 +183,11 @@ impl Project {
     pub fn whose(&self) -> String {
         match self.size_name() {
             Some(size) => size.to_owned(),
-            None => match &self.body {
-                BodyChoice::Sample(_) => format!("made for the figure {}", self.body.short_name()),
-                body => format!("made for {}", body.short_name()),
-            },
+            None => {
+                let is_figure = matches!(self.body, BodyChoice::Sample(_));
+                let prefix = if is_figure { "the figure " } else { "" };
+                format!("made for {prefix}{}", self.body.short_name())
+            }
         }
     }
 

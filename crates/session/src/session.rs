@@ -190,11 +190,12 @@ impl Session {
         if let Some(stage) = command.stage() {
             self.timing.add(stage, start);
         }
-        let more = match &command {
-            Command::OpenPattern { .. } | Command::RestorePattern { .. } => {
-                files_to_try_on(&self.project)
-            }
-            _ => Vec::new(),
+        let more = match matches!(
+            command,
+            Command::OpenPattern { .. } | Command::RestorePattern { .. }
+        ) {
+            true => files_to_try_on(&self.project),
+            false => Vec::new(),
         };
         self.journal.push_with(self.lasting(command)?, &more);
         Ok(events)
@@ -202,14 +203,16 @@ impl Session {
 
     /// A command as it can be done again: a pattern that came through a pipe is kept as a whole.
     fn lasting(&self, command: Command) -> Result<Command, SessionError> {
-        match &command {
-            Command::OpenPattern { path } if is_pipe(path) => Ok(Command::RestorePattern {
+        if let Command::OpenPattern { path } = &command
+            && is_pipe(path)
+        {
+            return Ok(Command::RestorePattern {
                 text: document_text(&self.project, None).map_err(cannot("journal.jsonl"))?,
                 source: None,
                 past: Vec::new(),
-            }),
-            _ => Ok(command),
+            });
         }
+        Ok(command)
     }
 
     /// Does several commands; progress runs once from 0 to 1 over all of them.
