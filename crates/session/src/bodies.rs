@@ -11,8 +11,8 @@ use toile_interchange::{
 };
 use toile_measure::{Measurements, Origin};
 
-/// The body of a description as a choice, with what a tape finds on it. A body whose primitives
-/// leave a hole is refused.
+/// Makes a body choice of a description, with the measurements that a tape takes on the body.
+/// Refuses a body whose primitives leave a hole.
 pub(crate) fn shaped(
     description: Description,
     path: Option<PathBuf>,
@@ -20,7 +20,7 @@ pub(crate) fn shaped(
     let mannequin = Mannequin::from_description(&description)?;
     let mut measurements = Measurements::new();
     for row in mannequin.measure() {
-        // What no catalogue allows is left to be predicted.
+        // A value that the catalogue of measurements refuses is left out, and predicted later.
         let _ = measurements.set(row.name, row.got, Origin::Asked);
     }
     Ok(BodyChoice::Shaped {
@@ -33,12 +33,12 @@ pub(crate) fn shaped(
 /// The body of a mannequin file.
 ///
 /// # Errors
-/// The file cannot be read, is no mannequin's, or no body is made of it.
+/// The file cannot be read, is not a mannequin file, or no body can be made from it.
 pub(crate) fn mannequin_of(path: &Path) -> Result<BodyChoice, SessionError> {
     Ok(shaped(open_mannequin(path)?, Some(path.to_owned()))?)
 }
 
-/// The description in a file that is a mannequin's; none where it is something else.
+/// Reads the description if the file is a mannequin file; none if it is of another kind.
 fn described(path: &Path) -> Result<Option<Description>, SessionError> {
     let bytes = read_file(path)?;
     match FileKind::of(&bytes) {
@@ -47,11 +47,11 @@ fn described(path: &Path) -> Result<Option<Description>, SessionError> {
     }
 }
 
-/// The body of a file, measurements or a mannequin, and what is worth telling of it; `figure` is
-/// what measurements are grown from.
+/// Reads a body from a file of measurements or a mannequin file, with notes for the user. A body of
+/// measurements is grown from `figure`.
 ///
 /// # Errors
-/// The file cannot be read, or no body is made of it.
+/// The file cannot be read, or no body can be made from it.
 pub(crate) fn body_of(
     figure: Option<Figure>,
     path: &Path,
@@ -69,7 +69,7 @@ pub(crate) fn body_of(
     Ok((body, found.iter().map(note).collect()))
 }
 
-/// The description of a project's body, whatever it was chosen by.
+/// Description of a project's body, however the body was chosen.
 pub(crate) fn description_of(project: &Project) -> Description {
     match project.body.description() {
         Some(description) => (**description).clone(),
@@ -84,7 +84,7 @@ pub(crate) fn description_of(project: &Project) -> Description {
     }
 }
 
-/// The edits of primitives in a file: a JSON list.
+/// Reads edits of primitives from a file that holds them as a JSON list.
 ///
 /// # Errors
 /// The file cannot be read, or is no such list.
@@ -99,7 +99,7 @@ pub fn open_body_edits(path: &Path) -> Result<Vec<PrimitiveEdit>, SessionError> 
     })
 }
 
-/// A body with its primitives edited: the one described, or a project's.
+/// Edits the primitives of the body described, or else of the body of a project.
 ///
 /// # Errors
 /// An edit that cannot be made, with the remedy.
@@ -112,11 +112,11 @@ pub fn edit_body(
     Ok(body.edited(edits)?)
 }
 
-/// The proportion box of a name of the table that ships, or of a file: `FILE.json` for its first
-/// box, `FILE.json:NAME` for another.
+/// Finds a proportion box by its name in the table that ships with the program, or in a file:
+/// `FILE.json` for the first box of the file, `FILE.json:NAME` for a named one.
 ///
 /// # Errors
-/// A name that is not there, with those that are, or a file that cannot be read.
+/// An unknown name (the message lists the known ones), or a file that cannot be read.
 pub fn proportions_named(text: &str) -> Result<ProportionBox, SessionError> {
     let (file, name) = match text.split_once(".json") {
         Some((stem, rest)) => (
@@ -150,7 +150,7 @@ pub fn proportions_named(text: &str) -> Result<ProportionBox, SessionError> {
     })
 }
 
-/// The proportion box of a head count: what lies between the boxes that ship.
+/// Proportion box for a stature of so many heads, interpolated between the boxes that ship.
 pub fn proportions_of_heads(heads: f64) -> ProportionBox {
     ProportionBox::of_heads(heads, &proportion_boxes())
 }

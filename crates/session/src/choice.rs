@@ -17,24 +17,24 @@ pub enum BodyChoice {
     Sample(Figure),
     /// A body of given measurements.
     Measured {
-        /// The figure it is grown from.
+        /// Figure that the body is grown from.
         figure: Figure,
-        /// The file they come from; none where they were typed.
+        /// File that the measurements come from; none if they were typed.
         path: Option<PathBuf>,
         /// The measurements (m), (rad).
         measurements: Arc<Measurements>,
     },
-    /// A body of its own primitives: a mannequin file's, or one that was edited.
+    /// A body with its own primitives: from a mannequin file, or edited.
     Shaped {
-        /// All it is made from.
+        /// Description that the body is made from.
         description: Arc<Description>,
-        /// The file it comes from; none once it was edited.
+        /// Mannequin file; none once the body was edited.
         path: Option<PathBuf>,
-        /// What a tape finds on it (m), (rad).
+        /// Measurements that a tape takes on the body (m), (rad).
         measurements: Arc<Measurements>,
     },
-    /// A mannequin file that could not be read when the pattern that names it was opened: as the
-    /// pattern says until it can.
+    /// A mannequin file that could not be read when the pattern that names it was opened. Until it
+    /// can be read, the body is as the pattern says.
     Missing {
         /// The file.
         path: PathBuf,
@@ -62,7 +62,7 @@ impl BodyChoice {
         }
     }
 
-    /// Its name on paper: that of its file, else of its figure.
+    /// Name to print on paper: that of a sample figure, else of the file; "the wearer" without a file.
     pub fn short_name(&self) -> String {
         let path = match self {
             Self::OfPattern => None,
@@ -99,19 +99,19 @@ pub(crate) fn figure_name(figure: Figure) -> &'static str {
     figure.name()
 }
 
-/// The figure of that name: `woman`, `man`, `mean`, `dress-form`, or `child-2` to `child-14` by age.
+/// Finds a figure by its name: `woman`, `man`, `mean`, `dress-form`, or `child-2` to `child-14` by age.
 pub fn figure_named(name: &str) -> Option<Figure> {
     Figure::ALL
         .into_iter()
         .find(|&figure| figure.name() == name)
 }
 
-/// The average body of a figure.
+/// Average measurements of a figure.
 pub(crate) fn sample_of(figure: Figure) -> Measurements {
     figure.average()
 }
 
-/// How finely the garment is meshed and how near to rest it is draped.
+/// Fineness of the garment's mesh, and how near to rest the garment is draped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
@@ -134,8 +134,8 @@ impl Quality {
         }
     }
 
-    /// Mean edge length of the mesh that is sewn and swings first (m); none where that of
-    /// [`Self::edge_length`] is coarse enough. A garment with a gathered seam goes without it.
+    /// Mean edge length of a coarser mesh that is sewn and swings first (m); none if that of
+    /// [`Self::edge_length`] is coarse enough. A garment with a gathered seam has no coarser mesh.
     pub fn first_edge_length(self) -> Option<f64> {
         match self {
             Self::Preview | Self::Fit => None,
@@ -143,7 +143,7 @@ impl Quality {
         }
     }
 
-    /// Net force over weight at which the drape counts as at rest.
+    /// Net force over weight at which the drape counts as at rest (1).
     pub fn residual(self) -> f64 {
         match self {
             Self::Preview => 1e-2,
@@ -152,7 +152,7 @@ impl Quality {
         }
     }
 
-    /// Steps on the way to rest at the most: a finer mesh needs more of them.
+    /// Most steps of the solve for rest; a finer mesh needs more.
     pub fn steps(self) -> usize {
         match self {
             Self::Preview => 400,
@@ -161,7 +161,7 @@ impl Quality {
         }
     }
 
-    /// The quality of a name.
+    /// Finds a quality by its name on the command line.
     pub fn named(name: &str) -> Option<Self> {
         let all = [Self::Preview, Self::Fit, Self::Final];
         all.into_iter().find(|quality| quality.name() == name)

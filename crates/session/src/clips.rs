@@ -6,7 +6,7 @@ use std::path::Path;
 use toile_body::{Clip, Skeleton};
 use toile_interchange::{ExpectedKind, read_bvh, read_x3d};
 
-/// One of our own clips.
+/// Finds one of our own clips by its name.
 pub(crate) fn own_clip(name: &str, skeleton: &Skeleton) -> Option<Clip> {
     match name {
         "walk" => Some(Clip::walk(skeleton)),
@@ -17,7 +17,8 @@ pub(crate) fn own_clip(name: &str, skeleton: &Skeleton) -> Option<Clip> {
     }
 }
 
-/// The clip of a BVH, X3D or VRML file for a skeleton, and what of the file was left out.
+/// Reads a BVH, X3D or VRML file as a clip for a skeleton, with notes on parts of the file that were left
+/// out.
 ///
 /// # Errors
 /// The file cannot be read.

@@ -14,33 +14,33 @@ const DRAPING: f64 = 80.0;
 const LAYING: f64 = 7.0;
 const WRITING: f64 = 7.0;
 
-/// One thing to do. The journal is a list of these.
+/// A command to a session. The journal is a list of commands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "command")]
 pub enum Command {
-    /// Replaces the project by a pattern read from a file; its format is seen from its content.
+    /// Replaces the project by a pattern read from a file; the format is recognised from the content.
     OpenPattern {
         /// The file.
         path: PathBuf,
     },
-    /// Says which point of the body the files that are opened next place their panels round.
+    /// Sets the point of the body that files opened from now on place their panels round.
     SetOrigin {
         /// The point.
         origin: PanelOrigin,
     },
     /// Replaces the project by an empty pattern.
     NewPattern {
-        /// Its name.
+        /// Name of the pattern.
         name: String,
     },
-    /// Replaces the project by a pattern in the native format that is in no file, as one that was
-    /// recovered.
+    /// Replaces the project by a pattern in the native format that is in no file, such as one
+    /// recovered after a crash.
     RestorePattern {
-        /// The pattern, as its file would be.
+        /// The pattern, as the text of a file.
         text: String,
         /// The file it was last saved to.
         source: Option<PathBuf>,
-        /// Steps that led to it and can be taken back, the newest first.
+        /// Steps of the history that led to the pattern and can be undone, the newest first.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         past: Vec<PastStep>,
     },
@@ -51,35 +51,35 @@ pub enum Command {
     },
     /// Changes the pattern. All edits are made or none.
     Edit {
-        /// What changes.
+        /// The edits.
         edits: Vec<Edit>,
         /// The step's name in the history, as in "Move point".
         label: String,
     },
-    /// Takes the last step of the history back.
+    /// Undoes the last step of the history.
     Undo,
-    /// Does the step last taken back again.
+    /// Redoes the step that was undone last.
     Redo,
-    /// Chooses the body: a figure with average measurements or those of a file; neither means as
-    /// the pattern says.
+    /// Chooses the body: a figure with average measurements, or the body of a file. Without either,
+    /// the body is as the pattern says.
     SetBody {
-        /// The figure; nothing means the mean one for a file.
+        /// The figure; with a file of measurements none means the mean figure.
         figure: Option<Figure>,
         /// A file of measurements, or a mannequin file, which says its figure itself.
         measurements: Option<PathBuf>,
     },
-    /// Chooses a body of measurements that are given as they are.
+    /// Chooses a body by measurements that are given in the command.
     SetMeasurements {
-        /// The figure it is grown from; nothing means that of the present body.
+        /// Figure that the body is grown from; none means the figure of the present body.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         figure: Option<Figure>,
-        /// The measurements (m), (rad); what they leave out is predicted from them.
+        /// The measurements (m), (rad); missing ones are predicted from them.
         measurements: Measurements,
     },
-    /// Edits the primitives of the body, which from then on stands by itself. All edits are made
-    /// or none.
+    /// Edits the primitives of the body, which from then on no longer follows measurements. All
+    /// edits are made or none.
     EditBody {
-        /// What changes.
+        /// The edits.
         edits: Vec<PrimitiveEdit>,
         /// The step's name in the history, as in "Move primitive".
         label: String,
@@ -91,17 +91,17 @@ pub enum Command {
     },
     /// Chooses a named size of the pattern, or its base size.
     SetSize {
-        /// Its name.
+        /// Name of the size; none for the base size.
         size: Option<String>,
     },
     /// Cuts every panel from one fabric, or each from its own.
     SetFabric {
-        /// Name of a fabric of the pattern, or one of the library.
+        /// Name of a fabric of the pattern or the library, or a fabric file; none for each panel's own.
         fabric: Option<String>,
     },
     /// Chooses the width of the fabric, or the fabric's own.
     SetWidth {
-        /// Width of the roll (m).
+        /// Width of the roll (m); none for the fabric's own.
         width: Option<f64>,
     },
     /// Chooses how finely to mesh and how near to rest to drape.
@@ -114,7 +114,7 @@ pub enum Command {
     SetLayers {
         /// Layer of the project's own garment, 0 to 999.
         layer: u16,
-        /// The others.
+        /// The other garments.
         others: Vec<OtherGarment>,
     },
     /// Looks for faults of the pattern.
@@ -125,7 +125,7 @@ pub enum Command {
     Assemble,
     /// Sews the garment and drapes it to rest.
     Drape {
-        /// What was done to the cloth meanwhile.
+        /// Actions on the cloth during the drape, each with its step.
         #[serde(
             default,
             skip_serializing_if = "Vec::is_empty",
@@ -142,7 +142,7 @@ pub enum Command {
 pub struct OtherGarment {
     /// The file of its pattern.
     pub path: PathBuf,
-    /// Its layer, 0 to 999.
+    /// Layer of the garment, 0 to 999.
     pub layer: u16,
 }
 
@@ -164,7 +164,7 @@ impl Command {
         Self::Drape { inputs: Vec::new() }
     }
 
-    /// Writes the usual files of what has been made into a folder.
+    /// Exports the existing results in the usual formats into a folder.
     pub fn export(dir: &Path) -> Self {
         Self::Export(Export::made(dir))
     }
@@ -218,7 +218,8 @@ impl Command {
         }
     }
 
-    /// Stage that the time of the command is counted under, and its rough share of the work of making a garment.
+    /// Stage that the time of the command is counted under, and its rough share of the work of making a
+    /// garment.
     fn work(&self) -> (Option<&'static str>, f64) {
         match self {
             Self::OpenPattern { .. } => (Some("open"), 1.0),

@@ -3,7 +3,8 @@
 use toile_drape::SceneRun;
 use toile_drape::collision::Tally;
 
-/// Pairs of cloth triangles that intersect and share no vertex, counted exactly before, during and after a run.
+/// Pairs of cloth triangles that intersect and share no vertex, counted exactly before, during and after a
+/// run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct Crossings {
     /// Before the first step.
@@ -17,8 +18,8 @@ pub(crate) struct Crossings {
     every: usize,
 }
 
-/// Counts during a run whose number of steps is known, and steps between two counts of a run that solves for
-/// rest: an exact count may take as long as a step.
+/// Number of counts in a run of known length, and steps between two counts in a run that solves for rest. An
+/// exact count may take as long as a step.
 const COUNTS: f64 = 32.0;
 const STEPS_TO_REST: usize = 8;
 
@@ -29,7 +30,8 @@ impl Crossings {
         Self::resumed(run, [count; 3])
     }
 
-    /// Goes on from the counts of a run that was saved: before its first step, most at one count, at the last.
+    /// Resumes the counts of a saved run: before the first step, the most at one count, and at the last
+    /// count.
     pub fn resumed(run: &SceneRun, [start, most, end]: [usize; 3]) -> Self {
         let settings = run.settings();
         let steps = (settings.whole() / settings.step / COUNTS).ceil().max(1.0);
@@ -44,12 +46,12 @@ impl Crossings {
         }
     }
 
-    /// Before the first step, most at one count, at the last one.
+    /// Crossings before the first step, the most at one count, and at the last count.
     pub fn counts(&self) -> [usize; 3] {
         [self.start, self.most, self.end]
     }
 
-    /// Counts after a step when it is time, and after the last.
+    /// Counts after a step if a count is due, and after the last step.
     pub fn follow(&mut self, run: &SceneRun) {
         if run.finished() || run.steps().is_multiple_of(self.every) {
             self.end = run.crossings();
@@ -57,7 +59,7 @@ impl Crossings {
         }
     }
 
-    /// What to say of a run that ends tangled, and what to do about it; nothing when nothing crosses.
+    /// Warning about a run that ends tangled, with a remedy; none if no cloth crosses.
     pub fn warning(&self, cloth_offset: f64) -> Option<String> {
         if self.end == 0 {
             return None;

@@ -1,4 +1,5 @@
-//! Finds seams that hang in a heap: shorter from top to bottom than their cloth, without a gather that explains it.
+//! Finds seams that hang in a heap: shorter from top to bottom than their cloth, without a gather that
+//! explains it.
 
 use crate::GarmentJob;
 use std::collections::BTreeSet;
@@ -7,42 +8,42 @@ use toile_geometry::{Vec2, Vec3};
 /// A seam that hangs shorter than its cloth.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShortSeam {
-    /// Its name.
+    /// Name of the seam.
     pub name: String,
-    /// Length of its cloth (m).
+    /// Length of the cloth along the seam (m).
     pub cloth: f64,
-    /// Length that it hangs at (m).
+    /// Length of the seam as it hangs (m).
     pub hangs: f64,
 }
 
-/// Share of its cloth by which a seam must be shorter to be found.
+/// Least share of its cloth by which a seam must hang shorter to be reported (1).
 const SHORTER: f64 = 0.05;
-/// Cloth from one point of a seam to the next between which its length is measured (m): long enough that folds
-/// between count, short enough that the curves of a body do not.
+/// Length of cloth between two sample points of a seam (m): long enough that folds in between count, short
+/// enough that the curvature of the body does not.
 const SPACING: f64 = 0.06;
-/// Shortest seam that is looked at (m).
+/// Length below which a seam is not examined (m).
 const LEAST: f64 = 0.2;
-/// Share of the distance between the ends of a hanging seam that is height.
+/// Least height between the ends of a hanging seam over their distance (1).
 const STEEP: f64 = 0.9;
-/// Share by which the two sides of a seam that is not eased may differ.
+/// Largest share by which the lengths of the two sides of an uneased seam differ (1).
 const EASED: f64 = 0.03;
-/// Distance from gathers within which a seam is not looked at (m).
+/// Distance from gathers within which a seam is not examined (m).
 const NEAR_GATHERS: f64 = 0.05;
 
-/// A point of a seam.
+/// A sample point of a seam.
 #[derive(Clone, Copy)]
 struct Point {
-    /// Where it lies (m).
+    /// Position in space (m).
     place: Vec3,
-    /// Where it lies in the pieces of both sides (m).
+    /// Positions in the flat pieces of both sides (m).
     flat: [Vec2; 2],
-    /// Cloth along the shorter side from the start of the seam (m).
+    /// Length of cloth along the shorter side from the start of the seam (m).
     cloth: f64,
 }
 
-/// The seams that hang in a heap. `target` has the merged vertex of each of the garment's, `places` where those lie
-/// (m); `taut` are merged vertices where the cloth is stretched: it grows narrower across, so that a seam there is
-/// shorter without a fold.
+/// Finds the seams that hang in a heap. `target` maps vertices of the garment to merged vertices, `places`
+/// are the positions of those (m). `taut` are merged vertices where the cloth is stretched: there it
+/// contracts across the stretch, so that a seam is shorter without a fold.
 pub(crate) fn short_seams(
     job: &GarmentJob,
     target: &[u32],
@@ -73,7 +74,7 @@ pub(crate) fn short_seams(
     short.collect()
 }
 
-/// Vertices within reach of a gathered seam, in their piece.
+/// Vertices near a gathered seam, by the distance in their flat piece.
 fn near_gathers(job: &GarmentJob) -> BTreeSet<u32> {
     let garment = &job.garment;
     let gathered = garment.stitches.iter().filter(|stitch| {
@@ -98,7 +99,8 @@ fn near_gathers(job: &GarmentJob) -> BTreeSet<u32> {
     near
 }
 
-/// A seam as a line with the cloth of its shorter side; none where its sides differ or it breaks off.
+/// Sample points along a seam, with the length of cloth on its shorter side; none if the sides differ in
+/// length, or if a side passes from one panel to another.
 fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Option<Vec<Point>> {
     let flat = &job.garment.flat;
     let panel_of = |v: u32| {
@@ -125,9 +127,10 @@ fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Op
     ((a - b).abs() <= EASED * a.max(b)).then_some(points)
 }
 
-/// Cloth and length of a line that hangs shorter than its cloth, both along straight lines between the same points: a
-/// seam that is cut in a curve is not short. One fold, as under an arm, is no heap: the line must be as short without
-/// the stretch that lost most.
+/// Length of cloth, and length as it hangs, of a seam that hangs shorter than its cloth (m). Both are
+/// measured along straight lines between the same points, so that a seam cut in a curve does not count as
+/// short. A single fold, as under an arm, is no heap: the seam must be as short without the stretch that lost
+/// most.
 fn hanging(points: &[Point]) -> Option<[f64; 2]> {
     let (first, last) = (points.first()?, points.last()?);
     let length = last.cloth;

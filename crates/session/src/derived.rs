@@ -67,7 +67,7 @@ impl DraftedFor {
 #[derive(Clone, Default)]
 pub(crate) struct Derived {
     evaluation: Option<Arc<Evaluation>>,
-    /// The pattern it was last brought up to date with.
+    /// Pattern of the last update of the evaluation.
     evaluated: Option<Arc<Pattern>>,
     drafted_for: Option<DraftedFor>,
     draft: Option<Arc<Draft>>,
@@ -77,19 +77,19 @@ pub(crate) struct Derived {
     pub finished_markers: Option<Arc<Vec<FinishedMarker>>>,
     /// Drafts and pieces of the document's markers.
     pub markers: MarkerCache,
-    /// The garments worn, drafted.
+    /// Drafts of the garments worn.
     parts: Option<Arc<Vec<DraftedPart>>>,
     outfit: Option<Arc<Outfit>>,
-    /// What is worth telling about the garment's mesh, placement and cloth.
+    /// Notes on the garment's mesh, placement and cloth.
     pub assembly_notes: Vec<String>,
     /// The drape, if it was made.
     pub drape: Option<Arc<Drape>>,
 }
 
 impl Derived {
-    /// Forgets what a change of the project may have changed. The mannequin knows by itself what
-    /// it was made from. What was made from a draft stays where the new draft is the same, as when
-    /// a panel was moved on the table or a construction line was drawn.
+    /// Drops the results that a change of the project may invalidate. The mannequin stays: it is
+    /// cached with its source. Results made from a draft stay if the new draft is equal, as after a
+    /// panel was moved on the table or a construction line was drawn.
     pub fn follow(&mut self, before: &Project, after: &Project) {
         let same_choices =
             before.body == after.body && before.size == after.size && before.fabric == after.fabric;
@@ -121,8 +121,8 @@ impl Derived {
         }
     }
 
-    /// Takes over everything that another, derived from the same project, has and this one has
-    /// not.
+    /// Takes over the results that `other`, derived from the same project, has and this one lacks;
+    /// and the mannequin of `other`, if it has one.
     pub fn adopt(&mut self, other: Self) {
         self.draft = self.draft.take().or(other.draft);
         self.diagnostics = self.diagnostics.take().or(other.diagnostics);
@@ -136,7 +136,7 @@ impl Derived {
         self.drape = self.drape.take().or(other.drape);
     }
 
-    /// Takes over another's mannequin alone.
+    /// Takes over the mannequin of `other` alone.
     pub fn adopt_mannequin(&mut self, other: Self) {
         self.mannequin = other.mannequin.or(self.mannequin.take());
     }
@@ -157,13 +157,13 @@ impl Derived {
         kept.clone()
     }
 
-    /// Forgets the draft and what is wrong with it, while a gesture is shown.
+    /// Drops the draft and its diagnostics, while a gesture is shown.
     pub fn forget_draft(&mut self) {
         self.draft = None;
         self.diagnostics = None;
     }
 
-    /// The same with another's evaluation, which is brought up to date from where it is.
+    /// These results with the evaluation of `other`, from which the next update starts.
     #[must_use]
     pub fn with_evaluation_of(self, other: &Self) -> Self {
         Self {
@@ -173,7 +173,7 @@ impl Derived {
         }
     }
 
-    /// The draft with the fabric chosen.
+    /// The draft, cut from the fabric that was chosen.
     pub fn draft(&mut self, project: &Project) -> Arc<Draft> {
         if let Some(draft) = &self.draft {
             return draft.clone();
@@ -195,7 +195,7 @@ impl Derived {
         self.diagnostics.insert(Arc::new(diagnostics)).clone()
     }
 
-    /// Every garment that is worn, the project's own first, drafted, with what is wrong with it.
+    /// Drafts of all garments worn, the project's own first, with their diagnostics.
     pub fn parts(&mut self, project: &Project) -> Arc<Vec<DraftedPart>> {
         if let Some(parts) = &self.parts {
             return parts.clone();
@@ -209,7 +209,7 @@ impl Derived {
         self.parts.insert(Arc::new(parts)).clone()
     }
 
-    /// The same, if nothing keeps any of them from being made.
+    /// Drafts of all garments worn, refused if a fault keeps one of them from being made.
     pub fn sound_parts(
         &mut self,
         project: &Project,
@@ -242,7 +242,7 @@ impl Derived {
         Ok(self.mannequin.insert(kept))
     }
 
-    /// The markers.
+    /// Lays the markers, or returns those laid before.
     pub fn finished_markers(
         &mut self,
         project: &Project,
@@ -282,7 +282,7 @@ impl Derived {
         Ok(self.outfit.insert(outfit).clone())
     }
 
-    /// The same, put on in a way.
+    /// Meshes and places the pieces of every garment, put on as `put_on` says.
     fn outfit_put_on(
         &mut self,
         project: &Project,
@@ -308,7 +308,7 @@ impl Derived {
         self.job_put_on(project, &outfit, &put_on)
     }
 
-    /// The same of an outfit that was put on in a way.
+    /// The job of an outfit that was put on as `put_on` says.
     fn job_put_on(
         &mut self,
         project: &Project,
@@ -323,7 +323,7 @@ impl Derived {
         let first = project.quality.first_edge_length();
         if let Some(edge_length) = first.filter(|_| !gathers) {
             let mannequin = self.mannequin(project)?;
-            // A piece too small for the coarse mesh is no fault: the fine one does alone.
+            // A piece too small for the coarse mesh is no fault: the fine mesh is then used alone.
             if let Ok((coarse, _)) = assembled(put_on, &mannequin, edge_length) {
                 job.setup.levels.insert(0, setup::level(&coarse));
             }
@@ -331,7 +331,7 @@ impl Derived {
         Ok(job)
     }
 
-    /// The drape.
+    /// Drapes the garment, or returns the drape made before with the same inputs.
     pub fn drape(
         &mut self,
         project: &Project,
@@ -352,7 +352,7 @@ impl Derived {
         Ok(made)
     }
 
-    /// The drape of a garment that fell off the body, put on the other way; refused where it falls again.
+    /// Drapes a garment that fell off the body once more, put on the other way; an error if it falls again.
     fn drape_otherwise(
         &mut self,
         project: &Project,
@@ -368,7 +368,7 @@ impl Derived {
         let given = self.outfit(project)?;
         let outfit = self.outfit_put_on(project, &put_on)?;
         if put_on.hangs_from_chest && outfit.garment.positions == given.garment.positions {
-            // What hangs neither from the waist nor from the chest hangs from the neck.
+            // A garment that hangs neither from the waist nor from the chest hangs from the neck.
             return Err(SessionError::falls_off("from the neck", None));
         }
         let job = self.job_put_on(project, &outfit, &put_on)?;
@@ -382,7 +382,7 @@ impl Derived {
     }
 }
 
-/// What is said where the arms are held as the sleeves are placed.
+/// Note on the angle of the arms, if they are held as the sleeves are placed.
 fn arms_follow_sleeves(project: &Project) -> Option<String> {
     if project.body.description().is_some() {
         return None;
@@ -393,7 +393,7 @@ fn arms_follow_sleeves(project: &Project) -> Option<String> {
     ))
 }
 
-/// Whether the panels of two patterns are the same but for where they lie on the table.
+/// Whether the panels of two patterns are equal apart from their positions on the table.
 fn has_same_panels(a: &Pattern, b: &Pattern) -> bool {
     let same = |a: &Panel, b: &Panel| {
         let moved = Panel {
@@ -408,8 +408,8 @@ fn has_same_panels(a: &Pattern, b: &Pattern) -> bool {
         && pairs.all(|(a, b)| Arc::ptr_eq(a, b) || same(a, b))
 }
 
-/// The parts meshed with edges of a length (m) and placed round a mannequin, and what is worth
-/// telling.
+/// Meshes the garments with a mean edge length (m) and places them round a mannequin; also
+/// returns notes for the user.
 fn assembled(
     put_on: &PutOn,
     mannequin: &Mannequin,
@@ -437,7 +437,7 @@ fn assembled(
     Ok((Outfit::new(meshed), notes))
 }
 
-/// A body's error, with the file its measurements came from.
+/// Turns an error of the body into one that names the file of the measurements, if there is one.
 fn body_error(project: &Project, error: BodyError) -> SessionError {
     let BodyChoice::Measured {
         path: Some(path), ..

@@ -13,9 +13,9 @@ use toile_geometry::{TriangleMesh, Vec3};
 
 /// A garment sewn and draped.
 pub(crate) struct Drape {
-    /// What it was made from.
+    /// Job that the drape was made from.
     pub job: GarmentJob,
-    /// The merged garment where it lies.
+    /// Mesh of the garment as it hangs, with merged seams.
     pub mesh: TriangleMesh,
     /// Vertex of `mesh` for every vertex of the job's garment.
     pub target: Vec<u32>,
@@ -28,18 +28,18 @@ pub(crate) struct Drape {
     pub steps: [usize; 2],
     /// Largest seam gap in the step before merging (m).
     pub seam_gap: f64,
-    /// What contact of cloth with cloth found and did while it swung.
+    /// Counts of the contact of cloth with cloth.
     pub tally: Tally,
-    /// What it came to.
+    /// Verdict on the drape.
     pub verdict: Verdict,
-    /// What is told of it: the words of the verdict, and whether a hand is still on the cloth.
+    /// Warnings: the words of the verdict, and whether a hand is still on the cloth.
     pub warnings: Vec<String>,
-    /// What was done to the cloth meanwhile.
+    /// Actions on the cloth, each with the step at which it was applied.
     pub inputs: Vec<Input>,
 }
 
 impl Drape {
-    /// A run as a product, at rest or where it stopped.
+    /// The drape of a run, at rest or where the run stopped.
     pub fn of(handled: &mut InteractiveRun) -> Self {
         let held = handled.is_held();
         let inputs = handled.applied().to_vec();
@@ -101,14 +101,14 @@ impl Drape {
         pairs
     }
 
-    /// What is told of it.
+    /// Events that report the drape: its summary and its warnings.
     pub fn events(&self) -> Vec<Event> {
         let mut events = vec![Event::Draped(self.summary())];
         events.extend(Event::warnings(&self.warnings));
         events
     }
 
-    /// A few numbers.
+    /// Summary of the drape in a few numbers.
     pub fn summary(&self) -> Draped {
         Draped {
             steps: self.steps,
@@ -133,22 +133,22 @@ pub struct DrapeResult {
 }
 
 impl DrapeResult {
-    /// The session's revision it was made from.
+    /// Revision of the session that the garment was made from.
     pub fn revision(&self) -> u64 {
         self.drape.job.revision
     }
 
-    /// A few numbers.
+    /// Summary of the drape in a few numbers.
     pub fn summary(&self) -> Draped {
         self.drape.summary()
     }
 
-    /// The merged garment where it lies.
+    /// Mesh of the garment as it hangs, with merged seams.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.drape.mesh
     }
 
-    /// What was done to the cloth meanwhile.
+    /// Actions on the cloth, each with the step at which it was applied.
     pub fn inputs(&self) -> &[Input] {
         &self.drape.inputs
     }
@@ -170,7 +170,7 @@ pub(crate) fn drape(
     }
     loop {
         let progress = match run.advance() {
-            // What is made so far is of use to see why.
+            // The state so far helps to see why the seams stay open.
             Err(DrapeError::SeamsOpen { .. }) => break,
             advanced => advanced?,
         };

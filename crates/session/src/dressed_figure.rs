@@ -1,5 +1,5 @@
-//! Figures of scenes that wear garments: all that one wears is sewn together and draped to rest on it, before the scene
-//! begins.
+//! Figures of scenes that wear garments: all that one wears is sewn together and draped to rest on it, before
+//! the scene begins.
 
 use crate::choice::figure_named;
 use crate::drape::Drape;
@@ -16,11 +16,11 @@ pub(crate) struct DressedFigure {
     pub body: Arc<Mannequin>,
     /// The garments by the index of their object.
     pub garments: Vec<(usize, HungGarment)>,
-    /// What is worth telling.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
-/// A garment, sewn, where it hangs.
+/// A sewn garment in the position in which it hangs.
 pub(crate) struct HungGarment {
     pub cloth: Cloth,
     /// Whether the strain of each triangle counts, as it does away from gathers.
@@ -35,7 +35,8 @@ struct Worn<'a> {
     quality: Quality,
 }
 
-/// Every garment that a scene's body wears, in their order, each a layer outside the one before where it says nothing.
+/// The garments that a body of a scene wears, innermost first. A garment without a layer is given the number
+/// of garments listed before it as its layer.
 fn worn_by<'a>(
     place: ScenePlace<'_>,
     file: &'a SceneFile,
@@ -80,7 +81,7 @@ fn worn_by<'a>(
 }
 
 impl DressedFigure {
-    /// Sews and drapes all that a body of a scene wears; none where it wears nothing.
+    /// Sews and drapes all garments that a body of a scene wears; none if it wears nothing.
     ///
     /// # Errors
     /// Patterns that cannot be read or sewn, garments of several qualities.
@@ -143,7 +144,7 @@ impl DressedFigure {
     }
 }
 
-/// One of the garments of a drape, sewn, where it hangs.
+/// One of the garments of a drape, sewn, in the position in which it hangs.
 fn part_of(drape: &Drape, part: usize) -> HungGarment {
     let part = &drape.job.parts[part];
     let (first, range) = (part.vertices.start as u32, part.triangles.clone());

@@ -11,20 +11,20 @@ pub enum SessionError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A file is not what it should be.
+    /// A file has a wrong format or content.
     #[error("{}: {error}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong where.
+        /// The fault and its place.
         error: FormatError,
     },
-    /// Something made cannot be written in a format.
+    /// A result cannot be written in its format.
     #[error("cannot write {file}: {error}")]
     Write {
         /// Name of the file.
         file: &'static str,
-        /// What is wrong.
+        /// The fault.
         error: FormatError,
     },
     /// The pattern has faults that keep the garment from being made.
@@ -38,33 +38,33 @@ pub enum SessionError {
     /// An edit was refused.
     #[error("{0}")]
     Edit(#[from] toile_pattern::EditError),
-    /// A choice names something that is not there.
+    /// A name of something that does not exist.
     #[error("there is no {kind} {name:?}; {hint}")]
     Unknown {
-        /// What kind of thing, as in "size".
+        /// Kind of thing, as in "size".
         kind: &'static str,
         /// The name given.
         name: String,
-        /// What there is instead.
+        /// Names that exist, or another remedy.
         hint: String,
     },
-    /// Things asked for that do not go together.
+    /// Requests that do not go together, or cannot be met; with the remedy.
     #[error("{0}")]
     Conflict(String),
-    /// A number given makes no sense.
+    /// A number is out of range.
     #[error("{what} is {value}; {hint}")]
     Number {
-        /// What it is.
+        /// Name of the quantity, with its unit.
         what: &'static str,
         /// The value given.
         value: f64,
-        /// What would be right.
+        /// Numbers that are valid.
         hint: &'static str,
     },
-    /// A measurement that nobody has.
+    /// A measurement that no body has.
     #[error("the measurement {name} is {value} m; give a length above 0")]
     Measurement {
-        /// Its name.
+        /// Name of the measurement.
         name: String,
         /// The value given (m).
         value: f64,
@@ -86,7 +86,7 @@ pub enum SessionError {
         "the garment falls off the body: it was put on {tried}; give it a waist, straps or shoulders that hold it, or say where its panels are worn"
     )]
     FallsOff {
-        /// How it was put on, and that it fell.
+        /// Ways in which the garment was put on, and that it fell.
         tried: String,
     },
     /// A picture cannot be drawn.
@@ -95,9 +95,9 @@ pub enum SessionError {
     /// A command has nothing to work on.
     #[error("there is nothing to {action}; {hint}")]
     Nothing {
-        /// What was asked, as in "undo".
+        /// Action that was asked for, as in "undo".
         action: &'static str,
-        /// What to do first.
+        /// Step to take first.
         hint: &'static str,
     },
     /// A line of a journal cannot be read.
@@ -105,7 +105,7 @@ pub enum SessionError {
     Journal {
         /// Line, from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// The watcher asked to stop.
@@ -114,7 +114,7 @@ pub enum SessionError {
 }
 
 impl SessionError {
-    /// The garment falls off, put on so and, where there is another way, so again.
+    /// Error of a garment that falls off, put on in a first way and, if there is one, in a second way.
     pub(crate) fn falls_off(first: &str, second: Option<&str>) -> Self {
         let tried = match second {
             Some(second) => format!("{first}, then {second}, and fell within a second both times"),
@@ -123,7 +123,7 @@ impl SessionError {
         Self::FallsOff { tried }
     }
 
-    /// Whether what was given is at fault, and not the work on it.
+    /// Whether the input is at fault, and not the work on it.
     pub fn is_bad_input(&self) -> bool {
         match self {
             Self::File(error) => error.action == "read",

@@ -9,16 +9,16 @@ use toile_marker::MarkerSummary;
 pub enum Event {
     /// A pattern was read.
     PatternOpened,
-    /// The project is another one now.
+    /// The project has changed.
     ProjectChanged {
-        /// Its number; it only grows.
+        /// Number of the new state of the project; it only grows.
         revision: u64,
     },
     /// The pattern was checked.
     Checked {
         /// Faults that keep the garment from being made.
         errors: usize,
-        /// Faults that probably were not meant.
+        /// Faults that are probably not intended.
         warnings: usize,
     },
     /// The pieces of one fabric were laid.
@@ -29,12 +29,12 @@ pub enum Event {
     Draped(Draped),
     /// Files were written.
     FilesWritten {
-        /// Where.
+        /// Paths of the files.
         paths: Vec<PathBuf>,
     },
-    /// Something is less than well.
+    /// Something needs attention.
     Warned {
-        /// What, where, and what to do, in plain words.
+        /// The fault, its place and its remedy, in plain words.
         message: String,
     },
 }
@@ -66,18 +66,18 @@ pub struct Assembled {
 pub struct Draped {
     /// Steps of sewing and of settling.
     pub steps: [usize; 2],
-    /// Net force over weight.
+    /// Net force over weight (1).
     pub residual: f64,
     /// Largest seam gap in the step before merging (m).
     pub seam_gap: f64,
-    /// Pieces that hang together after sewing.
+    /// Connected parts of the mesh after sewing.
     pub components: usize,
     /// Pairs of cloth and body triangles that intersect.
     pub body_intersections: usize,
-    /// Largest stretch along warp and weft.
+    /// Largest stretch along warp and weft (1).
     pub strain_max: [f64; 2],
-    /// Stretch along warp and weft that 99 % of the cloth stays under.
+    /// Stretch along warp and weft that 99 % of the cloth stays under (1).
     pub strain_p99: [f64; 2],
-    /// What it came to.
+    /// Verdict on the drape.
     pub verdict: Verdict,
 }

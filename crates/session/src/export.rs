@@ -23,31 +23,31 @@ use toile_interchange::{
 };
 use toile_marker::{FinishedMarker, MarkerFormat, marker_files};
 
-/// Shares of an export that are done when the markers are laid, when the garment hangs, and when its pieces are
-/// printed.
+/// Shares of an export that are done when the markers are laid, when the garment hangs, and when its pieces
+/// are printed.
 const DONE: [f64; 3] = [0.08, 0.9, 0.94];
 
-/// What an export writes of.
+/// Results that an export writes.
 struct Subject {
     formats: Vec<ExportFormat>,
-    /// What the marker files are called, and the markers.
+    /// Title of the marker files, and the markers.
     markers: Option<(String, Arc<Vec<FinishedMarker>>)>,
     drape: Option<Arc<Drape>>,
 }
 
 impl Export {
-    /// Whether the garment is hung for it. A report tells of the garment and the marker that are exported with it; by
-    /// itself of both.
+    /// Whether the garment is draped for the export. A report covers the garment and the marker that are
+    /// exported with it; alone it covers both.
     pub(crate) fn takes_garment(&self) -> bool {
         self.takes(ExportFormat::is_of_garment)
     }
 
-    /// Whether the pieces are laid for it.
+    /// Whether the pieces are laid for the export.
     pub fn takes_marker(&self) -> bool {
         self.takes(ExportFormat::is_of_marker)
     }
 
-    /// Refuses a marker that nothing of it would be written of.
+    /// Refuses a named marker if no format of the export shows a marker.
     fn check_marker(&self) -> Result<(), SessionError> {
         let Some(marker) = self.marker.as_ref().filter(|_| !self.takes_marker()) else {
             return Ok(());
@@ -72,14 +72,14 @@ impl Export {
 }
 
 impl Session {
-    /// Writes files into a folder, all or none. What they take and has not been made is made first.
+    /// Writes files into a folder, all or none. Markers and drape that the files need are made first.
     pub(crate) fn export(
         &mut self,
         export: &Export,
         watcher: &mut dyn Watcher,
     ) -> Result<Vec<Event>, SessionError> {
         let start = Instant::now();
-        // Told before minutes are spent on it.
+        // Checked before minutes are spent on the drape.
         export.check_marker()?;
         check_folder(&export.dir)?;
         let mut events = Vec::new();
@@ -110,7 +110,7 @@ impl Session {
         Ok(events)
     }
 
-    /// Makes what is written of.
+    /// Makes the markers and the drape that the export needs.
     fn subject(
         &mut self,
         export: &Export,
@@ -163,7 +163,7 @@ impl Session {
         }
         if export.takes_garment() {
             let mut part = ProgressShare::new(watcher, DONE[0], DONE[1]);
-            // What hangs there is exported as it was pulled.
+            // A garment that was draped already is exported as the user pulled it.
             let inputs = self
                 .derived
                 .drape
@@ -180,13 +180,13 @@ impl Session {
         worn_name(&self.derived.parts(&self.project))
     }
 
-    /// The title of a marker laid of what the garment is made of.
+    /// Title of a marker of the garments worn.
     fn marker_title(&mut self) -> String {
         let name = self.garment_name();
         self.project.titled(&name)
     }
 
-    /// The pieces on paper.
+    /// Adds the files of the pieces on paper.
     fn pieces(
         &self,
         subject: &Subject,
@@ -218,7 +218,7 @@ impl Session {
         Ok(())
     }
 
-    /// The files of markers and garment, and the report on them.
+    /// Adds the files of markers and garment, and the report on them.
     fn files(
         &mut self,
         subject: &Subject,
@@ -256,7 +256,7 @@ impl Session {
     /// Writes the garment as it was last draped, on its body, as a PNG of a size (pixels).
     ///
     /// # Errors
-    /// It was not draped since it was changed, or the file cannot be written.
+    /// The garment was not draped since its last change, or the file cannot be written.
     pub fn write_drape_view(&mut self, path: &Path, size: [usize; 2]) -> Result<(), SessionError> {
         let drape = self.derived.drape.clone().ok_or(SessionError::Nothing {
             action: "draw",
@@ -292,7 +292,7 @@ impl Session {
         Ok(())
     }
 
-    /// The commands that led here, if all are kept, and how long they took.
+    /// Adds the journal, if all its commands are kept, and the time that the commands took.
     fn record(
         &self,
         export: &Export,
@@ -315,7 +315,7 @@ impl Session {
     }
 }
 
-/// A name for a picture, with the size.
+/// Title of a picture: a name with the size.
 fn picture_title(project: &Project, name: &str) -> String {
     match project.size_name() {
         Some(size) => format!("{name}, size {size}"),

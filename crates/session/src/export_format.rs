@@ -5,22 +5,22 @@ use std::path::{Path, PathBuf};
 use strum::{EnumCount, IntoStaticStr, VariantArray};
 use toile_marker::MarkerFormat;
 
-/// What is written where.
+/// Files to export, and the folder to write them to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Export {
     /// The folder; it is made if need be.
     pub dir: PathBuf,
-    /// What is written; what it takes is made first. Without any, what has been made of the present project is
-    /// written in the usual formats ([`ExportFormat::is_usual`]).
+    /// Formats to write; results that they need are made first. Without any, the existing results of the
+    /// present project are written in the usual formats ([`ExportFormat::is_usual`]).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub formats: Vec<ExportFormat>,
-    /// Name of the marker of the pattern that is written as it lies; without one the pieces are laid for it.
+    /// Name of a stored marker of the pattern to write; without one the pieces are laid for a new marker.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub marker: Option<String>,
 }
 
 impl Export {
-    /// The usual files of what has been made.
+    /// Exports the existing results in the usual formats.
     pub fn made(dir: &Path) -> Self {
         Self {
             dir: dir.to_owned(),
@@ -30,7 +30,7 @@ impl Export {
     }
 }
 
-/// Something that is exported.
+/// A kind of exported file.
 #[derive(
     Clone,
     Copy,
@@ -81,20 +81,20 @@ pub enum ExportFormat {
 }
 
 impl ExportFormat {
-    /// All of them, in the order in which they are told.
+    /// All formats, in the order in which they are listed.
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// Its name in journals and on the command line.
+    /// Name in journals and on the command line.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// The format of that name.
+    /// Finds a format by its name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|format| format.name() == name)
     }
 
-    /// The first file it is written to.
+    /// Name of the first file of the format.
     pub fn file(self) -> &'static str {
         match self {
             Self::Glb => "garment.glb",
@@ -115,7 +115,7 @@ impl ExportFormat {
         }
     }
 
-    /// Whether it is written where no format is asked for.
+    /// Whether the format is written if none is asked for.
     pub fn is_usual(self) -> bool {
         match self {
             Self::Glb
@@ -136,17 +136,17 @@ impl ExportFormat {
         }
     }
 
-    /// Whether it shows the garment worn, which has to be hung for it.
+    /// Whether the format shows the garment worn, which has to be draped first.
     pub fn is_of_garment(self) -> bool {
         matches!(self, Self::Glb | Self::Obj | Self::Drape | Self::Fit)
     }
 
-    /// Whether it is the marker.
+    /// Whether the format shows a marker.
     pub fn is_of_marker(self) -> bool {
         self.of_marker().is_some()
     }
 
-    /// The format of a marker that it is.
+    /// The same format among those of markers; none if it shows no marker.
     pub(crate) fn of_marker(self) -> Option<MarkerFormat> {
         match self {
             Self::MarkerSvg => Some(MarkerFormat::Svg),

@@ -1,52 +1,55 @@
-//! A figure in motion as a scene sees it: the way into its clip, then the clip over the ground, as places of its skin.
+//! A figure in motion as a scene sees it: the way into its clip, then the clip over the ground, as places of
+//! its skin.
 
 use std::sync::Arc;
 use toile_body::{Clip, Joint, Mannequin, PlayCommand, PlayError, Player, Pose};
 use toile_drape::{Digest, Motion, Track};
 use toile_geometry::Vec3;
 
-/// Poses a second of a figure's course: between two of them joints turn evenly.
+/// Poses per second of a figure's course (1/s); between two poses joints turn at constant speed.
 const RATE: f64 = 240.0;
-/// How long a figure stands before its clip begins (s).
+/// Time that a figure stands before its clip begins (s).
 const STANDS: f64 = 0.3;
-/// Gap that limbs keep (m): twice the distance that cloth keeps from the skin, and cloth of 2 mm on both.
+/// Gap kept between limbs and body (m): twice the distance of cloth from the skin, and cloth of 2 mm on both.
 const LIMB_GAP: f64 = 0.012;
 
-/// How a figure is to go through its clip.
+/// Options for playing a clip on a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FigureMotion {
-    /// Rounds of a loop after which it stops; none where it goes on.
+    /// Rounds of a loop after which the figure stops; none if it goes on.
     pub strides: Option<f64>,
-    /// How fast its clock goes, 0 to 2.
+    /// Speed of playback over that of the clip, 0 to 2 (1).
     pub rate: f64,
-    /// Whether it goes over the ground, or on the spot.
+    /// Whether the figure travels over the ground, or moves on the spot.
     pub travel: bool,
-    /// How it turns about itself and is moved meanwhile.
+    /// Rigid motion that turns the figure about itself and moves it meanwhile.
     pub heading: Option<Motion>,
 }
 
-/// A figure's skin over time: poses at even steps from before the scene's start, posed when asked for.
+/// Skin of a figure over time: poses at even steps from before the start of the scene; the skin is posed on
+/// demand.
 pub(crate) struct FigureTrack {
     body: Arc<Mannequin>,
-    /// The poses, each root in metres from where it stood.
+    /// The poses; the shift of each root is in metres from where the figure stood.
     course: Clip,
     /// The time of the first pose (s), at most 0.
     start: f64,
     digest: u64,
 }
 
-/// A figure's course, and what is worth telling of it.
+/// The course of a figure, with notes for the user.
 pub(crate) struct Course {
     pub track: FigureTrack,
-    /// How long the way into the clip is, before time 0 (s).
+    /// Duration of the lead-in, the way into the clip before time 0 (s).
     pub lead_in: f64,
-    /// When the figure has come to rest again (s); none where it goes on.
+    /// Time at which the figure has come to rest again (s); none if it goes on.
     pub ends: Option<f64>,
     pub notes: Vec<String>,
 }
 
 impl FigureTrack {
-    /// The course of a body through a clip for a time (s) from its sewing pose, in whole steps of the scene (s) before time 0.
+    /// The course of a body from its sewing pose through a clip, for a duration from time 0 on (s). The
+    /// lead-in takes whole steps of the scene (s).
     ///
     /// # Errors
     /// A rate that is out of range.
@@ -116,7 +119,8 @@ impl Track for FigureTrack {
     }
 }
 
-/// Poses of a clip that is played from time 0 on, with its way over the ground, and when it has come to rest.
+/// Poses of a clip played from time 0 on, with the travel over the ground, and the time at which it comes to
+/// rest (s).
 struct Played {
     poses: Vec<Pose>,
     ends: Option<f64>,
@@ -162,7 +166,7 @@ fn turn_between(a: &Pose, b: &Pose) -> f64 {
     turns.into_iter().fold(0.0, f64::max)
 }
 
-/// What of a clip is too fast to be shown as it is.
+/// Note on a joint of a clip that turns too fast to be shown as it is.
 fn clip_notes(clip: &Clip) -> Vec<String> {
     let next = |k: usize| match clip.is_loop {
         true => Some((k + 1) % clip.poses.len()),
@@ -184,7 +188,7 @@ fn clip_notes(clip: &Clip) -> Vec<String> {
     words.into_iter().collect()
 }
 
-/// What was done to keep limbs apart.
+/// Notes on how limbs were kept off the body.
 fn clearing_notes(cleared: &toile_body::Cleared, lead_in: f64) -> Vec<String> {
     let mut notes = Vec::new();
     let [shoulder, hip] = cleared.largest_turn.map(f64::to_degrees);
@@ -202,8 +206,8 @@ fn clearing_notes(cleared: &toile_body::Cleared, lead_in: f64) -> Vec<String> {
     notes
 }
 
-/// Turns the course by the keys of a rigid motion: the figure turns about itself, goes the way that it then faces, and is
-/// moved by the translation.
+/// Turns the course by the keys of a rigid motion: the figure turns about itself, goes the way that it then
+/// faces, and is moved by the translation.
 fn turn_along(course: &mut Clip, start: f64, heading: &Motion) {
     let Some(first) = course.poses.first().map(|pose| pose.shift) else {
         return;

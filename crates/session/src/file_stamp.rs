@@ -7,10 +7,10 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A file as it was when a command read it.
+/// Stamp of a file as it was when a command read it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Stamp {
-    /// Its path, as the command names it.
+    /// Path of the file, as the command names it.
     pub path: PathBuf,
     /// Digest of its bytes.
     digest: String,
@@ -20,14 +20,14 @@ pub(crate) struct Stamp {
 }
 
 impl Stamp {
-    /// Stamps of the files that a command reads. Paths of samples, and of what came through a pipe, are none.
+    /// Stamps of the files that a command reads; samples inside the program and pipes have none.
     pub fn of_inputs(command: &mut Command) -> Vec<Self> {
         let mut stamps = Vec::new();
         command.each_input(&mut |path| stamps.extend(Self::of(path)));
         stamps
     }
 
-    /// The stamp of a file as it is now; none of what is no file.
+    /// Stamp of a file as it is now; none if the path is no regular file.
     pub fn of(path: &Path) -> Option<Self> {
         if !path.is_file() {
             return None;
@@ -40,7 +40,7 @@ impl Stamp {
         })
     }
 
-    /// What differs between the file as it was and as it is; nothing where it is the same.
+    /// Describes the difference between the file then and now; none if it is the same.
     pub fn difference(&self, now: &Self) -> Option<String> {
         if self.digest == now.digest {
             return None;
@@ -68,7 +68,7 @@ impl Stamp {
     }
 }
 
-/// Parts of a changed file that are named one by one.
+/// Most parts of a changed file that are named one by one.
 const MAX_NAMED: usize = 8;
 
 /// FNV-1a of bytes, 64 bits in hexadecimal digits (Fowler, Noll and Vo 1991).
@@ -77,7 +77,7 @@ fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step))
 }
 
-/// Digests of the fields of a JSON object, and of each thing with a name in its lists.
+/// Digests of the fields of a JSON object; of a list, those of its items by their names or numbers.
 fn parts(bytes: &[u8]) -> BTreeMap<String, String> {
     let Ok(Value::Object(fields)) = serde_json::from_slice(bytes) else {
         return BTreeMap::new();

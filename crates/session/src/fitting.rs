@@ -1,5 +1,5 @@
-//! How a garment is tried on, between a project and the file of its pattern: wearer, size, fabric, layers. A file that
-//! it refers to is named from the pattern's folder, so that they can be moved together.
+//! Fitting of a garment (wearer, size, fabric, layers), between a project and the file of its pattern. Files
+//! that it refers to are named from the pattern's folder, so that they can be moved together.
 
 use crate::bodies::mannequin_of;
 use crate::fabrics::{fabric_of_file, is_known_fabric};
@@ -15,8 +15,8 @@ use toile_interchange::{
 };
 
 impl Project {
-    /// A project of a pattern that is read from a file, tried on as the file says, and what was left
-    /// out or is missing.
+    /// Opens a pattern file as a project, with the fitting that the file says; also returns notes on
+    /// parts that were left out or are missing.
     ///
     /// # Errors
     /// The file is missing, may not be read, or holds no pattern.
@@ -24,7 +24,7 @@ impl Project {
         Self::open_from(path, PanelOrigin::Automatic)
     }
 
-    /// The same of a file whose panels are placed round an origin.
+    /// Opens a pattern file whose panels are placed round an origin.
     pub(crate) fn open_from(
         path: &Path,
         origin: PanelOrigin,
@@ -41,10 +41,10 @@ impl Project {
     }
 }
 
-/// The text of a project's file, as it would stand in a place.
+/// Text of a project's file, with paths from the folder of `place`; absolute paths without one.
 ///
 /// # Errors
-/// Something that cannot be written, as a file name that is no text.
+/// Something that cannot be written, such as a file name that is not text.
 pub(crate) fn document_text(
     project: &Project,
     place: Option<&Path>,
@@ -52,13 +52,13 @@ pub(crate) fn document_text(
     write_document(&project.pattern, &fitting_of(project, folder_of(place))?)
 }
 
-/// The folder that a file's paths begin in; none for what is in no file.
+/// Folder that the paths in a file start from; none for a pattern without a file (a pipe, a sample).
 fn folder_of(file: Option<&Path>) -> Option<&Path> {
     let file = file.filter(|file| !is_pipe(file) && !is_sample(file))?;
     Some(file.parent().unwrap_or(Path::new("")))
 }
 
-/// How a project's garment is tried on, with files named from a folder, or whole without one.
+/// Fitting of a project's garment, with paths from a folder; absolute paths without one.
 fn fitting_of(project: &Project, folder: Option<&Path>) -> Result<Fitting, FormatError> {
     let name = |path: &Path| file_name(path, folder);
     let wearer = match &project.body {
@@ -101,7 +101,7 @@ fn fitting_of(project: &Project, folder: Option<&Path>) -> Result<Fitting, Forma
     })
 }
 
-/// A file as a pattern in a folder names it.
+/// Name of a file within a pattern that lies in the folder.
 fn file_name(path: &Path, folder: Option<&Path>) -> Result<String, FormatError> {
     let whole = match (is_sample(path), folder) {
         (true, _) => path.to_owned(),
@@ -124,7 +124,8 @@ fn file_name(path: &Path, folder: Option<&Path>) -> Result<String, FormatError> 
     })
 }
 
-/// The files that a project was given by how its garment is tried on.
+/// Files that are read for the fitting of a project: mannequin, fabric and other patterns. A table of
+/// measurements is not among them, for the pattern holds its values.
 pub(crate) fn files_to_try_on(project: &Project) -> Vec<PathBuf> {
     let body = match &project.body {
         BodyChoice::Shaped { path, .. } => path.clone(),
@@ -141,8 +142,8 @@ pub(crate) fn files_to_try_on(project: &Project) -> Vec<PathBuf> {
     body.into_iter().chain(fabric).chain(others).collect()
 }
 
-/// Takes up how the garment of a project that was just read is tried on. What it refers to is read;
-/// what cannot be is told and stays named, and everything else stands.
+/// Applies a fitting to a project that was just read. Files that it refers to are read; a file that
+/// cannot be read gives a note and stays named in the project, and all else is applied.
 pub(crate) fn try_on(project: &mut Project, fitting: Fitting, origin: PanelOrigin) -> Vec<String> {
     let source = project.source.clone();
     let folder = folder_of(source.as_deref()).unwrap_or(Path::new(""));

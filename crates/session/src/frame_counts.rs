@@ -1,4 +1,4 @@
-//! What saved frames of cloth on a moving solid showed: crossings with solids and with itself, and stretch.
+//! Counts over saved frames of cloth on a moving solid: crossings with solids and with itself, and stretch.
 
 use serde::{Deserialize, Serialize};
 use toile_drape::{Measures, SceneRun, Workspace, measure};
@@ -7,18 +7,18 @@ use toile_drape::{Measures, SceneRun, Workspace, measure};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FrameCounts {
-    /// Frames looked at.
+    /// Number of frames counted.
     frames: usize,
-    /// Those in which a triangle of cloth crosses one of a solid, and the most pairs in one of them and its time (s). Where
-    /// the solid goes through itself a pair counts apart.
+    /// Frames in which a triangle of cloth crosses one of a solid, the most such pairs in one frame, and the
+    /// time of that frame (s). Pairs where the solid goes through itself are counted apart.
     crossing_solids: usize,
     most_solid_pairs: usize,
     most_solid_pairs_at: Option<f64>,
-    /// The most pairs with triangles of a solid that lie inside another part of it, in one frame, and the largest share
-    /// that these are of the solids' area.
+    /// Most pairs in one frame with a triangle of a solid that is partly inside another part of it, and the
+    /// largest area of such triangles over that of the solids (1).
     most_buried_pairs: usize,
     buried_share: f64,
-    /// Those in which cloth crosses cloth, and the most pairs in one of them.
+    /// Frames in which cloth crosses cloth, and the most pairs in one frame.
     crossing_cloth: usize,
     most_cloth_pairs: usize,
     /// Largest stretch of warp and of weft that a hundredth of the cloth exceeds in a frame.
@@ -26,12 +26,13 @@ pub(crate) struct FrameCounts {
 }
 
 impl FrameCounts {
-    /// Frames so far.
+    /// Number of frames counted so far.
     pub fn frames(&self) -> usize {
         self.frames
     }
 
-    /// Counts a frame; `counted` marks the triangles whose stretch counts, while none is lost to merging.
+    /// Counts a frame; `counted` marks the triangles whose stretch counts. It is ignored once merging removes
+    /// triangles.
     pub fn add(&mut self, run: &SceneRun, counted: &[bool]) {
         let counted = match counted.len() == run.system.topology.triangles.len() {
             true => counted,

@@ -1,4 +1,5 @@
-//! Recorded frames written for other programs: an animated GLB, point caches with their mesh, OBJ files, pictures.
+//! Recorded frames written for other programs: an animated GLB, point caches with their mesh, OBJ files,
+//! pictures.
 
 use crate::SessionError;
 use crate::output::{File, cannot};
@@ -10,38 +11,38 @@ use toile_interchange::{
     write_all_atomically, write_frames_glb, write_obj, write_pc2,
 };
 
-/// What is written of recorded frames.
+/// Selection of recorded frames to write.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramesExport {
-    /// The object, and what the camera of pictures goes along with; none for all.
+    /// Object to write, or in pictures to follow with the camera; none for all objects.
     pub object: Option<String>,
-    /// One frame, counted from 0; none for all.
+    /// Frame to write, counted from 0; none for all frames.
     pub frame: Option<usize>,
 }
 
-/// What writing recorded frames made.
+/// Result of writing recorded frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramesOutcome {
     /// Files written.
     pub files: Vec<PathBuf>,
     /// Frames read.
     pub frames: usize,
-    /// What is worth telling.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
-/// A frame with its number in the file, its section and the surfaces written of it.
+/// A frame with its number in the file and the surfaces written of it.
 struct Chosen<'a> {
     number: usize,
     frame: &'a Frame,
     surfaces: &'a [RecordedSurface],
 }
 
-/// Writes frames to a file whose ending says as what: `.glb` (morph targets), `.pc2` (a point cache for each surface
-/// that moves, with its first frame as OBJ), `.obj` and `.png` (a file for each frame).
+/// Writes frames in the format of the file's ending: `.glb` (morph targets), `.pc2` (a point cache for each
+/// surface that moves, with its first frame as OBJ), `.obj` and `.png` (a file for each frame).
 ///
 /// # Errors
-/// The frames cannot be read, an ending, an object or a frame that is not there, a file that cannot be written.
+/// The frames cannot be read; an unknown ending, object or frame; a file that cannot be written.
 pub fn export_frames(
     path: &Path,
     out: &Path,
@@ -132,7 +133,7 @@ fn chosen<'a>(
     }
 }
 
-/// Name of a file of which there may be several.
+/// Name of the file of a section, counted from 0; from the second section on with a number.
 fn numbered(stem: &str, section: usize) -> String {
     match section {
         0 => stem.to_owned(),
@@ -140,7 +141,7 @@ fn numbered(stem: &str, section: usize) -> String {
     }
 }
 
-/// Refuses one frame where the format holds motion.
+/// Refuses a single frame in a format that holds motion.
 fn refuse_one_frame(export: &FramesExport) -> Result<(), SessionError> {
     match export.frame {
         None => Ok(()),
@@ -265,7 +266,7 @@ fn obj_files(
     chosen.iter().map(file).collect()
 }
 
-/// Pictures of all surfaces by one camera, which goes along with the object asked for.
+/// Pictures of all surfaces by one camera, which follows the object asked for.
 fn pictures(
     frames: &Frames,
     chosen: &[Chosen],

@@ -1,5 +1,5 @@
-//! How a garment that is worn follows an edit of its pattern: with other rest shapes of the same
-//! triangles, on another mesh, or not at all.
+//! Carries an edit of the pattern over to the garment that is worn: with other rest shapes of the
+//! same triangles, on another mesh, or not at all.
 
 use crate::derived::Derived;
 use crate::fabrics::rest_material;
@@ -12,27 +12,27 @@ use std::sync::Arc;
 use toile_assembly::{PieceMeshes, morph};
 use toile_pattern::{Draft, Piece};
 
-/// What an edit of the pattern means for a garment that is worn.
+/// Effect of an edit of the pattern on a garment that is worn.
 pub struct GarmentEdit {
-    /// The garment as it is to be. Where it is not meshed anew, its triangles are those it had.
+    /// The garment after the edit. Unless it is meshed anew, it keeps its triangles.
     pub job: GarmentJob,
-    /// What changes.
+    /// Kind of change of the cloth.
     pub change: RestChange,
 }
 
-/// Why a worn garment cannot go on to the pattern as it is now.
+/// Reason why a worn garment cannot follow to the present pattern.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CannotFollow {
     /// Panels were added, removed or put in another order.
     #[error("the pattern has other panels now; drape it again")]
     Panels,
-    /// Another body.
+    /// The body is another.
     #[error("the body is another now; drape it again")]
     Body,
-    /// Another quality.
+    /// The quality is another.
     #[error("the cloth is to be finer or coarser now; drape it again")]
     Quality,
-    /// A panel is cut from cloth of another kind.
+    /// A panel is cut from cloth of another material.
     #[error("the fabric of \"{0}\" is another now; drape it again")]
     Fabric(String),
     /// Other garments are worn, or in other layers.
@@ -47,8 +47,8 @@ pub enum CannotFollow {
 }
 
 impl CannotFollow {
-    /// Whether a new garment of the present project can hang at once in its place. Other panels are drafted
-    /// one after the other, and faults are to be mended first: there it is better to wait.
+    /// Whether a new garment of the present project can hang at once in place of the worn one. New panels are
+    /// drafted one after the other, and faults are to be mended first: then it is better to wait.
     pub fn asks_for_another(&self) -> bool {
         match self {
             Self::Body | Self::Quality | Self::Fabric(_) | Self::Garments => true,
@@ -58,11 +58,11 @@ impl CannotFollow {
 }
 
 impl Session {
-    /// How a worn garment, made from an earlier state of this project, follows to the present one. Without
-    /// it being worn anew: that is for [`Session::garment_setup`].
+    /// Carries a worn garment, made from an earlier state of this project, over to the present state. It is
+    /// not put on anew: that is for [`Session::garment_setup`].
     ///
     /// # Errors
-    /// Why it cannot.
+    /// The reason why the garment cannot follow.
     pub fn garment_edit(&mut self, worn: &GarmentJob) -> Result<GarmentEdit, CannotFollow> {
         let mut edit = self.derived.garment_edit(&self.project, worn)?;
         edit.job.revision = self.revision;
@@ -117,7 +117,7 @@ impl Derived {
         let skin = worn.setup.colliders.first();
         let skin = skin.ok_or(CannotFollow::Body)?.clone();
         let mut job = setup::job(&outfit, (origin.body.clone(), skin), project.quality);
-        // The coarser meshes are behind it.
+        // The run has passed the coarser meshes, which stay as they were.
         let coarse = worn.setup.levels.len().saturating_sub(1);
         let finest = std::mem::take(&mut job.setup.levels);
         job.setup.levels = worn.setup.levels[..coarse].to_vec();
@@ -132,7 +132,7 @@ impl Derived {
     }
 }
 
-/// A garment of the same triangles with the shapes of another draft, if that can be.
+/// The garment on the same triangles with the shapes of another draft; none if the mesh cannot be morphed.
 fn morphed((old, new): (&MeshedPart, &DraftedPart)) -> Option<MeshedPart> {
     let meshes = match has_same_cloth(&old.part, new) {
         true => PieceMeshes::clone(&old.meshes),
@@ -153,13 +153,13 @@ fn cannot_be_made(error: SessionError) -> CannotFollow {
     }
 }
 
-/// Whether cloth of two drafts is the same, names apart.
+/// Whether two drafts have the same pieces, seams and fabrics; the garments' names may differ.
 fn has_same_cloth(a: &DraftedPart, b: &DraftedPart) -> bool {
     let (a, b) = (&*a.draft, &*b.draft);
     std::ptr::eq(a, b) || a.pieces == b.pieces && a.seams == b.seams && a.fabrics == b.fabrics
 }
 
-/// Refuses garments that are others than those before, or lack a panel that was sewn.
+/// Refuses other garments than before, and garments that lack a panel that was sewn.
 fn refuse_other_garments(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), CannotFollow> {
     if before.len() != now.len() {
         return Err(CannotFollow::Garments);
@@ -178,7 +178,7 @@ fn refuse_other_garments(before: &[DraftedPart], now: &[DraftedPart]) -> Result<
     Ok(())
 }
 
-/// Refuses garments whose pieces are others than those before, or cut from other cloth.
+/// Refuses garments with other sewn pieces than before, or with pieces cut from another material.
 fn refuse_other_pieces(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), CannotFollow> {
     for (before, now) in before.iter().zip(now) {
         let [old, new] = [before, now].map(|part| sewn(&part.draft).collect::<Vec<_>>());

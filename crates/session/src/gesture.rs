@@ -5,11 +5,11 @@ use crate::{Command, Event, Project, Session, SessionError, Silent};
 use toile_pattern::Edit;
 
 impl Session {
-    /// Shows what edits of the project's pattern would give. They replace what the present gesture
-    /// showed before; nothing goes to the history until [`Session::commit`].
+    /// Shows the result of edits of the project's pattern. They replace the edits that the present
+    /// gesture showed before; nothing goes to the history until [`Session::commit`].
     ///
     /// # Errors
-    /// The edits cannot be made; what was shown before is still shown.
+    /// The edits cannot be made; the previous state is still shown.
     pub fn preview(&mut self, edits: &[Edit]) -> Result<(), SessionError> {
         let base = self.gesture.as_ref().map_or(&self.project, |g| &g.base);
         let next = base.edited(edits)?;
@@ -30,8 +30,8 @@ impl Session {
         self.gesture.is_some()
     }
 
-    /// Takes the present gesture over: one step of the history, one command of the journal. Without
-    /// one nothing happens.
+    /// Commits the present gesture as one step of the history and one command of the journal. Without
+    /// a gesture nothing happens.
     ///
     /// # Errors
     /// The edits cannot be made, which [`Session::preview`] would have said.
@@ -43,10 +43,10 @@ impl Session {
         self.execute(Command::Edit { edits, label }, &mut Silent)
     }
 
-    /// Ends the present gesture without taking anything over, and tells its edits.
+    /// Ends the present gesture without committing it, and returns its edits.
     pub fn cancel(&mut self) -> Option<Vec<Edit>> {
         let gesture = self.gesture.take()?;
-        // The evaluation goes back by what changed; all else is as it was kept.
+        // The evaluation is updated back by the difference; all else was kept from before the gesture.
         self.derived = gesture.derived.with_evaluation_of(&self.derived);
         self.project = gesture.base;
         self.revision += 1;

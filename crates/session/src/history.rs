@@ -5,29 +5,30 @@ use std::collections::VecDeque;
 
 /// Most steps kept.
 const MAX_STEPS: usize = 1000;
-/// Most steps that are there again after a crash.
+/// Most steps that are restored after a crash.
 const MAX_RESTORED_STEPS: usize = 50;
 
-/// One step: the project on the other side of it.
+/// A step of the history, with the project on its other side: before a step that can be undone, after a
+/// step that can be redone.
 #[derive(Clone, Debug)]
 pub struct HistoryStep {
-    /// Its own number: no other step of the session has the same.
+    /// Number of the step, unique in the session.
     pub(crate) number: u64,
     pub(crate) label: String,
     pub(crate) project: Project,
 }
 
-/// Steps that can be taken back, and those that can be done again.
+/// Steps that can be undone, and steps that can be redone.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct History {
     past: VecDeque<HistoryStep>,
     future: Vec<HistoryStep>,
-    /// How many steps there ever were.
+    /// Number of steps ever recorded.
     count: u64,
 }
 
 impl History {
-    /// The empty history of another document: its steps have numbers that none had before.
+    /// The empty history of another document; its steps get numbers that no step had before.
     pub fn begun_anew(self) -> Self {
         Self {
             count: self.count,
@@ -35,7 +36,7 @@ impl History {
         }
     }
 
-    /// Notes a step from `before`.
+    /// Records a step that leads away from the project `before`.
     pub fn record(&mut self, before: Project, label: &str) {
         self.future.clear();
         if self.past.len() == MAX_STEPS {
@@ -49,7 +50,7 @@ impl History {
         });
     }
 
-    /// The project before the last step; `now` can be had back by [`History::redo`].
+    /// Undoes the last step and returns the project before it; [`History::redo`] brings `now` back.
     pub fn undo(&mut self, now: &Project) -> Option<Project> {
         let step = self.past.pop_back()?;
         self.future.push(HistoryStep {
@@ -59,7 +60,7 @@ impl History {
         Some(step.project)
     }
 
-    /// The project after the step last taken back.
+    /// Redoes the step undone last and returns the project after it.
     pub fn redo(&mut self, now: &Project) -> Option<Project> {
         let step = self.future.pop()?;
         self.past.push_back(HistoryStep {
@@ -69,17 +70,17 @@ impl History {
         Some(step.project)
     }
 
-    /// Label of the step that would be taken back.
+    /// Label of the step that would be undone.
     pub fn can_undo(&self) -> Option<&str> {
         self.past.back().map(|step| &*step.label)
     }
 
-    /// Label of the step that would be done again.
+    /// Label of the step that would be redone.
     pub fn can_redo(&self) -> Option<&str> {
         self.future.last().map(|step| &*step.label)
     }
 
-    /// The last steps that can be taken back, the newest first: as many as are there again after a crash.
+    /// The last steps that can be undone, the newest first: as many as are restored after a crash.
     pub fn to_keep(&self) -> Vec<HistoryStep> {
         self.past
             .iter()
@@ -89,12 +90,12 @@ impl History {
             .collect()
     }
 
-    /// Labels of the steps that can be taken back, the oldest first.
+    /// Labels of the steps that can be undone, the oldest first.
     pub fn past(&self) -> impl Iterator<Item = &str> {
         self.past.iter().map(|step| &*step.label)
     }
 
-    /// Labels of the steps that can be done again, the next first.
+    /// Labels of the steps that can be redone, the next first.
     pub fn future(&self) -> impl Iterator<Item = &str> {
         self.future.iter().rev().map(|step| &*step.label)
     }

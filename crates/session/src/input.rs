@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use toile_interchange::FileError;
 
-/// What came through pipes. It can be read but once, and a file is looked at before its reader is known: it is kept
-/// under the path that it was read by.
+/// Content of pipes by the path they were read by. A pipe can be read only once, and a file is inspected
+/// before its reader is known: therefore the content is kept.
 static PIPED: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
 
 /// The path that stands for the standard input.
 const STANDARD_INPUT: &str = "-";
 
-/// Whether a path is no file of its own: a pipe, or the standard input.
+/// Whether a path is no regular file: a pipe, or the standard input.
 pub(crate) fn is_pipe(path: &Path) -> bool {
     let is_other = |data: std::fs::Metadata| !data.is_file() && !data.is_dir();
     path == Path::new(STANDARD_INPUT) || path.metadata().is_ok_and(is_other)
@@ -27,7 +27,7 @@ pub fn is_input(path: &Path) -> bool {
 /// Reads a whole file; what comes through a pipe is read once and given again to whoever asks later.
 ///
 /// # Errors
-/// It is missing, or may not be read.
+/// The file is missing, or may not be read.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error: std::io::Error| FileError::from_io("read", path, &error);
     if !is_pipe(path) {

@@ -11,12 +11,13 @@ use toile_drape::{
 };
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
-/// The number of the garment among the objects: it is the only cloth.
+/// Id of the garment, which is the only cloth among the objects.
 fn garment() -> ObjectId {
     SceneObject::id(0)
 }
 
-/// A hand that draws a vertex of a garment, numbered before its seams are merged, to a place (m) with the usual force.
+/// Action of a hand that draws a vertex of a garment to a place (m) with the usual force. Vertices are
+/// numbered before seams are merged.
 pub fn pull_vertex(vertex: u32, to: [f64; 3]) -> Action {
     Action::Pull {
         spot: vertex_spot(vertex),
@@ -25,7 +26,7 @@ pub fn pull_vertex(vertex: u32, to: [f64; 3]) -> Action {
     }
 }
 
-/// The hand lets go of a vertex of a garment.
+/// Action of a hand that lets go of a vertex of a garment.
 pub fn let_go_of_vertex(vertex: u32) -> Action {
     Action::LetGo(vertex_spot(vertex))
 }
@@ -37,8 +38,7 @@ fn vertex_spot(vertex: u32) -> Spot {
     })
 }
 
-/// What a hand does to a garment: the vertex it is on, and where it draws it with which force, or none where it lets
-/// go.
+/// Action of a hand on a garment: the vertex held, and place (m) and force (N) of the pull; none to let go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HandInput {
     vertex: u32,
@@ -46,7 +46,7 @@ struct HandInput {
 }
 
 impl HandInput {
-    /// That of an action; none where a garment does not take it.
+    /// Reads an action; none if a garment does not take it.
     fn of(action: &Action) -> Option<Self> {
         let (spot, pull) = match action {
             Action::Pull { spot, to, force } => (spot, Some((*to, *force))),
@@ -63,10 +63,10 @@ impl HandInput {
     }
 }
 
-/// Refuses what a garment does not take, and vertices, places and forces that are not there.
+/// Refuses actions that a garment does not take, unknown vertices, and places and forces out of range.
 ///
 /// # Errors
-/// What is wrong, and what would be right.
+/// The fault and its remedy.
 pub(crate) fn check_action(action: &Action, job: &GarmentJob) -> Result<(), SessionError> {
     let Some(HandInput { vertex, pull }) = HandInput::of(action) else {
         let what = "a garment takes hands on its vertices alone; edit its pattern for all else";
@@ -107,10 +107,10 @@ pub(crate) fn check_action(action: &Action, job: &GarmentJob) -> Result<(), Sess
     }
 }
 
-/// Inputs of a journal: as they are written, or as they were before there were actions, by vertex.
+/// Reads the inputs of a journal: in the present form, or by vertex as in the older form without actions.
 ///
 /// # Errors
-/// What is neither.
+/// An input of neither form.
 pub(crate) fn read_inputs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Input>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged)]
@@ -150,11 +150,11 @@ pub(crate) fn read_inputs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Inpu
 pub(crate) struct InteractiveRun {
     job: GarmentJob,
     run: GarmentRun,
-    /// From the mesh of a level to the garment's.
+    /// Number of a level, and the map from its mesh to the mesh of the garment.
     carry: Option<(usize, Carry)>,
-    /// Where each held vertex is drawn to (m), and with which force (N).
+    /// Place (m) and force (N) of the pull on each held vertex.
     held: BTreeMap<u32, (Vec3, f64)>,
-    /// Inputs to come, by step; those of one step in the order given.
+    /// Pending actions by step; actions of one step are in the order given.
     waiting: BTreeMap<u64, Vec<Action>>,
     /// Inputs that were applied.
     applied: Vec<Input>,
@@ -175,13 +175,13 @@ impl InteractiveRun {
         })
     }
 
-    /// Takes an input for after `step` steps; for the next step if that is past or not said.
+    /// Queues an action for after `step` steps; for the next step if that is past or none.
     pub fn give(&mut self, action: Action, step: Option<u64>) {
         let step = step.unwrap_or(0).max(self.steps);
         self.waiting.entry(step).or_default().push(action);
     }
 
-    /// What it is made from, and the garment.
+    /// The job that the run is made from, and the run of the garment.
     pub fn parts(&mut self) -> (&GarmentJob, &mut GarmentRun) {
         (&self.job, &mut self.run)
     }
@@ -191,8 +191,7 @@ impl InteractiveRun {
         self.run.takes_edits()
     }
 
-    /// Goes on to what an edit of the pattern asks for, from where it hangs. On a new mesh the hands let
-    /// go.
+    /// Goes on with the garment after an edit, from its present position. On a new mesh the hands let go.
     pub fn edit(&mut self, job: GarmentJob, change: RestChange) -> Result<Progress, DrapeError> {
         let finest = |job: &GarmentJob| job.setup.levels.last().cloned().unwrap_or_default();
         let (old, new) = (finest(&self.job), finest(&job));
@@ -225,7 +224,7 @@ impl InteractiveRun {
         self.steps
     }
 
-    /// Whether it hangs at rest and nothing is to come.
+    /// Whether the garment hangs at rest and no action is pending.
     pub fn at_rest(&self) -> bool {
         self.run.progress().stage == Stage::Finished && self.waiting.is_empty()
     }
@@ -235,8 +234,8 @@ impl InteractiveRun {
         !self.held.is_empty()
     }
 
-    /// Applies the inputs that are due and takes one step. At rest no time passes: what is to
-    /// come next is due then.
+    /// Applies the actions that are due and takes one step. At rest no time passes: the next
+    /// pending actions are due at once.
     pub fn advance(&mut self) -> Result<Progress, DrapeError> {
         let at_rest = self.run.progress().stage == Stage::Finished;
         let first = self.waiting.keys().next().copied();
@@ -256,8 +255,8 @@ impl InteractiveRun {
         Ok(progress)
     }
 
-    /// Applies inputs of one step: of each vertex only the newest, as if the others had not been.
-    /// Says whether anything changed.
+    /// Applies actions of one step: for each vertex only the newest, as if the others had not been given.
+    /// Returns whether anything changed.
     fn apply(&mut self, actions: Vec<Action>) -> bool {
         let hands = actions
             .into_iter()
@@ -280,7 +279,7 @@ impl InteractiveRun {
         changed
     }
 
-    /// Draws the held vertices where the hands are.
+    /// Attaches the held vertices to the places of the hands.
     fn pull(&mut self) -> Result<(), DrapeError> {
         let mut attachments = Vec::with_capacity(self.held.len());
         for (&vertex, &(place, largest_force)) in &self.held {
@@ -298,8 +297,8 @@ impl InteractiveRun {
         Ok(())
     }
 
-    /// The vertex of the mesh in hand that stands for one of the garment: the same on the finest
-    /// mesh, the nearest of its panel on a coarser one.
+    /// The vertex of the present mesh that stands for a vertex of the garment: the same on the
+    /// finest mesh, the nearest of its panel on a coarser one.
     fn handle(&self, vertex: u32) -> Result<u32, DrapeError> {
         let levels = &self.job.setup.levels;
         let [level, count] = self.run.level();
@@ -323,8 +322,8 @@ impl InteractiveRun {
         near.map(|corner| corner.0).ok_or_else(unknown)
     }
 
-    /// The garment as it lies: positions (m) and, for every vertex of the job's garment, its
-    /// index among them. While a coarser mesh is in hand, its shape carried to the garment's.
+    /// Present shape of the garment: positions (m) and, for every vertex of the job's garment, its
+    /// index among them. The shape of a coarser mesh is carried over to the mesh of the garment.
     pub fn shape(&mut self) -> Result<(Vec<Vec3>, Vec<u32>), DrapeError> {
         let levels = &self.job.setup.levels;
         let [level, count] = self.run.level();

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Most commands that are kept.
 pub(crate) const MAX_COMMANDS: usize = 1000;
 
-/// A command, and the files it reads as they were.
+/// A command, with stamps of the files it read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Entry {
     #[serde(flatten)]
@@ -26,12 +26,12 @@ pub(crate) struct Journal {
 }
 
 impl Journal {
-    /// Notes a command that was done, with the files it read.
+    /// Records a command that was done, with the files it read.
     pub fn push(&mut self, command: Command) {
         self.push_with(command, &[]);
     }
 
-    /// The same of a command that read more files than it names.
+    /// Records a command that read more files than it names.
     pub fn push_with(&mut self, mut command: Command, more: &[PathBuf]) {
         if self.entries.len() == MAX_COMMANDS {
             self.entries.pop_front();
@@ -55,7 +55,7 @@ impl Journal {
             .collect()
     }
 
-    /// The same with the files they read.
+    /// The commands that are kept with the files they read, the oldest first.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter()
     }
@@ -64,7 +64,7 @@ impl Journal {
 /// The commands as text, one JSON object a line.
 ///
 /// # Errors
-/// A command cannot be written, as with a path that is no text.
+/// A command cannot be written, such as one with a path that is not text.
 pub fn journal_lines(commands: &[Command]) -> Result<String, SessionError> {
     let bare = commands.iter().map(|command| Entry {
         command: command.clone(),

@@ -1,5 +1,5 @@
-//! The files that a journal's commands read: named from the journal's folder, so that it replays from anywhere, and
-//! compared with what they were.
+//! The files that a journal's commands read: named from the journal's folder, so that it replays from
+//! anywhere, and compared with what they were.
 
 use crate::file_stamp::Stamp;
 use crate::input::is_pipe;
@@ -11,8 +11,8 @@ use crate::{Command, SessionError};
 use std::path::{Path, PathBuf};
 use toile_interchange::ExpectedKind;
 
-/// The journal as text beside what it made, in a folder: files are named from there, and places to write to by their
-/// names alone.
+/// Text of a journal that lies in the folder of its results: files that are read are named from that folder,
+/// files that are written by their names alone.
 ///
 /// # Errors
 /// A command cannot be written.
@@ -38,8 +38,8 @@ pub(crate) fn journal_beside<'a>(
     entry_lines(&moved.collect::<Vec<_>>())
 }
 
-/// Reads a journal: its commands, with files found from its own folder, and what of them differs from when it was
-/// written. A path that is not there is taken from where the program is run.
+/// Reads the commands of a journal, with files found from its own folder, and notes on files that have
+/// changed since it was written. A path that does not exist there is taken from the working directory.
 ///
 /// # Errors
 /// The file cannot be read, or a line is not a command.

@@ -14,20 +14,20 @@ use std::time::Instant;
 use toile_drape::{Action, DrapeError, Input, Progress, Stage, Verdict};
 use toile_geometry::Vec3;
 
-/// One moment of a live drape.
+/// State of a live drape at one moment.
 #[derive(Clone)]
 pub struct LiveFrame {
-    /// The garment it shows, of the newest edit that was taken.
+    /// Job of the garment shown, after the newest edit that was applied.
     pub job: Arc<GarmentJob>,
     /// Positions of the vertices (m); fewer after merging.
     pub positions: Vec<Vec3>,
     /// Vertex of this frame for every vertex of the job's garment.
     pub target: Vec<u32>,
-    /// What is being done.
+    /// Present stage of the drape.
     pub stage: Stage,
-    /// Whether an edit can be taken: its finest mesh is in hand, with closed seams.
+    /// Whether an edit can be applied: the run is on its finest mesh, with closed seams.
     pub takes_edits: bool,
-    /// Net force over weight; infinite while sewing.
+    /// Net force over weight (1); infinite while sewing.
     pub residual: f64,
     /// Largest seam gap (m).
     pub gap: f64,
@@ -47,7 +47,7 @@ struct Orders {
     actions: Vec<(Action, Option<u64>)>,
     /// An edit not yet taken.
     edit: Option<GarmentEdit>,
-    /// The garment the thread has in hand.
+    /// Job that the thread works on.
     job: Option<Arc<GarmentJob>>,
     /// The thread has ended.
     ended: bool,
@@ -94,7 +94,7 @@ impl LiveRun {
         lock(&shared.orders).job = Some(job.clone());
         let of_thread = shared.clone();
         let thread = std::thread::spawn(move || {
-            // After a panic nothing is used but what the locks guard, each of it whole.
+            // After a panic only values behind the locks are used, each of which is whole.
             let work = AssertUnwindSafe(|| run(&of_thread, job));
             let failure = match catch_unwind(work) {
                 Ok(ended) => ended.err().map(|error| error.to_string()),
@@ -117,17 +117,17 @@ impl LiveRun {
         lock(&self.shared.latest).take()
     }
 
-    /// Does something to the cloth before the next step: a garment takes hands on its vertices. Of several for one
-    /// vertex that come between two steps only the newest counts. A garment at rest moves again.
+    /// Queues an action on the cloth for the next step: a garment takes hands on its vertices. Of several
+    /// actions on one vertex between two steps only the newest counts. A garment at rest moves again.
     ///
     /// # Errors
-    /// A vertex or a place that is not there, another action.
+    /// An unknown vertex, a place or force out of range, an action that a garment does not take.
     pub fn give(&self, action: Action) -> Result<(), SessionError> {
         self.order(action, None)
     }
 
-    /// The same when so many steps are taken; before the next step if more are already. When the
-    /// garment comes to rest earlier, then.
+    /// Queues an action for after the number of steps that the input says; for the next step if that
+    /// is past. If the garment comes to rest earlier, the action is applied then.
     ///
     /// # Errors
     /// Those of [`LiveRun::give`].
@@ -145,13 +145,13 @@ impl LiveRun {
         Ok(())
     }
 
-    /// Has the garment go on from where it hangs to what an edit of the pattern asks for, as soon as the
-    /// seams of its finest mesh are closed. `edit` follows from the garment given last: here, or with the
+    /// Applies an edit of the pattern to the garment where it hangs, as soon as the seams of its finest
+    /// mesh are closed. `edit` starts from the garment given last: at the start of the run, or with the
     /// edit before. An edit that still waits is replaced. Hands stay on the cloth unless it is meshed
     /// anew. A garment that stands still goes on.
     ///
-    /// A garment that comes to rest after an edit is no [`LiveRun::result`]: friction and folds remember the shapes
-    /// before, so it hangs a little otherwise than a drape of the pattern from the start.
+    /// A garment that comes to rest after an edit is no [`LiveRun::result`]: friction and folds remember the
+    /// shapes before, so it hangs a little otherwise than a drape of the pattern from the start.
     pub fn edit(&self, mut edit: GarmentEdit) {
         let mut orders = lock(&self.shared.orders);
         if let Some(replaced) = orders.edit.take() {
@@ -168,24 +168,24 @@ impl LiveRun {
         lock(&self.shared.orders).stands = true;
     }
 
-    /// Everything that was done to the cloth so far, each with the step it was applied at. The
-    /// same job with these inputs gives the same positions, bit by bit.
+    /// All actions on the cloth so far, each with the step at which it was applied. The same job
+    /// with these inputs gives the same positions, bit by bit.
     pub fn inputs(&self) -> Vec<Input> {
         lock(&self.shared.applied).clone()
     }
 
-    /// Holds the run after the present step.
+    /// Pauses the run after the present step.
     pub fn pause(&self) {
         lock(&self.shared.orders).paused = true;
     }
 
-    /// Lets a held run go on.
+    /// Resumes a paused run.
     pub fn resume(&self) {
         lock(&self.shared.orders).paused = false;
         self.shared.woken.notify_all();
     }
 
-    /// Whether the run is held.
+    /// Whether the run is paused.
     pub fn is_paused(&self) -> bool {
         lock(&self.shared.orders).paused
     }
@@ -196,13 +196,13 @@ impl LiveRun {
         self.shared.woken.notify_all();
     }
 
-    /// Whether nothing moves any more: at rest, stopped or failed. What is done to a garment at rest
-    /// begins it again.
+    /// Whether nothing moves any more: at rest, stopped or failed. An action on a garment at rest, or an
+    /// edit of it, starts it again.
     pub fn is_finished(&self) -> bool {
         self.shared.finished.load(Ordering::Acquire)
     }
 
-    /// Why it failed, if it did.
+    /// Reason why the run failed, if it did.
     pub fn failure(&self) -> Option<String> {
         lock(&self.shared.outcome).as_ref()?.as_ref().err().cloned()
     }
@@ -213,7 +213,7 @@ impl LiveRun {
         lock(&self.shared.outcome).as_ref()?.as_ref().ok().cloned()
     }
 
-    /// What a garment that rests ought not to have, in plain words, also after an edit.
+    /// Warnings about a garment at rest, in plain words, also after an edit.
     pub fn warnings(&self) -> Vec<String> {
         lock(&self.shared.warnings).clone()
     }
@@ -257,8 +257,8 @@ impl Shared {
         }
     }
 
-    /// Waits while the run is paused, stands still, or is at rest with nothing to be done. Hands the
-    /// inputs that came to the run.
+    /// Waits while the run is paused, stands still, or is at rest with nothing to do. Passes queued
+    /// actions on to the run.
     fn wait_for_task(&self, run: &mut InteractiveRun, told: Option<&RestReport>) -> NextTask {
         let mut orders = lock(&self.orders);
         loop {
@@ -322,7 +322,7 @@ impl Shared {
 
 /// The report on a garment at rest.
 struct RestReport {
-    /// Its drape, unless it followed an edit.
+    /// Drape of the garment, unless it followed an edit.
     result: Option<DrapeResult>,
     warnings: Vec<String>,
     verdict: Verdict,

@@ -1,4 +1,4 @@
-//! What a mannequin is made from.
+//! Source of a mannequin: measurements that it is grown to, or a description.
 
 use crate::Project;
 use crate::placed_panels::sleeve_angle;
@@ -6,12 +6,12 @@ use std::sync::Arc;
 use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_measure::{Measurements, Origin};
 
-/// What a mannequin is made from: the same makes the same.
+/// Everything that a mannequin is made from: equal sources make equal mannequins.
 #[derive(Clone, PartialEq)]
 pub(crate) enum MannequinSource {
     /// Grown to measurements.
     Grown(Figure, Measurements),
-    /// Standing as its description says.
+    /// Made as its description says.
     Shaped(Arc<Description>),
 }
 
@@ -38,8 +38,8 @@ impl Project {
     }
 }
 
-/// The measurements of the mannequin of a project, with its arms held as the sleeves of its garments are placed
-/// where nobody says how they are held, and that angle.
+/// The measurements of the mannequin of a project. Unless the angle of its arms was asked for, they are held
+/// as the sleeves of its garments are placed in space, and that angle (rad) is returned, too.
 pub(crate) fn measurements_for_sleeves(project: &Project) -> (Measurements, Option<f64>) {
     let mut measurements = project.body_measurements();
     let given = measurements.measured("arm_pose_angle");

@@ -10,7 +10,7 @@ use toile_pattern::{Draft, Evaluation, Marker, MarkerId, Pattern, Size, SizeId, 
 #[derive(Clone)]
 struct SizeDraft {
     evaluation: Arc<Evaluation>,
-    /// The pattern and wearer it was last brought up to date with.
+    /// Pattern and wearer of the last update.
     of: (Arc<Pattern>, Wearer),
     draft: Arc<Draft>,
 }
@@ -31,7 +31,7 @@ pub(crate) struct MarkerCache {
 }
 
 impl MarkerCache {
-    /// A pattern drafted to a size. The draft before stays where the new one is the same.
+    /// Drafts the pattern to a size. The draft before is kept if the new one is equal.
     fn draft(&mut self, project: &Project, size: Option<SizeId>) -> &SizeDraft {
         let pattern = &project.pattern;
         let own = pattern.sizes.iter().find(|own| Some(own.id) == size);
@@ -91,7 +91,7 @@ impl MarkerCache {
         Ok(pieces)
     }
 
-    /// Everything that keeps a size of a marker's order from being made.
+    /// Refuses a marker if faults keep a size of its order from being made.
     pub fn refuse_faults(
         &mut self,
         project: &Project,
@@ -108,7 +108,7 @@ impl MarkerCache {
     }
 }
 
-/// Whether two lists hold the same parts.
+/// Whether two lists hold the same shared parts.
 fn all_same<'a, T: 'a>(
     a: impl ExactSizeIterator<Item = &'a Arc<T>>,
     b: impl ExactSizeIterator<Item = &'a Arc<T>>,

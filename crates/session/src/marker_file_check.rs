@@ -19,7 +19,7 @@ pub struct JudgedMarker {
     pub files: Vec<PathBuf>,
 }
 
-/// Whether a text is a marker.
+/// Whether a file is a marker.
 pub fn is_marker_file(path: &Path) -> bool {
     let marked = |text: &str| {
         let head = text.get(..400.min(text.len())).unwrap_or(text);
@@ -30,9 +30,8 @@ pub fn is_marker_file(path: &Path) -> bool {
 }
 
 /// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap of each garment, print,
-/// flaws. Rules that only
-/// the pattern knows (tilt allowed, folds, pairs, locks) are not judged. With a folder, writes
-/// `marker-judged.svg`, where overlaps are red.
+/// flaws. Rules that only the pattern knows (tilt allowed, folds, pairs, locks) are not judged.
+/// Writes `marker-judged.svg`, in which overlaps are red, into the folder if one is given.
 ///
 /// # Errors
 /// The file cannot be read or is no marker; the drawing cannot be written.

@@ -6,24 +6,24 @@ use toile_marker::{DocumentMarker, Found, MarkerPieces, SearchWatcher, Start};
 use toile_nesting::Search;
 use toile_pattern::{Marker, MarkerId, MarkerKeeps, Pattern, plan};
 
-/// A search for a marker of a document, on what the document was when it was asked for. It may run
-/// on a thread of its own.
+/// A search for the layout of a marker, on the document as it was when the search was asked for. It
+/// may run on a thread of its own.
 pub struct MarkerSearch {
     marker: Arc<Marker>,
     pieces: Arc<MarkerPieces>,
 }
 
-/// What such a search found.
+/// Result of a search for the layout of a marker.
 pub struct FoundMarker {
     marker: Arc<Marker>,
     pieces: Arc<MarkerPieces>,
-    /// Where the pieces lie, and the marker in a few numbers.
+    /// Placements of the pieces, and the marker in a few numbers.
     pub found: Found,
 }
 
 impl MarkerSearch {
-    /// Lays the pieces in little length; locked ones stay where they are. Stopped early, it ends with
-    /// the best so far.
+    /// Lays the pieces in little length; locked pieces stay where they are. A search that is stopped
+    /// early ends with the best layout so far.
     ///
     /// # Errors
     /// Pieces that cannot be laid, in words; [`SessionError::Cancelled`] if it was stopped before
@@ -55,7 +55,7 @@ impl Session {
         self.marker_on_roll(id, 0)
     }
 
-    /// The same as its pieces lie on one of its rolls, counted from 0.
+    /// A marker of the document with its pieces as they lie on one of its rolls, counted from 0.
     ///
     /// # Errors
     /// As [`Session::marker`].
@@ -82,9 +82,9 @@ impl Session {
         Ok(MarkerSearch { marker, pieces })
     }
 
-    /// Takes over what a search found: one step of the history, one command of the journal. Where the
-    /// marker or its pieces have changed since, it comes too late and is dropped; nothing is told
-    /// then.
+    /// Adopts the result of a search as one step of the history and one command of the journal. If the
+    /// marker or its pieces have changed since, the result comes too late and is dropped; none is
+    /// returned then.
     ///
     /// # Errors
     /// The edits cannot be made.
@@ -106,13 +106,13 @@ impl Session {
         Ok(Some(events))
     }
 
-    /// What markers keep though the garment is cut otherwise, in words.
+    /// Notes on markers that keep their fabric or width although the garment is cut from another.
     pub(crate) fn kept_by_markers(&self) -> Vec<String> {
         let markers = self.project.pattern.markers.iter();
         markers.filter_map(|marker| self.kept_by(marker)).collect()
     }
 
-    /// What a marker keeps though the garment is cut otherwise, in words.
+    /// Note on a marker that keeps its fabric or width although the garment is cut from another.
     pub(crate) fn kept_by(&self, marker: &Marker) -> Option<String> {
         let pattern = &self.project.pattern;
         let keeps = pattern.marker_keeps(marker, &self.project.garment_cloth())?;
@@ -134,8 +134,8 @@ impl Session {
     }
 }
 
-/// What is said of a marker that cuts sizes alone while the garment is made for a wearer who is none of them, and of one
-/// that cuts the wearer's while the garment is drafted to a size, in words that go on from its name.
+/// Note on a marker that cuts only named sizes while the garment is drafted to a wearer, or that cuts the
+/// wearer's size while the garment is drafted to a named one. The words go on from the name of the marker.
 pub fn other_sizes_words(project: &Project, marker: &Marker) -> Option<String> {
     let pattern = &project.pattern;
     let cuts_wearers = marker.order.iter().any(|ordered| ordered.size.is_none());
@@ -163,7 +163,7 @@ pub fn other_sizes_words(project: &Project, marker: &Marker) -> Option<String> {
     ))
 }
 
-/// What a marker keeps, in words that go on from its name.
+/// Words for the fabric or width that a marker keeps; they go on from the name of the marker.
 pub fn kept_words(pattern: &Pattern, keeps: &MarkerKeeps) -> String {
     let shown = |metres: f64| Shown(pattern.unit).length(metres);
     match keeps {

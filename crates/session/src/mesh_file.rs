@@ -1,4 +1,4 @@
-//! Meshes of files: read, turned right side out, and stood upright where a person is.
+//! Meshes of files: read, turned right side out, and set upright if they are of a person.
 
 use crate::SessionError;
 use crate::open::read_bytes;
@@ -7,13 +7,13 @@ use toile_body::{AskedStance, BodyError, Stance};
 use toile_geometry::TriangleMesh;
 use toile_interchange::{ExpectedKind, FormatError, read_mesh};
 
-/// A mesh as its file has it, with what was set right.
+/// A mesh read from a file, with notes on corrections.
 pub(crate) struct OpenedMesh {
     pub mesh: TriangleMesh,
     pub notes: Vec<String>,
 }
 
-/// Reads a mesh (OBJ or PLY). One that is inside out, or in part, is turned.
+/// Reads a mesh (OBJ or PLY). Triangles that are inside out are turned round.
 ///
 /// # Errors
 /// The file cannot be read, or is no mesh.
@@ -39,10 +39,11 @@ pub(crate) fn open_mesh(path: &Path) -> Result<OpenedMesh, SessionError> {
     Ok(OpenedMesh { mesh, notes })
 }
 
-/// Reads a mesh of a person, and stands it as asked or as it is seen: in metres, Y up, facing +Z.
+/// Reads a mesh of a person and sets it upright, by the stance asked for or detected: in metres, Y up, facing
+/// +Z.
 ///
 /// # Errors
-/// Those of [`open_mesh`]; and a mesh whose axes or unit cannot be told.
+/// Those of [`open_mesh`]; and a mesh whose axes or unit cannot be detected.
 pub(crate) fn open_person(
     path: &Path,
     asked: &AskedStance,
@@ -66,7 +67,7 @@ pub(crate) fn open_person(
     Ok((opened, stance))
 }
 
-/// A stance that cannot be told, with the remedy of whoever asked.
+/// Error of a stance that cannot be detected, with the remedy of the caller.
 pub(crate) fn stance_error(path: &Path, error: &BodyError, hint: &str) -> SessionError {
     SessionError::Format {
         path: path.to_owned(),

@@ -39,7 +39,7 @@ impl Drafted {
     }
 }
 
-/// The drafts of all patterns in all sizes, what they are called, and what was left out or is
+/// Drafts of all patterns in all sizes, their names, and notes on parts that were left out or are
 /// missing.
 pub(crate) struct DraftedPatterns {
     pub drafts: Vec<Drafted>,
@@ -47,8 +47,8 @@ pub(crate) struct DraftedPatterns {
     pub notes: Vec<String>,
 }
 
-/// Drafts patterns in the sizes asked for, else in the one that each file keeps, from the fabric and
-/// the width that it keeps.
+/// Drafts patterns in the sizes asked for, else in the size stored in each file, with the fabric and
+/// the width stored there.
 pub(crate) fn drafts_of(
     patterns: &[PathBuf],
     options: &NestOptions,
@@ -100,7 +100,7 @@ pub(crate) fn drafts_of(
     })
 }
 
-/// A name that is not known yet: of several patterns of one name the second is number 2.
+/// A name that is not taken yet: the second of several patterns of one name is number 2.
 fn another(name: &str, known: &[String]) -> String {
     let mut number = 1;
     let mut own = name.to_owned();
@@ -111,7 +111,7 @@ fn another(name: &str, known: &[String]) -> String {
     own
 }
 
-/// What tells pieces of one pattern and size from those of others, if there are several.
+/// Label that tells pieces of one pattern and size from those of others, if there are several.
 fn label_of(pattern: Option<&str>, size: Option<&str>) -> Option<String> {
     let parts: Vec<&str> = pattern.into_iter().chain(size).collect();
     (!parts.is_empty()).then(|| parts.join(" "))
@@ -155,7 +155,7 @@ pub fn nest_patterns(
 /// Reads a file of marker settings.
 ///
 /// # Errors
-/// The file cannot be read, or is not what it should be.
+/// The file cannot be read, or does not hold marker settings.
 pub fn open_marker_settings(path: &Path) -> Result<MarkerSettings, SessionError> {
     read_marker_settings(&read_input(path, ExpectedKind::MarkerSettings)?).map_err(|error| {
         SessionError::Format {
@@ -172,7 +172,7 @@ pub fn is_nesting_instance(path: &Path) -> bool {
 }
 
 /// Lays the items of an instance and writes the solution in the instance's own format, as
-/// `NAME.json`. Returns a summary, the density of the strip (0..=1), notes and the file written.
+/// `NAME.json`. Returns a summary, notes and the file written.
 ///
 /// # Errors
 /// The instance cannot be read or laid, an option does not apply (all but budget, seed, threads and
@@ -226,7 +226,7 @@ pub fn nest_instance(
     };
     let (items, strip) = (&instance.items, &instance.strip);
     let made = make_marker(items, strip, options.search(), &mut control);
-    // Lengths of an instance are said as its own numbers of millimetres.
+    // Messages give lengths in millimetres: scaled so that they show the numbers of the instance.
     let marker = made.map_err(|error| MarkerError::from(error.scaled(1e-3 / scale)))?;
     if cancel.load(Ordering::Relaxed) && !options.keep_best {
         return Err(SessionError::Cancelled);

@@ -24,7 +24,7 @@ pub const SAMPLES: &[(&str, &str)] = &[
     ("sample:dress", "Dress"),
 ];
 
-/// Their files, in the same order.
+/// Texts of the sample patterns, in the same order.
 const SAMPLE_TEXTS: &[&str] = &[
     include_str!("../../../patterns/t-shirt.toile.json"),
     include_str!("../../../patterns/gathered-skirt.toile.json"),
@@ -48,7 +48,7 @@ fn sample(path: &Path) -> Option<&'static str> {
 /// Formats of patterns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PatternFormat {
-    /// Toile's own.
+    /// Toile's own format.
     Native,
     /// A GarmentCode specification.
     GarmentCode,
@@ -59,16 +59,16 @@ pub enum PatternFormat {
 pub struct Opened {
     /// The pattern.
     pub pattern: Pattern,
-    /// How its garment is tried on.
+    /// Fitting of the garment.
     pub fitting: Fitting,
-    /// What the file was.
+    /// Format of the file.
     pub format: PatternFormat,
-    /// What was left out or assumed, with its place.
+    /// Notes on parts that were left out or assumed, with their places.
     pub notes: Vec<String>,
 }
 
-/// Reads a pattern file. A pattern without a name is named after its file; panels that the file plainly places
-/// round another point than the floor are raised to stand there, with a note.
+/// Reads a pattern file. A pattern without a name is named after its file; panels that the file plainly
+/// places round another point than the floor are raised to stand on the floor, with a note.
 ///
 /// # Errors
 /// The file cannot be read, or is not a pattern.
@@ -109,7 +109,7 @@ pub fn open_marker(path: &Path) -> Result<MarkerFile, SessionError> {
     })
 }
 
-/// The description in a mannequin file.
+/// Reads the description in a mannequin file.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -207,8 +207,8 @@ fn looks_like_garmentcode(text: &str) -> bool {
 }
 
 /// Reads a table of body measurements: native JSON, GarmentCode YAML, Seamly, Valentina or
-/// FreeSewing; of a table for several sizes the one chosen. Also tells which was taken, and what
-/// was left out.
+/// FreeSewing; of a table for several sizes the one chosen. Also returns notes on the size taken
+/// and on parts that were left out.
 ///
 /// # Errors
 /// The file cannot be read, is not such a table, or does not have the size.

@@ -10,20 +10,20 @@ use toile_assembly::{Garment, PieceMeshes};
 use toile_cut::cut_diagnostics;
 use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern, Severity};
 
-/// One of the garments worn: what of the whole is its own.
+/// One of the garments worn, with its share of the combined garment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GarmentPart {
     /// Name to show; no other part has it.
     pub name: String,
     /// The file of its pattern.
     pub source: Option<PathBuf>,
-    /// Its layer: larger numbers lie farther out.
+    /// Layer of the garment: larger numbers lie farther out.
     pub layer: u16,
-    /// Its panels.
+    /// Panels of the garment.
     pub panels: Range<usize>,
-    /// Its vertices before merging.
+    /// Vertices of the garment before merging.
     pub vertices: Range<usize>,
-    /// Its triangles before merging.
+    /// Triangles of the garment before merging.
     pub triangles: Range<usize>,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct DraftedPart {
     pub source: Option<PathBuf>,
     pub layer: u16,
     pub pattern: Arc<Pattern>,
-    /// The size it is drafted in, if that is one of its own.
+    /// Name of the size it is drafted in, if it is drafted to a size of a table.
     pub size: Option<String>,
     pub draft: Arc<Draft>,
     pub diagnostics: Arc<Vec<Diagnostic>>,
@@ -54,7 +54,7 @@ impl DraftedPart {
         }
     }
 
-    /// A garment worn with it, in the project's size and fabric.
+    /// A garment worn with the project's own, in the project's size and fabric.
     pub fn other(project: &Project, worn: &WornGarment, pattern: &Arc<Pattern>) -> Self {
         let measurements = project.drafted_for(pattern);
         let (mut draft, diagnostics) = checked(&Evaluation::new(pattern, &measurements));
@@ -85,8 +85,8 @@ impl DraftedPart {
     }
 }
 
-/// The draft of an evaluated pattern, with everything that is wrong with it and what its cut lines
-/// do not do as drawn.
+/// The draft of an evaluated pattern, with its diagnostics, including those of cut lines that cannot
+/// be made as drawn.
 pub(crate) fn checked(evaluation: &Evaluation) -> (Draft, Vec<Diagnostic>) {
     let pattern = evaluation.pattern();
     let mut found = evaluation.check();
@@ -119,12 +119,12 @@ pub(crate) struct MeshedPart {
     pub garment: Garment,
 }
 
-/// The garments worn as one: its draft, its mesh, and the parts it is made of.
+/// The garments worn, combined into one: draft, mesh and parts.
 pub(crate) struct Outfit {
     pub draft: Arc<Draft>,
     pub garment: Arc<Garment>,
     pub parts: Arc<Vec<GarmentPart>>,
-    /// What it was put together from.
+    /// Meshed garments that the outfit was put together from.
     pub meshed: Arc<Vec<MeshedPart>>,
 }
 
@@ -171,7 +171,7 @@ impl Outfit {
     }
 }
 
-/// Adds a mesh whose draft comes after what is in `before`.
+/// Adds the mesh of a garment whose draft comes after the drafts in `before`.
 fn add_garment(whole: &mut Garment, part: Garment, before: &Draft, prefix: &str) {
     let (vertex, triangle) = (whole.positions.len(), whole.triangles.len());
     let shifted = |range: Range<usize>, by: usize| range.start + by..range.end + by;

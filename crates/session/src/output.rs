@@ -1,4 +1,4 @@
-//! What commands write: files with their names, why one cannot be written, where commands are led to write.
+//! Output of commands: files with their names, errors of writing, and redirection into a folder.
 
 use crate::{Command, SessionError};
 use std::path::Path;
@@ -7,7 +7,8 @@ use toile_interchange::FormatError;
 /// A file to write: its name and its content.
 pub(crate) type File = (String, Vec<u8>);
 
-/// A name as one of a file: letters and digits of any language, `-`, `_` and `.` but at its start.
+/// Makes a file name of a name: letters and digits of any language, `-`, `_` and `.` (not at the start) stay,
+/// other characters become `_`.
 pub(crate) fn file_name(name: &str) -> String {
     let plain = |(k, c): (usize, char)| {
         let keeps = c.is_alphanumeric() || "-_".contains(c) || (c == '.' && k > 0);
@@ -20,8 +21,8 @@ pub(crate) fn cannot(file: &'static str) -> impl Fn(FormatError) -> SessionError
     move |error| SessionError::Write { file, error }
 }
 
-/// A command as it is written beside what it made: a place to write to is named by the file name alone, so that the
-/// journal does not depend on where it lies.
+/// The command as a journal beside its results records it: a file that is written by its name alone, a folder
+/// as `.`, so that the journal does not depend on where it lies.
 pub(crate) fn portable(mut command: Command) -> Command {
     let is_folder = matches!(command, Command::Export(_));
     if let Some(output) = command.output_mut() {
@@ -34,7 +35,7 @@ pub(crate) fn portable(mut command: Command) -> Command {
     command
 }
 
-/// The commands with everything that is written going into one folder.
+/// The commands with all output redirected into one folder.
 pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
     let mut commands: Vec<Command> = commands.iter().cloned().map(portable).collect();
     for command in &mut commands {

@@ -1,4 +1,4 @@
-//! How fast the run of a scene advances: progress in words, the time left, the slow-down, and whether the run is given
+//! Pace of the run of a scene: progress in words, the time left, the slow-down, and whether the run is given
 //! up. Nothing but the choice to give up influences results.
 
 use crate::{RunOptions, SessionError, cpu_seconds};
@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use std::time::Instant;
 use toile_drape::{Aspect, Finding, SceneRun};
 
-/// Follows a run.
+/// Measures the pace of a run.
 pub(crate) struct Pace {
     /// Most processor time that a simulated second may take (s).
     give_up: Option<f64>,
@@ -17,7 +17,7 @@ pub(crate) struct Pace {
     fastest: f64,
 }
 
-/// Where a run stands.
+/// Times of a run at one moment.
 #[derive(Clone, Copy)]
 struct Moment {
     /// Simulated time (s).
@@ -32,17 +32,17 @@ struct Moment {
 const SPAN: f64 = 1.0;
 /// Share of the duration over which the present speed is measured.
 const RECENT: f64 = 0.1;
-/// Moments kept at most in a span: closer ones tell no more.
+/// Most moments kept in a span; closer ones tell no more.
 const MAX_MOMENTS: f64 = 1000.0;
-/// A simulated second takes so many times as long as at its fastest where the slow-down is told.
+/// Time of a simulated second over that of the fastest one, above which the slow-down is reported (1).
 const SLOW: f64 = 2.0;
 
 impl Pace {
-    /// Begins where a run stands.
+    /// Begins at the present state of a run.
     ///
     /// # Errors
-    /// A time to give up after that is no time, a run to rest, which has no simulated seconds, or a system that tells
-    /// no processor time.
+    /// A limit of processor time that is not positive, or that is given for a run to rest, which has no
+    /// simulated seconds, or on a system that tells no processor time.
     pub fn new(options: &RunOptions, run: &SceneRun) -> Result<Self, SessionError> {
         if let Some(value) = options.give_up {
             let refuse = |hint| {
@@ -82,8 +82,8 @@ impl Pace {
         }
     }
 
-    /// Follows a step. Gives the finding of a run that is to be given up: its last simulated second, or what there is
-    /// of it, has taken more processor time than it may.
+    /// Takes note of a step. Returns a finding if the run is to be given up: its last simulated second, or
+    /// the part of it so far, has taken more processor time than it may.
     pub fn follow(&mut self, run: &SceneRun) -> Option<Finding> {
         let now = self.moment(run);
         while self.past.len() > 1 && self.past[1].time <= now.time - SPAN {

@@ -1,10 +1,10 @@
-//! Ways from a folder to a file, so that what lies together can be moved together.
+//! Relative paths from a folder to a file, so that files that lie together can be moved together.
 
 use std::path::{Component, Path, PathBuf};
 
-/// The whole path of a file or a folder, which need not be there yet.
+/// Absolute path of a file or a folder, without symbolic links; it need not exist yet.
 pub(crate) fn resolved(path: &Path) -> PathBuf {
-    // The folder of a bare file name is the one that is worked in.
+    // The folder of a bare file name is the working directory.
     let path = match path.as_os_str().is_empty() {
         true => Path::new("."),
         false => path,
@@ -23,7 +23,7 @@ pub(crate) fn resolved(path: &Path) -> PathBuf {
     }
 }
 
-/// The way from a folder to a file; none where they have no common root.
+/// Relative path from a folder to a file; none if they have no common root.
 pub(crate) fn relative(file: &Path, folder: &Path) -> Option<PathBuf> {
     let parts = |path: &Path| {
         path.components()

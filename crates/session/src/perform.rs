@@ -1,4 +1,4 @@
-//! What each command does.
+//! Performs each command on a session.
 
 use crate::bodies::{body_of, description_of, shaped};
 use crate::fabrics::chosen;
@@ -72,7 +72,7 @@ impl Session {
         }
     }
 
-    /// Puts another project in place of the present one, as a step of the history.
+    /// Replaces the project, as a step of the history.
     fn change(&mut self, next: Project, label: &str) -> Vec<Event> {
         if next == self.project {
             return Vec::new();
@@ -98,7 +98,7 @@ impl Session {
     ) -> Outcome {
         let mut next =
             step(&mut self.history, &self.project).ok_or(SessionError::Nothing { action, hint })?;
-        // Where the pattern is kept is no step of the history.
+        // The file of the pattern is not part of the history.
         next.source = self.project.source.clone();
         // Ids are never given twice, not even those of what was undone.
         let given = self.project.pattern.ids;
@@ -134,7 +134,7 @@ impl Session {
         Ok(events)
     }
 
-    /// Takes up a pattern that is in no file, with the steps that led to it as far back as they can be read.
+    /// Restores a pattern that is in no file, with the steps that led to it as far back as they can be read.
     fn restore(&mut self, (text, past): (&str, &[PastStep]), source: Option<&Path>) -> Outcome {
         let (next, fitting, notes) = self.restored((text, None), source)?;
         let mut worn = (fitting, next.clone());
@@ -160,8 +160,9 @@ impl Session {
         Ok(events)
     }
 
-    /// The project of a pattern that is in no file, in the present quality, how it says that it is tried on, and
-    /// what is worth telling. Where one beside it says the same of that, its files are not read again.
+    /// Reads a pattern that is in no file as a project in the present quality; also returns its fitting, and
+    /// notes. If `beside`, the state after it, has the same fitting and sizes, files of the fitting are not
+    /// read again.
     fn restored(
         &self,
         (text, beside): (&str, Option<&(Fitting, Project)>),
@@ -192,7 +193,7 @@ impl Session {
         Ok((next, opened.fitting, notes))
     }
 
-    /// Puts another project in place of the present one, in its quality, with a history of its own.
+    /// Replaces the project by another document, in the present quality, with a history of its own.
     fn begin(&mut self, next: Project) -> Vec<Event> {
         let next = Project {
             quality: self.project.quality,
@@ -208,7 +209,7 @@ impl Session {
         report_progress(watcher, "writing", 0.0, &path.display().to_string())?;
         let text = document_text(&self.project, Some(path)).map_err(cannot("the pattern"))?;
         write_atomically(path, text.as_bytes())?;
-        // Where a pattern is kept is not part of what it is: no step of the history.
+        // The file of a pattern is not part of the pattern: no step of the history.
         self.project.source = Some(path.to_owned());
         self.saved = self.project.clone();
         let mut events = vec![Event::FilesWritten {
@@ -282,7 +283,7 @@ impl Session {
         let text =
             write_mannequin(&description_of(&self.project)).map_err(cannot("the mannequin"))?;
         write_atomically(path, text.as_bytes())?;
-        // Where an edited body is kept is no step of the history, as with a pattern.
+        // The file of an edited body is no step of the history, like that of a pattern.
         if let BodyChoice::Shaped {
             path: kept @ None, ..
         } = &mut self.project.body
@@ -349,7 +350,7 @@ impl Session {
             let known = worn_now.find(|worn| worn.source == other.path);
             let pattern = match (self.opened_to_wear(&other.path, &mut notes), known) {
                 (Ok(pattern), _) => Some(pattern),
-                // What is worn already stays as it was opened, and what was missing stays named.
+                // A garment worn already stays as it was opened, and one that was missing stays named.
                 (Err(error), Some(known)) => {
                     if known.pattern.is_some() {
                         notes.push(format!("{error}; it is worn as it was when it was opened"));

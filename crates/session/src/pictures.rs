@@ -8,7 +8,7 @@ use toile_picture::{
     Scene, Sheet, Surface, View, drape_picture, fit_picture, render,
 };
 
-/// Stretch at the end of the colours (%).
+/// Stretch at the upper end of the colour scale (%).
 const MAX_STRETCH: f64 = 10.0;
 /// Colour of a mannequin.
 pub(crate) const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
@@ -41,7 +41,7 @@ pub(crate) fn seam_lines(pairs: Vec<[u32; 2]>, colour: Rgb) -> Lines {
     }
 }
 
-/// The colour of lines on cloth of a colour.
+/// Colour of lines on cloth of the given colour.
 pub(crate) fn darker(colour: Rgb) -> Rgb {
     colour.map(|c| 0.35 * c)
 }
@@ -64,7 +64,7 @@ fn worn(drape: &Drape, skin: &TriangleMesh) -> Scene {
     }
 }
 
-/// The garment on the mannequin from half-way, as a PNG of a size (pixels).
+/// Three-quarter view of the garment on the mannequin, as a PNG of a size (pixels).
 pub(crate) fn drape_view_png(
     drape: &Drape,
     skin: &TriangleMesh,
@@ -77,7 +77,7 @@ pub(crate) fn drape_view_png(
     Ok(render(&scene, &camera, size, &Backdrop::default())?.to_png()?)
 }
 
-/// The garment on the mannequin from all sides with what the verdict found, as PNG.
+/// The garment on the mannequin from all sides with the headline of the verdict, as PNG.
 pub(crate) fn drape_png(
     drape: &Drape,
     skin: &TriangleMesh,
@@ -120,8 +120,8 @@ pub(crate) fn fit_png(
     Ok(fit_picture(&scene, &legend, &Sheet::chart(title))?.to_png()?)
 }
 
-/// Stretch at each merged vertex (%): the mean of the triangles there by their area; what is
-/// squeezed counts as relaxed.
+/// Stretch at each merged vertex (%): mean of the triangles there, weighted by area; compressed
+/// cloth counts as relaxed.
 fn vertex_stretch(drape: &Drape) -> Vec<f64> {
     let mut sums = vec![[0.0; 2]; drape.mesh.positions.len()];
     for (t, triangle) in drape.mesh.triangles.iter().enumerate() {

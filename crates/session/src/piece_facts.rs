@@ -33,16 +33,16 @@ pub struct PieceFacts {
     pub cut: RegionFacts,
     /// The edges of the outline, then those of holes.
     pub edges: Vec<EdgeFacts>,
-    /// Its notches.
+    /// Notches of the piece.
     pub notches: Vec<NotchFacts>,
-    /// Its darts.
+    /// Darts of the piece.
     pub darts: Vec<DartFacts>,
 }
 
 /// A region of cloth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RegionFacts {
-    /// Holes taken out (cm2).
+    /// Area without holes (cm2).
     pub area_cm2: f64,
     /// Least and greatest x and y (mm).
     pub bounds_mm: [[f64; 2]; 2],
@@ -50,18 +50,18 @@ pub struct RegionFacts {
     pub outline_mm: f64,
 }
 
-/// An edge. A spline is several, of one name.
+/// An edge. A spline is several edges of one name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EdgeFacts {
     /// Name of the edge, or of the operation that made it.
     pub name: String,
-    /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
+    /// Half of a folded panel: 0 as drawn; one bit for each fold, set beyond the fold.
     pub half: u8,
     /// Length along the seam line (mm).
     pub length_mm: f64,
     /// Width of the seam allowance (mm).
     pub allowance_mm: f64,
-    /// How the cut line turns at its start: mitre, bevel, square, extended or mirrored.
+    /// Corner of the cut line at the start of the edge: mitre, bevel, square, extended or mirrored.
     pub corner: &'static str,
 }
 
@@ -70,17 +70,17 @@ pub struct EdgeFacts {
 pub struct NotchFacts {
     /// Name of the notch.
     pub name: String,
-    /// The edge it is on, and the half.
+    /// Name of the edge that the notch is on.
     pub edge: String,
-    /// Which half of a folded panel.
+    /// Half of a folded panel.
     pub half: u8,
-    /// slit, v, castle, t or check.
+    /// Kind: slit, v, castle, t or check.
     pub kind: &'static str,
-    /// On the seam line (mm).
+    /// Position on the seam line (mm).
     pub seam_mm: [f64; 2],
-    /// On the cut line (mm).
+    /// Position on the cut line (mm).
     pub cut_mm: [f64; 2],
-    /// How deep it is cut (mm); 0 where it is drawn on the seam line.
+    /// Depth of the cut (mm); 0 if the notch is drawn on the seam line.
     pub depth_mm: f64,
 }
 
@@ -89,11 +89,11 @@ pub struct NotchFacts {
 pub struct DartFacts {
     /// Name of the dart.
     pub name: String,
-    /// Which half of a folded panel.
+    /// Half of a folded panel.
     pub half: u8,
-    /// Straight across the mouth; of a diamond across its widest place (mm).
+    /// Width straight across the mouth, or across the widest place of a diamond dart (mm).
     pub width_mm: f64,
-    /// Its legs in the order of the outline; of a diamond all four (mm).
+    /// Lengths of the legs in the order of the outline; all four of a diamond dart (mm).
     pub legs_mm: Vec<f64>,
     /// The leg it is pressed towards: before or after the apex as drawn.
     pub pressed: &'static str,
@@ -104,26 +104,26 @@ pub struct DartFacts {
 pub struct SeamFacts {
     /// Name of the seam.
     pub name: String,
-    /// Lengths of its sides (mm).
+    /// Lengths of both sides (mm).
     pub lengths_mm: [f64; 2],
     /// Whether the longer side is gathered or eased on purpose.
     pub gathered: bool,
-    /// The lines that cross it at its ends.
+    /// Outlines that cross the seam at its ends.
     pub joints: Vec<JointFacts>,
 }
 
 /// Two edges that go on into each other across a seam at one of its ends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointFacts {
-    /// start or end.
+    /// End of the seam: start or end.
     pub end: &'static str,
     /// Names of the edges, or of the operations that made them: on the first side, on the second.
     pub edges: [String; 2],
     /// Names of their pieces.
     pub pieces: [String; 2],
-    /// By how much the line turns across the seam: above 0 a peak, below 0 a dip (deg).
+    /// Angle by which the outline turns across the seam: above 0 a peak, below 0 a dip (deg).
     pub kink_deg: f64,
-    /// How far the first piece reaches beyond the second at the end (mm).
+    /// Length by which the first piece reaches beyond the second at that end (mm).
     pub step_mm: f64,
 }
 
@@ -204,7 +204,7 @@ fn region_facts(polygon: &Polygon) -> RegionFacts {
     }
 }
 
-/// Lengths and areas of the curves themselves.
+/// Facts of the sewing lines; area and length are those of the curves themselves, not of polygons.
 fn sewn_facts(piece: &Piece, cut: &CutPiece) -> RegionFacts {
     let outer = cut
         .sew

@@ -1,4 +1,5 @@
-//! Panels that a file places in space: the height of the origin they stand round, and how their sleeves hold the arms.
+//! Panels that a file places in space: the height of the origin they stand round, and how their sleeves hold
+//! the arms.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use toile_pattern::{BodyPart, Draft, Pattern, Piece, Worn, WornRule};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PanelOrigin {
-    /// Found from where the panels lie.
+    /// Detected from the positions of the panels.
     #[default]
     Automatic,
     /// The floor between the feet, as in Toile.
@@ -20,7 +21,7 @@ pub enum PanelOrigin {
     Waist,
     /// The pelvis of the body model SMPL, as its authors' garments are placed.
     Pelvis,
-    /// A point so high above the floor (m).
+    /// A point at a height above the floor (m).
     Height(f64),
 }
 
@@ -28,22 +29,22 @@ pub enum PanelOrigin {
 const WAIST: f64 = 1.05;
 /// Height of the origin of SMPL's average body, which its authors call the pelvis, above the floor (m).
 const PELVIS: f64 = 1.12;
-/// Panels this far below the floor (m) are no hem that touches it.
+/// Height below which a panel is no hem that touches the floor (m).
 const BELOW_FLOOR: f64 = -0.05;
-/// No panel of a head, an arm or a trunk has its middle lower than this above the floor (m): a child of one year is
-/// 75 cm tall.
+/// Least height above the floor of the middle of a panel of a head, an arm or a trunk (m): a child of one
+/// year is 75 cm tall.
 const LOWEST: [(BodyPart, f64); 4] = [
     (BodyPart::Head, 0.55),
     (BodyPart::LeftArm, 0.35),
     (BodyPart::RightArm, 0.35),
     (BodyPart::Trunk, 0.2),
 ];
-/// Nor is the upper edge of a garment higher than this (m).
+/// Greatest height of the upper edge of a garment (m).
 const HIGHEST: f64 = 2.2;
-/// Angles below the horizontal that arms can be held at (rad).
+/// Range of the angle below the horizontal that arms can be held at (rad).
 const ARM_ANGLES: [f64; 2] = [0.0, 1.4];
 
-/// By how much panels are raised to stand on the floor (m), and a line that says so.
+/// Height by which panels are raised to stand on the floor (m), and a note on it.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Raise {
     height: f64,
@@ -51,7 +52,7 @@ struct Raise {
 }
 
 impl PanelOrigin {
-    /// Its height above the floor (m); none where it is to be found.
+    /// Height of the origin above the floor (m); none if it is to be detected.
     fn height(self) -> Option<f64> {
         match self {
             Self::Automatic => None,
@@ -62,8 +63,8 @@ impl PanelOrigin {
         }
     }
 
-    /// Raises the panels of a pattern that its file places in space, round this point, so that they stand on the
-    /// floor. Returns a line that says what was found.
+    /// Raises the panels of a pattern that its file places in space, round this point, so that they stand on
+    /// the floor. Returns a note if the origin was detected, or could not be.
     pub(crate) fn settle(self, pattern: &mut Pattern) -> Option<String> {
         if !has_placed_panels(pattern) {
             return None;
@@ -73,7 +74,7 @@ impl PanelOrigin {
             None => found(&draft_of(pattern)),
         };
         for panel in &mut pattern.panels {
-            // Floor stays floor to the bit.
+            // A height of 0 leaves positions unchanged to the bit.
             if height != 0.0
                 && matches!(panel.worn, WornRule::Placed { .. })
                 && let WornRule::Placed { translation, .. } = &mut Arc::make_mut(panel).worn
@@ -97,7 +98,7 @@ fn draft_of(pattern: &Pattern) -> Draft {
         .0
 }
 
-/// The pieces of a draft that are placed in space, with corners and middles of their edges there (m).
+/// The sewn pieces of a draft that are placed in space, with corners and midpoints of their edges there (m).
 fn placed_pieces(draft: &Draft) -> impl Iterator<Item = (usize, &Piece, Vec<Vec3>)> {
     draft.pieces.iter().enumerate().filter_map(|(k, piece)| {
         let curves = piece.outline.iter().map(|edge| &edge.curve);
@@ -108,7 +109,7 @@ fn placed_pieces(draft: &Draft) -> impl Iterator<Item = (usize, &Piece, Vec<Vec3
     })
 }
 
-/// Points of a curve of a piece that is placed in space (m); none of another piece.
+/// Start and midpoint of a curve of a piece that is placed in space (m); none for another piece.
 fn points_in_space(piece: &Piece, curve: &Curve) -> Vec<Vec3> {
     let Worn::Placed(place) = piece.worn else {
         return Vec::new();
@@ -117,14 +118,14 @@ fn points_in_space(piece: &Piece, curve: &Curve) -> Vec<Vec3> {
     [0.0, 0.5].map(|t| at(curve.point(t))).to_vec()
 }
 
-/// Lowest and highest of some points (m).
+/// Heights of the lowest and the highest of some points (m).
 fn span(points: &[Vec3]) -> [f64; 2] {
     let empty = [f64::INFINITY, f64::NEG_INFINITY];
     let heights = points.iter().map(|p| p.y);
     heights.fold(empty, |[low, high], y| [low.min(y), high.max(y)])
 }
 
-/// The origin that puts every panel where a body can wear it: the floor if it does.
+/// Detects the origin that puts every panel where a body can wear it; the floor is preferred.
 fn found(draft: &Draft) -> Raise {
     let pieces: Vec<(Option<BodyPart>, [f64; 2])> = placed_pieces(draft)
         .map(|(_, piece, points)| (body_part_by_name(piece), span(&points)))
@@ -178,8 +179,8 @@ fn partners(draft: &Draft, [piece, edge]: [usize; 2]) -> Vec<usize> {
     found
 }
 
-/// The angle below the horizontal at which the sleeves of a pattern hold the arms (rad), where its file places them
-/// in space: from the seams that set them in to their free edges.
+/// The angle below the horizontal at which the sleeves of a pattern hold the arms (rad), where its file
+/// places them in space: from the seams that set them in to their free edges.
 pub(crate) fn sleeve_angle(pattern: &Pattern) -> Option<f64> {
     if !has_placed_panels(pattern) {
         return None;

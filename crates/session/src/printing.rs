@@ -18,38 +18,38 @@ use toile_nesting::{
 };
 use toile_pattern::{DisplayUnit, Draft, Pattern, SizeSelection};
 
-/// White between pieces on paper, and to the edge of the drawing (m).
+/// Gap between pieces on paper, and margin to the edge of the drawing (m).
 const GAP: f64 = 0.004;
 const EDGE: f64 = 0.003;
 /// Share of a print that is done when its pieces are arranged.
 const ARRANGED: f64 = 0.95;
-/// How long each arrangement is searched for: a second or so.
+/// Evaluations in the search for each arrangement: a second or so.
 const EVALUATIONS: u64 = 500_000;
-/// How many more rows of sheets than needed are tried.
+/// Number of rows of sheets that are tried beyond those needed.
 const MORE_ROWS: u32 = 3;
-/// Area of the drawing on one page over that of its pieces: about what laying them reaches.
+/// Area of the drawing on one page over the area of its pieces (1): about what nesting reaches.
 const ROOMY: f64 = 1.3;
-/// Sheets nobody joins: larger paper or a smaller scale is meant.
+/// Most sheets of a print: nobody joins more, so that larger paper or a smaller scale is meant.
 const MAX_SHEETS: usize = 500;
 /// Scales that can be printed: from a doll's to twice the size.
 const SCALES: [f64; 2] = [0.01, 2.0];
 
-/// What is printed, and how.
+/// Options of a print.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintOptions {
     /// The sizes.
     pub sizes: SizeSelection,
-    /// Names of pieces; without any, all.
+    /// Names of the pieces to print; all if there is none.
     pub pieces: Vec<String>,
-    /// Which lines.
+    /// Lines to draw: cut lines, sewing lines or both.
     pub lines: Lines,
-    /// Length on paper over length of cloth.
+    /// Length on paper over length of cloth (1).
     pub scale: f64,
-    /// On what.
+    /// Paper to print on.
     pub paper: Paper,
-    /// Whether pieces that are the same on both sides of their fold are halved.
+    /// Whether pieces that are symmetric in their fold are halved.
     pub halves: bool,
-    /// What the cloth loses in the wash.
+    /// Shrinkage of the cloth in the wash, for which pieces are drawn larger.
     pub shrinkage: Shrinkage,
 }
 
@@ -67,28 +67,28 @@ impl Default for PrintOptions {
     }
 }
 
-/// What was printed.
+/// Result of a print.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Printed {
-    /// The sheets, rows from above.
+    /// The sheets, row by row from the top.
     pub tiles: Vec<Tile>,
     /// Names of the sizes.
     pub sizes: Vec<String>,
     /// Names of the pieces.
     pub pieces: Vec<String>,
-    /// What is to be cut of each fabric, in the first of the sizes.
+    /// Cut list of each fabric, in the first of the sizes.
     pub cut_list: Vec<CutList>,
-    /// How numbers of the pattern are shown.
+    /// Unit in which lengths of the pattern are shown.
     pub shown: Shown,
-    /// What the cut lines do not do as asked.
+    /// Notes on cut lines that cannot be made as asked.
     pub notes: Vec<String>,
 }
 
 /// Prints a pattern's pieces into a file: PDF or SVG by its ending.
 ///
 /// # Errors
-/// The pattern cannot be read or cut; a size, a piece or the scale is none; the file cannot be
-/// written.
+/// The pattern cannot be drafted or cut; an unknown size or piece, a scale out of range; the file
+/// cannot be written.
 pub fn print_pattern(
     (project, to): (&Project, &Path),
     options: &PrintOptions,
@@ -124,7 +124,7 @@ fn unprintable(error: FormatError) -> SessionError {
     }
 }
 
-/// The pieces of a pattern arranged on paper, and what there is to say of them.
+/// Arranges the pieces of a pattern on paper; also returns facts about the print.
 ///
 /// # Errors
 /// As [`print_pattern`], but for the file.
@@ -143,7 +143,7 @@ pub fn print_job(
         .map(|size| cut_pieces(pattern, size, options))
         .collect::<Result<Vec<_>, _>>()?;
     let layers: Vec<PrintLayer> = sizes.iter().map(|size| size.layer()).collect();
-    // The sizes that are asked for by name are those of the pattern.
+    // A print of named sizes is not made to measure.
     let made_for = project
         .made_for()
         .filter(|_| sizes.iter().all(|size| size.name.is_none()));
@@ -208,7 +208,7 @@ fn check_numbers(options: &PrintOptions) -> Result<(), SessionError> {
     Ok(())
 }
 
-/// A size drafted.
+/// The draft of a size.
 struct SizeDraft {
     name: Option<String>,
     draft: Draft,
@@ -247,7 +247,7 @@ fn drafted(project: &Project, sizes: &SizeSelection) -> Result<Vec<SizeDraft>, S
     each.collect()
 }
 
-/// Pieces are asked for by the names of their panels.
+/// Refuses unknown pieces; they are asked for by the names of their panels.
 fn check_pieces(pattern: &Pattern, pieces: &[String]) -> Result<(), SessionError> {
     for name in pieces {
         if pattern.panel_named(name).is_none() {
@@ -262,13 +262,13 @@ fn check_pieces(pattern: &Pattern, pieces: &[String]) -> Result<(), SessionError
     Ok(())
 }
 
-/// A piece, and what of it is printed.
+/// A piece, and the whole or half of it that is printed.
 struct Cut {
     whole: CutPiece,
     printed: Arc<CutPiece>,
 }
 
-/// The first copy of each panel asked for.
+/// Cuts the first copy of each panel asked for.
 fn cut_pieces(
     pattern: &Pattern,
     size: &SizeDraft,
@@ -305,7 +305,7 @@ fn cut_pieces(
     Ok(cuts)
 }
 
-/// The pieces by panel, each in all its sizes, with what is written on them.
+/// Groups the pieces by panel, each in all its sizes, with the words written on it.
 fn grouped(
     (pattern, made_for): (&Pattern, Option<&[String; 2]>),
     cuts: &[Vec<Cut>],
@@ -354,7 +354,7 @@ fn grouped(
     pattern.panels.iter().filter_map(of_panel).collect()
 }
 
-/// What the title block says.
+/// Lines of the title block.
 fn facts(
     options: &PrintOptions,
     (layers, made_for): (&[PrintLayer], Option<[String; 2]>),
@@ -413,12 +413,12 @@ fn plain(number: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The job with its pieces laid so that they take few sheets.
+/// Lays the pieces of a job so that they take few sheets.
 fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, SessionError> {
     let block = job.title.size(job.layers.len());
     let outlines: Vec<Polygon> = job.pieces.iter().map(|p| outline(p, job.scale)).collect();
     let extents = outlines.iter().map(|outline| outline.bounds().size());
-    // Pieces lie in any quarter turn, with their shorter side across at the least.
+    // Pieces lie in any quarter turn: the drawing must be at least as high as their shorter sides.
     let needed = extents.map(|size| size.min()).fold(block.y, f64::max) + 2.0 * EDGE + 1e-6;
     let heights: Vec<f64> = match job.paper.height_of(1) {
         Some(_) => {
@@ -433,7 +433,7 @@ fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, Sessio
         }
     };
     if let Some(step) = job.paper.step() {
-        // Long before they are counted: sheets without a line are at most a few in each piece.
+        // A check by area, long before sheets are counted: few sheets within a piece have no line.
         let area: f64 = outlines.iter().map(Polygon::area).sum();
         let sheets = (area / (step.x * step.y)) as usize;
         if sheets > 10 * MAX_SHEETS {
@@ -463,7 +463,7 @@ fn too_many(sheets: usize) -> SessionError {
     ))
 }
 
-/// What a piece takes on paper in all its sizes.
+/// Outline of the area that a piece takes on paper in all its sizes (m).
 fn outline(piece: &PrintPiece, scale: f64) -> Polygon {
     let mut outers = piece.sizes.iter().map(|(_, cut)| cut.outer());
     let mut whole = outers.next().unwrap_or_default();
@@ -480,7 +480,7 @@ fn outline(piece: &PrintPiece, scale: f64) -> Polygon {
     whole.mapped(|p| p * scale)
 }
 
-/// The job on a drawing of a height, its title block in the upper left corner.
+/// Lays a job on a drawing of a height (m), with the title block in the upper left corner.
 fn laid(
     job: &PrintJob,
     (outlines, block, height): (&[Polygon], Vec2, f64),

@@ -6,7 +6,7 @@ use std::ops::Range;
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{GlbMesh, GlbPrimitive, GlbScene, ObjGroup, ObjMesh};
 
-/// The runs of merged triangles that belong to each panel.
+/// The range of merged triangles of each panel.
 fn panel_triangles(drape: &Drape) -> Vec<Range<usize>> {
     let mut first = 0;
     drape
@@ -115,7 +115,7 @@ impl Drape {
         bound(part.triangles.start)..bound(part.triangles.end)
     }
 
-    /// A part by itself.
+    /// Mesh of a part by itself.
     pub fn part_mesh(&self, part: &GarmentPart) -> TriangleMesh {
         let mut number = vec![u32::MAX; self.mesh.positions.len()];
         let mut mesh = TriangleMesh::default();

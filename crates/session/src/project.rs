@@ -15,30 +15,30 @@ pub struct Project {
     pub pattern: Arc<Pattern>,
     /// The file it was read from or last saved to.
     pub source: Option<PathBuf>,
-    /// Whose body it is draped on.
+    /// Body that the garment is draped on.
     pub body: BodyChoice,
-    /// Named size of the pattern; nothing means its base size, or the measured body.
+    /// Name of a size of the pattern; none means the base size, or the measured body.
     pub size: Option<String>,
-    /// A fabric that takes the place of every panel's.
+    /// A fabric that takes the place of the fabric of every panel.
     pub fabric: Option<FabricChoice>,
-    /// Width of the fabric (m); nothing means the fabric's own.
+    /// Width of the fabric (m); none means the fabric's own.
     pub width: Option<f64>,
-    /// How finely it is meshed and draped.
+    /// Quality of mesh and drape.
     pub quality: Quality,
-    /// Layer it is worn in among `others`: larger numbers lie farther out.
+    /// Layer of the garment among `others`: larger numbers lie farther out.
     pub layer: u16,
-    /// Garments worn with it.
+    /// Garments worn with the project's own.
     pub others: Vec<WornGarment>,
 }
 
 /// A garment worn with that of the project's pattern, made in the same size, fabric and quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WornGarment {
-    /// Its pattern; none where it could not be read when the pattern that names it was opened.
+    /// Pattern of the garment; none if it could not be read when the pattern that names it was opened.
     pub pattern: Option<Arc<Pattern>>,
     /// The file it was read from.
     pub source: PathBuf,
-    /// Its layer.
+    /// Layer of the garment.
     pub layer: u16,
 }
 
@@ -53,7 +53,7 @@ impl WornGarment {
 }
 
 impl Project {
-    /// Whether the file of another project would say the same.
+    /// Whether files of the two projects would say the same.
     pub fn says_the_same(&self, other: &Self) -> bool {
         let same_pattern = Arc::ptr_eq(&self.pattern, &other.pattern)
             || self.pattern.says_the_same(&other.pattern);
@@ -71,7 +71,7 @@ impl Project {
             && worn(self) == worn(other)
     }
 
-    /// Whether its file says nothing of how it is tried on, its size apart.
+    /// Whether the garment is tried on in the default way, apart from the size.
     pub(crate) fn is_tried_on_as_drafted(&self) -> bool {
         let plain = Self {
             pattern: self.pattern.clone(),
@@ -89,8 +89,8 @@ impl Project {
             pattern: Arc::new(pattern),
             ..self.clone()
         };
-        // What was chosen keeps its part, under whatever name; a choice of something that is gone
-        // would mean nothing.
+        // A choice follows its size or fabric when that is renamed; the choice of one that is gone is
+        // dropped.
         let (before, after) = (&self.pattern, &next.pattern);
         next.size = self.size.as_ref().and_then(|name| {
             let id = before.size_named(name)?.id;
@@ -116,7 +116,7 @@ impl Project {
         Ok(next)
     }
 
-    /// What the whole garment is cut from. A fabric that is missing is passed over.
+    /// Fabric and width that the whole garment is cut from. A fabric that is missing is passed over.
     pub fn garment_cloth(&self) -> GarmentCloth {
         let fabric = self.fabric.as_ref().and_then(|f| f.fabric(&self.pattern));
         GarmentCloth {
@@ -148,7 +148,7 @@ impl Project {
         }
     }
 
-    /// What the pattern is drafted to, in words.
+    /// Size or body that the pattern is drafted to, in words.
     pub fn drafted_to_words(&self) -> String {
         match self.size_name() {
             Some(size) => format!("size {size}"),
@@ -157,8 +157,8 @@ impl Project {
         }
     }
 
-    /// Whom it is made to measure for, and the girths of bust, waist and hips; nothing where it is drafted to a size
-    /// of the pattern, as drawn, or to a figure that nobody was measured for.
+    /// Name of the wearer that the garment is made to measure for, and the girths of bust, waist and hips;
+    /// none if it is drafted to a size of the pattern, as drawn, or to a figure that nobody was measured for.
     pub fn made_for(&self) -> Option<[String; 2]> {
         let is_measured = matches!(
             self.body,
@@ -179,7 +179,7 @@ impl Project {
         ])
     }
 
-    /// Whose pieces are cut where the pattern is drafted as for the garment, in words to write on a piece.
+    /// Size or wearer of pieces that are drafted as for the garment, in words to write on a piece.
     pub fn whose(&self) -> String {
         match self.size_name() {
             Some(size) => size.to_owned(),
@@ -191,8 +191,8 @@ impl Project {
         }
     }
 
-    /// The size that the garment is of, or whom it is made to measure for with their girths, in words for a title;
-    /// nothing where neither is asked for.
+    /// Size of the garment, or the wearer that it is made for (with girths, if measured), in words for a
+    /// title; none if the pattern has no sizes and nobody was measured.
     pub(crate) fn made_words(&self) -> Option<String> {
         if let Some(size) = self.size_name() {
             return Some(format!("size {size}"));
@@ -211,7 +211,8 @@ impl Project {
         }
     }
 
-    /// Refuses a size the pattern does not have, or one worn with it that has a table of sizes.
+    /// Refuses a size that the pattern does not have, or that a pattern worn with it lacks in its table of
+    /// sizes.
     pub(crate) fn check_size(&self) -> Result<(), SessionError> {
         let Some(name) = &self.size else {
             return Ok(());
@@ -298,13 +299,13 @@ impl Project {
         }
     }
 
-    /// What was asked of the mannequin (m), (rad); all others of its measurements follow from it.
+    /// Measurements that were asked of the mannequin (m), (rad); all others are predicted from these.
     pub fn asked_measurements(&self) -> Measurements {
         let mut asked = Measurements::new();
         let given = self.given_measurements().into_iter();
         for (name, measured) in given.flat_map(Measurements::iter) {
             if measured.origin == Origin::Asked {
-                // A name and value of a table are always taken by another.
+                // A name and value of one table are always valid in another.
                 let _ = asked.set(name, measured.value, Origin::Asked);
             }
         }
@@ -312,7 +313,7 @@ impl Project {
     }
 
     /// The measurements of the mannequin (m), (rad): those that it was given, else the figure's
-    /// averages. What they leave out is predicted from them.
+    /// averages. Missing ones are predicted from them.
     pub fn body_measurements(&self) -> Measurements {
         let figure = self.figure();
         self.given_measurements().map_or_else(
@@ -321,8 +322,8 @@ impl Project {
         )
     }
 
-    /// Whom a pattern worn with the project's is drafted for: its own table's named size, else the
-    /// wearer.
+    /// Wearer that a pattern worn with the project's is drafted for: the named size of its own table,
+    /// else the wearer of the project.
     pub(crate) fn drafted_for(&self, pattern: &Pattern) -> Wearer {
         let named = self
             .size
@@ -331,8 +332,8 @@ impl Project {
         named.map_or_else(|| (&self.body_measurements()).into(), Wearer::from)
     }
 
-    /// Whom the pattern is drafted for: the named size; else the body that was chosen; else the
-    /// pattern's base size, with what its table leaves out predicted.
+    /// Wearer that the pattern is drafted for: the named size; else the body that was chosen; else
+    /// the pattern's base size, with missing measurements predicted.
     pub fn drafted_to(&self) -> Wearer {
         let pattern = &self.pattern;
         let named = self

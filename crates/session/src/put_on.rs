@@ -1,20 +1,20 @@
-//! How garments are put on: as their patterns say, and the other way, for one that fell off the body.
+//! Ways of putting garments on: as their patterns say, and another way for one that fell off the body.
 
 use crate::outfit::DraftedPart;
 use std::sync::Arc;
 use toile_assembly::{PlacementBody, body_part_by_name};
 use toile_pattern::{BodyPart, Draft, Facing, Worn};
 
-/// How garments are put on a body.
+/// A way of putting garments on a body.
 pub(crate) struct PutOn {
     /// The garments as they are to be placed.
     pub parts: Arc<Vec<DraftedPart>>,
-    /// Whether what would hang from the waist hangs from the chest.
+    /// Whether garments that would hang from the waist hang from the chest.
     pub hangs_from_chest: bool,
 }
 
 impl PutOn {
-    /// As the patterns say.
+    /// Puts the garments on as their patterns say.
     pub fn as_given(parts: Arc<Vec<DraftedPart>>) -> Self {
         Self {
             parts,
@@ -22,7 +22,8 @@ impl PutOn {
         }
     }
 
-    /// The other way round, with words for the first way and for this one; where there is none, for the first alone.
+    /// Another way of putting the garments on, with words for the first way and for this one. If there is
+    /// none, the error is the words for the first way.
     pub fn otherwise(parts: &[DraftedPart]) -> Result<(Self, [&'static str; 2]), String> {
         let any = |is: fn(&Worn) -> bool| {
             let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
@@ -73,7 +74,8 @@ impl PutOn {
         Self::from_chest(parts)
     }
 
-    /// From the chest instead of the waist, where a piece goes round the trunk.
+    /// Hangs garments from the chest instead of the waist; refused if all pieces are known to go round other
+    /// parts.
     fn from_chest(parts: &[DraftedPart]) -> Result<(Self, [&'static str; 2]), String> {
         let told = told_body_parts(parts);
         if !told.is_empty() && !told.contains(&BodyPart::Trunk) {
@@ -96,8 +98,8 @@ impl PutOn {
     }
 }
 
-/// The body parts that sewn pieces go round, as the patterns or the names of the pieces tell, in the order of the
-/// pieces; others go where their neighbours do, or else round the trunk.
+/// The body parts that sewn pieces go round, as the patterns or the names of the pieces tell, in the order of
+/// the pieces; others go where their neighbours do, or else round the trunk.
 fn told_body_parts(parts: &[DraftedPart]) -> Vec<BodyPart> {
     let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
     let mut told = Vec::new();
@@ -112,7 +114,7 @@ fn told_body_parts(parts: &[DraftedPart]) -> Vec<BodyPart> {
     told
 }
 
-/// How a garment is put on that goes round a part alone.
+/// Words for a garment that goes round one part of the body.
 fn place_on(part: BodyPart) -> &'static str {
     match part {
         BodyPart::Trunk => "round the trunk",
@@ -128,7 +130,7 @@ fn is_over(worn: &Worn) -> bool {
     matches!(worn, Worn::Wrapped { facing, .. } if *facing == Facing::Over)
 }
 
-/// Whether a piece on the trunk or the legs is told its level.
+/// Whether a piece on any part but an arm is given its level.
 fn has_level(worn: &Worn) -> bool {
     matches!(worn, Worn::Wrapped { part, level, .. }
         if level.is_some() && !matches!(part, BodyPart::LeftArm | BodyPart::RightArm))

@@ -12,17 +12,17 @@ use toile_picture::{
 };
 use toile_realtime::{Character, Ellipsoids, Garment, GarmentSettings, RealtimeError};
 
-/// How clothes are adjusted in a frame.
+/// Method that adjusts clothes in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Adjustment {
-    /// They hang.
+    /// Clothes hang by gravity.
     #[default]
     Gravity,
-    /// They fit closely.
+    /// Clothes keep their shape and fit closely.
     Shape,
 }
 
-/// What may be asked of a figure in real time.
+/// Commands for a figure in real time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumCount, VariantArray, VariantNames)]
 pub enum RealtimeKey {
     /// Stand.
@@ -34,16 +34,16 @@ pub enum RealtimeKey {
     /// Run.
     #[strum(serialize = "right")]
     Run,
-    /// The other adjustment.
+    /// Switch to the other adjustment.
     #[strum(serialize = "g")]
     Switch,
 }
 
 impl RealtimeKey {
-    /// All, each with the name of the key that asks for it.
+    /// All commands, each with the name of its key.
     pub const ALL: [(&'static str, Self); Self::COUNT] = toile_geometry::named_variants!();
 
-    /// The one of a key's name.
+    /// Finds a command by the name of its key.
     pub fn named(name: &str) -> Option<Self> {
         let found = Self::ALL.iter().find(|(known, _)| *known == name);
         found.map(|(_, key)| *key)
@@ -53,9 +53,9 @@ impl RealtimeKey {
 /// A surface of triangles in `f32`, with a colour for each triangle (sRGB, 0..=1).
 #[derive(Clone, Debug, Default)]
 pub struct RealtimeSurface {
-    /// Its name.
+    /// Name of the surface.
     pub name: String,
-    /// Where its vertices are (m).
+    /// Positions of the vertices (m).
     pub positions: Vec<[f32; 3]>,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
@@ -74,9 +74,9 @@ struct Skin {
 pub struct RealtimeRun {
     ellipsoids: Ellipsoids,
     skin: Skin,
-    /// The body as it is seen.
+    /// Surface of the body, as it is shown.
     pub body: RealtimeSurface,
-    /// The garments as they are seen, the innermost first.
+    /// Surfaces of the garments, as they are shown, the innermost first.
     pub clothes: Vec<RealtimeSurface>,
     garments: Vec<Garment>,
     adjustment: Adjustment,
@@ -181,7 +181,7 @@ impl RealtimeRun {
         Self::new(&body, clothes(&drape))
     }
 
-    /// A body in clothes that lie on it at rest.
+    /// Dresses a body in clothes that lie on it at rest.
     ///
     /// # Errors
     /// A body whose ellipsoids are not rigid, clothes no ellipsoids fit into.
@@ -241,7 +241,7 @@ impl RealtimeRun {
         &self.garments
     }
 
-    /// Does what a key asks for.
+    /// Executes the command of a key.
     ///
     /// # Errors
     /// A clip that is not there.
@@ -261,8 +261,8 @@ impl RealtimeRun {
         self.ellipsoids.start(clip, FADE).map_err(cannot)
     }
 
-    /// Computes one frame, `dt` after the last (s): ellipsoids, then every garment. What is seen
-    /// stays as it was until [`RealtimeRun::show`].
+    /// Computes one frame, `dt` after the last (s): ellipsoids, then every garment. The surfaces
+    /// shown stay as they were until [`RealtimeRun::show`].
     pub fn frame(&mut self, dt: f32) {
         self.ellipsoids.advance(dt);
         for garment in &mut self.garments {
@@ -273,7 +273,7 @@ impl RealtimeRun {
         }
     }
 
-    /// Brings the surfaces that are seen to the last frame.
+    /// Brings the surfaces shown up to the last frame.
     pub fn show(&mut self) {
         let skin = &mut self.skin;
         skin.motions.clear();
@@ -293,8 +293,8 @@ impl RealtimeRun {
         }
     }
 
-    /// Presses keys, each followed by so many frames of a sixtieth of a second, and paints what is
-    /// seen after each, side by side, each of a size (pixels), as PNG.
+    /// Presses keys, each followed by a number of frames of a sixtieth of a second, and paints the
+    /// figure after each: pictures of a size (pixels), side by side, as PNG.
     ///
     /// # Errors
     /// No keys, or more pictures than fit into one.

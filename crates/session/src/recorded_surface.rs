@@ -8,10 +8,10 @@ use std::path::Path;
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{Frame, FrameSection, Frames, RestShape, read_frames};
 
-/// A surface with its places in the records of a section.
+/// A surface of a section of recorded frames.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecordedSurface {
-    /// Its name.
+    /// Name of the surface.
     pub name: String,
     /// Corners of the triangles.
     pub triangles: Vec<[u32; 3]>,
@@ -22,9 +22,9 @@ pub(crate) struct RecordedSurface {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Places {
-    /// At rest (m).
+    /// Positions of a surface at rest (m).
     Still(Vec<[f32; 3]>),
-    /// Numbers of its vertices in a record.
+    /// Indices of the vertices of a moving surface among the positions of a frame.
     Moving(Vec<u32>),
 }
 
@@ -51,11 +51,11 @@ impl RecordedSurface {
         surfaces.collect()
     }
 
-    /// A surface of a section by its name, or one object of a surface by its own; without a name the only one that
-    /// moves.
+    /// Finds a surface of a section by its name, or one object of a surface by the name of the object;
+    /// without a name, the only surface that moves.
     ///
     /// # Errors
-    /// A name that is not there, or none where there are several.
+    /// An unknown name, or no name unless exactly one surface moves.
     pub fn named(section: &FrameSection, name: Option<&str>) -> Result<Self, SessionError> {
         let all = Self::all(section);
         let unknown = |name: &str| {
@@ -87,7 +87,7 @@ impl RecordedSurface {
         Err(unknown(name))
     }
 
-    /// Some of its triangles, with their own vertices.
+    /// A range of the triangles as a surface with its own vertices.
     fn part(&self, name: &str, range: std::ops::Range<usize>) -> Self {
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
         let mut old = Vec::new();
@@ -116,12 +116,12 @@ impl RecordedSurface {
         }
     }
 
-    /// Whether it is at rest.
+    /// Whether the surface is at rest.
     pub fn is_still(&self) -> bool {
         matches!(self.places, Places::Still(_))
     }
 
-    /// Its positions in a frame of its section (m).
+    /// Positions of the vertices in a frame of the section (m).
     pub fn positions(&self, frame: &Frame) -> Vec<[f32; 3]> {
         match &self.places {
             Places::Still(places) => places.clone(),
@@ -129,7 +129,7 @@ impl RecordedSurface {
         }
     }
 
-    /// Its mesh in a frame of its section.
+    /// Mesh of the surface in a frame of the section.
     pub fn mesh(&self, frame: &Frame) -> TriangleMesh {
         let positions = self.positions(frame);
         TriangleMesh {
@@ -145,7 +145,7 @@ impl RecordedSurface {
 /// Reads a file of frames.
 ///
 /// # Errors
-/// It cannot be read, or is none.
+/// The file cannot be read, or is no file of frames.
 pub(crate) fn open_frames(path: &Path) -> Result<Frames, SessionError> {
     let bytes = read_file(path)?;
     read_frames(&bytes).map_err(|error| SessionError::Format {

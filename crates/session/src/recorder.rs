@@ -19,12 +19,12 @@ pub(crate) struct Recorder {
     /// Bytes that are frames of this run.
     length: u64,
     section: Option<(Vec<FrameSurface>, FrameWriter)>,
-    /// Where the file is open, from the first frame on.
+    /// The open file, from the first frame on.
     file: Option<File>,
 }
 
 impl Recorder {
-    /// One that replaces whatever file is there.
+    /// A recorder that replaces whatever file is there.
     pub fn new(path: PathBuf) -> Self {
         Self {
             path,
@@ -34,7 +34,7 @@ impl Recorder {
         }
     }
 
-    /// One that goes on after the first bytes of its file, and drops the others.
+    /// A recorder that goes on after the first `length` bytes of its file, and drops the others.
     ///
     /// # Errors
     /// The file cannot be read, or does not have these bytes.
@@ -172,11 +172,11 @@ fn surfaces(
     (surfaces, moving)
 }
 
-/// Bytes of a file's name beyond which a surface of many objects is named by its first and how many others.
+/// Bytes of a file's name beyond which a surface is named by its first object and the number of the others.
 const MAX_NAME_LENGTH: usize = 160;
 
-/// The surfaces that move, each with the objects that are sewn together in it or are to be, and the names of their
-/// files; two of one name are refused.
+/// The surfaces that move: the objects that are sewn together in each, or will be, and the name of its file.
+/// Two surfaces of one name are refused.
 ///
 /// # Errors
 /// Two surfaces of one name.

@@ -10,7 +10,7 @@ use toile_drape::Verdict;
 use toile_marker::FinishedMarker;
 use toile_pattern::{Draft, DraftSpan};
 
-/// How a garment comes to rest, in words.
+/// Method by which a garment comes to rest, in words.
 const METHOD: &str =
     "implicit Newton for sewing, XPBD for the swing, pseudo-transient Newton continuation to rest";
 
@@ -111,9 +111,9 @@ struct LayerReport {
     garments: Vec<GarmentReport>,
     body_intersections: usize,
     self_intersections: usize,
-    /// With layers farther out.
+    /// Crossings of this layer with layers farther out.
     outer_intersections: usize,
-    /// Vertices of layers farther out on its inside.
+    /// Vertices of layers farther out that lie inside this layer.
     astray: usize,
 }
 
@@ -157,7 +157,7 @@ fn by_direction([warp, weft]: [f64; 2]) -> ByDirection {
     ByDirection { warp, weft }
 }
 
-/// The fabric that was chosen, else those that sewn or loose pieces are cut from.
+/// Name of the fabric that was chosen, else the names of the fabrics that pieces are cut from.
 fn fabric_names(project: &Project, parts: &[DraftedPart]) -> Option<String> {
     if let Some(choice) = &project.fabric {
         return Some(choice.name().to_owned());
@@ -178,7 +178,7 @@ fn fabric_names(project: &Project, parts: &[DraftedPart]) -> Option<String> {
 }
 
 impl Report {
-    /// The report on everything made of a project.
+    /// The report on a project, at first with its pieces and seams alone.
     pub fn new(project: &Project, parts: &[DraftedPart]) -> Self {
         let several = parts.len() > 1;
         let prefix = |part: &DraftedPart| match several {
@@ -286,7 +286,7 @@ impl Report {
         });
     }
 
-    /// Adds what went less than well.
+    /// Adds warnings.
     pub fn add_warnings(&mut self, warnings: impl IntoIterator<Item = String>) {
         self.warnings.extend(warnings);
     }

@@ -1,6 +1,6 @@
-//! How much of a worn garment's cloth an edit changes.
+//! Kinds of change that an edit of the pattern makes to the cloth of a worn garment.
 
-/// What an edit changes of a worn garment's cloth, the least first.
+/// Kind of change that an edit makes to the cloth of a worn garment, the least first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RestChange {
     /// Nothing: the draft is the same.

@@ -1,4 +1,4 @@
-//! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
+//! Runs a scene file: loads its meshes, patterns and bodies, simulates them, and writes the results.
 
 use crate::crossings::{Crossings, Tangles};
 use crate::frame_counts::FrameCounts;
@@ -22,26 +22,26 @@ use toile_interchange::{
     ExpectedKind, FormatError, ObjGroup, ObjMesh, read_scene, write_all_atomically, write_obj,
 };
 
-/// What running a scene made.
+/// Result of running a scene.
 #[derive(Clone, Debug)]
 pub struct SceneOutcome {
     /// Files written.
     pub files: Vec<PathBuf>,
     /// The report, as JSON.
     pub report: serde_json::Value,
-    /// What the run came to; the report holds it, too.
+    /// Verdict on the run; the report holds it, too.
     pub verdict: Verdict,
 }
 
-/// Frames a scene may save: beyond this the frame step is surely a mistake.
+/// Most frames that a scene may save: beyond this the frame step is surely a mistake.
 const MAX_FRAMES: f64 = 100_000.0;
 
-/// Runs a scene file and writes its frames, its last state and a report into a folder. A run that goes on from a
-/// checkpoint writes the bytes that one without interruption does, at any number of threads.
+/// Runs a scene file and writes its frames, its last state and a report into a folder. A run that goes on
+/// from a checkpoint writes the bytes that one without interruption does, at any number of threads.
 ///
 /// # Errors
-/// The scene, a file it names or the checkpoint cannot be read, the simulation fails, a file cannot be written, or a
-/// checkpoint is asked of a method that has none.
+/// The scene, a file it names or the checkpoint cannot be read, the simulation fails, a file cannot be
+/// written, or a checkpoint is asked of a method that has none.
 pub fn run_scene(
     path: &Path,
     folder: &Path,
@@ -110,14 +110,14 @@ pub fn run_scene(
     })
 }
 
-/// A run before its next step, with what goes with it into a checkpoint.
+/// A run before its next step, with all that goes into a checkpoint of it.
 struct Begun {
     run: SceneRun,
     crossings: Crossings,
     album: SceneAlbum,
-    /// Where frames go, if they are saved.
+    /// Recorder of the frames, if they are saved.
     recorder: Option<Recorder>,
-    /// Frames written, and what they showed.
+    /// Counts over the frames written.
     frames: FrameCounts,
 }
 
@@ -168,7 +168,7 @@ impl Begun {
         })
     }
 
-    /// With a checkpoint of the run, as it is saved.
+    /// The state to save, with a checkpoint of the run.
     fn saved(&self, run: SceneCheckpoint) -> SavedRun {
         SavedRun {
             frames: self.frames,
@@ -203,13 +203,14 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Takes all steps; writes frames and checkpoints on the way. Gives why the run was given up, if it was.
+    /// Takes all steps; writes frames and checkpoints on the way. Returns a finding if the run was given up.
     fn follow(&mut self, watcher: &mut dyn Watcher) -> Result<Option<Finding>, SessionError> {
         if self.begun.run.steps() == 0 {
             self.place.clear()?;
             self.keep_landmark()?;
         }
-        // Where cloth meets cloth no checkpoint can be taken between whole seconds: the last one is kept.
+        // With contact of cloth with cloth checkpoints are taken at whole seconds alone: the last one is
+        // kept.
         let mut kept = self.keep(None)?;
         while !self.begun.run.finished() {
             self.write_frame()?;
@@ -259,7 +260,7 @@ impl Course<'_> {
         Ok(Some(self.begun.kept()?))
     }
 
-    /// Saves a checkpoint beside the frames, if there is one to be kept here.
+    /// Saves a checkpoint beside the frames, if the run is where one is to be kept.
     fn keep_landmark(&self) -> Result<(), SessionError> {
         let run = &self.begun.run;
         if self.begun.recorder.is_none() || !run.is_landmark() || !run.has_checkpoints() {

@@ -1,4 +1,4 @@
-//! From a scene file to a scene: its meshes, patterns, bodies and fabrics found.
+//! Builds a scene from a scene file, with its meshes, patterns, bodies and fabrics.
 
 use crate::bodies::body_of;
 use crate::choice::figure_named;
@@ -23,15 +23,15 @@ use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{EndFile, MaterialFile, MotionFile, ObjectFile, SceneFile};
 /// Turns a scene file into a scene.
 pub(crate) struct Builder<'a> {
-    /// The scene file.
+    /// Path of the scene file.
     pub(crate) place: ScenePlace<'a>,
-    /// What it says.
+    /// Content of the scene file.
     pub(crate) file: &'a SceneFile,
-    /// What is worth telling.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// How its mesh files stand.
+    /// Stance of the mesh files: their axes and unit.
     stance: Stance,
-    /// The mesh files read, as they are.
+    /// Meshes of the files read, as they are there.
     meshes: BTreeMap<String, TriangleMesh>,
     /// Bodies that wear garments, by the index of their object.
     pub(crate) figures: BTreeMap<usize, Arc<Mannequin>>,
@@ -39,14 +39,14 @@ pub(crate) struct Builder<'a> {
     pub(crate) garments: BTreeMap<usize, HungGarment>,
     /// Whether the strain of each triangle of all cloths counts, as it does away from gathers.
     pub counted: Vec<bool>,
-    /// The longest way of a figure into its clip, before time 0 (s).
+    /// Longest lead-in of a figure, the way into its clip before time 0 (s).
     pub(crate) lead_in: f64,
-    /// When the last figure has come to rest (s).
+    /// Time at which the last figure has come to rest (s).
     pub(crate) ends: Option<f64>,
 }
 
 impl<'a> Builder<'a> {
-    /// A builder of what a scene file says.
+    /// A builder for a scene file.
     pub fn new(path: &'a Path, file: &'a SceneFile, notes: Vec<String>) -> Self {
         Self {
             place: ScenePlace(path),
@@ -62,10 +62,10 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The scene: its meshes, patterns and bodies found.
+    /// Builds the scene, with its meshes, patterns and bodies.
     ///
     /// # Errors
-    /// A file it names cannot be read, or what it says does not fit together.
+    /// A file that the scene names cannot be read, or its fields do not fit together.
     pub fn scene(&mut self, watcher: &mut dyn Watcher) -> Result<Scene, SessionError> {
         let file = self.file;
         let place_of_file = self.place;
@@ -116,7 +116,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// The index of the object of a name.
+    /// Index of the object with a name.
     fn number(
         &self,
         name: &str,
@@ -149,7 +149,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Whether an object is cloth; refused where its kind is none, or is not that of one with its motion.
+    /// Whether an object is cloth; refused if its kind is unknown or does not fit its motion.
     fn is_deformable(&self, place: &str, object: &ObjectFile) -> Result<bool, SessionError> {
         let wrong = |what: String, remedy: &str| {
             let place = place.to_owned();
@@ -330,7 +330,7 @@ impl<'a> Builder<'a> {
         Ok(mesh)
     }
 
-    /// The mesh of a file as it is, which is read once.
+    /// The mesh of a file as it is; each file is read once.
     fn opened(&mut self, name: &str) -> Result<&TriangleMesh, SessionError> {
         let mesh = match self.meshes.remove(name) {
             Some(mesh) => mesh,
@@ -343,8 +343,8 @@ impl<'a> Builder<'a> {
         Ok(self.meshes.entry(name.to_owned()).or_insert(mesh))
     }
 
-    /// How the scene's mesh files stand: as the scene says, else as a person among its bodies is seen to. They
-    /// come of one program, so that all are turned as the first person is.
+    /// Stance of the scene's mesh files: as the scene says, else as detected on a person among its bodies.
+    /// The files are taken to come from one program, so that all are turned as the first person is.
     fn stance_of_meshes(&mut self) -> Result<Stance, SessionError> {
         let path = self.place.0;
         let asked = self
@@ -356,7 +356,7 @@ impl<'a> Builder<'a> {
                 error,
             })?;
         let [x, y, z] = self.file.gravity;
-        // Whoever says which way is down has settled the axes.
+        // A scene that says which way is down has settled the axes.
         let is_settled = (x, z) != (0.0, 0.0) || y > 0.0;
         let hint = "say how the meshes of the scene stand, as in \"meshes\": {\"up\": \"z\", \"unit\": \"cm\"}";
         let file = self.file;
@@ -485,7 +485,7 @@ mod tests {
             r#", "material": { "density": 0.9, "viscosity": 0.1 }, "transform": { "scale": 1.5 }"#;
         let object = poncho(more).unwrap();
         let changed = object.cloth.unwrap();
-        // What is left out stays the pattern's own.
+        // Fields left out stay those of the pattern.
         let expected = Material {
             density: 0.9,
             viscosity: 0.1,

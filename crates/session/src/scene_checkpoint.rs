@@ -10,25 +10,27 @@ use toile_interchange::{
     CheckpointFormat, FileError, read_checkpoint, read_text, write_all_atomically, write_checkpoint,
 };
 
-/// How a scene is run beside what its file says.
+/// Options of a run, in addition to the scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunOptions {
-    /// Simulated time between two checkpoints (s); none saves none.
+    /// Simulated time between two checkpoints (s); none for no checkpoints.
     pub checkpoint_step: Option<f64>,
     /// Goes on from the checkpoint in the folder of the results.
     pub resume: bool,
-    /// Goes on from this frame, counted from 0: from the checkpoint beside the frames that is before it.
+    /// Goes on from this frame, counted from 0: from the newest checkpoint beside the frames that is not
+    /// after it.
     pub restart: Option<usize>,
-    /// Processor time of a simulated second beyond which the run is ended with a checkpoint (s); none never ends it.
+    /// Processor time of a simulated second beyond which the run is ended with a checkpoint (s); none for no
+    /// limit.
     pub give_up: Option<f64>,
     /// The pictures painted.
     pub pictures: PictureOptions,
 }
 
-/// Its file in the folder of the results.
+/// Name of the checkpoint file in the folder of the results.
 pub(crate) const NAME: &str = "checkpoint.json";
 
-/// Where the results of a run go.
+/// Folder and name for the results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     /// The folder.
@@ -48,12 +50,12 @@ impl Place {
         self.folder.join(format!("{}.checkpoints", self.name))
     }
 
-    /// The name there of the checkpoint after some steps.
+    /// File name of the checkpoint after a number of steps.
     pub fn checkpoint(steps: usize) -> String {
         format!("{steps:08}.json")
     }
 
-    /// The checkpoints there, the newest first.
+    /// Paths of the checkpoints beside the frames, the newest first.
     fn kept(&self) -> Vec<PathBuf> {
         let files = std::fs::read_dir(self.checkpoints()).into_iter().flatten();
         let is_ours = |path: &PathBuf| {
@@ -84,13 +86,13 @@ impl Place {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SavedRun {
-    /// Frames written, and what they showed.
+    /// Counts over the frames written.
     pub frames: FrameCounts,
     /// Bytes of the file of frames.
     pub frame_bytes: u64,
     /// Crossings of cloth with cloth counted before the first step, most at one count, and at the last.
     pub crossings: [usize; 3],
-    /// Where objects have been, if pictures are painted.
+    /// Boxes that the objects have been in, if pictures are painted.
     #[serde(default, skip_serializing_if = "Ways::is_empty")]
     pub ways: Ways,
     /// The run.
@@ -102,7 +104,7 @@ impl CheckpointFormat for SavedRun {
 }
 
 impl SavedRun {
-    /// Reads the one in the folder of the results.
+    /// Reads the checkpoint in the folder of the results.
     ///
     /// # Errors
     /// There is none, or it cannot be read.
@@ -118,7 +120,7 @@ impl SavedRun {
         read_checkpoint(&text).map_err(|error| SessionError::Format { path, error })
     }
 
-    /// Reads the newest one beside the frames that is not after a frame.
+    /// Reads the newest checkpoint beside the frames that is not after a frame.
     ///
     /// # Errors
     /// There is none, or it cannot be read.
@@ -137,7 +139,7 @@ impl SavedRun {
         })
     }
 
-    /// Writes it into a folder, which is made if need be.
+    /// Writes the checkpoint into a folder, which is made if need be.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -149,7 +151,7 @@ impl SavedRun {
     }
 }
 
-/// When a run saves its next checkpoint.
+/// Times at which a run saves checkpoints.
 pub(crate) struct CheckpointTimes {
     step: Option<f64>,
     next: f64,
@@ -159,7 +161,7 @@ impl CheckpointTimes {
     /// Checkpoints at a step (s) of simulated time, counted from where the run stands.
     ///
     /// # Errors
-    /// A step that is no time; a method of which no checkpoint can be taken.
+    /// A step that is not a positive time; a method of which no checkpoint can be taken.
     pub fn new(options: &RunOptions, run: &SceneRun) -> Result<Self, SessionError> {
         if let Some(step) = options.checkpoint_step {
             if !(step.is_finite() && step > 0.0) {
@@ -177,7 +179,7 @@ impl CheckpointTimes {
         })
     }
 
-    /// The checkpoint to be saved now, where it is time for one and the run can be saved.
+    /// The checkpoint to be saved now, if one is due and the run can be saved.
     ///
     /// # Errors
     /// The run cannot be saved at all.

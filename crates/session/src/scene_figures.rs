@@ -11,21 +11,22 @@ use toile_body::{Clip, Mannequin, PlayError};
 use toile_drape::{Air, ContactSettings, MethodKind, MethodSettings, ObjectKind, SharedTrack};
 use toile_interchange::{FormatError, MotionFile, ObjectFile};
 
-/// How long figures stand still at the end of a scene that says no duration (s).
+/// Time that figures stand still at the end of a scene without a duration (s).
 const STANDS_STILL: f64 = 1.0;
-/// Longest substep of `xpbd` by default where garments are worn (s). One twice as long lengthens a waistband of poplin by a
-/// quarter, so that a skirt slides off; one half as long changes a stretch of 12 % by 2 points.
+/// Longest substep of `xpbd` by default where garments are worn (s). One twice as long lengthens a waistband
+/// of poplin by a quarter, so that a skirt slides off; one half as long changes a stretch of 12 % by 2
+/// points.
 const MAX_SUBSTEP: f64 = 1.0 / 2400.0;
 /// Longest course of a figure that is posed before its scene begins (s).
 const MAX_COURSE_DURATION: f64 = 600.0;
-/// Rounds of a loop at the most: more are surely a mistake.
+/// Most rounds of a loop; more are surely a mistake.
 const MAX_STRIDES: f64 = 1000.0;
 
 impl Builder<'_> {
     /// Dresses every body that wears something.
     ///
     /// # Errors
-    /// Garments that cannot be sewn, and those on what is no body of the scene.
+    /// Garments that cannot be sewn, and garments whose wearer is no body of the scene.
     pub(crate) fn dress(&mut self, watcher: &mut dyn Watcher) -> Result<(), SessionError> {
         let file = self.file;
         for (index, object) in file.objects.iter().enumerate() {
@@ -41,7 +42,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Refuses a garment on what is no body, and what only a garment that is worn can have.
+    /// Refuses a garment whose wearer is no body, and fields that only a garment that is worn can have.
     fn check_worn(&self, index: usize, object: &ObjectFile) -> Result<(), SessionError> {
         let place = |field: &str| format!("objects[{index}].{field}");
         let Some(on) = &object.on else {
@@ -101,8 +102,8 @@ impl Builder<'_> {
         }
     }
 
-    /// The method as the file says; where garments are worn the substeps of `xpbd` are short enough for tight cloth unless
-    /// it says otherwise.
+    /// The method as the file says; where garments are worn the substeps of `xpbd` are short enough for tight
+    /// cloth unless it says otherwise.
     ///
     /// # Errors
     /// An unknown method, settings out of range.
@@ -126,10 +127,11 @@ impl Builder<'_> {
         self.file.duration.unwrap_or(usual)
     }
 
-    /// How a body moves that has a clip.
+    /// Motion of a body that has a clip.
     ///
     /// # Errors
-    /// A clip that cannot be read, numbers out of range, a body that is scaled.
+    /// A clip that cannot be read, numbers out of range, or a clip without lead-in that does not begin in the
+    /// pose in which the figure is dressed.
     pub(crate) fn figure_kind(
         &mut self,
         index: usize,

@@ -1,4 +1,4 @@
-//! Recorded frames in a scene: as the way of an animated object, or as the start of a cloth.
+//! Recorded frames in a scene: as the course of an animated object, or as the start of a cloth.
 
 use crate::SessionError;
 use crate::input::read_file;
@@ -10,9 +10,9 @@ use toile_drape::{Cloth, DrapeError, RecordedTrack, SharedTrack};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{FormatError, Frames, ObjectFile, read_pc2};
 
-/// What an object of a scene has of recorded frames.
+/// Recorded frames that an object of a scene uses.
 pub(crate) enum Recorded {
-    /// A cloth, where it starts.
+    /// A cloth in its initial position.
     Cloth(Cloth),
     /// The surface of a solid at the first frame (m) with its course.
     Moving(TriangleMesh, RecordedCourse),
@@ -22,11 +22,12 @@ pub(crate) enum Recorded {
 #[derive(Default)]
 pub(crate) struct RecordedCourse(Vec<(f64, Vec<Vec3>)>);
 
-/// What an object has of recorded frames; nothing where it names none. `cached` is the mesh that its point cache moves,
-/// with the turn of the scene's meshes.
+/// Reads the recorded frames of an object; none if it names none. `cached` is the mesh that its point cache
+/// moves, with the stance of the scene's meshes.
 ///
 /// # Errors
-/// Frames that cannot be read or do not fit the object, and what frames take no part in; `at` is its place in the scene.
+/// Frames that cannot be read or do not fit the object, and fields that need frames. `at` is the place of the
+/// object in the scene file.
 pub(crate) fn recorded(
     (scene, at): (ScenePlace, &str),
     object: &ObjectFile,
@@ -69,7 +70,7 @@ pub(crate) fn recorded(
 }
 
 impl RecordedCourse {
-    /// The track, with each point where it stands in the scene.
+    /// Track of the course; `place` gives the position of each point in the scene.
     ///
     /// # Errors
     /// Those of [`RecordedTrack::new`].
@@ -81,7 +82,7 @@ impl RecordedCourse {
         Ok(SharedTrack::new(RecordedTrack::new(placed.collect())?))
     }
 
-    /// With the triangles of its surface.
+    /// The moving surface of the course, with its triangles.
     fn object(self, triangles: Vec<[u32; 3]>) -> Recorded {
         let positions = self.0.first().map(|(_, first)| first.clone());
         let mesh = TriangleMesh {
@@ -104,10 +105,12 @@ fn wrong(
     }
 }
 
-/// The recorded object of a scene's animated one: that of its name unless it says which.
+/// Reads the recording of an animated object: of the recorded object that it names, else of that with its own
+/// name, else of the only one that moves.
 ///
 /// # Errors
-/// Frames that cannot be read, an object that is not among them, or whose triangles change from frame to frame.
+/// Frames that cannot be read, an object that is not among them, or whose triangles change from frame to
+/// frame.
 fn recorded_object(path: &Path, object: &ObjectFile) -> Result<Recorded, SessionError> {
     let frames = open_frames(path)?;
     let mut triangles: Option<Vec<[u32; 3]>> = None;
@@ -145,13 +148,13 @@ fn named(
     match (&object.object, own) {
         (Some(name), _) => RecordedSurface::named(section, Some(name)),
         (None, Ok(own)) => Ok(own),
-        // Its name in this scene need not be that of the recording.
+        // The object need not have the same name in this scene as in the recording.
         (None, Err(_)) => RecordedSurface::named(section, None),
     }
 }
 
-/// A mesh that moves by a point cache (PC2) of its vertices, whose samples follow at a rate (1/s) from time 0; `place`
-/// turns a point as the mesh was turned.
+/// A mesh that moves by a point cache (PC2) of its vertices, whose samples follow at a rate (1/s) from time
+/// 0; `place` turns a point as the mesh was turned.
 ///
 /// # Errors
 /// A cache that cannot be read, or has other vertices than the mesh; no rate.

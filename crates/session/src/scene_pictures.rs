@@ -96,12 +96,12 @@ impl SceneAlbum {
         Ok(album)
     }
 
-    /// Where objects have been, for a checkpoint.
+    /// Boxes that the objects have been in, for a checkpoint.
     pub fn ways(&self) -> &Ways {
         &self.camera.ways
     }
 
-    /// Goes on with a run that is resumed, and with the ways up to there.
+    /// Goes on with a run that is resumed, and with the boxes that its objects have been in.
     ///
     /// # Errors
     /// A picture of a time that has passed.
@@ -121,7 +121,7 @@ impl SceneAlbum {
         Ok(())
     }
 
-    /// Follows the objects, and keeps the state if it is time: after each step.
+    /// Follows the objects, and keeps the state if a picture is due. To be called after each step.
     pub fn follow(&mut self, run: &SceneRun) {
         if self.times.is_empty() {
             return;

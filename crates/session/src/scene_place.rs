@@ -1,4 +1,4 @@
-//! Where a scene file lies, and what is wrong in it.
+//! Path of a scene file, and errors about its content.
 
 use crate::SessionError;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ impl ScenePlace<'_> {
         self.0.parent().unwrap_or(Path::new(".")).join(name)
     }
 
-    /// A fault of the scene file.
+    /// Error for a fault of the scene file.
     pub fn error(self, error: FormatError) -> SessionError {
         SessionError::Format {
             path: self.0.to_owned(),
@@ -22,7 +22,7 @@ impl ScenePlace<'_> {
         }
     }
 
-    /// A fault of the scene file: where, what, and what to do.
+    /// Error for a fault of the scene file: place, fault and remedy.
     pub fn wrong(self, place: String, what: String, remedy: &str) -> SessionError {
         self.error(FormatError::new(place, what, remedy))
     }

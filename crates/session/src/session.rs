@@ -19,12 +19,12 @@ use std::time::Instant;
 use toile_body::Mannequin;
 use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, SizeSelection};
 
-/// Edits that are shown and not taken over yet.
+/// Edits that are shown and not committed yet.
 #[derive(Clone)]
 pub(crate) struct Gesture {
-    /// The project before it.
+    /// The project before the gesture.
     pub base: Project,
-    /// What was derived from that.
+    /// Values derived from that project.
     pub derived: Derived,
     pub edits: Vec<Edit>,
 }
@@ -61,28 +61,28 @@ impl Session {
         self.revision
     }
 
-    /// Label of the step that Undo would take back.
+    /// Label of the step that Undo would undo.
     pub fn can_undo(&self) -> Option<&str> {
         self.history.can_undo()
     }
 
-    /// Label of the step that Redo would do again.
+    /// Label of the step that Redo would redo.
     pub fn can_redo(&self) -> Option<&str> {
         self.history.can_redo()
     }
 
-    /// Labels of the steps that can be taken back, the oldest first.
+    /// Labels of the steps that can be undone, the oldest first.
     pub fn past(&self) -> Vec<&str> {
         self.history.past().collect()
     }
 
-    /// The last steps that can be taken back, the newest first, to be kept by
+    /// The last steps that can be undone, the newest first, to be kept by
     /// [`Recovery::keep`](crate::Recovery::keep).
     pub fn steps_to_keep(&self) -> Vec<HistoryStep> {
         self.history.to_keep()
     }
 
-    /// Labels of the steps that can be done again, the next first.
+    /// Labels of the steps that can be redone, the next first.
     pub fn future(&self) -> Vec<&str> {
         self.history.future().collect()
     }
@@ -112,8 +112,8 @@ impl Session {
         self.derived.diagnostics(&self.project)
     }
 
-    /// Everything found wrong with the pattern in sizes of it; without any named, in the size that was
-    /// chosen for the project, else in all, or as drafted to the body that was chosen.
+    /// Everything found wrong with the pattern in the sizes asked for. Without any, in the size that was
+    /// chosen for the project, else in all, or as drafted to the body if one was chosen.
     ///
     /// # Errors
     /// A size that the pattern does not have.
@@ -155,9 +155,9 @@ impl Session {
         self.derived.drape.as_ref().map(|drape| drape.summary())
     }
 
-    /// Takes over a drape that ran live, as if it had been made by a command: it is noted in the
-    /// journal, and what is exported from now on is this. The result of another revision comes
-    /// too late and is dropped; nothing is told then.
+    /// Adopts a drape that ran live, as if it had been made by a command: it is recorded in the
+    /// journal, and exports from now on show it. The result of another revision comes too late and
+    /// is dropped; none is returned then.
     pub fn adopt_drape(&mut self, result: DrapeResult) -> Option<Vec<Event>> {
         if self.gesture.is_some() || result.revision() != self.revision {
             return None;
@@ -171,11 +171,11 @@ impl Session {
         Some(events)
     }
 
-    /// Does one command and notes it in the journal. A gesture that is being previewed ends, and
-    /// nothing of it stays.
+    /// Executes a command and records it in the journal. A gesture that is being previewed is
+    /// cancelled.
     ///
     /// # Errors
-    /// Why it was not done; the project is then unchanged.
+    /// The reason why it was not done; the project is then unchanged.
     pub fn execute(
         &mut self,
         command: Command,
@@ -201,7 +201,7 @@ impl Session {
         Ok(events)
     }
 
-    /// A command as it can be done again: a pattern that came through a pipe is kept as a whole.
+    /// The command in a form that can be done again: a pattern that came through a pipe is kept as a whole.
     fn lasting(&self, command: Command) -> Result<Command, SessionError> {
         if let Command::OpenPattern { path } = &command
             && is_pipe(path)
@@ -215,10 +215,10 @@ impl Session {
         Ok(command)
     }
 
-    /// Does several commands; progress runs once from 0 to 1 over all of them.
+    /// Executes several commands; progress runs once from 0 to 1 over all of them.
     ///
     /// # Errors
-    /// That of the first command that was not done; those before it stay done.
+    /// The error of the first command that was not done; those before it stay done.
     pub fn execute_all(
         &mut self,
         commands: &[Command],
@@ -236,11 +236,11 @@ impl Session {
         Ok(events)
     }
 
-    /// Does the commands of a journal in a new session, with everything they write going into one
-    /// folder: the same files with the same bytes, `timing.json` apart.
+    /// Executes the commands of a journal in a new session, with all their output in one folder: the
+    /// same files with the same bytes, apart from `timing.json`.
     ///
     /// # Errors
-    /// That of the first command that was not done.
+    /// The error of the first command that was not done.
     pub fn replay(
         commands: &[Command],
         folder: &Path,

@@ -20,35 +20,35 @@ pub(crate) const GRAVITY: f64 = 9.81;
 /// A garment ready to be sewn and draped, with the map from the result back to panels.
 #[derive(Clone)]
 pub struct GarmentJob {
-    /// The session's revision it was made from.
+    /// Revision of the session that the job was made from.
     pub revision: u64,
-    /// What the drape is made from.
+    /// Setup of the drape.
     pub setup: GarmentSetup,
-    /// The meshed and placed pieces; vertices are the setup's.
+    /// The meshed and placed pieces; vertices are those of the setup.
     pub garment: Arc<Garment>,
     /// Names and colours of the pieces, in the order of the garment's panels.
     pub panels: Arc<Vec<JobPanel>>,
-    /// The seams, in the order that its stitches number them.
+    /// The seams, in the order in which the stitches of the garment number them.
     pub seams: Arc<Vec<JobSeam>>,
-    /// The garments it is made of, the project's own first.
+    /// The garments worn together, the project's own first.
     pub parts: Arc<Vec<GarmentPart>>,
-    /// What an edit of the pattern is compared with.
+    /// State of the garment that an edit of the pattern is compared with.
     pub(crate) origin: Arc<JobOrigin>,
 }
 
-/// What a garment was made from.
+/// Sources that a garment was made from.
 pub(crate) struct JobOrigin {
-    /// Whom it was placed round.
+    /// Body that the garment was placed round.
     pub body: MannequinSource,
     pub quality: Quality,
     /// The garments as drafted now.
     pub drafted: Vec<DraftedPart>,
-    /// The same as drafted when they were meshed.
+    /// The garments as drafted when they were meshed.
     pub meshed: Arc<Vec<MeshedPart>>,
 }
 
 impl JobOrigin {
-    /// Names of the seams of all garments, in the order of the garment's.
+    /// Names of the seams of all garments, in the order in which stitches number them.
     pub fn seam_names(&self) -> Vec<String> {
         let drafts = self.meshed.iter().map(|meshed| &meshed.part.draft);
         let seams = drafts.flat_map(|draft| &draft.seams);
@@ -56,10 +56,10 @@ impl JobOrigin {
     }
 }
 
-/// What a picture or a file needs to know of a piece of a garment.
+/// Facts about a piece of a garment, for pictures and files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobPanel {
-    /// Which piece it is.
+    /// Id of the piece.
     pub piece: PieceId,
     /// Name to show.
     pub name: String,
@@ -67,7 +67,7 @@ pub struct JobPanel {
     pub colour: [f64; 3],
 }
 
-/// What a report needs to know of a seam of a garment.
+/// Facts about a seam of a garment, for reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobSeam {
     /// Name to show.
@@ -131,8 +131,9 @@ pub(crate) fn job(
     }
 }
 
-/// Distance kept between cloth and cloth, in one layer and between two (m): half of the distance kept from the
-/// body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside it.
+/// Distance kept between cloth and cloth, in one layer and between two (m): half of the distance kept from
+/// the body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside
+/// it.
 pub(crate) const CLOTH_OFFSET: f64 = 2e-3;
 
 pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
@@ -224,7 +225,7 @@ fn body_part(part: Part) -> BodyPart {
     }
 }
 
-/// A mannequin as the placement of panels takes it.
+/// A mannequin in the form that the placement of panels takes.
 pub(crate) fn placement_body(mannequin: &Mannequin) -> PlacementBody<'_> {
     let levels = mannequin.levels();
     PlacementBody {

@@ -1,12 +1,12 @@
-//! What is wrong with a pattern in each of its sizes.
+//! Faults of a pattern in each of its sizes.
 
 use crate::outfit::checked;
 use crate::{Project, SessionError};
 use std::fmt;
 use toile_pattern::{Diagnostic, Evaluation, Pattern, SizeSelection};
 
-/// The sizes of a pattern that are meant, each with how many garments of it; no name is the pattern
-/// as drafted.
+/// The sizes of a pattern that a selection means, each with its number of garments; no name stands
+/// for the pattern as drafted.
 ///
 /// # Errors
 /// All sizes of a pattern that has no table of sizes.
@@ -20,14 +20,14 @@ pub(crate) fn selected(
     })
 }
 
-/// Something found wrong, and the sizes it was found in.
+/// A diagnostic, and the sizes it was found in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizedDiagnostic {
-    /// What, as it is in the first of them.
+    /// The diagnostic, in the words of the first of these sizes.
     pub diagnostic: Diagnostic,
-    /// Names of the sizes, in the order of the pattern's table; none of a pattern without sizes.
+    /// Names of the sizes, in the order of the pattern's table; empty for a pattern without sizes.
     pub sizes: Vec<String>,
-    /// Whether it was found in every size that was looked at.
+    /// Whether it was found in every size that was checked.
     pub is_everywhere: bool,
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn sizes_to_check(project: &Project) -> SizeSelection {
     }
 }
 
-/// Everything wrong with a project's pattern in sizes of it.
+/// Diagnostics of a project's pattern in the sizes asked for.
 ///
 /// # Errors
 /// A size that the pattern does not have.
@@ -84,8 +84,8 @@ pub(crate) fn sized_diagnostics(
     Ok(told.collect())
 }
 
-/// Adds what was found in one more size. The same fault at the same place is one, whatever the
-/// numbers in its words.
+/// Adds the diagnostics of one more size. Equal faults at one place are merged, whatever the
+/// numbers in their words.
 fn gather(
     found: &mut Vec<(SizedDiagnostic, usize)>,
     diagnostics: Vec<Diagnostic>,

@@ -3,7 +3,7 @@
 use crate::Session;
 
 impl Session {
-    /// A session of the same project with what is derived from it already, without history and
+    /// A session of the same project with the values derived from it already, without history and
     /// journal. Cheap.
     pub fn snapshot(&self) -> Self {
         Self {
@@ -14,7 +14,8 @@ impl Session {
         }
     }
 
-    /// A snapshot that knows the commands that led to it and how long they took, for an export that writes them down.
+    /// A snapshot that knows the commands that led to it and how long they took, for an export that writes
+    /// them down.
     pub fn snapshot_to_export(&self) -> Self {
         Self {
             journal: self.journal.clone(),
@@ -23,14 +24,14 @@ impl Session {
         }
     }
 
-    /// Takes over the markers that a snapshot has laid meanwhile, as far as they still hold. A drape it has made is
-    /// not taken over: the garment on show is exported as it was pulled.
+    /// Adopts the values that a snapshot has derived meanwhile, as far as they are still valid; not a drape
+    /// that it has made: the garment on show is exported as it was pulled.
     pub fn adopt_export(&mut self, mut snapshot: Self) {
         snapshot.derived.drape = None;
         self.adopt(snapshot);
     }
 
-    /// Takes over what a snapshot has derived meanwhile, as far as it still holds.
+    /// Adopts the values that a snapshot has derived meanwhile, as far as they are still valid.
     pub fn adopt(&mut self, snapshot: Self) {
         if snapshot.project == self.project {
             self.derived.adopt(snapshot.derived);

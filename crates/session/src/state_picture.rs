@@ -10,9 +10,9 @@ use toile_picture::{Finish, Rgb, Scene, Sheet, Surface, drape_picture};
 /// A surface of a state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ShownSurface {
-    /// Its name.
+    /// Name of the surface.
     pub name: String,
-    /// Where it is.
+    /// Mesh at its present position.
     pub mesh: TriangleMesh,
     /// The panel of each triangle of a cloth; none for a solid.
     pub panels: Option<Vec<u32>>,
@@ -20,7 +20,7 @@ pub(crate) struct ShownSurface {
     pub is_still: bool,
 }
 
-/// Where a surface has been.
+/// Box that a surface has been in.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Visited {
@@ -39,20 +39,20 @@ impl Visited {
     }
 }
 
-/// Where each surface has been, by its name.
+/// Boxes that surfaces have been in, by name.
 pub(crate) type Ways = BTreeMap<String, Visited>;
 
 /// The camera of the pictures of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RunCamera {
-    /// What it has to take in.
+    /// Boxes that the camera has to take in.
     pub ways: Ways,
-    /// The surface that it goes along with; none where it stands.
+    /// Surface that the camera follows; none if it stands still.
     pub followed: Option<String>,
 }
 
-/// How many times the size of what moves a solid at rest may have to be taken in by the camera: a body is, ground is
-/// not.
+/// Largest size of a solid at rest that the camera takes in, over the size of all that moves (1): a body is
+/// taken in, ground is not.
 const MAX_STILL: f64 = 2.0;
 
 /// Soft colours of cloths in the order of the surfaces.
@@ -66,7 +66,7 @@ const CLOTH: [Rgb; 6] = [
 ];
 
 impl RunCamera {
-    /// Refuses to go along with what is not there.
+    /// Refuses to follow an unknown surface.
     ///
     /// # Errors
     /// An unknown name, with those that are known.
@@ -88,7 +88,7 @@ impl RunCamera {
         }
     }
 
-    /// Takes in where surfaces are at a time.
+    /// Takes in the present positions of surfaces.
     pub fn take_in(&mut self, surfaces: &[ShownSurface]) {
         for surface in surfaces {
             if let Some(bounds) = surface.mesh.bounds() {
@@ -98,7 +98,7 @@ impl RunCamera {
         }
     }
 
-    /// Takes in where surfaces have been before.
+    /// Takes in boxes that surfaces have been in before.
     pub fn take_in_ways(&mut self, ways: &Ways) {
         for (name, way) in ways {
             self.unite(name, *way);
@@ -114,7 +114,7 @@ impl RunCamera {
         }
     }
 
-    /// A state from four sides, as PNG.
+    /// Picture of a state from four sides, as PNG.
     ///
     /// # Errors
     /// A picture that cannot be drawn.
@@ -131,7 +131,8 @@ impl RunCamera {
         Ok(drape_picture(&scene(surfaces), &sheet)?.to_png()?)
     }
 
-    /// The box that a picture shows (m): all that moves with the solids at rest beside it, or the surface followed.
+    /// The box that a picture shows (m): all that moves with the solids at rest beside it, or the surface
+    /// followed.
     fn room(&self, surfaces: &[ShownSurface]) -> Option<[Vec3; 2]> {
         if let Some(name) = &self.followed {
             let surface = surfaces.iter().find(|surface| surface.name == *name)?;
@@ -150,12 +151,12 @@ impl RunCamera {
     }
 }
 
-/// The smallest box round two.
+/// The smallest box round two boxes.
 fn united(a: [Vec3; 2], b: [Vec3; 2]) -> [Vec3; 2] {
     [a[0].inf(&b[0]), a[1].sup(&b[1])]
 }
 
-/// A state as the painter takes it: solids in the colour of skin, each cloth in its own.
+/// A state as a scene to paint: solids in the colour of skin, each cloth in its own.
 fn scene(surfaces: &[ShownSurface]) -> Scene {
     let mut cloths = 0;
     let mut painted = Vec::with_capacity(surfaces.len());
@@ -175,8 +176,8 @@ fn scene(surfaces: &[ShownSurface]) -> Scene {
     Scene { surfaces: painted }
 }
 
-/// Pairs of vertices between triangles of two panels. A mesh that is its own rest shape has a panel a triangle, and no
-/// borders.
+/// Edges between triangles of two panels, as pairs of vertices. A mesh that is its own rest shape has a panel
+/// for each triangle, and is drawn without borders.
 fn panel_borders(mesh: &TriangleMesh, panels: &[u32]) -> Vec<[u32; 2]> {
     let count = panels.iter().collect::<BTreeSet<_>>().len();
     if count == panels.len() {

@@ -14,25 +14,25 @@ use toile_marker::{FinishedMarker, Start, marker_files};
 use toile_nesting::Search;
 use toile_pattern::{MarkerId, Pattern};
 
-/// What is done with a marker of a pattern file.
+/// A task for a marker of a pattern file.
 #[derive(Clone, Debug)]
 pub struct MarkerJob {
     /// Name of the marker.
     pub name: String,
-    /// What is searched for and stored in the file; nothing leaves the marker as it is stored.
+    /// Search whose result is stored in the file; none leaves the marker as it is stored.
     pub search: Option<(Start, Search)>,
     /// Files to write.
     pub formats: Vec<MarkerFormat>,
 }
 
-/// Searches for a marker of a pattern file, stores where its pieces lie in the file, and writes the
-/// marker. Returns a summary, of each roll that it is laid on, with what keeps it from being cut among its notes, and the
-/// files written, the pattern's first if it was stored.
+/// Searches for the layout of a marker of a pattern file, stores the placements in the file, and writes the
+/// marker. Returns a summary of each roll that it is laid on, whose notes include the faults that keep it
+/// from being cut, and the files written, the pattern's first if it was stored.
 ///
 /// # Errors
-/// The pattern cannot be read, is not in Toile's format or has what would be lost in storing; it
-/// has no such marker; the marker cannot be laid; a file cannot be written. What was stored then is
-/// whole: the old marker or the new one.
+/// The pattern cannot be read, is not in Toile's format or has parts that would be lost in storing;
+/// it has no such marker; the marker cannot be laid; a file cannot be written. The pattern file then
+/// holds a whole marker, the old one or the new one.
 pub fn nest_marker(
     path: &Path,
     job: &MarkerJob,
@@ -82,7 +82,7 @@ pub fn nest_marker(
     Ok((summaries, paths))
 }
 
-/// A marker of a session's pattern as it lies, on each of its rolls, what its files are called, and what is said where it
+/// A stored marker of a session's pattern: the title of its files, its layout on each roll, and a note if it
 /// is of other sizes than the garment.
 pub(crate) fn stored(
     session: &mut Session,
@@ -125,7 +125,7 @@ fn marker_named(pattern: &Pattern, name: &str) -> Result<MarkerId, SessionError>
     })
 }
 
-/// A marker as it lies, each of its rolls in a few numbers, and as files.
+/// A stored marker as files, with a summary of each of its rolls.
 fn written(
     session: &mut Session,
     marker: &str,
@@ -137,7 +137,7 @@ fn written(
     let mut other_sizes = other_sizes.into_iter();
     let summaries = finished_markers.iter().zip(lost).map(|(finished, lost)| {
         let mut summary = finished.summary();
-        // Said once, of the first.
+        // The note is given once, on the first roll.
         summary.notes.extend(other_sizes.by_ref());
         summary.notes.extend(finished.faults());
         summary.notes.extend(lost);
@@ -146,7 +146,8 @@ fn written(
     Ok((summaries.collect(), files))
 }
 
-/// Storing writes the whole file anew: what this program does not know would be lost.
+/// Refuses to store a marker in a file with parts that this program does not know: they would be lost, for
+/// the whole file is written anew.
 fn refuse_loss(
     path: &Path,
     (format, notes): (PatternFormat, &[String]),

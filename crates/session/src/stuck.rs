@@ -1,13 +1,13 @@
-//! What holds a garment that does not come to rest.
+//! Finds the pieces and seams that keep a garment from coming to rest.
 
 use crate::GarmentJob;
 use std::collections::BTreeMap;
 use toile_drape::{Aspect, Finding, GarmentRun};
 
-/// What holds a garment that was given up because its net force stayed far above its weight: the pieces and seams that
-/// bear most of it.
+/// Finding on a garment that was given up because its net force stayed far above its weight: the pieces and
+/// seams that bear most of that force.
 pub(crate) fn stuck(job: &GarmentJob, run: &mut GarmentRun) -> Option<Finding> {
-    /// Share of the force that is worth a name.
+    /// Least share of the sum of squared forces from which a piece or seam is named (1).
     const WORTH: f64 = 0.15;
     let forces = run.forces_of_stuck()?;
     let force = |v: usize| forces[run.target()[v] as usize].powi(2);

@@ -1,5 +1,5 @@
-//! What each rule of the trade costs: the same garments laid with and without it, with the same
-//! number of evaluations.
+//! Cost of each rule of the trade: the same garments laid with and without it, with the same number
+//! of evaluations.
 
 use crate::nest_patterns::drafts_of;
 use crate::watched_search::lay_watched;
@@ -12,7 +12,7 @@ use toile_marker::{FinishedMarker, Garments};
 use toile_nesting::{Fold, Marker, judge};
 use toile_pattern::{LayingRule, Pattern, Print, Roll};
 
-/// What a rule costs.
+/// Cost of a rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RuleCost {
     /// The rule, in words.
@@ -22,15 +22,15 @@ pub struct RuleCost {
     /// Area of the garments' pieces without any rule over that of the fabric laid open, 0..=1; not
     /// a number where pieces found no place.
     pub efficiency: f64,
-    /// Efficiency without the rule less that with it; not a number where that is none.
+    /// Efficiency without the rule less that with it (1); not a number if either is none.
     pub cost: f64,
     /// Pieces of one set of garments that found no place, at most over the seeds.
     pub unplaced: usize,
-    /// Why it could not be done, if so.
+    /// Reason why the garments could not be laid with the rule, if so.
     pub refused: Option<String>,
 }
 
-/// A rule: its words, and what it changes.
+/// A rule: its words, and its change of the options.
 type Rule = (String, Box<dyn Fn(&mut NestOptions)>);
 
 /// Length of the repeat of stripes and checks (m).
@@ -40,7 +40,7 @@ fn rule(words: &str, change: impl Fn(&mut NestOptions) + 'static) -> Rule {
     (words.to_owned(), Box::new(change))
 }
 
-/// What holds for all pieces, to change.
+/// The laying rule of all pieces, to be changed.
 fn every_piece(options: &mut NestOptions) -> &mut LayingRule {
     let pieces = &mut options.settings.pieces;
     &mut pieces.entry(ANY_NAME.to_owned()).or_default().rule
@@ -54,7 +54,7 @@ fn print(repeat: [f64; 2]) -> Option<Print> {
     })
 }
 
-/// The rules, for markers as they are without any.
+/// The rules to study; places of flaws and lengths of rolls fit the markers found without any rule.
 fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
     let length = base.fabric;
     let fabrics = base.fabrics.clone();
@@ -125,7 +125,7 @@ fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
     all
 }
 
-/// The first notch that two panels have by the same name: both marks.
+/// Both marks of the first notch whose name two panels share.
 fn shared_notch(patterns: &[&Pattern]) -> Option<Vec<String>> {
     for pattern in patterns {
         for (k, panel) in pattern.panels.iter().enumerate() {
@@ -227,8 +227,8 @@ fn rows<'a>(
     words.zip(&found).map(row).collect()
 }
 
-/// The markers with each taken from another rule where that is shorter and keeps this rule, too: a search ends
-/// somewhere, and more freedom would seem to cost fabric.
+/// Replaces each marker by that of another rule if that is shorter and keeps this rule, too: a search does
+/// not find the optimum, so that more freedom might otherwise seem to cost fabric.
 fn carried_over(mut tried: Vec<Result<Tried, SessionError>>) -> Vec<Result<Tried, SessionError>> {
     let all: Vec<Tried> = tried.iter().flatten().cloned().collect();
     for (seed, own) in tried
@@ -250,7 +250,7 @@ fn carried_over(mut tried: Vec<Result<Tried, SessionError>>) -> Vec<Result<Tried
     tried
 }
 
-/// Another marker of the same fabric as one under the rules of this, where it is sound and better.
+/// Another marker of the same fabric, measured under the rules of `own`, if it is sound and better.
 fn under_the_rules_of(own: &FinishedMarker, other: &FinishedMarker) -> Option<Marker> {
     let is_whole = own.sources.is_none() && other.sources.is_none() && other.missing.is_empty();
     if own.fabric != other.fabric || own.items.len() != other.items.len() || !is_whole {
@@ -262,14 +262,14 @@ fn under_the_rules_of(own: &FinishedMarker, other: &FinishedMarker) -> Option<Ma
     (is_better && judge(&own.items, &own.strip, &marker).is_sound()).then_some(marker)
 }
 
-/// What markers came to.
+/// Totals over markers.
 #[derive(Clone, Debug, Default)]
 struct Found {
     /// Length for one set of garments (m).
     fabric: f64,
     /// Area of the pieces (m2).
     area: f64,
-    /// Fabric it lies on, laid open (m2).
+    /// Area of the fabric that they lie on, laid open (m2).
     fabric_area: f64,
     /// Length of the longest marker of each fabric, and its width laid open (m).
     fabrics: BTreeMap<String, [f64; 2]>,
@@ -313,7 +313,7 @@ impl Found {
     }
 }
 
-/// A share in points, if it is a number.
+/// A share in percentage points; a dash if it is not a number.
 fn points(share: f64) -> String {
     match share.is_nan() {
         true => "-".to_owned(),

@@ -1,4 +1,4 @@
-//! How long things took. Never part of any file but `timing.json`.
+//! Wall and processor time of the stages of work. Never part of any file but `timing.json`.
 
 use serde::Serialize;
 use std::collections::BTreeMap;

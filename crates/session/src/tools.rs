@@ -45,7 +45,7 @@ pub(crate) fn check_ending(to: &Path, known: &[&str], remedy: &str) -> Result<()
     )))
 }
 
-/// The project a pattern file makes, in a named size.
+/// Opens a pattern file as a project, in a named size if there is one.
 pub(crate) fn project_of(
     path: &Path,
     size: Option<&str>,
@@ -53,7 +53,7 @@ pub(crate) fn project_of(
     project_from(path, size, PanelOrigin::Automatic)
 }
 
-/// The same of a file whose panels are placed round an origin.
+/// Opens a pattern file whose panels are placed round an origin.
 fn project_from(
     path: &Path,
     size: Option<&str>,
@@ -81,7 +81,7 @@ pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
 
 /// Converts a pattern between formats: to the one asked for, else by the name of the output.
 /// Panels that the input places in space, round `origin`, are written as they stand on the floor.
-/// Returns what was left out or assumed on the way in and out.
+/// Returns notes on parts that were left out or assumed in reading and writing.
 ///
 /// # Errors
 /// The input cannot be read, the output has a name of another format, or cannot be written.
@@ -120,8 +120,8 @@ pub fn convert(
 }
 
 /// The triangulated panels of a pattern in a row, as OBJ with a group a panel; texture coordinates
-/// are the panels' own planes (m). Returns the quality of the triangles, and what
-/// was left out or is missing.
+/// are the panels' own planes (m). Returns the quality of the triangles, and notes on parts that
+/// were left out or are missing.
 ///
 /// # Errors
 /// The pattern cannot be read or meshed, or the file cannot be written.
@@ -167,31 +167,31 @@ pub fn mesh_panels(
 /// A mannequin's measurements as asked and as got.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyReport {
-    /// What was asked for, then what was predicted.
+    /// Measurements that were asked for, then those that were predicted.
     pub rows: Vec<Deviation>,
-    /// What was asked for and no tape takes from a standing body.
+    /// Measurements that were asked for and that no tape takes from a standing body.
     pub untaken: Vec<String>,
-    /// What was asked for and contradicts itself.
+    /// Measurements that were asked for and contradict each other.
     pub conflicts: Vec<Conflict>,
-    /// What of the motion's file was left out.
+    /// Notes on parts of the motion's file that were left out.
     pub notes: Vec<String>,
-    /// Its proportions in head lengths.
+    /// Proportions of the body in head lengths.
     pub proportions: ProportionBox,
 }
 
 /// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time (s).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
-    /// Which motion.
+    /// Name of the motion, or its file.
     pub motion: String,
     /// A second gait mixed in at equal phase, and its share, 0 to 1.
     pub blend: Option<(String, f64)>,
-    /// When (s).
+    /// Time within the motion (s).
     pub time: f64,
 }
 
 impl Moment {
-    /// What the motion is called: the gait, or the file's name without folders and ending.
+    /// Name of the motion: the gait, or the file's name without folders and ending.
     fn name(&self) -> String {
         let stem = Path::new(&self.motion).file_stem();
         stem.map_or_else(
@@ -200,7 +200,7 @@ impl Moment {
         )
     }
 
-    /// The whole motion, for a mannequin, and what of its file was left out.
+    /// The whole motion, for a mannequin, with notes on parts of its file that were left out.
     fn motion_for(&self, mannequin: &Mannequin) -> Result<(Clip, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
         let (own, blend) = (own_clip(&self.motion, skeleton), &self.blend);
@@ -223,30 +223,31 @@ impl Moment {
     }
 }
 
-/// What was measured on somebody's mesh.
+/// Measurements taken on the mesh of a person.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshMeasured {
     /// The measurements (m).
     pub measurements: Measurements,
-    /// Where they were taken.
+    /// Landmarks at which they were taken.
     pub landmarks: ScanLandmarks,
-    /// What of the mesh was set right.
+    /// Notes on corrections of the mesh.
     pub notes: Vec<String>,
 }
 
-/// A file of somebody's mesh, and what is said of it.
+/// A file with the mesh of a person, its landmarks and its stance.
 #[derive(Clone, Copy, Debug)]
 pub struct PersonFile<'a> {
     /// The mesh (OBJ or PLY): closed, of a standing person.
     pub mesh: &'a Path,
-    /// Landmarks (JSON); what is left out is found.
+    /// File of landmarks (JSON); those left out are detected.
     pub landmarks: Option<&'a Path>,
-    /// How it stands in its file; what is left out is seen.
+    /// Stance of the mesh in its file; parts left out are detected.
     pub stance: AskedStance,
 }
 
 impl PersonFile<'_> {
-    /// The scan, with what was set right. Points among the landmarks are the file's own.
+    /// Opens the scan, with notes on corrections. Points among the landmarks are given in coordinates of the
+    /// mesh file.
     fn open(&self) -> Result<(Scan, Vec<String>), SessionError> {
         let mut given = match self.landmarks {
             None => ScanLandmarks::default(),
@@ -302,7 +303,7 @@ pub fn measure_mesh(person: &PersonFile, to: &Path) -> Result<MeshMeasured, Sess
     })
 }
 
-/// Fits a mannequin to a closed mesh of a standing person; also tells what of the mesh was set right.
+/// Fits a mannequin to a closed mesh of a standing person; also returns notes on corrections of the mesh.
 ///
 /// # Errors
 /// As [`measure_mesh`]; and a limb or a landmark that cannot be found.
@@ -314,18 +315,18 @@ pub fn fit_mesh(person: &PersonFile, figure: Figure) -> Result<(Fit, Vec<String>
     Ok((fit, notes))
 }
 
-/// Proportions and the five scaling parameters as they are asked for.
+/// Scaling asked of a body: proportions, stature and the five scaling parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyStretch {
     /// Proportions to bring the body to first, at the stature it has.
     pub proportions: Option<ProportionBox>,
     /// Stature to bring the body to (m).
     pub stature: Option<f64>,
-    /// The ratios; the global one counts besides the stature.
+    /// The scaling parameters; the global one multiplies the scale to the stature.
     pub ratios: Scaling,
 }
 
-/// Scales a body with a frame of its own, or the figure's own, as it is.
+/// Scales the body described, which has a frame of its own, or else the body of a figure.
 ///
 /// # Errors
 /// A body grown to measurements, or ratios no body has.
@@ -349,7 +350,7 @@ pub fn stretch_body(
     Ok(ratios.apply(&body)?)
 }
 
-/// Where a body comes from.
+/// Source of a body.
 #[derive(Clone, Copy, Debug)]
 pub enum BodySource<'a> {
     /// The wearer of a project.
@@ -358,9 +359,10 @@ pub enum BodySource<'a> {
     Described(&'a Description),
 }
 
-/// Makes a mannequin and writes it by the name of the file: `.glb` with skeleton and the whole clip
-/// of the motion, `.character.json` with ellipsoids and clips for real time, other `.json` as a mannequin file, else its skin as OBJ, at rest or at a moment of a
-/// motion. Returns every measurement as asked or predicted and as got at rest.
+/// Makes a mannequin and writes it by the name of the file: `.glb` with skeleton and the whole clip of the
+/// motion, `.character.json` with ellipsoids and clips for real time, other `.json` as a mannequin file, else
+/// its skin as OBJ, at rest or at a moment of a motion. Returns every measurement as asked or predicted and
+/// as got at rest.
 ///
 /// # Errors
 /// Measurements no body can have, a motion that cannot be read, a file of another kind or one that

@@ -1,5 +1,5 @@
-//! Judges what a drape or the run of a scene came to: the verdict that reports, pictures, the window and the exit status
-//! of the command tell.
+//! Judges what a drape or the run of a scene came to: the verdict that reports, pictures, the window and the
+//! exit status of the command tell.
 
 use crate::crossings::Crossings;
 use crate::crumple::short_seams;
@@ -11,23 +11,23 @@ use toile_drape::{
 };
 use toile_geometry::Vec3;
 
-/// Stretch beyond which a garment is called too tight: a knit gives as much at ease.
+/// Stretch beyond which a garment is called too tight (1): a knit gives as much at ease.
 const TIGHT: f64 = 0.15;
 /// Depth in the body to which cloth that is too tight may be pressed (m).
 const PRESSED: f64 = 0.03;
-/// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth presses
-/// (m).
+/// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth
+/// presses (m).
 const THROUGH: f64 = 0.01;
-/// Stretch beyond which the cloth of a scene is pulled as none bears: woven cloth tears long before.
+/// Stretch of the cloth of a scene beyond which no cloth bears it (1): woven cloth tears long before.
 const OVERSTRETCHED: f64 = 1.0;
 /// Depth below the floor up to which a hem only touches it (m).
 const ON_FLOOR: f64 = 0.02;
 /// Distance from the body within which cloth touches it, in contact offsets.
 const TOUCH: f64 = 1.5;
-/// How many names a list spells out.
+/// Most names that a list spells out.
 const MAX_NAMES: usize = 4;
 
-/// Judges a garment where its run stands: at rest, or where its seams could not be closed.
+/// Judges a garment at the present state of its run: at rest, or when its seams could not be closed.
 pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures) -> Verdict {
     let mut verdict = Verdict::default();
     let progress = run.progress();
@@ -57,7 +57,7 @@ pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures
     verdict.judge(Aspect::Tangle, garment_tangle(run, measures));
     let remedy = "say where its panels are worn, so that they hang clear of arms and legs, or give it more ease (a larger size) where it is narrower than the body";
     let through = through_solid("the body", (measures, deepest_in_body(measures)), remedy);
-    // How tight it is cannot be told of cloth that hangs on what goes through it.
+    // The tightness of cloth that hangs on a body that goes through it says nothing.
     if through.is_none() {
         verdict.judge(Aspect::Tightness, tightness(measures));
     }
@@ -69,7 +69,7 @@ pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures
     verdict
 }
 
-/// Judges the run of a scene where it ended.
+/// Judges the run of a scene at its end.
 pub(crate) fn of_scene(run: &SceneRun, measures: &Measures, crossings: &Crossings) -> Verdict {
     let mut verdict = Verdict::default();
     let settings = run.settings();
@@ -118,7 +118,7 @@ pub(crate) fn of_scene(run: &SceneRun, measures: &Measures, crossings: &Crossing
     verdict
 }
 
-/// Cloth of a scene that is stretched to many times its length.
+/// Finding on cloth of a scene that is stretched to more than twice its length.
 fn overstretched(measures: &Measures) -> Option<Finding> {
     let [warp, weft] = measures.strain_max;
     let (name, strain) = match warp >= weft {
@@ -134,7 +134,7 @@ fn overstretched(measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// A net force above the one that counts as rest.
+/// Finding on a net force above the one that counts as rest.
 fn unrest(residual: f64, goal: f64, steps: usize, remedy: &str) -> Option<Finding> {
     let at_rest = residual <= goal;
     (!at_rest).then(|| {
@@ -146,7 +146,7 @@ fn unrest(residual: f64, goal: f64, steps: usize, remedy: &str) -> Option<Findin
     })
 }
 
-/// A net force as so much "the weight", in plain figures where it is large.
+/// Words for a net force over weight, to stand before "the weight"; plain figures if it is large.
 fn force(residual: f64) -> String {
     match residual {
         many if many >= 1.0 => format!("{many:.1} times"),
@@ -154,7 +154,7 @@ fn force(residual: f64) -> String {
     }
 }
 
-/// Parts of the garment that the body does not carry, or that reach below its feet.
+/// Findings on parts of the garment that the body does not carry, or that reach below its feet.
 fn off_body(job: &GarmentJob, run: &GarmentRun) -> Vec<Finding> {
     let grounds = job.setup.colliders.iter();
     let grounds = grounds.filter_map(|solid| Some(solid.mesh().bounds()?[0].y));
@@ -223,7 +223,7 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// Seams that hang in a heap.
+/// Finding on seams that hang in a heap.
 fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
     let mut short = short_seams(job, run.target(), &run.state.positions, &taut(run));
     short.sort_by(|a, b| (a.hangs / a.cloth).total_cmp(&(b.hangs / b.cloth)));
@@ -241,7 +241,7 @@ fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
     Some(Finding::bad(Aspect::Hang, words))
 }
 
-/// The vertices of cloth that is stretched by more than what is told as tight.
+/// The vertices of cloth that is stretched so much that it is called too tight.
 fn taut(run: &GarmentRun) -> BTreeSet<u32> {
     let stretch = stretch_per_triangle(&run.system, &run.state.positions);
     let triangles = run.system.topology.triangles.iter().zip(stretch);
@@ -249,7 +249,7 @@ fn taut(run: &GarmentRun) -> BTreeSet<u32> {
     tight.flat_map(|(corners, _)| *corners).collect()
 }
 
-/// More parts than garments.
+/// Finding on cloth that is in more parts than there are garments.
 fn in_parts(parts: usize, garments: usize) -> Option<Finding> {
     (parts > garments).then(|| {
         let words = format!(
@@ -259,7 +259,7 @@ fn in_parts(parts: usize, garments: usize) -> Option<Finding> {
     })
 }
 
-/// Folds of a garment's cloth in one another.
+/// Finding on folds of a garment's cloth that lie in one another.
 fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
     let [found, most, _] = run.cloth_tally().crossings;
     (measures.self_intersections > 0).then(|| {
@@ -271,7 +271,8 @@ fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Cloth inside a solid otherwise than pressed in: deeper than a limit (m), or from one side to the other.
+/// Finding on cloth that went through a solid: deeper than a limit (m), or with edges from one side to the
+/// other.
 fn through_solid(
     solid: &str,
     (measures, deepest): (&Measures, f64),
@@ -294,13 +295,13 @@ fn through_solid(
     })
 }
 
-/// How deep in the body the cloth of a garment may lie and be pressed there alone (m).
+/// Depth in the body up to which the cloth of a garment counts as pressed in (m).
 fn deepest_in_body(measures: &Measures) -> f64 {
     let is_tight = measures.strain_max.iter().any(|&strain| strain > TIGHT);
     if is_tight { PRESSED } else { THROUGH }
 }
 
-/// Cloth that is stretched, or crosses the body without having gone through it.
+/// Findings on cloth that is stretched, or crosses the body without having gone through it.
 fn tightness(measures: &Measures) -> Vec<Finding> {
     let mut found = Vec::new();
     if measures.body_intersections > 0 {
@@ -322,7 +323,7 @@ fn tightness(measures: &Measures) -> Vec<Finding> {
     found
 }
 
-/// Layers that are not outside one another.
+/// Findings on layers that are not outside one another.
 fn disorder(measures: &Measures, parts: &[GarmentPart]) -> Vec<Finding> {
     let wrong = measures
         .layers
@@ -342,7 +343,8 @@ fn disorder(measures: &Measures, parts: &[GarmentPart]) -> Vec<Finding> {
     words.collect()
 }
 
-/// Elastics that are open at the end: those that no force can close, and those that may yet.
+/// Findings on elastics that are open at the end: those that no force can close, and those that may still
+/// close.
 fn open_elastics(run: &SceneRun) -> Vec<Finding> {
     let open = run.open_attachments();
     let settings = run.settings();
@@ -389,10 +391,11 @@ fn open_elastics(run: &SceneRun) -> Vec<Finding> {
         .collect()
 }
 
-/// Share of its gap that an elastic would close in another run as long, at its present speed, that counts as closing.
+/// Least share of its gap that an elastic must close in another run as long, at its present speed, to count
+/// as closing (1).
 const CLOSING: f64 = 0.5;
 
-/// An elastic as its scene lists it, with its ends.
+/// Words for an elastic: its index in the scene, with its ends.
 fn elastic_name(run: &SceneRun, index: usize) -> String {
     let world = run.world();
     let point = |p: Vec3| format!("[{:.3}, {:.3}, {:.3}]", p.x, p.y, p.z);

@@ -19,15 +19,15 @@ pub struct Abandoned {
     pub text: String,
     /// The last steps of its history, the newest first.
     pub past: Vec<PastStep>,
-    /// When it was kept.
+    /// Time at which the state was kept.
     pub kept: Option<SystemTime>,
     folder: PathBuf,
     id: String,
     _lock: File,
 }
 
-/// The documents in a folder that crashes left, the newest first. Of a document whose newest state
-/// is damaged it is the one before. Documents of processes that still run are left out.
+/// The documents in a folder that crashes left, the newest first. If the newest state of a document
+/// is damaged, the state before is taken. Documents of processes that still run are left out.
 ///
 /// # Errors
 /// The folder is there and cannot be read.
@@ -77,7 +77,7 @@ fn take(folder: &Path, id: String) -> Option<Abandoned> {
 }
 
 impl Abandoned {
-    /// Removes its files: it was recovered and kept anew, or is not wanted.
+    /// Removes the files of the document: it was recovered and kept anew, or is not wanted.
     ///
     /// # Errors
     /// A file cannot be removed.

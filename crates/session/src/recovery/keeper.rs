@@ -16,11 +16,11 @@ use std::time::{Duration, Instant, SystemTime};
 /// Least time from one write to the next. With the write itself it stays under a second.
 const PERIOD: Duration = Duration::from_millis(500);
 
-/// Keeps what is unsaved. Dropping it writes what is still to be written.
+/// Keeps the unsaved state of a document. Dropping it writes a state that is not written yet.
 pub struct Recovery {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-    /// Locked as long as this lives.
+    /// Lock file, locked as long as this lives.
     lock: Option<File>,
     files: Files,
 }
@@ -46,7 +46,7 @@ enum Wish {
 /// The texts of steps that were kept last, by their numbers.
 #[derive(Default)]
 struct KeptTexts {
-    /// The file of the document, from whose folder they name other files.
+    /// File of the document; the texts name other files from its folder.
     source: Option<PathBuf>,
     by_number: BTreeMap<u64, String>,
 }
@@ -96,7 +96,7 @@ impl Recovery {
         self.wish(Wish::Clear);
     }
 
-    /// Why the last state could not be kept, if it could not.
+    /// Reason why the last state could not be kept, if it could not.
     pub fn failure(&self) -> Option<String> {
         self.shared.lock().failure.clone()
     }
@@ -125,7 +125,7 @@ impl Drop for Recovery {
 }
 
 impl Shared {
-    /// The state, whatever a thread that panicked left of it: every field holds by itself.
+    /// The state, also after a thread panicked that held the lock: every field is valid by itself.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -143,7 +143,7 @@ impl Shared {
         }
     }
 
-    /// Waits for the next wish; nothing at the end.
+    /// Waits for the next wish; none at the end.
     fn next(&self) -> Option<Wish> {
         let mut state = self.lock();
         loop {
@@ -196,7 +196,7 @@ impl Files {
                 Some(before) => before,
                 None => match document_text(&step.project, source.as_deref()) {
                     Ok(before) => before,
-                    // Older ones could not be told without it.
+                    // Older steps cannot be rebuilt without this one.
                     Err(_) => break,
                 },
             };
@@ -221,7 +221,7 @@ impl Files {
         self.put(&bytes).map_err(|error| error.to_string())
     }
 
-    /// Whenever the process ends, one of the two states is whole.
+    /// Writes a state. Whenever the process ends, one of the two states is whole.
     fn put(&self, bytes: &[u8]) -> io::Result<()> {
         let written = self.path("writing");
         let mut file = File::create(&written)?;

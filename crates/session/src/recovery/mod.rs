@@ -16,12 +16,12 @@ pub use past_step::PastStep;
 
 use std::path::{Path, PathBuf};
 
-/// How the names of the files of one process end.
+/// Endings of the names of the files of one process.
 const LOCK: &str = "lock";
 const NEWEST: &str = "newest";
 const BEFORE: &str = "before";
 
-/// The user's folder for what this program keeps from one time to the next; nothing where the
+/// The user's folder for data that this program keeps from one run to the next; none if the
 /// system has none.
 pub fn state_folder() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "toile")?;
@@ -31,7 +31,7 @@ pub fn state_folder() -> Option<PathBuf> {
     Some(folder.to_owned())
 }
 
-/// A file of one process.
+/// Path of a file of one process.
 fn file_of(folder: &Path, id: &str, ending: &str) -> PathBuf {
     folder.join(format!("{id}.{ending}"))
 }

@@ -1,16 +1,16 @@
-//! Steps of the history as they are kept: each by what the document before it had in place of a stretch of the
-//! document after it, for a step mostly changes little.
+//! Steps of the history as they are kept: each as the difference between the documents before and after it,
+//! for a step mostly changes little.
 
 use serde::{Deserialize, Serialize};
 
 /// A step that can be taken back after a crash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PastStep {
-    /// Its label.
+    /// Label of the step.
     pub label: String,
-    /// How many bytes the texts before and after it have in common at their start, and at their end.
+    /// Bytes that the texts before and after the step have in common at their start, and at their end.
     same: [usize; 2],
-    /// What stands between these before it.
+    /// Text between these common parts before the step.
     before: String,
 }
 
@@ -32,7 +32,7 @@ impl PastStep {
         }
     }
 
-    /// The text before the step, by the one after it; nothing where they do not belong together.
+    /// The text before the step, rebuilt from the text after it; none if they do not belong together.
     pub(crate) fn text_before(&self, after: &str) -> Option<String> {
         let [start, end] = self.same;
         let tail = after.len().checked_sub(end).filter(|tail| *tail >= start)?;

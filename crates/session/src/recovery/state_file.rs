@@ -1,11 +1,11 @@
-//! The file a state of a document is kept in: a line with length and checksum, a line that says
-//! what it is, then the document as its own file would be.
+//! The file that a state of a document is kept in: a line with length and checksum, a line with the
+//! head as JSON, then the document as its own file would be.
 
 use super::PastStep;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// How the first line begins: the name and version of the format.
+/// Start of the first line: the name and version of the format.
 const FORMAT: &str = "toile-recovery 1";
 
 /// A state of a document.
@@ -16,7 +16,7 @@ pub(super) struct DocumentState {
     pub text: String,
 }
 
-/// What is known of a document without reading it.
+/// Facts about a document that are read without its text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Head {
     pub name: String,
@@ -37,7 +37,7 @@ impl DocumentState {
         Ok(bytes)
     }
 
-    /// Nothing if the bytes are not exactly what was once written.
+    /// Reads a state; none if the bytes are not exactly those that were written.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (first, body) = bytes.split_at(bytes.iter().position(|&b| b == b'\n')? + 1);
         if first != first_line(body).as_bytes() {
@@ -50,13 +50,13 @@ impl DocumentState {
         })
     }
 
-    /// The state in a file; nothing if there is none or it is damaged.
+    /// Reads the state in a file; none if the file is missing or damaged.
     pub fn read(path: &Path) -> Option<Self> {
         Self::from_bytes(&std::fs::read(path).ok()?)
     }
 }
 
-/// The line that goes before the rest: its length (bytes) and its checksum.
+/// First line of the file: the format, the length of the rest (bytes) and its checksum.
 fn first_line(body: &[u8]) -> String {
     format!("{FORMAT} {} {:08x}\n", body.len(), crc32fast::hash(body))
 }
