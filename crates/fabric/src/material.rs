@@ -52,7 +52,31 @@ pub enum Access {
     },
 }
 
-/// A figure of cloth.
+/// A figure of cloth. Nothing has a default: an entry of the table that leaves something out, here the domain, does
+/// not compile.
+///
+/// ```compile_fail,E0063
+/// use toile_fabric::{Access, Figure, Unit};
+/// static WEIGHT: Figure = Figure {
+///     name: "weight",
+///     pattern_key: "weight",
+///     is_always_written: true,
+///     term: "weight",
+///     noun: "weight",
+///     label: "Weight",
+///     about: "Mass of a square metre",
+///     components: &[],
+///     unit: Unit::si("kg/m2"),
+///     positive_in_patterns: true,
+///     pattern_remedy: None,
+///     range: [1e-3, 10.0],
+///     source: None,
+///     access: Access::Numbers {
+///         get: |material| std::slice::from_ref(&material.density),
+///         get_mut: |material| std::slice::from_mut(&mut material.density),
+///     },
+/// };
+/// ```
 #[derive(Debug)]
 pub struct Figure {
     /// Name in scenes, fabric files and journals.

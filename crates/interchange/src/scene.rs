@@ -419,6 +419,7 @@ impl SceneFile {
             found.extend(unknown.keys().map(|key| format!("{path}{dot}{key}")));
         };
         add(String::new(), &self.unknown);
+        add("meshes".to_owned(), &self.meshes.unknown);
         add("air".to_owned(), &self.air.unknown);
         add("damping".to_owned(), &self.damping.unknown);
         if let Some(method) = &self.method {
@@ -475,7 +476,7 @@ mod tests {
     use toile_drape::{Compression, MaterialLaws};
     use toile_fabric::LibraryFabric;
 
-    const FLAG: &str = r#"{ "duration": 2, "colour": "red",
+    const FLAG: &str = r#"{ "duration": 2, "colour": "red", "meshes": { "upp": "z" },
         "objects": [ { "name": "flag", "kind": "deformable", "mesh": "flag.obj", "pins": [0, 4],
                        "material": { "density": 0.1, "gloss": 3 },
                        "transform": { "translation": [0, 1, 0], "scale": 2 } } ],
@@ -484,7 +485,10 @@ mod tests {
     #[test]
     fn a_scene_is_read_and_unknown_fields_are_named() {
         let (file, unknown) = read_scene(FLAG).expect("good");
-        assert_eq!(unknown, ["colour", "objects[0].material.gloss"]);
+        assert_eq!(
+            unknown,
+            ["colour", "meshes.upp", "objects[0].material.gloss"]
+        );
         assert_eq!(
             file.method().expect("default").kind,
             MethodKind::ImplicitEuler

@@ -457,7 +457,10 @@ fn report_progress(
     let length = best.length + 2.0 * job.strip.end_margin;
     let laid = last
         .marker
-        .filter(|_| last.length.to_bits() == length.to_bits());
+        .filter(|_| last.length.to_bits() == length.to_bits())
+        .filter(|marker| {
+            marker.placements.len() == best.present.iter().filter(|&&laid| laid).count()
+        });
     let progress = Progress {
         done: meter.done(evaluations).min(1.0),
         evaluations,

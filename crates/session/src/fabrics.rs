@@ -207,15 +207,6 @@ pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
     material
 }
 
-/// The material of a fabric of a garment at rest: without restitution, which only impacts show and no method
-/// of a garment takes.
-pub(crate) fn rest_material(fabric: &Fabric) -> Material {
-    Material {
-        restitution: None,
-        ..cloth_material(fabric)
-    }
-}
-
 /// Figures of the fabrics of a draft that a garment at rest does not show, in words.
 pub(crate) fn unseen_at_rest(draft: &Draft) -> Vec<String> {
     let mut notes = Vec::new();
@@ -277,6 +268,5 @@ mod tests {
         let (choice, _) = chosen(&pattern, asked).unwrap();
         let fabric = choice.fabric(&pattern).unwrap();
         assert_eq!(cloth_material(&fabric).restitution, Some(0.5));
-        assert_eq!(rest_material(&fabric).restitution, None);
     }
 }

@@ -2,7 +2,7 @@
 //! same triangles, on another mesh, or not at all.
 
 use crate::derived::Derived;
-use crate::fabrics::rest_material;
+use crate::fabrics::cloth_material;
 use crate::mannequin_source::MannequinSource;
 use crate::outfit::{DraftedPart, MeshedPart, Outfit};
 use crate::rest_change::RestChange;
@@ -187,7 +187,7 @@ fn refuse_other_pieces(before: &[DraftedPart], now: &[DraftedPart]) -> Result<()
             return Err(CannotFollow::Panels);
         }
         let material =
-            |draft: &Draft, piece: &Piece| draft.fabrics.get(piece.fabric).map(rest_material);
+            |draft: &Draft, piece: &Piece| draft.fabrics.get(piece.fabric).map(cloth_material);
         let mut pairs = old.iter().zip(&new);
         let other = pairs.find(|(a, b)| material(&before.draft, a) != material(&now.draft, b));
         if let Some((_, piece)) = other {

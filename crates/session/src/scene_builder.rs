@@ -462,7 +462,10 @@ impl<'a> Builder<'a> {
 mod tests {
     use super::*;
     use crate::Silent;
-    use toile_interchange::read_scene;
+    use toile_drape::SceneRun;
+    use toile_fabric::FIGURES;
+    use toile_interchange::{read_pattern, read_scene, write_pattern};
+    use toile_pattern::Fabric;
 
     /// The cloth of a poncho in a scene, with more fields of its object.
     fn poncho(more: &str) -> Result<SceneObject, SessionError> {
@@ -528,5 +531,57 @@ mod tests {
             panic!("it is cloth");
         };
         assert_eq!((material.density, material.thickness), (0.31, 0.001));
+    }
+
+    #[test]
+    fn all_figures_of_a_fabric_file_go_through_a_pattern_into_a_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let figures = r#"{ "toile": 1, "kind": "fabric", "name": "scuba", "density": 0.31,
+            "thickness": 0.0011, "stretch": [310.7, 250.3], "shear": 41.3, "poisson": 0.27,
+            "hardening": [12.5, 3.25], "strain_limit": [0.07, null],
+            "compression": "tension-field", "bend": [1.7e-5, 1.3e-5, 1.1e-5],
+            "bend_poisson": 0.125, "viscosity": 0.021, "bend_viscosity": 3.1e-7,
+            "stiffness_damping": 0.0013, "kept": [0.05, 0.2], "relaxation_time": 4.5,
+            "friction": 0.37, "restitution": 0.3 }"#;
+        std::fs::write(path("scuba.json"), figures).unwrap();
+        let (fabric, _) = crate::fabrics::fabric_of_file(&path("scuba.json")).unwrap();
+        let material = fabric.material.clone();
+        // No figure is left at the default: one that is lost on its way shows.
+        for figure in &FIGURES {
+            assert!(!figure.is_default(&material), "{}", figure.name);
+        }
+
+        let text = include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../patterns/poncho.toile.json"
+        ));
+        let (mut pattern, _) = read_pattern(text).unwrap();
+        let id = pattern.fabrics[0].id;
+        pattern.fabrics[0] = Arc::new(Fabric {
+            id,
+            ..(*fabric).clone()
+        });
+        let written = write_pattern(&pattern).unwrap();
+        let (read, notes) = read_pattern(&written).unwrap();
+        assert!(notes.is_empty(), "{notes:?}");
+        assert_eq!(read.fabrics[0].material, material);
+        assert_eq!(write_pattern(&read).unwrap(), written);
+        let journal = serde_json::to_string(&*read.fabrics[0]).unwrap();
+        let replayed: Fabric = serde_json::from_str(&journal).unwrap();
+        assert_eq!(replayed, *read.fabrics[0]);
+
+        std::fs::write(path("poncho.toile.json"), written).unwrap();
+        let scene = r#"{ "objects": [ { "name": "poncho", "kind": "deformable", "pattern": "poncho.toile.json" } ] }"#;
+        let (file, _) = read_scene(scene).unwrap();
+        let scene_path = path("scene.json");
+        let mut builder = Builder::new(&scene_path, &file, Vec::new());
+        let object = builder.object(0, &file.objects[0], &mut Silent).unwrap();
+        let worn = object.cloth.unwrap();
+        assert_eq!(worn.materials, [material]);
+        // A method in time refuses what it cannot take, as for any scene.
+        let error = SceneRun::new(&builder.scene(&mut Silent).unwrap()).err();
+        let error = error.expect("no method knows all of it").to_string();
+        assert!(error.contains("no method knows all"), "{error}");
     }
 }

@@ -2,7 +2,7 @@
 //! quality.
 
 use crate::Quality;
-use crate::fabrics::rest_material;
+use crate::fabrics::cloth_material;
 use crate::mannequin_source::MannequinSource;
 use crate::outfit::{DraftedPart, GarmentPart, MeshedPart, Outfit};
 use std::sync::Arc;
@@ -182,7 +182,7 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
                 draft
                     .fabrics
                     .get(fabric)
-                    .map_or_else(Material::default, rest_material)
+                    .map_or_else(Material::default, cloth_material)
             })
             .collect(),
     }

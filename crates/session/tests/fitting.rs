@@ -450,3 +450,35 @@ fn jobs_without_a_session_take_what_the_file_keeps() {
     let lost = convert(&path, &folder.join("band.json"), None, origin).unwrap();
     assert!(lost.iter().any(|note| note.contains("wearer")), "{lost:?}");
 }
+
+#[test]
+fn a_garment_is_draped_without_figures_that_rest_does_not_show_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = support::band(folder.path());
+    let file = folder.path().join("scuba.json");
+    let text = r#"{ "toile": 1, "kind": "fabric", "density": 0.3, "strain_limit": [0.2, null],
+        "compression": "tension-field", "bend_poisson": 0.1, "stiffness_damping": 0.001,
+        "restitution": 0.5 }"#;
+    std::fs::write(&file, text).unwrap();
+    let mut commands = make(&pattern, &folder.path().join("out"));
+    commands.insert(
+        1,
+        Command::SetFabric {
+            fabric: Some(file.display().to_string()),
+        },
+    );
+    let mut session = Session::new();
+    let mut told = Vec::new();
+    for command in commands {
+        let events = run(&mut session, command).unwrap();
+        told.extend(warned(&events).into_iter().map(str::to_owned));
+    }
+    for word in ["restitution", "viscosity"] {
+        assert!(told.iter().any(|t| t.contains(word)), "{word}: {told:?}");
+    }
+    let report = std::fs::read_to_string(folder.path().join("out/report.json")).unwrap();
+    assert!(
+        report.contains("restitution acts on impacts only"),
+        "{report}"
+    );
+}

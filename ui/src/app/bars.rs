@@ -2,9 +2,16 @@
 
 use super::ToileApp;
 use super::command::{Menu, UiCommand, shortcut_words};
-use super::command_table::{commands, named};
+use super::command_table::commands;
+use super::document_commands::{
+    ADD_POINT, COPY, CUT, DELETE, DUPLICATE, FIT, ISOLATE, PASTE, REDO, SAVE, UNDO,
+};
 use super::findings::finding_colour;
 use super::notice::Tone;
+use super::tool_commands::{
+    BEND_EDGE, DART, FLIP_SEAM, FOLD, GRAIN, MATCHED_NOTCHES, MIRROR, NOTCH, PIVOT_DART, SEAM,
+    SELECT_SEAM, TURN, WALK_SEAM,
+};
 use crate::canvas::selection::Item;
 use crate::theme::Palette;
 use crate::tools::number;
@@ -30,8 +37,8 @@ impl ToileApp {
                 });
             }
             ui.separator();
-            for name in ["Save", "Undo", "Redo"] {
-                self.quick_button(ui, name);
+            for command in [&SAVE, &UNDO, &REDO] {
+                self.quick_button(ui, command);
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 self.size_choice(ui);
@@ -45,27 +52,26 @@ impl ToileApp {
             return;
         };
         let selected = self.view.selection.items().first().copied();
-        let own: &[&str] = match selected {
-            Some(Item::Panel(_)) => &["Isolate", "Grain", "Mirror", "Turn"],
+        let own: &[&UiCommand] = match selected {
+            Some(Item::Panel(_)) => &[&ISOLATE, &GRAIN, &MIRROR, &TURN],
             Some(Item::Edge(..)) => &[
-                "Add point",
-                "Bend edge",
-                "Dart",
-                "Fold",
-                "Notch",
-                "Seam",
-                "Select seam",
+                &ADD_POINT,
+                &BEND_EDGE,
+                &DART,
+                &FOLD,
+                &NOTCH,
+                &SEAM,
+                &SELECT_SEAM,
             ],
-            Some(Item::Operation(..)) => &["Pivot dart"],
-            Some(Item::Seam(_)) => &["Walk seam", "Flip seam", "Matched notches"],
+            Some(Item::Operation(..)) => &[&PIVOT_DART],
+            Some(Item::Seam(_)) => &[&WALK_SEAM, &FLIP_SEAM, &MATCHED_NOTCHES],
             _ => &[],
         };
         canvas.context_menu(|ui| {
-            let changes: &[&str] = &["Cut", "Copy", "Paste", "Duplicate", "Delete"];
-            let groups = [own, changes, &["Undo", "Fit"]].map(|names| {
-                let known = names.iter().filter_map(|name| named(name));
-                let possible = known.filter(|command| (command.when)(self));
-                possible.collect::<Vec<_>>()
+            let changes: &[&UiCommand] = &[&CUT, &COPY, &PASTE, &DUPLICATE, &DELETE];
+            let groups = [own, changes, &[&UNDO, &FIT]].map(|group| {
+                let possible = group.iter().filter(|command| (command.when)(self));
+                possible.copied().collect::<Vec<_>>()
             });
             for (k, group) in groups.iter().filter(|group| !group.is_empty()).enumerate() {
                 if k > 0 {
@@ -79,43 +85,22 @@ impl ToileApp {
     }
 
     fn menu_entry(&mut self, ui: &mut Ui, command: &'static UiCommand) {
-        let mut button = Button::new(command.name).selected(self.is_on(command.name));
+        let mut button = Button::new(command.name).selected(command.on.is_some_and(|on| on(self)));
         if let Some(key) = command.key {
             button = button.shortcut_text(shortcut_words(ui.ctx(), &key));
         }
         self.command_widget(ui, command, button, None);
     }
 
-    /// Whether the part of the view that a command toggles is visible.
-    fn is_on(&self, name: &str) -> bool {
-        match name {
-            "Rulers" => self.panes.rulers,
-            "Show guides" => self.panes.guides,
-            "Isolate" => !self.view.isolated.is_empty(),
-            "All sizes" => self.view.grading.is_some(),
-            "Tables" => self.panes.tables,
-            "Tables beside" => self.tables_are_beside,
-            "Tool names" => self.panes.tool_names,
-            "Findings" => self.panes.findings,
-            "Garment view" => self.panes.garment,
-            "Allowance" => self.panes.allowances,
-            "Show marker" => self.panes.marker,
-            _ => false,
-        }
-    }
-
     /// A button of the menu bar; the buttons of the history show the step they would undo or redo.
-    fn quick_button(&mut self, ui: &mut Ui, name: &str) {
-        let Some(command) = named(name) else {
-            return;
-        };
-        let step = match name {
-            "Undo" => self.session.can_undo(),
-            "Redo" => self.session.can_redo(),
-            _ => None,
+    fn quick_button(&mut self, ui: &mut Ui, command: &'static UiCommand) {
+        let step = match () {
+            () if command.name == UNDO.name => self.session.can_undo(),
+            () if command.name == REDO.name => self.session.can_redo(),
+            () => None,
         };
         let words = step.map(|step| format!("{}: {step}", command.words(ui.ctx())));
-        self.command_widget(ui, command, Button::new(name), words);
+        self.command_widget(ui, command, Button::new(command.name), words);
     }
 
     fn size_choice(&mut self, ui: &mut Ui) {
@@ -286,11 +271,9 @@ impl ToileApp {
 
 impl ToileApp {
     /// A button for a command, greyed while the command is not available.
-    pub(crate) fn command_button(&mut self, ui: &mut egui::Ui, name: &str) {
-        if let Some(command) = named(name) {
-            let button = egui::Button::new(command.name);
-            self.command_widget(ui, command, button, None);
-        }
+    pub(crate) fn command_button(&mut self, ui: &mut egui::Ui, command: &'static UiCommand) {
+        let button = egui::Button::new(command.name);
+        self.command_widget(ui, command, button, None);
     }
 
     /// A command's widget with a given button and tooltip.

@@ -18,6 +18,8 @@ pub struct UiCommand {
     pub begins_group: bool,
     /// Whether it is available now.
     pub when: fn(&ToileApp) -> bool,
+    /// Whether the part of the view that it toggles is visible; none for a command that toggles none.
+    pub on: Option<fn(&ToileApp) -> bool>,
     /// Performs it.
     pub does: fn(&mut ToileApp),
 }
@@ -72,15 +74,35 @@ pub(super) const fn command(
         menu,
         begins_group: false,
         when,
+        on: None,
         does,
     }
 }
+
+/// Declares commands as statics, and the list of them in the same order.
+macro_rules! commands {
+    ($(#[$about:meta])* $list:ident $($name:ident = $command:expr;)*) => {
+        $(pub(crate) static $name: UiCommand = $command;)*
+
+        $(#[$about])*
+        pub(super) static $list: &[&UiCommand] = &[$(&$name),*];
+    };
+}
+pub(super) use commands;
 
 impl UiCommand {
     /// This command, with a separator before it in its menu.
     pub(super) const fn under_rule(self) -> Self {
         Self {
             begins_group: true,
+            ..self
+        }
+    }
+
+    /// This command, marked in its menu while a part of the view is visible.
+    pub(super) const fn on_while(self, on: fn(&ToileApp) -> bool) -> Self {
+        Self {
+            on: Some(on),
             ..self
         }
     }

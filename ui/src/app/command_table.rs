@@ -2,6 +2,7 @@
 
 use super::command::{Menu, UiCommand};
 use super::document_commands::DOCUMENT_COMMANDS;
+use super::document_commands::FIT;
 use super::tool_commands::TOOL_COMMANDS;
 use crate::tools::number::begins_typing;
 use crate::tools::typing::{NAME_SIGN, WAY_SIGNS};
@@ -9,10 +10,10 @@ use egui::{Key, KeyboardShortcut};
 
 /// All commands, in the order of their menus.
 pub fn commands() -> impl Iterator<Item = &'static UiCommand> {
-    DOCUMENT_COMMANDS.iter().chain(TOOL_COMMANDS)
+    DOCUMENT_COMMANDS.iter().chain(TOOL_COMMANDS).copied()
 }
 
-/// The command with a name.
+/// The command with a name, as tests and plans of steps give it.
 pub fn named(name: &str) -> Option<&'static UiCommand> {
     commands().find(|command| command.name == name)
 }
@@ -81,9 +82,6 @@ fn begins_number(key: Key) -> bool {
     )
 }
 
-/// The command that Home starts too.
-const HOME: &str = "Fit";
-
 /// Commands whose keys were pressed in a frame.
 #[derive(Default)]
 pub struct Pressed {
@@ -140,7 +138,7 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Pressed {
         }
         let is_home_free = !(keys.modal || keys.text || keys.walks);
         if is_home_free && input.consume_key(egui::Modifiers::NONE, Key::Home) {
-            pressed.commands.extend(named(HOME));
+            pressed.commands.push(&FIT);
         }
     });
     pressed

@@ -1,36 +1,40 @@
 //! Commands for files, edits and views.
 
 use super::ToileApp;
-use super::command::{BOTH, COMMAND, Menu, PLAIN, SHIFT, UiCommand, always, command, key};
+use super::command::{
+    BOTH, COMMAND, Menu, PLAIN, SHIFT, UiCommand, always, command, commands, key,
+};
 use crate::tools::Tool;
 use egui::Key;
 use toile_pattern::plan::{Alignment, Axis};
 
 /// Enlargement that shows things at true size on a screen of 96 pixels per inch (pixels per metre).
-const TRUE_SIZE: f64 = 96.0 / 0.0254;
+const PIXELS_PER_METRE: f64 = 96.0 / 0.0254;
 
 /// Step of the scale of the interface (share of the usual size).
 const SCALE_STEP: f32 = 0.1;
 
-/// Commands for files, edits and views, in the order of their menus.
-pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
-    command(
+commands! {
+    /// Commands for files, edits and views, in the order of their menus.
+    DOCUMENT_COMMANDS
+
+    NEW = command(
         Menu::File,
         "New",
         key(COMMAND, Key::N),
         "Begin a new pattern",
         always,
         ToileApp::ask_new,
-    ),
-    command(
+    );
+    OPEN = command(
         Menu::File,
         "Open",
         key(COMMAND, Key::O),
         "Open a pattern from a file",
         always,
         ToileApp::ask_open,
-    ),
-    command(
+    );
+    SAVE = command(
         Menu::File,
         "Save",
         key(COMMAND, Key::S),
@@ -38,16 +42,16 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         |app| app.is_open() && app.is_unsaved(),
         ToileApp::save,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    SAVE_AS = command(
         Menu::File,
         "Save as",
         key(BOTH, Key::S),
         "Write the pattern to another file",
         ToileApp::is_open,
         ToileApp::ask_save,
-    ),
-    command(
+    );
+    INSERT_PATTERN = command(
         Menu::File,
         "Insert pattern",
         key(BOTH, Key::I),
@@ -55,8 +59,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::is_open,
         ToileApp::ask_insert,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    PRINT = command(
         Menu::File,
         "Print",
         key(COMMAND, Key::P),
@@ -64,40 +68,40 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::has_panels,
         ToileApp::ask_print,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    EXPORT = command(
         Menu::File,
         "Export",
         key(COMMAND, Key::E),
         "Write the garment, its marker, its pieces, pictures and numbers for other programs",
         |app| app.has_panels() && !app.is_exporting(),
         ToileApp::ask_export,
-    ),
-    command(
+    );
+    STOP_EXPORT = command(
         Menu::File,
         "Stop export",
         None,
         "Stop the export that goes on; nothing of it is written",
         ToileApp::is_exporting,
         ToileApp::stop_export,
-    ),
-    command(
+    );
+    UNDO = command(
         Menu::Edit,
         "Undo",
         key(COMMAND, Key::Z),
         "Take the last change back",
         |app| app.session.can_undo().is_some(),
         ToileApp::undo,
-    ),
-    command(
+    );
+    REDO = command(
         Menu::Edit,
         "Redo",
         key(BOTH, Key::Z),
         "Do the change again that was taken back",
         |app| app.session.can_redo().is_some(),
         ToileApp::redo,
-    ),
-    command(
+    );
+    CUT = command(
         Menu::Edit,
         "Cut",
         None,
@@ -105,40 +109,40 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::has_selection,
         ToileApp::cut,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    COPY = command(
         Menu::Edit,
         "Copy",
         None,
         "Copy what is selected (the key is that of the system)",
         ToileApp::has_selection,
         ToileApp::copy,
-    ),
-    command(
+    );
+    PASTE = command(
         Menu::Edit,
         "Paste",
         None,
         "Put what was copied beside what is there (the key is that of the system)",
         ToileApp::has_copied,
         ToileApp::paste_copied,
-    ),
-    command(
+    );
+    DUPLICATE = command(
         Menu::Edit,
         "Duplicate",
         key(COMMAND, Key::D),
         "Put a copy of what is selected beside it",
         ToileApp::has_selection,
         ToileApp::duplicate,
-    ),
-    command(
+    );
+    DELETE = command(
         Menu::Edit,
         "Delete",
         key(PLAIN, Key::Delete),
         "Remove what is selected; the edges at a removed corner become one",
         ToileApp::has_selection,
         ToileApp::delete,
-    ),
-    command(
+    );
+    ADD_POINT = command(
         Menu::Edit,
         "Add point",
         key(PLAIN, Key::Insert),
@@ -146,8 +150,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::has_edge,
         ToileApp::divide_edge,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    SELECT_ALL = command(
         Menu::Edit,
         "Select all",
         key(COMMAND, Key::A),
@@ -155,8 +159,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::is_open,
         ToileApp::select_all,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    DESELECT = command(
         Menu::Edit,
         "Deselect",
         key(PLAIN, Key::Escape),
@@ -166,8 +170,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
             app.has_selection() || shows_some || !matches!(app.view.tool, Tool::Select)
         },
         ToileApp::deselect,
-    ),
-    command(
+    );
+    ALIGN_LEFT = command(
         Menu::Edit,
         "Align left",
         None,
@@ -175,48 +179,48 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::has_several,
         |app| app.align(Alignment::Left),
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    ALIGN_RIGHT = command(
         Menu::Edit,
         "Align right",
         None,
         "Bring right sides to the rightmost",
         ToileApp::has_several,
         |app| app.align(Alignment::Right),
-    ),
-    command(
+    );
+    ALIGN_TOP = command(
         Menu::Edit,
         "Align top",
         None,
         "Bring upper sides to the topmost",
         ToileApp::has_several,
         |app| app.align(Alignment::Top),
-    ),
-    command(
+    );
+    ALIGN_BOTTOM = command(
         Menu::Edit,
         "Align bottom",
         None,
         "Bring lower sides to the bottommost",
         ToileApp::has_several,
         |app| app.align(Alignment::Bottom),
-    ),
-    command(
+    );
+    ALIGN_MIDDLES = command(
         Menu::Edit,
         "Align middles",
         None,
         "Bring middles onto one vertical",
         ToileApp::has_several,
         |app| app.align(Alignment::Middle),
-    ),
-    command(
+    );
+    ALIGN_LEVELS = command(
         Menu::Edit,
         "Align levels",
         None,
         "Bring middles onto one level",
         ToileApp::has_several,
         |app| app.align(Alignment::Level),
-    ),
-    command(
+    );
+    DISTRIBUTE_ACROSS = command(
         Menu::Edit,
         "Distribute across",
         None,
@@ -224,16 +228,16 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::has_several,
         |app| app.distribute(Axis::X),
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    DISTRIBUTE_UP = command(
         Menu::Edit,
         "Distribute up",
         None,
         "Spread middles evenly from below upward",
         ToileApp::has_several,
         |app| app.distribute(Axis::Y),
-    ),
-    command(
+    );
+    PATTERN_PROPERTIES = command(
         Menu::Edit,
         "Pattern properties",
         None,
@@ -241,8 +245,8 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::is_open,
         ToileApp::show_properties,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    FIND = command(
         Menu::Edit,
         "Find",
         key(COMMAND, Key::K),
@@ -250,48 +254,48 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         always,
         ToileApp::ask_command,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    WORDS = command(
         Menu::Edit,
         "Words",
         key(PLAIN, Key::F1),
         "Look up a word of the trade that the program uses",
         always,
         ToileApp::ask_words,
-    ),
-    command(
+    );
+    FIT = command(
         Menu::View,
         "Fit",
         key(PLAIN, Key::F),
         "Show the whole pattern: F while nothing is drawn, Home always",
         ToileApp::is_open,
         |app| app.view.fit(),
-    ),
-    command(
+    );
+    ZOOM_IN = command(
         Menu::View,
         "Zoom in",
         key(PLAIN, Key::Plus),
         "Enlarge the pattern",
         ToileApp::is_open,
         |app| app.view.zoom(crate::views::pattern::ZOOM_STEP),
-    ),
-    command(
+    );
+    ZOOM_OUT = command(
         Menu::View,
         "Zoom out",
         key(PLAIN, Key::Minus),
         "Make the pattern smaller",
         ToileApp::is_open,
         |app| app.view.zoom(1.0 / crate::views::pattern::ZOOM_STEP),
-    ),
-    command(
+    );
+    TRUE_SIZE = command(
         Menu::View,
         "True size",
         key(PLAIN, Key::Num0),
         "Show the pattern as large as it is, on a screen of 96 pixels an inch",
         ToileApp::is_open,
-        |app| app.view.true_size(TRUE_SIZE),
-    ),
-    command(
+        |app| app.view.true_size(PIXELS_PER_METRE),
+    );
+    RULERS = command(
         Menu::View,
         "Rulers",
         key(SHIFT, Key::R),
@@ -299,24 +303,26 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         always,
         |app| app.panes.rulers = !app.panes.rulers,
     )
-    .under_rule(),
-    command(
+    .under_rule()
+    .on_while(|app| app.panes.rulers);
+    SHOW_GUIDES = command(
         Menu::View,
         "Show guides",
         key(COMMAND, Key::Semicolon),
         "Show or hide the guides; drag one out of a ruler, and drop it back there to remove it",
         always,
         ToileApp::toggle_guides,
-    ),
-    command(
+    )
+    .on_while(|app| app.panes.guides);
+    REMOVE_ALL_GUIDES = command(
         Menu::View,
         "Remove all guides",
         None,
         "Remove every guide from the pattern",
         ToileApp::has_guides,
         ToileApp::remove_guides,
-    ),
-    command(
+    );
+    ISOLATE = command(
         Menu::View,
         "Isolate",
         key(PLAIN, Key::Period),
@@ -324,16 +330,18 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         ToileApp::can_isolate,
         ToileApp::isolate,
     )
-    .under_rule(),
-    command(
+    .under_rule()
+    .on_while(|app| !app.view.isolated.is_empty());
+    ALL_SIZES = command(
         Menu::View,
         "All sizes",
         key(SHIFT, Key::G),
         "Show or hide the outlines of all sizes over each other",
         ToileApp::has_sizes,
         ToileApp::toggle_grading,
-    ),
-    command(
+    )
+    .on_while(|app| app.view.grading.is_some());
+    TABLES = command(
         Menu::View,
         "Tables",
         key(PLAIN, Key::F8),
@@ -341,48 +349,53 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         always,
         |app| app.panes.tables = !app.panes.tables,
     )
-    .under_rule(),
-    command(
+    .under_rule()
+    .on_while(|app| app.panes.tables);
+    TABLES_BESIDE = command(
         Menu::View,
         "Tables beside",
         key(SHIFT, Key::F8),
         "Stand the tables beside the pattern, or below it; their strip can be dragged there too",
         always,
         ToileApp::toggle_tables_side,
-    ),
-    command(
+    )
+    .on_while(|app| app.tables_are_beside);
+    TOOL_NAMES = command(
         Menu::View,
         "Tool names",
         key(PLAIN, Key::F2),
         "Show or hide the names of the tools beside their signs",
         always,
         |app| app.panes.tool_names = !app.panes.tool_names,
-    ),
-    command(
+    )
+    .on_while(|app| app.panes.tool_names);
+    FABRICS = command(
         Menu::View,
         "Fabrics",
         key(PLAIN, Key::F4),
         "Show or hide what the garment is cut from, and the fabrics of the pattern and of the library",
         ToileApp::is_open,
         ToileApp::toggle_fabrics,
-    ),
-    command(
+    );
+    FINDINGS = command(
         Menu::View,
         "Findings",
         key(PLAIN, Key::F9),
         "List what is found wrong with the pattern",
         always,
         |app| app.panes.findings = !app.panes.findings,
-    ),
-    command(
+    )
+    .on_while(|app| app.panes.findings);
+    GARMENT_VIEW = command(
         Menu::View,
         "Garment view",
         key(PLAIN, Key::F7),
         "Show or hide the garment on the mannequin",
         always,
         |app| app.panes.garment = !app.panes.garment,
-    ),
-    command(
+    )
+    .on_while(|app| app.panes.garment);
+    ALLOWANCE = command(
         Menu::View,
         "Allowance",
         key(SHIFT, Key::A),
@@ -390,8 +403,9 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         always,
         |app| app.panes.allowances = !app.panes.allowances,
     )
-    .under_rule(),
-    command(
+    .under_rule()
+    .on_while(|app| app.panes.allowances);
+    DARK_OR_LIGHT = command(
         Menu::View,
         "Dark or light",
         None,
@@ -399,29 +413,29 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         always,
         ToileApp::change_theme,
     )
-    .under_rule(),
-    command(
+    .under_rule();
+    LARGER_INTERFACE = command(
         Menu::View,
         "Larger interface",
         key(COMMAND, Key::Plus),
         "Show text, signs and buttons larger",
         always,
         |app| app.change_scale(Some(SCALE_STEP)),
-    ),
-    command(
+    );
+    SMALLER_INTERFACE = command(
         Menu::View,
         "Smaller interface",
         key(COMMAND, Key::Minus),
         "Show text, signs and buttons smaller",
         always,
         |app| app.change_scale(Some(-SCALE_STEP)),
-    ),
-    command(
+    );
+    USUAL_INTERFACE = command(
         Menu::View,
         "Usual interface",
         key(COMMAND, Key::Num0),
         "Show text, signs and buttons as large as at first",
         always,
         |app| app.change_scale(None),
-    ),
-];
+    );
+}

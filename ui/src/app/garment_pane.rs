@@ -2,6 +2,7 @@
 
 use super::ToileApp;
 use super::background_work::{GarmentStatus, Moment};
+use super::tool_commands::{DRAPE, PAUSE, STOP};
 use crate::theme::{self, Palette};
 use egui::{
     Align, Button, ComboBox, Label, Layout, Panel, Rect, RichText, Ui, UiBuilder, pos2, vec2,
@@ -36,16 +37,12 @@ impl ToileApp {
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
         ui.horizontal_centered(|ui| {
             let palette = Palette::of(ui.ctx());
-            if let Some(command) = super::command_table::named("Drape") {
-                let words = RichText::new(command.name).color(palette.on_accent);
-                let button = Button::new(words).fill(palette.accent);
-                self.command_widget(ui, command, button, None);
-            }
-            if let Some(command) = super::command_table::named("Pause") {
-                let button = Button::new(command.name).selected(self.background_work.is_paused());
-                self.command_widget(ui, command, button, None);
-            }
-            self.command_button(ui, "Stop");
+            let words = RichText::new(DRAPE.name).color(palette.on_accent);
+            let button = Button::new(words).fill(palette.accent);
+            self.command_widget(ui, &DRAPE, button, None);
+            let button = Button::new(PAUSE.name).selected(self.background_work.is_paused());
+            self.command_widget(ui, &PAUSE, button, None);
+            self.command_button(ui, &STOP);
             self.quality_choice(ui);
         });
     }

@@ -5,6 +5,10 @@ use super::ToileApp;
 use super::job::Job;
 use super::marker_cloth::kept_label;
 use super::notice::Notice;
+use super::tool_commands::{
+    LOCK_PIECE, NEW_MARKER, REMOVE_MARKER, SEARCH_MARKER, STOP_SEARCH, TAKE_OFF, TURN_OVER,
+    TURN_PIECE,
+};
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
@@ -144,7 +148,7 @@ impl ToileApp {
     fn marker_bar(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
         let Some(marker) = self.marker_id().and_then(|id| pattern.marker(id).cloned()) else {
-            self.command_button(ui, "New marker");
+            self.command_button(ui, &NEW_MARKER);
             return;
         };
         let mut chosen = marker.id;
@@ -176,8 +180,8 @@ impl ToileApp {
             let planned = plan::rename(&self.base, marker.id.into(), &text);
             self.enter(planned, "Rename marker", (id, text));
         }
-        self.command_button(ui, "New marker");
-        self.command_button(ui, "Remove marker");
+        self.command_button(ui, &NEW_MARKER);
+        self.command_button(ui, &REMOVE_MARKER);
         ui.separator();
         self.order_fields(ui, &marker);
         ui.separator();
@@ -237,8 +241,8 @@ impl ToileApp {
     }
 
     fn search_bar(&mut self, ui: &mut Ui) {
-        self.command_button(ui, "Search marker");
-        self.command_button(ui, "Stop search");
+        self.command_button(ui, &SEARCH_MARKER);
+        self.command_button(ui, &STOP_SEARCH);
         let label = ui.label("for").id;
         let chosen = &mut self.search_choice.seconds;
         ComboBox::from_id_salt("search seconds")
@@ -252,8 +256,8 @@ impl ToileApp {
             .response
             .labelled_by(label);
         ui.separator();
-        for name in ["Turn piece", "Turn over", "Lock piece", "Take off"] {
-            self.command_button(ui, name);
+        for command in [&TURN_PIECE, &TURN_OVER, &LOCK_PIECE, &TAKE_OFF] {
+            self.command_button(ui, command);
         }
     }
 

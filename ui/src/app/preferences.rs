@@ -120,14 +120,7 @@ impl Preferences {
 
     /// Last paper for printing; A4 at first.
     pub fn paper(&self) -> Paper {
-        let known = [
-            Paper::A4,
-            Paper::Letter,
-            Paper::A0,
-            Paper::Page,
-            Paper::Projector,
-        ];
-        let found = known
+        let found = Paper::ALL
             .into_iter()
             .find(|paper| Some(paper.name()) == self.paper.as_deref());
         found.unwrap_or(Paper::A4)

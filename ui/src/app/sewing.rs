@@ -1,6 +1,7 @@
 //! Commands on selected seams.
 
 use super::ToileApp;
+use super::tool_commands::WALK_SEAM;
 use crate::canvas::selection::{Item, Selection};
 use crate::theme::Palette;
 use crate::tools::walk::crossing_lines;
@@ -63,7 +64,7 @@ impl ToileApp {
             };
             ui.label(RichText::new(words).color(colour));
         }
-        self.command_button(ui, "Walk seam");
+        self.command_button(ui, &WALK_SEAM);
     }
 
     /// Selects the seams of the selected edge.

@@ -1,8 +1,13 @@
 //! The tool bar: icons of the tools in named groups, with their names beside them if wanted.
 
 use super::ToileApp;
-use super::command::shortcut_words;
-use super::command_table::named;
+use super::command::{UiCommand, shortcut_words};
+use super::tool_commands::{
+    ARC, ARC_ABOUT_CENTRE, BEND_EDGE, CIRCLE, CURVE, DART, DIVIDE_EDGE, FISHEYE_DART, FOLD, GRAIN,
+    INNER_LINE, LINE, MATCHED_NOTCHES, MEASURE, MIRROR, MIRROR_POINT, MOVE, NOTCH, PERPENDICULAR,
+    PIVOT_DART, POINT, POINT_ALONG, POINT_FROM, POLYGON, RECTANGLE, SCALE, SEAM, SELECT, SPLIT,
+    SPREAD, TANGENT_ARC, TRACE, TURN, WALK_SEAM,
+};
 use super::tool_icons;
 use crate::theme::{self, Palette};
 use crate::tools::Tool;
@@ -20,48 +25,50 @@ const SIGN: f32 = 20.0;
 const GROUP_TEXT: f32 = 10.5;
 
 /// Groups of tools: the name of each, empty for the first, and the commands that take the tools in hand.
-const GROUPS: &[(&str, &[&str])] = &[
-    ("", &["Select"]),
+static GROUPS: &[(&str, &[&UiCommand])] = &[
+    ("", &[&SELECT]),
     (
         "Draw",
         &[
-            "Point",
-            "Line",
-            "Curve",
-            "Arc",
-            "Arc about centre",
-            "Tangent arc",
-            "Circle",
-            "Polygon",
-            "Rectangle",
+            &POINT,
+            &LINE,
+            &CURVE,
+            &ARC,
+            &ARC_ABOUT_CENTRE,
+            &TANGENT_ARC,
+            &CIRCLE,
+            &POLYGON,
+            &RECTANGLE,
         ],
     ),
     (
         "Points",
-        &["Point from", "Point along", "Perpendicular", "Mirror point"],
+        &[&POINT_FROM, &POINT_ALONG, &PERPENDICULAR, &MIRROR_POINT],
     ),
-    ("Alter", &["Move", "Turn", "Mirror", "Scale", "Measure"]),
+    ("Alter", &[&MOVE, &TURN, &MIRROR, &SCALE, &MEASURE]),
     (
         "Panel",
         &[
-            "Trace",
-            "Divide edge",
-            "Bend edge",
-            "Split",
-            "Fold",
-            "Notch",
-            "Inner line",
-            "Grain",
+            &TRACE,
+            &DIVIDE_EDGE,
+            &BEND_EDGE,
+            &SPLIT,
+            &FOLD,
+            &NOTCH,
+            &INNER_LINE,
+            &GRAIN,
         ],
     ),
-    ("Dart", &["Dart", "Fisheye dart", "Pivot dart", "Spread"]),
-    ("Sew", &["Seam", "Matched notches", "Walk seam"]),
+    ("Dart", &[&DART, &FISHEYE_DART, &PIVOT_DART, &SPREAD]),
+    ("Sew", &[&SEAM, &MATCHED_NOTCHES, &WALK_SEAM]),
 ];
 
 /// The commands of all buttons.
 #[cfg(test)]
 pub(super) fn tools() -> impl Iterator<Item = &'static str> {
-    GROUPS.iter().flat_map(|(_, names)| names.iter().copied())
+    GROUPS
+        .iter()
+        .flat_map(|(_, tools)| tools.iter().map(|tool| tool.name))
 }
 
 impl ToileApp {
@@ -73,7 +80,7 @@ impl ToileApp {
     pub(crate) fn tool_bar(&mut self, ui: &mut Ui) {
         // The height of the buttons is chosen so that all of them fit.
         let named_groups = GROUPS.iter().filter(|(name, _)| !name.is_empty()).count();
-        let count: usize = GROUPS.iter().map(|(_, names)| names.len()).sum();
+        let count: usize = GROUPS.iter().map(|(_, tools)| tools.len()).sum();
         let room = ui.available_height() - named_groups as f32 * GROUP;
         let height = (room / count as f32).floor().clamp(HEIGHTS[0], HEIGHTS[1]);
         let rows = egui::ScrollArea::vertical()
@@ -94,10 +101,8 @@ impl ToileApp {
         });
     }
 
-    fn tool_button(&mut self, ui: &mut Ui, name: &'static str, height: f32) {
-        let Some(command) = named(name) else {
-            return;
-        };
+    fn tool_button(&mut self, ui: &mut Ui, command: &'static UiCommand, height: f32) {
+        let name = command.name;
         let in_hand = self.tool_name() == name;
         let key = command.key.map(|key| shortcut_words(ui.ctx(), &key));
         let side = height.min(SIGN);
@@ -136,9 +141,9 @@ impl ToileApp {
     /// Name of the command that takes the present tool in hand.
     fn tool_name(&self) -> &'static str {
         match self.view.tool {
-            Tool::Select => "Select",
+            Tool::Select => SELECT.name,
             Tool::Slots(tool) => tool.command,
-            Tool::Walk => "Walk seam",
+            Tool::Walk => WALK_SEAM.name,
         }
     }
 }

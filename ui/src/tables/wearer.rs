@@ -3,6 +3,7 @@
 use super::line_field::line_field;
 use super::named;
 use crate::app::ToileApp;
+use crate::app::tool_commands::WEARER_FROM_FILE;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
@@ -119,7 +120,7 @@ impl ToileApp {
         let size = self.session.project().size.clone();
         let mut chosen = None;
         ui.horizontal(|ui| {
-            self.command_button(ui, "Wearer from file");
+            self.command_button(ui, &WEARER_FROM_FILE);
             if ui
                 .selectable_label(body.is_of_pattern(), "As the pattern says")
                 .on_hover_text(

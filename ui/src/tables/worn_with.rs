@@ -1,6 +1,7 @@
 //! Garments worn over and under this one: layers in visible order, the outermost first.
 
 use crate::app::ToileApp;
+use crate::app::tool_commands::{WEAR_OVER, WEAR_UNDER};
 use crate::fields::Entered;
 use crate::theme::Palette;
 use egui::{Button, Color32, Grid, Id, RichText, Role, ScrollArea, Ui, WidgetInfo};
@@ -37,8 +38,8 @@ impl ToileApp {
         let worn = self.worn();
         let own = self.session.project().layer;
         ui.horizontal(|ui| {
-            self.command_button(ui, "Wear over");
-            self.command_button(ui, "Wear under");
+            self.command_button(ui, &WEAR_OVER);
+            self.command_button(ui, &WEAR_UNDER);
             let words = match worn.len() {
                 1 => "The garment is worn alone.",
                 _ => {

@@ -57,8 +57,13 @@ impl GarmentRun {
     /// # Errors
     /// A garment that is sewn or on a coarser mesh; a mesh that cannot be simulated or has other panels. The garment is
     /// then unchanged.
-    pub fn remesh(&mut self, level: GarmentLevel, counted: Vec<bool>) -> Result<(), DrapeError> {
+    pub fn remesh(
+        &mut self,
+        mut level: GarmentLevel,
+        counted: Vec<bool>,
+    ) -> Result<(), DrapeError> {
         self.refuse_edit()?;
+        level.leave_out_restitution();
         self.replace_mesh(&level)?;
         self.steps = self.steps();
         self.setup.levels[self.level] = level;

@@ -66,12 +66,25 @@ pub(super) struct GarmentWorld {
     pub solids: Solids,
 }
 
+impl GarmentLevel {
+    /// Leaves restitution out of the materials.
+    pub(super) fn leave_out_restitution(&mut self) {
+        for material in &mut self.cloth.materials {
+            material.restitution = None;
+        }
+    }
+}
+
 impl GarmentSetup {
-    /// The setup with contact offsets enlarged for the thickness of its cloth.
+    /// The setup with contact offsets enlarged for the thickness of its cloth, which has no restitution: on the way to
+    /// rest impacts do not matter.
     ///
     /// # Errors
     /// No level, contact that reaches too far.
     pub(super) fn prepared(mut self) -> Result<Self, DrapeError> {
+        self.levels
+            .iter_mut()
+            .for_each(GarmentLevel::leave_out_restitution);
         let Some(first) = self.levels.first() else {
             return Err(DrapeError::Scene {
                 place: "garment".to_owned(),

@@ -147,13 +147,15 @@ impl Panel {
     /// Whether operations moved parts of the panel from where they were drawn.
     pub fn is_altered(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);
-        let moves = |kind: &OperationKind| {
-            matches!(
-                kind,
-                OperationKind::Pivot { .. }
-                    | OperationKind::Spread { .. }
-                    | OperationKind::Pleat { .. }
-            )
+        let moves = |kind: &OperationKind| match kind {
+            OperationKind::Pivot { .. }
+            | OperationKind::Spread { .. }
+            | OperationKind::Pleat { .. } => true,
+            OperationKind::Dart { .. }
+            | OperationKind::Diamond { .. }
+            | OperationKind::Fold { .. }
+            | OperationKind::Split { .. }
+            | OperationKind::Insert { .. } => false,
         };
         kinds.any(moves)
     }
