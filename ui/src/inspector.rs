@@ -1,4 +1,16 @@
 //! The inspector: the selected part, with its name and numbers, each a value or a formula.
+//!
+//! # Decided with
+//! - [`crate::inspector::steps`], [`crate::inspector::several`], [`crate::inspector::arcs`]: operations;
+//!   several parts; arcs;
+//! - [`crate::inspector::press_words::press_words`], [`crate::inspector::guide_place`]: which way something
+//!   is pressed; guides;
+//! - [`toile_pattern::plan::numbers_of`], [`toile_pattern::plan::set_number`]: which numbers a part has; how
+//!   they are set;
+//! - [`crate::fields::TypedTexts`], [`toile_pattern::plan::read_number`]: what is typed;
+//! - [`crate::tables`]: numbers of tables;
+//! - [`crate::app::ToileApp::worn_choice`], [`crate::app::ToileApp::corner_choice`]: part of the body;
+//!   corners of the cut line, by hand.
 
 mod arcs;
 mod guide_place;

@@ -1,4 +1,15 @@
 //! The garment: one triangle mesh of all sewn pieces, with the map back to the pieces.
+//!
+//! # Decided with
+//! - [`crate::seam_match`], [`crate::sampling`]: points that both sides of a seam share; how many between
+//!   them;
+//! - [`crate::mesh::mesh_pieces`]: pieces meshed;
+//! - [`crate::role::roles`]: the part of the body that a piece goes round;
+//! - [`crate::placement::place`]: pieces placed round the body;
+//! - [`crate::assemble::assemble`]: all these steps in order;
+//! - [`crate::morph::morph`]: meshes that follow an edit;
+//! - [`crate::sanity::sanity`], [`crate::quality::MeshQuality`]: checks of the mesh;
+//! - [`crate::error::AssemblyError`]: what is refused, and what is told.
 
 use std::ops::Range;
 use toile_geometry::{Vec2, Vec3};

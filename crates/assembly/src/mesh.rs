@@ -1,4 +1,15 @@
 //! Pieces of a draft as triangle meshes in their planes, with matching vertices along seams.
+//!
+//! # Decided with
+//! - [`crate::boundary::Boundary`], [`crate::creases::Creases`]: outline and inner lines;
+//! - [`crate::edges`] (`set_shape_sizes`), [`crate::sampling::GROWTH`], [`crate::size_field::SizeField`]:
+//!   edge length at bends, away from them, inside;
+//! - [`crate::planar::Planar`], [`toile_geometry::delaunay_triangles`]: the triangulation;
+//! - [`crate::refinement::refine`], [`crate::smoothing::improve_worst`]: vertices added and moved;
+//! - [`crate::mesh::MAX_VERTICES`], [`crate::mesh::refuse_too_large`]: too fine is refused;
+//! - [`crate::quality::smallest_angle`], [`crate::sanity::sanity`]: angles measured; topology checked.
+//!
+//! Chosen by crate `session`, `choice.rs`, `derived.rs`.
 
 use crate::boundary::Boundary;
 use crate::creases::Creases;

@@ -1,5 +1,21 @@
 //! Places pieces round the body: wrapped, laid over or as given; then moves them until they are clear of the
 //! skin and of each other.
+//!
+//! # Decided with
+//! - [`crate::placement_body::PlacementBody`], [`crate::part_frames::PartFrame`]: the body's axes and levels;
+//!   a part with its skin;
+//! - [`crate::role::roles`], [`crate::gores::ring_facings`], [`crate::wearer_side::wearer_sides`]: part of
+//!   the body, facing and side of a piece: as said, by name, or by seams;
+//! - [`crate::rows::rows`], [`crate::rows::set_heights`], [`crate::rows::set_shifts`]: order and heights;
+//! - [`crate::wrap::wrap_row`], [`crate::outline_curve::OutlineCurve`]: bent round the skin;
+//! - [`crate::surroundings::Surroundings`], [`crate::placement::SKIN_CLEARANCE`]: what a row keeps clear of;
+//! - [`crate::flare::unroll_flares`], [`crate::flared_row`] (`cone`): rings as a cone;
+//! - [`crate::closing::clear_closing_seams`]: halves that would close through the body;
+//! - [`crate::placement::Placer::place_given`], [`crate::placement::Placer::place_over`]: pieces placed by
+//!   their file; pieces laid over the head.
+//!
+//! The part of the body is given in the window, `inspector.rs` (`worn_choice`), or by the file; a mirrored
+//! piece goes to the other side ([`toile_pattern::Worn`]).
 
 use crate::closing::{PlacedPieces, clear_closing_seams};
 use crate::flare::{Pieces, turn_as_sewn, unroll_flares};

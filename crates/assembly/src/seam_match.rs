@@ -1,5 +1,14 @@
 //! Points that both sides of a seam must share: corners, ends of spans and notches, matched across each seam
 //! until nothing changes.
+//!
+//! # Decided with
+//! - [`crate::sampling`] (`link_intervals`, `grade`): stretches that share their number; how many;
+//! - [`crate::sampling`] (`gathered_intervals`): gathered edges;
+//! - [`crate::mesh::stitches`]: pairs of samples as vertices of the mesh;
+//! - [`crate::morph`](mod@crate::morph) (`fractions`): samples kept under an edit of the pattern;
+//! - [`toile_pattern::SEAM_TOLERANCE`]: how much lengths may differ;
+//! - [`crate::seam_match::SeamChains::pair_gap`], [`crate::seam_match::as_shares`]: edges of different
+//!   length: shares of the way along each side.
 
 use crate::edges::EdgeTable;
 use crate::{AssemblyError, Diagnostic};

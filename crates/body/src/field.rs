@@ -1,4 +1,14 @@
 //! The implicit surface of a body part: a sum of ellipsoidal densities.
+//!
+//! # Decided with
+//! - [`crate::template`]: primitives and joints before measurements; a table for each figure;
+//! - [`crate::rings`], [`crate::limbs`], [`crate::hand`], [`crate::fingers`]: surface cast to rings: trunk,
+//!   limbs, hand;
+//! - [`crate::underarm`], [`crate::arm_rings`], [`crate::strips`]: under the arm; rings of foreign arms;
+//!   triangles;
+//! - [`crate::bones`], [`crate::skinning`]: joints placed; shares of joints at a vertex;
+//! - [`crate::character`]: the same as a character of real time;
+//! - [`crate::dress_form`]: cut to a dress form.
 
 use nalgebra::{Matrix3, Rotation3};
 use serde::{Deserialize, Serialize};

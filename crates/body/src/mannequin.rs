@@ -1,4 +1,17 @@
 //! The mannequin: everything the other parts need of a body.
+//!
+//! # Decided with
+//! - [`crate::request`], [`crate::conflict::conflicts`], [`crate::solve`]: measurements asked for: ranges,
+//!   contradictions; the size solved;
+//! - [`crate::measured`], [`crate::tape`]: each measurement taken from the skin;
+//! - [`crate::template`], [`crate::field::Field`]: template figures; the surface of their primitives;
+//! - [`crate::skeleton::Pose`], [`crate::skinning`], [`crate::posed_skin`]: poses and the skin in them;
+//! - [`crate::gait`], [`crate::clip::Clip`], [`crate::player::Player`]: clips and what plays them;
+//! - [`crate::edits::PrimitiveEdit`], [`crate::rigging::Rigging`], [`crate::proportions::ProportionBox`],
+//!   [`crate::scaling::Scaling`]: changes beside measurements: primitives, proportions, ratios;
+//! - [`crate::describe::Description`], [`crate::attach`]: a body saved and made again; primitives at their
+//!   joints;
+//! - [`crate::fit`], [`crate::scan::Scan`]: fitted to a foreign mesh; a mesh measured.
 
 use crate::attach::posed;
 use crate::bones;

@@ -1,4 +1,16 @@
 //! Takes each measurement, by name, from a skin.
+//!
+//! # Decided with
+//! - [`crate::tape`], [`toile_geometry::horizontal_section`]: tape round sections and along the body;
+//! - [`crate::definitions::Taping`], [`crate::cuts::CutPlane`]: where each girth lies, its plane on our own
+//!   bodies;
+//! - [`crate::template_marks`], [`crate::landmarks::Landmarks`]: marks of a template; points of a finished
+//!   body;
+//! - [`crate::bands`]: triangles near a tape;
+//! - [`crate::scan::Scan`], [`crate::scan_girths`]: a foreign mesh of a person;
+//! - [`toile_measure::CATALOGUE`]: the names.
+//!
+//! By hand: a new measurement is taken here by its name.
 
 use crate::Part;
 use crate::bands::Near;

@@ -1,4 +1,13 @@
 //! The measurements a mannequin is made from, completed and checked.
+//!
+//! # Decided with
+//! - [`toile_measure::Build`], [`toile_measure::Origin`]: what is missing is predicted from what was asked;
+//! - [`crate::request::CLOSER`]: narrower ranges;
+//! - [`crate::conflict`] (`RULES`, `LOOPS`): measurements that no body has together, and which one gives way;
+//! - [`crate::shape`]: a shape whose levels are out of order;
+//! - [`crate::error::BodyError`]: refusals in words.
+//!
+//! By hand: these lists name measurements.
 
 use crate::conflict::{Conflict, conflicts, gives_way};
 use crate::girths::Girth;

@@ -1,5 +1,15 @@
 //! The articulated skeleton: a tree of joints with their frames at rest, posed by a rotation of
 //! each joint.
+//!
+//! # Decided with
+//! - [`toile_measure::CATALOGUE`], [`crate::request`], [`crate::shape_from_scales`]: the angle of the arms: a
+//!   measurement, with its limits, made part of the shape;
+//! - [`crate::hang`]: how far arms hang;
+//! - [`crate::posed_skin`], [`crate::skinning`]: the skin in a pose;
+//! - [`crate::joint::Joint`], [`crate::bones`]: names of joints; their places;
+//! - [`crate::gait`], [`crate::clip::Clip`], [`crate::lead_in`]: clips, blending, the way into a clip;
+//! - [`crate::clearing`], [`crate::leg`]: limbs kept apart; feet on the ground;
+//! - [`crate::player::Player`]: which clip is played.
 
 use crate::Joint;
 use nalgebra::{Translation3, UnitQuaternion};

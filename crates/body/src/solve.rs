@@ -1,4 +1,15 @@
 //! Solves for the shape whose skin has the measurements asked for.
+//!
+//! # Decided with
+//! - [`crate::levels`], [`crate::landmark_level`]: heights and ways over the body;
+//! - [`crate::girths`], [`crate::scales`], [`crate::shape_from_scales`]: girths, and the form by scales;
+//! - [`crate::warp`], [`crate::warp_trunk`], [`crate::warp_limbs`]: the template put to the form;
+//! - [`crate::fair`], [`crate::refit`]: small bumps taken away; primitives fitted anew;
+//! - [`crate::measured`], [`crate::template_marks`]: measurements taken from the skin for comparison;
+//! - [`crate::deviation::Deviation`]: what was not reached.
+//!
+//! A new height stands in `levels` (`UPRIGHT`, `OVER`), a new girth in `girths`, `scales`,
+//! `shape_from_scales` and `template_marks`, by hand.
 
 use crate::BodyError;
 use crate::girths::Girth;

@@ -1,4 +1,20 @@
 //! The commands of the command line with their options.
+//!
+//! # Decided with
+//! - [`crate::run`]: which function does a task;
+//! - [`crate::session_commands`], [`crate::tool_commands`], [`crate::check_commands`]: commands with a
+//!   session, without one, checks;
+//! - [`crate::nest_commands`], [`crate::print_commands`], [`crate::lab_commands`]: markers, prints,
+//!   laboratory;
+//! - [`crate::nest_arguments::Nest`], [`crate::print_arguments::Print`],
+//!   [`crate::body_options::BodyOptions`], [`crate::values`]: options of several values and of single
+//!   commands;
+//! - [`crate::arguments::Make::choices`], [`toile_session::Command`]: options as commands of a session;
+//! - [`crate::session_commands`] (`refuse_layers`): layers that are refused;
+//! - [`crate::output::Output`]: words, JSON, exit status.
+//!
+//! By hand: a row in the README, words in `docs/GUIDE.md`, names of fabrics in the help of `Make`, wrong uses
+//! in `tests/wrong-uses/table.toml`.
 
 use crate::body_options::{BodyOptions, StanceOptions};
 use crate::nest_arguments::Nest;

@@ -1,4 +1,12 @@
 //! Output: words for people, or one JSON report for programs.
+//!
+//! # Decided with
+//! - [`toile_session::SessionError::is_bad_input`]: bad input or failure;
+//! - [`crate::output::Failure`], [`crate::output::Made`]: exit status 2 or 1; 3 for a bad verdict;
+//! - [`crate::check_commands::check`]: several files;
+//! - [`crate::bar::Bar`]: progress, Ctrl-C;
+//! - [`crate::output::words`], [`toile_session::Event`]: events in words;
+//! - [`crate::output::meaning`], [`toile_session::ExportFormat`]: what a file is for, by hand.
 
 use serde_json::{Value, json};
 use std::fmt::Display;

@@ -1,5 +1,14 @@
 //! The drawing of a cut piece: lines, areas and words by kind. Prints, markers, their files and the window
 //! draw a piece from the drawing alone.
+//!
+//! # Decided with
+//! - [`crate::piece::CutPiece`]: what is drawn;
+//! - [`crate::drawing::StrokeKind`], [`crate::piece::CutPiece::grain_arrow`]: kinds of lines; the grain;
+//! - [`crate::notch::shape`], [`crate::press::FoldTick`]: notches; fold lines;
+//! - [`toile_pattern::press_arrows`]: arrows of what is pressed.
+//!
+//! Styles: crate `interchange` (`print/draw.rs`, `marker_strokes.rs`, `marker_svg.rs`) and the window
+//! (`views/marker_paint.rs`). By hand: the legend of prints (`print/title.rs`) and `marker_svg.rs`.
 
 use crate::CutNotch;
 use crate::label::Spot;

@@ -1,4 +1,16 @@
 //! The cut line of a piece.
+//!
+//! # Decided with
+//! - [`crate::seams`] (`edges_of`, `corner_of`): widths and kinds of corners;
+//! - [`crate::check`], [`toile_geometry::PolygonDefect`], [`crate::ring`]: the seam line checked, and
+//!   flattened to chords;
+//! - [`crate::allowance::cloth`], [`crate::corner::corner_cloth`], [`crate::dart::caps`]: cloth along edges,
+//!   at corners, at the mouths of darts;
+//! - [`crate::region::outline_region`], [`crate::region::hole_region`], [`toile_geometry::wound_region`]: all
+//!   cloth united;
+//! - [`crate::trace::Sides`]: each segment traced to its edge;
+//! - [`crate::uncovered::uncovered_findings`]: lengths that got no cut line;
+//! - [`crate::finding::Finding`], [`crate::words::cut_diagnostics`]: faults of the cut line and their words.
 
 use crate::allowance::{Cloth, cloth};
 use crate::dart::caps;

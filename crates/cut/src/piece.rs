@@ -1,4 +1,16 @@
 //! A piece as it is cut: everything that is drawn on it, each part with what it came from.
+//!
+//! # Decided with
+//! - [`crate::seams`], [`crate::outline::cut_line`]: allowances, corners, darts and grain as drafted; the cut
+//!   line;
+//! - [`crate::notch_place::notches_of`], [`crate::notch_room`], [`crate::notch`]: where notches stand, how
+//!   deep, their shapes;
+//! - [`crate::press::fold_ticks`]: how darts and pleats are folded;
+//! - [`crate::label_block`], [`crate::label::roomiest_of`]: words and where they go;
+//! - [`crate::fold`]: halves and mirror images;
+//! - [`crate::options::CutOptions`]: shrinkage and blocks of fusing;
+//! - [`crate::drawing::Drawing`], [`crate::cut_list::CutList`]: its drawing; the list of pieces by fabric;
+//! - [`crate::words::cut_diagnostics`], [`crate::names::edge_words`]: faults in words.
 
 use crate::names::edge_words;
 use crate::notch::CutNotch;

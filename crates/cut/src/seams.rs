@@ -1,4 +1,17 @@
 //! A drafted piece as a seam line: allowances, corners and darts as the cut line takes them.
+//!
+//! # Decided with
+//! - [`toile_pattern::Panel`], [`toile_pattern::EdgeCorner`]: allowance and corners in the document;
+//! - [`toile_pattern::PieceEdge`]: the same on the draft;
+//! - [`crate::options::CutOptions`]: a block added to every width;
+//! - [`crate::corner::Corner`]: corners as the cut line takes them;
+//! - [`crate::dart::caps`], [`crate::seams::Plane::grain`], [`crate::piece::CutPiece::grain_arrow`]
+//!   (`drawing.rs`): a dart's mouth; the grain as cut and drawn;
+//! - [`toile_pattern::press_arrows`]: which way a dart is pressed.
+//!
+//! The compiler asks for a new kind of corner here and in `corner`. Allowance and grain in the window:
+//! `inspector.rs`, `canvas/allowance.rs`, `tools/panel.rs`, `canvas/panel_shape.rs`. In markers: crate
+//! `marker`, `pieces.rs`; of worn cloth: crate `session`, `setup.rs`.
 
 use crate::{Corner, CutOptions, Dart, MITRE_LIMIT, SeamEdge, SeamLine};
 use std::f64::consts::FRAC_PI_8;

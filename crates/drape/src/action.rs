@@ -1,4 +1,14 @@
 //! What can be done to a running scene, and when it was done.
+//!
+//! # Decided with
+//! - [`crate::scene_run::SceneRun::give`]: an action is done, stamped and logged;
+//! - [`crate::scene_run::SceneRun::advance_by`], [`crate::scene_run::SceneRun::pull`]: logged actions done
+//!   again; hands pull;
+//! - [`crate::world::WorldEdit`], [`crate::environment::Parameter`]: edits and loads that an action may
+//!   carry;
+//! - [`crate::scene_checkpoint::SceneCheckpoint`]: hands in a checkpoint.
+//!
+//! No command and no window gives an action to a scene yet.
 
 use crate::laws::elastic::ElasticLaw;
 use crate::world::{MeshVertex, ObjectId, World, WorldEdit};

@@ -1,4 +1,21 @@
 //! Solid surfaces that cloth collides with, and vertices with a prescribed motion.
+//!
+//! # Decided with
+//! - [`toile_geometry::DistanceField`]: smooth distance, for forces;
+//! - [`toile_geometry::SurfaceTree`], [`toile_geometry::MeshDefect`], [`toile_geometry::closest_on_face`]:
+//!   exact distance, for counts; defects of a mesh;
+//! - [`crate::contact_settings::FIELD_REACH`]: how far the field is sampled;
+//! - [`crate::motion::Motion`], [`crate::track::Track`]: solids that move rigidly, or vertex by vertex;
+//! - [`crate::xpbd`] (`moving_solids.rs`, `carried_plane.rs`): moving solids: XPBD alone follows them;
+//! - [`crate::xpbd`] (`skin_contacts.rs`, `skin_edges.rs`): their vertices and edges against faces and edges
+//!   of the cloth;
+//! - [`crate::world::World::solids`] (`compile.rs`), [`crate::patches`] (`patch_contacts.rs`,
+//!   `query_surface`): solids made for the system; patches query the distance field directly;
+//! - [`crate::world::Object::check`], [`crate::scene::Scene::check_motions`],
+//!   [`crate::method::MethodKind::supports`] (`features.rs`): checks of meshes, motions and methods.
+//!
+//! Motions in files: crate `interchange`, `scene_motion.rs`. A solid without a mesh answers what is asked
+//! here; objects, scenes and garments ask for a mesh.
 
 use crate::contact_settings::FIELD_REACH;
 use crate::track::animated_positions;

@@ -1,4 +1,19 @@
 //! Settings of contact with solids and of cloth with cloth: offsets, stiffness, friction.
+//!
+//! # Decided with
+//! - [`crate::system::SystemBuilder::offset_layers`]: panels apart by layers while sewn;
+//! - [`crate::contact_refinement`] (`EXTRA_OFFSET`): farther off where a triangle crosses the body;
+//! - [`crate::collision`] (`surface.rs`, `surface_view.rs`, `OFFSET_PER_EDGE`): nearer where edges of the
+//!   cloth are short;
+//! - [`crate::laws::contact::HARDER`], [`crate::laws::contact::TANGENTIAL_RATIO`]: stiffness where cloth lies
+//!   deep; stiffness of friction;
+//! - [`crate::collision`] (`detector.rs`, `HARD_FROM`): depth beyond which two cloths push harder;
+//! - [`crate::xpbd`] (`contact.rs`, `of_sample`), [`crate::patches`] (`patch_contacts.rs`, `update_force`):
+//!   stiffness in XPBD, in patches;
+//! - [`crate::garment::GarmentSetup::sewing_environment`]: no contact of cloth with cloth and no friction
+//!   while a garment is sewn.
+//!
+//! A cloth offset of 0 means that nothing keeps cloth from passing through cloth.
 
 use crate::laws::contact::{ContactLaw, TANGENTIAL_RATIO};
 use crate::{DrapeError, Material};

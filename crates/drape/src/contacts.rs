@@ -1,4 +1,19 @@
 //! Detection of contacts of the cloth with solids.
+//!
+//! # Decided with
+//! - [`crate::contact_sample::ContactSample`], [`crate::contact_refinement`] (`refine`): points of the cloth
+//!   that are tested; more where a triangle crosses;
+//! - [`crate::contact_settings::ContactSettings`]: how far cloth keeps off and how hard contact pushes;
+//! - [`crate::laws::contact::ContactLaw`]: force, friction and when cloth slides;
+//! - [`crate::collider::PlacedSolid`], [`crate::rest_data`] (`lump`): distance to a solid and its direction;
+//!   friction of a vertex from its materials;
+//! - [`crate::solid_friction::SolidFriction`]: where cloth sticks;
+//! - [`crate::xpbd`] (`contact.rs`), [`crate::patches`] (`patch_contacts.rs`): contact with solids in XPBD
+//!   and in patches;
+//! - [`crate::collision`]: contact of cloth with cloth;
+//! - [`crate::measure`](mod@crate::measure) (`measure_solids`): crossings with solids, counted exactly.
+//!
+//! Friction is off where a scene file says so: crate `interchange`, `scene.rs`.
 
 use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;

@@ -1,4 +1,18 @@
 //! Elastics: springs from a vertex to another vertex or to a point in space.
+//!
+//! # Decided with
+//! - [`crate::laws::elastic::ElasticLaw`]: linear up to a largest force, then constant;
+//! - [`crate::system::System::couple`], [`crate::system::System::elastics_at`]: elastics and hands in a
+//!   system;
+//! - [`crate::sew::SewRun::set_elastics`]: stiffness and largest force while a garment is sewn, and how they
+//!   grow;
+//! - [`crate::world::World::resolve_attachments`] (`attachment.rs`): attachments of a scene as elastics and
+//!   ties;
+//! - [`crate::xpbd`] (`attachment_constraint.rs`), [`crate::patches`] (`patch.rs`, `add_elastics`): elastics
+//!   in XPBD and in patches;
+//! - [`crate::tie::Tie`], [`crate::tied`]: ties to points within triangles and to moving frames, and where
+//!   these are;
+//! - [`crate::xpbd`] (`tie_constraint.rs`): ties solved: XPBD alone knows them.
 
 use crate::laws::elastic::ElasticLaw;
 use toile_geometry::Vec3;

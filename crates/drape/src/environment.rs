@@ -1,4 +1,21 @@
 //! Gravity, air, damping and contact of a world, the same for all objects.
+//!
+//! # Decided with
+//! - [`crate::world::World::furnish`] (`compile.rs`), [`crate::world::World::panels`] (`compile.rs`):
+//!   gravity, air and drag given to the system; stiffness damping made part of the viscosity;
+//! - [`crate::garment::GarmentSetup::sewing_environment`],
+//!   [`crate::garment::GarmentSetup::worn_environment`]: environment of a garment while it is sewn, and when
+//!   worn;
+//! - [`crate::sew`] (`DRAG`), [`crate::kinetic_damping`] (`DRAG`): drag of a garment while sewn and in the
+//!   swing;
+//! - [`crate::methods`] (`rules.rs`), [`crate::xpbd::Xpbd::advance`], [`crate::patches`] (`sheet.rs`,
+//!   `advance`): drag by mass: each method takes it itself;
+//! - [`crate::incremental_potential::IncrementalPotential`], [`crate::xpbd`] (`viscosity.rs`): forces of
+//!   viscosity;
+//! - [`crate::measure::weight_norm`]: the weight that a residual is measured by.
+//!
+//! Asked for in crates `interchange` (`scene.rs`) and `session` (`setup.rs`). By hand: `check` lists the
+//! numbers.
 
 use crate::{Air, ContactSettings, DrapeError};
 use serde::{Deserialize, Serialize};

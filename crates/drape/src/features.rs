@@ -1,5 +1,15 @@
 //! Features of a world beyond elastic cloth under gravity, and the methods that support each. A world with a feature
 //! that its method does not support is refused.
+//!
+//! # Decided with
+//! - [`crate::method::MethodKind`]: the methods;
+//! - [`crate::scene_run::SceneRun::apply_edit`]: checks features again after an edit;
+//! - [`crate::patches`] (`is_plain`): laws that patches leave to velocity Verlet;
+//! - [`crate::methods`] (`guard.rs`, `Guarded`): refuses attachments to moving solids where a method does not
+//!   follow them.
+//!
+//! The compiler asks a new feature who asks for it and who supports it. By hand: `only_damps`, `is_plain`, a
+//! case in `drape/tests/features.rs`, a row in `docs/methods/integrators.md`.
 
 use crate::material::DissipativeLaws;
 use crate::world::{Kind, Object, World};

@@ -1,4 +1,13 @@
 //! Internal strain of a relaxing material: plain data of a state.
+//!
+//! # Decided with
+//! - [`crate::materials::Materials::keep_strain`]: whether any material keeps strain;
+//! - [`crate::incremental_potential::IncrementalPotential::law`], [`crate::incremental_potential::relax`]:
+//!   its place in the law of a triangle; its relaxation in time;
+//! - [`crate::laws::fold::FoldTerm`]: folds that stay;
+//! - [`crate::world`] (`transfer.rs`, `internal_strain`): carried over an edit;
+//! - [`crate::method::MethodKind::supports`] (`features.rs`), [`crate::patches`] (`is_plain`): methods that
+//!   do not know it.
 
 use serde::{Deserialize, Serialize};
 

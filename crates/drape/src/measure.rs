@@ -1,4 +1,13 @@
 //! Measures of a drape: residual (net force over weight), strain, penetration, crossings.
+//!
+//! # Decided with
+//! - [`crate::newton`]: the net force of the residual;
+//! - [`crate::collider::PlacedSolid::crossings`]: crossings with solids;
+//! - [`toile_geometry::segment_intersects_triangle`]: exact signs;
+//! - [`crate::garment`] (`body_crossings`), [`crate::scene_run::SceneRun::crossings`]: counts on the way of a
+//!   garment, of a scene;
+//! - [`crate::laws::membrane::MembraneElement::strain`]: strain of a triangle;
+//! - [`crate::pair_policies::PairPolicies`]: objects that pass through each other are left out.
 
 use crate::collision::{ClothSurface, layer_violations_of, layers_of};
 use crate::{State, System, Workspace};

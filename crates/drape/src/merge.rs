@@ -1,4 +1,17 @@
 //! Merging of vertices by union-find.
+//!
+//! # Decided with
+//! - [`crate::world::World::check_pairs`] (`edit.rs`), [`crate::world`] (`present.rs`, `check_joinable`):
+//!   whether a pair may be merged;
+//! - [`crate::world`] (`present.rs`, `closed_pairs`), [`crate::sew::SewRun::closed`]: which pairs have come
+//!   together;
+//! - [`crate::world::World::merge`], [`crate::world::VertexMap`]: merged pairs of a world; numbers of the
+//!   merged vertices;
+//! - [`crate::world::World::merged_cloth`] (`compile.rs`), [`crate::cloth::Cloth::merged_triangles`]: the
+//!   cloth of merged vertices;
+//! - [`crate::world`] (`transfer.rs`, `motion`): place and velocity where two vertices meet;
+//! - [`crate::garment::GarmentRun::merge`]: a garment: sewn vertices meet half-way and rest;
+//! - [`crate::scene_run::SceneRun::surface`]: a written surface drops the same triangles.
 
 use crate::collision::layer_order::BETWEEN_LAYERS;
 

@@ -1,4 +1,23 @@
 //! The interface of methods, and their closed list.
+//!
+//! # Decided with
+//! - [`crate::methods`]: makes a method from its kind: a rule and a solver, a scheme, or one of its own;
+//! - [`crate::methods`] (`guard.rs`, `Guarded`): wraps every method: refuses states that are not finite,
+//!   undoes failed steps;
+//! - [`crate::methods`] (`rules.rs`), [`crate::methods::implicit::Solver`],
+//!   [`crate::methods::explicit::Scheme`]: what a method is composed of;
+//! - [`crate::reference`]: methods for comparison only;
+//! - [`crate::method::MethodKind::supports`] (`features.rs`): features that a method lacks; the remaining
+//!   ones it is taken to have;
+//! - [`crate::memory::Memory`]: what a method remembers from step to step; anything it keeps elsewhere is
+//!   lost when a run is resumed;
+//! - [`crate::scene_run::SceneRun`]: runs a scene by the method, builds it anew after merges and edits;
+//! - [`crate::scene_run::SceneRun::has_checkpoints`]: methods that have no checkpoints, by name.
+//!
+//! The compiler asks a new kind for its family, its maker and its largest number of iterations. By hand:
+//! `balances_forces` and the functions of `Method` have defaults; tests list methods in
+//! `drape/tests/methods`, `drape/tests/dissipation.rs` and `lab/src/laws`, pages in
+//! `docs/methods/integrators.md`.
 
 use crate::collision::Tally;
 use crate::{DrapeError, State, System};

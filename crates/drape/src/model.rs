@@ -1,4 +1,14 @@
 //! The model: the constant data of a simulation.
+//!
+//! # Decided with
+//! - [`crate::contacts`] (`fits`), [`crate::collision::ContactDetector::surface`]: contacts and surface kept;
+//! - [`crate::hessian::Hessian`]: matrix and factor kept;
+//! - [`crate::xpbd`], [`crate::patches`] (`sheet.rs`, `fits`): XPBD and patches kept;
+//! - [`crate::reference`] (`metric.rs`, `colours.rs`): methods for comparison;
+//! - [`crate::topology`], [`crate::caps`], [`crate::rest_data`]: triangles that are simulated in place of
+//!   those drawn, and their rest shapes.
+//!
+//! By hand: a new part of a model must be compared in each of these places whose cache depends on it.
 
 use crate::ContactSettings;
 use crate::collider::{Collider, PrescribedVertex};

@@ -1,4 +1,20 @@
 //! Policies of pairs of objects: cloths that pass through each other, and solids that a cloth passes through.
+//!
+//! # Decided with
+//! - [`crate::world::World::policy`], [`crate::world::World::set_policy`] (`edit.rs`): the policy of a pair;
+//!   changed by an edit;
+//! - [`crate::scene::Scene::check_ignored`], [`crate::world::World::of_scene`]: what is refused in a scene;
+//!   taken from it;
+//! - [`crate::world::World::policies`] (`compile.rs`): policies by vertex and solid, for the system;
+//! - [`crate::collision`] (`exemptions.rs`, `entanglement.rs`, `layers.rs`): contact, crossings and layers of
+//!   cloth;
+//! - [`crate::contacts`] (`find`), [`crate::xpbd`] (`contact.rs`, `of_sample`), [`crate::patches`]
+//!   (`patch_contacts.rs`, `start`): contact with solids;
+//! - [`crate::submodel::SubModel`], [`crate::scene_run::SceneRun::refine`]: regions of the cloth; finer
+//!   samples;
+//! - [`crate::measure::measure`], [`crate::measure::self_intersections`]: counts of crossings.
+//!
+//! Not heeded by the count of vertices on the wrong side of a layer.
 
 /// Object number of a vertex that several objects share, as at a merged seam: it ignores none.
 pub const BETWEEN_OBJECTS: u16 = u16::MAX;

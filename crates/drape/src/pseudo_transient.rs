@@ -4,6 +4,20 @@
 //! method. After each Newton step follow chord steps with the same factor, and then regions with most of the net force
 //! are solved by themselves (nonlinear elimination). The Hessian has the largest tried share of the negative curvature
 //! of compression with which it is positive definite.
+//!
+//! # Decided with
+//! - [`crate::measure::residual`]: net force over weight, by which rest is judged;
+//! - [`crate::pseudo_transient::PseudoTransientContinuation::adapt`],
+//!   [`crate::pseudo_transient::PseudoTransientContinuation::break_cycles`]: how long the next step is;
+//! - [`crate::newton`] (`chord.rs`, `elimination.rs`): steps with the same factor; regions brought to rest
+//!   first;
+//! - [`crate::garment::GarmentRun::step_to_rest`], [`crate::garment::GarmentRun::finish`]: another swing,
+//!   more steps, the warning;
+//! - [`crate::garment::GarmentSetup::rest_on`]: limits on coarser meshes;
+//! - [`crate::garment::GarmentRun::forces_of_stuck`] (`watch.rs`): a net force that no longer falls;
+//! - [`crate::methods`] (`rest.rs`, `finished`): when a scene is at rest.
+//!
+//! Limits are given by crate `session`, `choice.rs`, `setup.rs`.
 
 use crate::laws::membrane::Curvature;
 use crate::measure::{residual, weight_norm};

@@ -1,4 +1,13 @@
 //! Checkpoints of the run of a scene.
+//!
+//! # Decided with
+//! - [`crate::scene_run::SceneRun::checkpoint`], [`crate::scene_run::SceneRun::steps_to_checkpoint`]: when
+//!   one may be taken, and runs that have none;
+//! - [`crate::scene_run::SceneRun::resume`]: another scene is refused;
+//! - [`crate::world::SavedWorld`], [`crate::action::Hand`]: objects unlike the scene's; hands;
+//! - [`crate::world::Simulation::restore`], [`crate::state::State::check`]: parts that do not fit each other;
+//! - [`crate::collision::ContactDetector::forget`]: contacts found anew;
+//! - [`crate::digest::Digest`], [`crate::track::Track`]: digest of a scene and of its tracks.
 
 use crate::action::Hand;
 use crate::collision::Tally;

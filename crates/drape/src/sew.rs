@@ -1,5 +1,14 @@
 //! Sewing: springs along the seams draw the panels together round the body until the seams can be merged, by damped
 //! implicit Euler without gravity and friction.
+//!
+//! # Decided with
+//! - [`crate::garment::GarmentLevel::seams`]: the pairs of vertices that are sewn;
+//! - [`crate::laws::elastic::ElasticLaw`], [`crate::elastic::ElasticCouplings`]: law of the pull; the springs
+//!   of all pairs;
+//! - [`crate::step`] (`implicit_euler`): a step: speed limit, drag;
+//! - [`crate::garment::GarmentSetup::sewing_environment`]: no gravity, no friction, panels apart by layers;
+//! - [`crate::garment::GarmentRun::merge`]: closed seams merged;
+//! - [`crate::world`] (`present.rs`, `closed_pairs`): closed attachments of a scene.
 
 use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::Curvature;

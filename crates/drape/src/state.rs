@@ -1,4 +1,14 @@
 //! The state of a simulation: all data that change with time and are needed to continue.
+//!
+//! # Decided with
+//! - [`crate::world`] (`transfer.rs`, `state`): each field carried over an edit or a merge;
+//! - [`crate::collision::ClothMemory`], [`crate::solid_friction::SolidFriction`],
+//!   [`crate::internal_strain::InternalStrain`], [`crate::memory::Memory`]: parts of the state;
+//! - [`crate::world::Simulation::reset_motion`]: what is wiped when motion is reset;
+//! - [`crate::garment`] (`checkpoint.rs`), [`crate::scene_checkpoint`]: the state in checkpoints.
+//!
+//! By hand: `clear_equilibrium_memory`, the version of checkpoints (crate `interchange`, `checkpoint.rs`), a
+//! comparison in `drape/tests/transfer.rs`. The compiler asks in `clone_from`, `at_rest` and `check`.
 
 use crate::collision::ClothMemory;
 use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model, SolidFriction};

@@ -1,4 +1,14 @@
 //! The simulated system: a constant model and the control of the present step; and its builder.
+//!
+//! # Decided with
+//! - [`crate::model::Model`], [`crate::control::Control`]: what is constant; what may change from step to
+//!   step;
+//! - [`crate::environment::Environment`], [`crate::world::World::furnish`] (`compile.rs`): what a world gives
+//!   to its system;
+//! - [`crate::scene::Scene::environment`], [`crate::garment::GarmentSetup::worn_environment`]: environment of
+//!   a scene, of a worn garment;
+//! - [`crate::submodel::SubModel::new`]: the same parts of a region of the cloth;
+//! - [`crate::model::ModelParts::has_cloth_of`]: what is compared to keep caches.
 
 use crate::bending_structure::BendingStructure;
 use crate::caps::{exchange_again, without_caps};

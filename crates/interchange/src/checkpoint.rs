@@ -1,6 +1,13 @@
 //! Checkpoints of a garment's or a scene's run as files of two lines of JSON: a head with format and
 //! checksum, then the checkpoint. Numbers are written so that reading gives back every bit; the checksum
 //! detects later changes.
+//!
+//! # Decided with
+//! - [`toile_drape::Checkpoint`], [`toile_drape::SceneCheckpoint`]: what is saved;
+//! - [`toile_drape::State`], [`toile_drape::Memory`], [`toile_drape::Control`]: parts of what is saved;
+//! - [`crate::atomic::write_atomically`]: files written whole or not at all.
+//!
+//! By hand: `VERSION` is raised when a saved part changes.
 
 use crate::FormatError;
 use crate::scene::json_error;

@@ -1,4 +1,17 @@
 //! A marker for machines and for paper at true size: DXF, HPGL, PDF.
+//!
+//! # Decided with
+//! - [`crate::marker_drawing::MarkerDrawing`]: what is drawn;
+//! - [`crate::marker_strokes::Strokes`], [`crate::marker_strokes::Layer`]: lines and layers;
+//! - [`crate::marker_svg::write_marker_svg`], [`crate::marker_report::write_marker_report`]: the same as SVG;
+//!   a report on A4;
+//! - [`crate::dxf`], [`crate::hpgl`], [`crate::pdf`], [`crate::svg_text`]: lines and words of each format;
+//! - [`crate::pdf_fonts`], [`toile_lettering::missing_note`]: letters; those of no font are told;
+//! - [`toile_cut::StrokeKind`], [`crate::print`] (`draw.rs`): kinds of lines of a piece; prints;
+//! - [`crate::marker_json::MarkerFile`]: the marker as data, from which it can be checked again.
+//!
+//! Verdict and numbers: crate `marker` (`finished_marker.rs`, `summary.rs`). A file checked again: crate
+//! `session`, `marker_file_check.rs`. In the window: `views/marker_piece.rs`.
 
 use crate::dxf::DxfWriter;
 use crate::hpgl::HpglWriter;

@@ -1,4 +1,14 @@
 //! Body measurements of FreeSewing (JSON), and helpers shared by the readers of other programs' tables.
+//!
+//! # Decided with
+//! - [`crate::measurements_json`], [`crate::measurements_seamly`], [`crate::measurements_garmentcode`]: our
+//!   own tables, Seamly, GarmentCode;
+//! - [`crate::measurements_formulas::values_of`]: values that are formulas on others;
+//! - [`toile_measure::translated`]: names in our words;
+//! - [`crate::measurements_seamly`] (`choose`), [`crate::measurements_json::read_sized_measurements`]: one of
+//!   several sizes;
+//! - [`crate::measurements_garmentcode`] (`DEGREES`): angles, by hand;
+//! - [`crate::xml`], [`crate::recognise::FileKind`]: XML; kinds of files told apart.
 
 use crate::FormatError;
 use toile_measure::{FREESEWING, Measurements, Origin, UnitKind, definition, translated};

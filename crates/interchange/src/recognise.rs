@@ -1,5 +1,15 @@
 //! Recognises the kind of a file from its content, so that a file given in the wrong place is refused by its
 //! kind and not by the first character that does not fit.
+//!
+//! # Decided with
+//! - [`crate::recognise::FileKind`], [`crate::recognise::ExpectedKind`]: kinds of files, and who takes which;
+//! - [`crate::mesh_read::read_mesh`], [`crate::measurements_foreign::looks_like_freesewing`]: meshes and
+//!   tables told apart;
+//! - [`crate::error::FormatError`]: refusals in words.
+//!
+//! The compiler asks a new kind for its name, remedy and who takes it. By hand: how it is seen from its first
+//! bytes, XML, JSON or lines; wrong uses in `tests/wrong-uses/table.toml`. Formats of patterns: crate
+//! `session`, `open.rs`.
 
 use crate::FormatError;
 use serde_json::{Map, Value};

@@ -2,6 +2,21 @@
 //!
 //! All quantities are in SI units. Meshes, patterns and bodies are named by path; the caller that has loaded
 //! them turns a [`SceneFile`] into a scene.
+//!
+//! # Decided with
+//! - [`toile_drape::MethodKind`], [`crate::scene::SceneFile::method`]: methods by name; settings that one has
+//!   no use for are refused;
+//! - [`crate::scene_motion::MotionFile`], [`crate::scene::ObjectFile`]: motions; objects with their
+//!   materials;
+//! - [`toile_drape::Environment`], [`toile_drape::ContactSettings`]: air, damping, contact; contact and
+//!   friction off where the file says so;
+//! - [`toile_drape::laws::air::Air`], [`crate::scene::earth`]: wind of a scene; gravity of a scene that gives
+//!   none;
+//! - [`toile_drape::Scene::check`]: how a scene is checked;
+//! - [`toile_drape::World`]: the world made of it.
+//!
+//! By hand: `unknown_fields` names every part that may have some. The scene is built in crate `session`,
+//! `scene_builder.rs`.
 
 use crate::scene_motion::{GripFile, MotionFile, Unknown};
 use crate::{FormatError, MaterialFile};

@@ -1,4 +1,13 @@
 //! Timed benchmarks on frozen scenes.
+//!
+//! # Decided with
+//! - [`crate::bench::all`], [`crate::bench::is_long`]: the list of benchmarks;
+//! - [`crate::drag`], [`crate::detect`], [`crate::factor`], [`crate::nest`], [`crate::realtime`],
+//!   [`crate::square`]: drags, contact, factors, markers, real time, frames;
+//! - [`crate::accuracy::SECTIONS`]: tables of docs/ACCURACY.md;
+//! - [`crate::timed::Timed`], [`crate::clock`]: how a time is taken.
+//!
+//! `.ci/compare_builds.py` times two builds in turn.
 
 use crate::chart_contact::crossed;
 use crate::clock::Clock;

@@ -1,4 +1,13 @@
 //! Speed against accuracy: every method at several steps on the standard scenes.
+//!
+//! # Decided with
+//! - [`crate::chart_plan::ChartPlan`], [`crate::chart_data::ChartData`]: what is run; results;
+//! - [`crate::chart_contact::contact_chart`]: charts with contact of cloth;
+//! - [`crate::chart_report::chart_files`], [`crate::stability_report::stability_files`]: files that are
+//!   written;
+//! - [`crate::stability::stability_map`], [`crate::hard::hard_cases`]: limits of stability; hard cases;
+//! - [`crate::scenes::SCENES`], [`crate::freeze::freeze`]: the scenes; how they are made anew;
+//! - [`toile_picture::Chart`]: how it is drawn.
 
 use crate::chart_contact::contact_chart;
 use crate::chart_data::{Agreement, ChartData, Point};

@@ -4,6 +4,15 @@
 //! ([`is_plain`]). Any other text is set in the fonts that the program brings (Latin, Greek,
 //! Cyrillic, emoji) and, for letters that these lack, in fonts of the system. The same text gives
 //! the same letters whenever the fonts of the system are the same.
+//!
+//! # Decided with
+//! - [`crate::system::font_for`]: the font of a letter: those the program brings, then those of the system;
+//! - [`crate::line::Line`]: parts of a line by direction and font;
+//! - [`crate::font::Font`], [`crate::outline`]: glyphs, their widths and outlines;
+//! - [`crate::helvetica`]: Western text in PDF and its widths;
+//! - [`crate::missing_note`]: letters that no font has.
+//!
+//! Asked by crates `cut`, `picture` and `interchange` (`pdf_fonts.rs`, `hpgl.rs`).
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 

@@ -1,4 +1,18 @@
 //! A marker of the document with its placed pieces: quick check, search, files.
+//!
+//! # Decided with
+//! - [`toile_pattern::Marker`], [`crate::ordered::MarkerPieces`]: the marker in the document; the pieces of
+//!   its order;
+//! - [`toile_nesting::clashes()`], [`crate::document_marker::DocumentMarker::state`]: quick check of pieces
+//!   laid by hand;
+//! - [`crate::document_marker::DocumentMarker::search`],
+//!   [`crate::document_marker::DocumentMarker::under_way`]: the search; the marker as the search has it
+//!   meanwhile;
+//! - [`crate::document_marker::DocumentMarker::let_go`] (`butting.rs`): pieces let go against neighbours;
+//! - [`crate::finished_marker::FinishedMarker`], [`crate::summary::MarkerSummary`]: verdict and numbers;
+//! - [`crate::file::marker_files`], [`crate::file_check::judge_file`]: files written; a file checked again.
+//!
+//! Kept and shown by crate `session` (`markers.rs`, `marker_cache.rs`) and the window (`app/marker_pane.rs`).
 
 use crate::ordered::MarkerPieces;
 use crate::progress::{SearchProgress, SearchWatcher};

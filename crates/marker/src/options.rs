@@ -1,5 +1,23 @@
 //! Options for making markers. Each value comes from the command line, else the settings, else the pattern,
 //! else a default.
+//!
+//! # Decided with
+//! - [`toile_pattern::ClothSettings`]: the settings, their order of precedence, their defaults;
+//! - [`toile_interchange::MarkerSettings`]: settings of a file;
+//! - [`crate::ordered::MarkerPieces`]: settings of a marker of the document;
+//! - [`crate::options::strip`], [`toile_nesting::Strip`]: fabric as the search takes it: selvedges, margins,
+//!   gaps, nap, tilt, print;
+//! - [`crate::options::folded`], [`crate::items`] (`roles`): folded fabric; pieces laid as halves or with
+//!   their twin;
+//! - [`toile_cut::CutPiece`], [`crate::items`] (`item_of`, `two_at_once`): turns of a piece by its grain;
+//! - [`crate::matching`], [`crate::marks`], [`crate::flaws::check_given`]: prints that meet, and narrow the
+//!   turns; flaws;
+//! - [`crate::options::NestOptions::check_rolls`], [`crate::search`] (`check_fabric_names`),
+//!   [`crate::starting_marker::check_names`]: names and rolls refused before a search.
+//!
+//! By hand: a new setting on the command line (crate `cli`, `nest_arguments.rs`, `nest_commands.rs`) and in
+//! the window (`app/marker_laying.rs`). The document and files of settings read it from its list of fields,
+//! and the compiler asks for journals.
 
 use crate::MarkerError;
 use crate::file::MarkerFormat;

@@ -1,4 +1,18 @@
 //! Makes markers of drafts: one for each fabric and each roll of it.
+//!
+//! # Decided with
+//! - [`crate::pieces`] (`check_count`, `check_piece_names`): pieces refused beforehand;
+//! - [`crate::starting_marker::check_locks`], [`crate::options::NestOptions::plan`]: locks, fabric and rolls
+//!   refused;
+//! - [`toile_nesting::NestingError`], [`crate::error::MarkerError`]: jobs that are refused; in words;
+//! - [`toile_nesting::Budget`], [`crate::progress::SearchWatcher`]: when it stops;
+//! - [`crate::job::FabricJob::progress`], [`toile_nesting::Marker`], [`crate::summary::MarkerSummary`]: use
+//!   of the fabric meanwhile, and of the result;
+//! - [`toile_nesting::make_markers_on_rolls`]: several rolls filled one after another.
+//!
+//! By hand: `progress` computes the use of the fabric a second time. After a stop the other fabrics get one
+//! evaluation. Shown by crate `interchange` (`marker_drawing.rs`, `marker_report.rs`) and crate `cli`
+//! (`output.rs`).
 
 use crate::finished_marker::FinishedMarker;
 use crate::flaws::check_given;

@@ -1,4 +1,17 @@
 //! The catalogue: name, meaning and procedure of each measurement.
+//!
+//! # Decided with
+//! - [`crate::further::FURTHER`]: measurements that no body is made by;
+//! - [`crate::predict::Build`], [`crate::predict`] (`TRUNK_LENGTHS`, `GIRTH_LIKE`): a guess where one is
+//!   missing;
+//! - [`crate::children`] (`ROWS`, `GIRTHS`): the same for children;
+//! - [`crate::samples`] (`ROWS`), [`crate::survey::NAMES`]: sample bodies; means and correlations of adults;
+//! - [`crate::foreign::FREESEWING`], [`crate::foreign::SEAMLY`]: names in other programs;
+//! - [`crate::table::Origin`]: whether a value was asked for or predicted.
+//!
+//! By hand: a new measurement stands in each of these lists that it belongs to; further in crates `body`
+//! (`measured.rs`, `scan_girths.rs`, `request.rs`), `interchange` (`measurements_garmentcode.rs`, degrees)
+//! and in the window (`tables.rs`, new sizes).
 
 use crate::further::FURTHER;
 use crate::measurement::{Definition, angle, length};

@@ -2,6 +2,19 @@
 //!
 //! Shapes are translated so that their bounding boxes start at the origin. Positions are relative to the
 //! corner of the usable fabric: selvedges and end margins lie outside the searched region.
+//!
+//! # Decided with
+//! - [`toile_geometry::no_fit_polygon`], [`crate::nofit::NoFit`]: no-fit polygons, and distances looked up in
+//!   them;
+//! - [`crate::pair::Pair`], [`crate::job::Job::pair_up`] (`tables.rs`): the loss of a pair less its gap; all
+//!   pairs;
+//! - [`crate::raster::LossMap`], [`crate::depth_raster::DepthRaster`]: losses of a piece at all places,
+//!   coarsely;
+//! - [`crate::job::Job::add_items`] (`poses.rs`), [`crate::job::Job::add_defects`] (`poses.rs`): pieces in
+//!   each turn; flaws as pieces that do not move;
+//! - [`crate::layout::Layout::set_phase`]: prints: the phase of a set of pieces;
+//! - [`crate::simplify`]: outlines of fewer points;
+//! - [`crate::referee`] (`check_pair`): the exact judgement.
 
 use crate::depth_raster::DepthRaster;
 use crate::error::NestingError;

@@ -1,4 +1,20 @@
 //! Items, the strip they are laid on, and the resulting marker.
+//!
+//! # Decided with
+//! - [`crate::marker::Strip::usable_width`], [`crate::marker::Strip::gap_between`]: selvedges, margins and
+//!   gaps;
+//! - [`crate::job::Job::gap`], [`crate::job::Job::corner`], [`crate::job::Job::axes`]: what the search keeps
+//!   to; prints;
+//! - [`crate::turns::orientations_within`], [`crate::explore`] (`turn_round`): turns that are tried; a
+//!   garment all one way;
+//! - [`crate::rules::check_rules`], [`crate::referee::judge`]: how the referee judges it;
+//! - [`crate::clashes::clashes`], [`crate::check::check`]: overlaps and selvedges of pieces laid by hand;
+//!   what is refused before a search;
+//! - [`crate::violation::Violation`], [`crate::words`]: kinds of violation, and their words;
+//! - [`crate::poses`], [`crate::shape::Shape`]: pieces turned by their grain; halves on a fold;
+//! - [`crate::marker::Marker::measure`]: length, efficiency and use of the fabric.
+//!
+//! A new rule is kept by the search, judged by the referee and put in words; each is a place of its own.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_geometry::{Polygon, Vec2};

@@ -1,6 +1,14 @@
 //! The referee: an independent check whether a marker can be cut.
 //!
 //! It works on the original outlines with exact predicates and uses nothing of the placing.
+//!
+//! # Decided with
+//! - [`crate::rules::check_rules`]: rules of the trade: grain, nap, fold, print, flaws, locks;
+//! - [`toile_geometry::PreparedPolygon`]: overlap and its depth;
+//! - [`crate::violation::PENETRATION_LIMIT`]: how deep counts;
+//! - [`crate::clashes`](mod@crate::clashes) (`is_deep`): the same limit for pieces laid by hand;
+//! - [`crate::job::SAFE`], [`crate::job::SIMPLIFY`]: margins by which the search keeps apart;
+//! - [`crate::words`]: violations in words.
 
 use crate::rules::{Laid, check_rules};
 use crate::violation::{PENETRATION_LIMIT, Side, Violation, beyond_limit};

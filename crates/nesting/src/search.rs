@@ -1,5 +1,18 @@
 //! The search within its budget: independent searches (islands) run in parallel and sometimes adopt the best
 //! layout.
+//!
+//! # Decided with
+//! - [`crate::job::Job`], [`crate::check::check`]: pieces made ready; jobs that are refused;
+//! - [`crate::start`], [`crate::layout_marker`]: a first layout, or the given one;
+//! - [`crate::explore::Island`]: shorter strips, other layouts, pressing;
+//! - [`crate::separate::Separator`], [`crate::refine`], [`crate::slide`]: overlaps parted; exact places;
+//!   pieces slid together;
+//! - [`crate::search::Budget`], [`crate::search::Meter`], [`crate::side_by_side`]: when it stops; threads;
+//! - [`crate::rolls::make_markers_on_rolls`]: several rolls filled one after another;
+//! - [`crate::random::SplitMix64`]: numbers that come the same again;
+//! - [`crate::referee::judge`]: whether the result can be cut.
+//!
+//! Where the clock decides, the number of islands follows the machine, and so does the marker.
 
 use crate::check::check;
 use crate::error::NestingError;

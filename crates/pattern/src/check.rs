@@ -1,4 +1,14 @@
 //! Checks that a draft can be cut and sewn.
+//!
+//! # Decided with
+//! - [`crate::check::SEAM_TOLERANCE`], [`crate::document::Seam`]: how much the sides of a seam may differ;
+//!   ease and gathers;
+//! - [`crate::orientation::turned_pieces`]: pieces that are sewn inside out;
+//! - [`crate::evaluate::Evaluation::ease`] (`walk/mod.rs`): differences as a seam is walked;
+//! - [`crate::diagnostic::Code`]: the faults.
+//!
+//! Shown by the window, `tools/walk.rs`. Gathers of imported patterns: crate `interchange`,
+//! `garmentcode/reader.rs`.
 
 use crate::evaluate::{Evaluation, Wearer};
 use crate::orientation::turned_pieces;

@@ -1,4 +1,24 @@
 //! Diagnostics: a fault of a pattern with its place, severity and remedy.
+//!
+//! # Decided with
+//! - [`crate::evaluate`] (`numbers.rs`, `points.rs`, `curves.rs`, `duplicates.rs`, `markers.rs`): faults of
+//!   numbers, points, curves, names, markers;
+//! - [`crate::evaluate`] (`panels.rs`, `operations.rs`, `reshape.rs`, `seams.rs`): faults of panels,
+//!   operations and seams;
+//! - [`crate::evaluate`] (`compute.rs`), [`crate::formula::Failure`]: formulas that need themselves; formulas
+//!   that cannot be computed;
+//! - [`crate::drafting`] (`report`), [`crate::check::check_draft`]: faults found in making the draft; checks
+//!   of pieces, seam lengths and fabrics;
+//! - [`crate::kinks`], [`crate::orientation`]: kinks across seams; pieces that show the wrong side of the
+//!   cloth;
+//! - [`crate::evaluate::Evaluation::diagnostics`]: all of them in order;
+//! - [`crate::document::Pattern::describe`] (`describe.rs`): the place in words;
+//! - [`crate::plan`] (`lookup.rs`, `refuse_faults`): an edit that would make an error is refused.
+//!
+//! Told by crate `session` (`derived.rs`, `perform.rs`), crate `cli` (`check_commands.rs`) and the window
+//! (`app/mod.rs`, `app/findings.rs`). Further: cut lines in crate `cut` (`words.rs`), meshing in crate
+//! `assembly`, files in crate `interchange`. By hand: what a click on a new `Place` selects (window,
+//! `app/findings.rs`), tests `diagnostics.rs` and `causes.rs`.
 
 use crate::{
     CurveId, EdgeId, FabricId, GuideId, LineId, MarkerId, NotchId, OperationId, PanelId, PointId,

@@ -1,5 +1,18 @@
 //! Numbers of the document: a value, a formula, a formula with an adjustment, or a number with own values for
 //! some sizes.
+//!
+//! # Decided with
+//! - [`crate::evaluate`] (`numbers.rs`, `quantity`), [`crate::evaluate::Wearer`]: the value for a wearer and
+//!   a size;
+//! - [`crate::plan`] (`formula_change.rs`, `in_this_size`), [`crate::plan::set_number_in_size`]: a value of
+//!   its own in a size;
+//! - [`crate::plan`] (`moving.rs`, `added`): a drag shifts all sizes;
+//! - [`crate::plan::number_text`], [`crate::plan::read_number`]: numbers shown and typed;
+//! - [`crate::plan::add_size`]: sizes added.
+//!
+//! Sizes in the window: `tables.rs` (`FIRST` lists what a new one begins with), `canvas/grading.rs`. Chosen
+//! by crate `session`, `perform.rs`, `project.rs`. There are no grading rules of points: sizes differ by
+//! measurements, or by values of their own.
 
 use crate::SizeId;
 use crate::formula::Formula;

@@ -1,4 +1,16 @@
 //! The scene to draw: surfaces with their paint.
+//!
+//! # Decided with
+//! - [`crate::prepare`], [`crate::camera::View`]: surfaces made ready for any view; views;
+//! - [`crate::raster`], [`crate::ink`]: triangles as pixels;
+//! - [`crate::shade`], [`crate::occlusion`], [`crate::depth_map`], [`crate::floor`]: light, light of the sky,
+//!   shadows, the ground;
+//! - [`crate::colour_map::ColourMap`], [`crate::legend::Legend`]: colours of numbers and their key;
+//! - [`crate::backdrop::Backdrop`], [`crate::text::TextStyle`], [`crate::font`]: background, words and their
+//!   letters;
+//! - [`crate::sheet::drape_picture`], [`crate::sheet::fit_picture`]: finished pages;
+//! - [`crate::chart::Chart`], [`crate::outline::outline_picture`]: charts; pieces;
+//! - [`crate::error::PictureError`]: what is refused.
 
 use crate::PictureError;
 use crate::colour::Rgb;

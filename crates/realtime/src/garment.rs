@@ -1,4 +1,15 @@
 //! A garment, adjusted once a frame to the ellipsoids it was made on.
+//!
+//! # Decided with
+//! - [`crate::adjust`]: a frame by gravity or by shape;
+//! - [`crate::push`], [`crate::field::Field`]: vertices put out of ellipsoids;
+//! - [`crate::edges`], [`crate::home`]: bounds of edges; joints that a vertex hangs on;
+//! - [`crate::character::Character`], [`crate::player`], [`crate::ellipsoids::Ellipsoids`]: the figure, its
+//!   clips and its pose;
+//! - [`crate::lanes`]: eight vertices at once.
+//!
+//! Made of drapes by crate `session` (`realtime.rs`), read and written by crate `interchange`, measured by
+//! crate `lab`.
 
 use crate::edges::{Bounds, Edges};
 use crate::field::Field;

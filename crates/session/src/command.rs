@@ -1,4 +1,19 @@
 //! Commands: everything that can be asked of a session, as data.
+//!
+//! # Decided with
+//! - [`crate::session::Session::perform`] (`perform.rs`): what each command does;
+//! - [`crate::session::Session::execute`]: time taken; entry in the journal;
+//! - [`crate::derived::Derived::follow`]: what a change makes out of date;
+//! - [`crate::history::History`], [`crate::session::Session::change`] (`perform.rs`): steps that are undone
+//!   and redone;
+//! - [`crate::journal::Journal`], [`crate::file_stamp::Stamp`]: commands kept and replayed, with the files
+//!   that they read;
+//! - [`crate::project::Project`]: what commands change;
+//! - [`crate::event::Event`], [`crate::error::SessionError`]: what a command tells; why it is refused;
+//! - [`crate::export_format::ExportFormat`], [`crate::output`]: files that are written.
+//!
+//! The compiler asks who performs a new command and where it writes. By hand: `each_input`, `stage`,
+//! `weight`; a command that opens a pattern in `execute`; `follow`.
 
 use crate::interactive_run::read_inputs;
 use crate::{Export, PanelOrigin, PastStep, Quality};

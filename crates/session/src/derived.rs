@@ -1,4 +1,19 @@
 //! Caches everything that is computed from the project: draft, mannequin, markers, garment, drape.
+//!
+//! # Decided with
+//! - [`crate::project::Project`]: what all is derived from;
+//! - [`crate::outfit::Outfit`], [`crate::outfit::checked`]: garments put together, faults gathered;
+//! - [`crate::setup::job`], [`crate::choice::Quality::first_edge_length`]: setup of a drape; the coarse level
+//!   before it;
+//! - [`crate::put_on::PutOn::otherwise`], [`crate::stuck::stuck`], [`toile_drape::GarmentRun`]: a garment put
+//!   on another way; what holds one that does not come to rest;
+//! - [`crate::mannequin_source::MannequinSource`]: when the mannequin is made anew;
+//! - [`crate::marker_cache::MarkerCache`]: pieces of the document's markers;
+//! - [`crate::session::Session::adopt`] (`snapshot.rs`): results taken over from another thread;
+//! - [`crate::placed_panels::sleeve_angle`]: arms that follow sleeves.
+//!
+//! By hand: `follow` and `has_same_panels` name what each part depends on. In the window: `app/mod.rs`
+//! (`refresh`), `app/background_work.rs`.
 
 use crate::NestOptions;
 use crate::choice::BodyChoice;

@@ -1,4 +1,15 @@
 //! Why a command failed.
+//!
+//! # Decided with
+//! - [`toile_interchange::FormatError`], [`toile_interchange::FileError`]: errors of files;
+//! - [`toile_drape::DrapeError`], [`toile_assembly::AssemblyError`], [`toile_body::BodyError`]: errors of
+//!   simulation, meshing and bodies;
+//! - [`toile_marker::MarkerError`], [`toile_picture::PictureError`]: errors of markers and pictures;
+//! - [`crate::error::SessionError::falls_off`], [`crate::derived::Derived::drape_otherwise`]: a garment that
+//!   falls off however it is put on.
+//!
+//! By hand: `is_bad_input` names the errors of the drape that are bad input. Exit status: crate `cli`,
+//! `output.rs`.
 
 use std::path::PathBuf;
 use toile_drape::DrapeError;

@@ -1,4 +1,16 @@
 //! Writes what is made of a project: markers, garment, pictures, pieces on paper, a report.
+//!
+//! # Decided with
+//! - [`crate::export_format::ExportFormat`]: files by name;
+//! - [`crate::product`], [`toile_interchange::write_glb`], [`toile_interchange::write_obj`]: the garment as
+//!   glTF and OBJ: parts, normals, texture coordinates;
+//! - [`toile_marker::MarkerFormat`], [`crate::printing::print_pattern`]: markers; pieces;
+//! - [`crate::pictures`], [`crate::report::Report`]: pictures, report;
+//! - [`crate::scene`] (`state_files`), [`crate::tools::check_ending`]: files of scenes and bodies;
+//! - [`toile_interchange::write_all_atomically`]: whole or not at all.
+//!
+//! By hand: a new file in the window (`app/export_choice.rs`, `GROUPS`) and in crate `cli` (`output.rs`,
+//! `meaning`).
 
 use crate::drape::Drape;
 use crate::export_format::{Export, ExportFormat};

@@ -1,5 +1,17 @@
 //! Carries an edit of the pattern over to the garment that is worn: with other rest shapes of the
 //! same triangles, on another mesh, or not at all.
+//!
+//! # Decided with
+//! - [`toile_assembly::morph()`]: the same triangles at new places;
+//! - [`crate::garment_edit::CannotFollow`], [`crate::garment_edit::CannotFollow::asks_for_another`]: why it
+//!   cannot follow; whether it is hung anew;
+//! - [`crate::rest_change::RestChange`]: how much changes;
+//! - [`crate::live::LiveRun::edit`], [`crate::interactive_run::InteractiveRun::edit`]: when an edit is taken;
+//!   how it is handed on;
+//! - [`toile_drape::GarmentRun`]: the run of the garment, which goes on under other shapes or another mesh;
+//! - [`crate::project::Project::has_same_body`] (`mannequin_source.rs`): whether it is still the same body.
+//!
+//! The window asks (`app/background_work.rs`).
 
 use crate::derived::Derived;
 use crate::fabrics::cloth_material;

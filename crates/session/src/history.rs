@@ -1,4 +1,14 @@
 //! The one history: steps with labels, undone and done again by cheap snapshots.
+//!
+//! # Decided with
+//! - [`crate::session::Session::change`] (`perform.rs`), [`crate::session::Session::travel`] (`perform.rs`),
+//!   [`crate::session::Session::begin`] (`perform.rs`): a step recorded, undone or redone; the history
+//!   emptied;
+//! - [`crate::session::Session::commit`] (`gesture.rs`): a drag is one step;
+//! - [`crate::recovery::PastStep`]: steps kept for recovery;
+//! - [`toile_pattern::Ids`]: ids, which are not given again after an undo.
+//!
+//! In the window: `app/perform.rs`, `tables/history.rs`, and for a marker `app/marker_drop.rs`.
 
 use crate::Project;
 use std::collections::VecDeque;

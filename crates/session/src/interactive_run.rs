@@ -1,4 +1,14 @@
 //! A garment's run with vertices dragged by the user; each input carries the number of its step.
+//!
+//! # Decided with
+//! - [`crate::live::LiveRun::give`], [`crate::command::Command`]: hands given live, and by a journal;
+//! - [`crate::interactive_run::check_action`], [`crate::interactive_run::InteractiveRun::apply`],
+//!   [`crate::interactive_run::InteractiveRun::pull`]: checked, applied, held;
+//! - [`toile_drape::Attachments`], [`toile_drape::Action`]: how a hand pulls; what can be done;
+//! - [`toile_drape::GarmentRun::control_mut`]: settling begun again.
+//!
+//! Attachments pull in crate `drape`: `system.rs`, `xpbd/region.rs`, `patches/patch.rs`, `submodel.rs`. The
+//! window gives no hand yet.
 
 use crate::rest_change::RestChange;
 use crate::{GarmentJob, SessionError};

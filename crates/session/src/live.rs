@@ -1,4 +1,11 @@
 //! A drape on its own thread: it publishes frames, and takes dragged vertices and edits of the pattern.
+//!
+//! # Decided with
+//! - [`crate::interactive_run::InteractiveRun`]: a step, hands and edits;
+//! - [`crate::live::run`], [`crate::live::Shared::wait_for_task`]: the thread, and what it does next;
+//! - [`toile_drape::GarmentRun`]: the run itself;
+//! - [`crate::session::Session::adopt_drape`]: its result taken over as the drape;
+//! - [`crate::drape::drape`]: the same for commands, without a thread.
 
 use crate::drape::{Drape, DrapeResult};
 use crate::garment_edit::GarmentEdit;

@@ -1,4 +1,17 @@
 //! Source of a mannequin: measurements that it is grown to, or a description.
+//!
+//! # Decided with
+//! - [`crate::project::Project::body_measurements`], [`crate::project::Project::figure`]: measurements and
+//!   template;
+//! - [`crate::session::Session::set_measurements`] (`perform.rs`), [`crate::session::Session::set_body`]
+//!   (`perform.rs`): measurements typed; a body chosen;
+//! - [`crate::bodies::body_of`], [`toile_interchange::read_sized_measurements`],
+//!   [`toile_interchange::read_seamly`]: files of measurements, in one size or several;
+//! - [`toile_body::Description`], [`toile_interchange::read_mannequin`]: mannequins saved and made again;
+//! - [`toile_measure::Build`]: what is missing is predicted;
+//! - [`toile_body::Mannequin`], [`toile_body::BodyError`]: the body grown; measurements that no body has;
+//! - [`crate::derived`] (`body_error`): its errors with the name of the file;
+//! - [`crate::placed_panels::sleeve_angle`]: how the arms are held.
 
 use crate::Project;
 use crate::placed_panels::sleeve_angle;

@@ -1,4 +1,20 @@
 //! Markers of the document as they lie; searches on a snapshot, taken over as one edit.
+//!
+//! # Decided with
+//! - [`toile_marker::DocumentMarker`]: a marker with its pieces where they lie;
+//! - [`crate::marker_cache::MarkerCache`]: pieces in each size;
+//! - [`crate::session::Session::marker_search`], [`crate::session::Session::adopt_marker`]: the search on a
+//!   copy; its result taken over as one edit;
+//! - [`crate::watched_search::watched`], [`toile_marker::SearchWatcher`]: progress, stop;
+//! - [`crate::nest_patterns::nest_patterns`], [`toile_interchange::read_jagua`],
+//!   [`crate::study::study_rules`]: several patterns, published instances; the cost of each rule;
+//! - [`crate::stored_marker::nest_marker`], [`crate::marker_file_check::judge_marker_file`]: markers stored
+//!   in a pattern's file; a marker's file checked again;
+//! - [`crate::markers::kept_words`], [`crate::markers::other_sizes_words`]: what does not follow the garment;
+//!   for whom it is;
+//! - [`toile_pattern::Marker`]: the marker in the document.
+//!
+//! Asked for by crate `cli`, `nest_commands.rs`, and the window, `app/marker_pane.rs`.
 
 use crate::{Command, Event, Project, Session, SessionError, Shown, Silent};
 use std::sync::Arc;

@@ -1,4 +1,16 @@
 //! Opens patterns, markers and measurements; the format is recognised from the content.
+//!
+//! # Decided with
+//! - [`toile_interchange::FileKind`], [`crate::input::read_file`]: kinds of files; pipes and standard input;
+//! - [`toile_interchange::read_document`], [`toile_interchange::read_garmentcode`]: formats of patterns;
+//! - [`crate::tools::convert`]: formats that are written, by ending;
+//! - [`crate::stored_marker::nest_marker`]: markers are stored in Toile's own format alone;
+//! - [`crate::mesh_file::open_mesh`], [`crate::bodies::body_of`]: meshes; files of bodies;
+//! - [`crate::fitting::files_to_try_on`]: files that a pattern names.
+//!
+//! By hand: a new format in `looks_like_garmentcode` and `read_pattern_text`, in crate `cli` (`arguments.rs`,
+//! `FormatName`) and in the window (`app/file_choice.rs`). The window saves Toile's own format alone
+//! (`app/files.rs`).
 
 use crate::SessionError;
 use crate::input::{is_pipe, read_file};

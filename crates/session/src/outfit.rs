@@ -1,5 +1,17 @@
 //! The garments worn together: each is drafted and meshed by itself, then all become one garment of several
 //! parts, each in its layer.
+//!
+//! # Decided with
+//! - [`crate::session::Session::set_layers`] (`perform.rs`), [`crate::command::OtherGarment`]: the command
+//!   that asks for them;
+//! - [`crate::project::Project::drafted_for`]: for whom the other garments are drafted;
+//! - [`crate::setup::level`]: layers of the drape;
+//! - [`crate::garment_edit`] (`refuse_other_garments`): edits that are refused;
+//! - [`crate::drape::Drape::part_files`] (`product.rs`), [`crate::report`] (`LayerReport`): files and numbers
+//!   of a layer;
+//! - [`crate::verdict`] (`disorder`): cloth on the wrong side of a layer.
+//!
+//! Options: crate `cli`, `arguments.rs`, `session_commands.rs` (`refuse_layers`).
 
 use crate::fabrics::FabricChoice;
 use crate::{Project, SessionError, WornGarment};

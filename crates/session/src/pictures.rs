@@ -1,4 +1,16 @@
 //! The two pictures of a drape: the garment worn, and how tight it sits.
+//!
+//! # Decided with
+//! - [`toile_picture::drape_picture`], [`toile_picture::fit_picture`]: the pages;
+//! - [`crate::pictures::vertex_stretch`], [`crate::pictures::MAX_STRETCH`],
+//!   [`toile_drape::stretch_per_triangle`]: which strain is shown;
+//! - [`crate::drape::Drape::of`]: the stretch kept with the drape;
+//! - [`crate::scene_pictures::SceneAlbum`], [`crate::state_picture::RunCamera`]: pictures of scenes, and
+//!   their camera;
+//! - [`toile_picture::ColourMap`], [`toile_picture::Paint`]: colours of stretch;
+//! - [`crate::verdict::of_garment`]: words of the verdict.
+//!
+//! The report counts warp and weft each by itself and leaves gathers out.
 
 use crate::SessionError;
 use crate::drape::Drape;

@@ -1,4 +1,13 @@
 //! Pieces printed on paper: laid out to save it, in one size or all.
+//!
+//! # Decided with
+//! - [`crate::printing::PrintOptions`], [`crate::printing::print_job`], [`crate::printing::arranged`]: which
+//!   pieces and sizes, laid to save paper;
+//! - [`toile_interchange::PrintJob`], [`toile_interchange::Paper`]: lines, sheets, papers;
+//! - [`toile_cut::Drawing`]: the lines of a piece;
+//! - [`crate::printing::EVALUATIONS`], [`toile_nesting::Budget`]: how long the arrangement is searched for.
+//!
+//! Faults of the pattern are told, not refused (`print_job`).
 
 use crate::sizes::selected;
 use crate::tools::{check_ending, sound_draft};

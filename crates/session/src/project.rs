@@ -1,4 +1,21 @@
 //! The project: all that is edited, saved and undone; the rest is derived from it.
+//!
+//! # Decided with
+//! - [`crate::choice::BodyChoice`], [`crate::choice::Quality`]: wearer and quality;
+//! - [`crate::session::Session::perform`] (`perform.rs`): the commands that change it; `begin` keeps the
+//!   quality for another pattern;
+//! - [`crate::fitting`] (`fitting_of`), [`toile_interchange::Fitting`]: how it is read from the file of the
+//!   pattern, and written to it;
+//! - [`crate::mannequin_source::MannequinSource`], [`crate::placed_panels::PanelOrigin`],
+//!   [`crate::open::open_pattern_from`]: the body it needs; where panels of a file stand;
+//! - [`crate::project::Project::drafted_to`], [`toile_pattern::Wearer`]: whom it is drafted for;
+//! - [`crate::project::Project::refuse_faults`], [`crate::outfit::checked`], [`crate::tools::sound_draft`]:
+//!   faults that keep a garment, a mesh or a file from being made; prints and reports only tell them;
+//! - [`crate::derived::Derived::garment_edit`] (`garment_edit.rs`): what becomes of a worn garment when it
+//!   changes.
+//!
+//! By hand: a new choice in `says_the_same` (unsaved or not), in `Derived::follow` and in the window
+//! (`tables/wearer.rs`, `tables/worn_with.rs`, `app/garment_pane.rs`).
 
 use crate::choice::sample_of;
 use crate::{BodyChoice, FabricChoice, Quality, SessionError, Shown};

@@ -1,4 +1,12 @@
 //! Records the frames of a scene's run into a file, which grows frame by frame.
+//!
+//! # Decided with
+//! - [`toile_interchange::FrameWriter`]: the file;
+//! - [`crate::scene`] (`write_frame`): when a frame is recorded;
+//! - [`crate::recorded_surface::RecordedSurface`], [`crate::scene_frames`] (`recorded_object`): surfaces of
+//!   recorded frames; recorded frames in a scene;
+//! - [`toile_drape::RecordedTrack`]: the way of recorded positions;
+//! - [`crate::frames_export::export_frames`]: written for other programs.
 
 use crate::SessionError;
 use crate::output::{cannot, file_name};

@@ -1,4 +1,17 @@
 //! Runs a scene file: loads its meshes, patterns and bodies, simulates them, and writes the results.
+//!
+//! # Decided with
+//! - [`crate::scene_builder::Builder`]: the scene built from its file;
+//! - [`toile_drape::SceneRun`]: the run;
+//! - [`crate::scene_checkpoint::CheckpointTimes`], [`crate::scene_checkpoint::SavedRun`]: when it is saved,
+//!   how it is resumed;
+//! - [`crate::pace::Pace`]: progress in words, and when a run is given up;
+//! - [`crate::recorder::Recorder`], [`crate::scene_pictures::SceneAlbum`]: frames and pictures;
+//! - [`crate::crossings::Crossings`], [`crate::frame_counts::FrameCounts`]: crossings counted in the run and
+//!   in saved frames;
+//! - [`crate::verdict::of_scene`]: how the run is judged.
+//!
+//! Options: crate `cli`, `arguments.rs` (`Run`), `tool_commands.rs`.
 
 use crate::crossings::{Crossings, Tangles};
 use crate::frame_counts::FrameCounts;

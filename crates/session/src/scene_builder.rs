@@ -1,4 +1,16 @@
 //! Builds a scene from a scene file, with its meshes, patterns, bodies and fabrics.
+//!
+//! # Decided with
+//! - [`toile_interchange::ObjectFile`]: fields of the file;
+//! - [`crate::mesh_file::open_mesh`], [`crate::scene_builder::Builder::stance_of_meshes`]: meshes, all turned
+//!   alike;
+//! - [`crate::scene_builder::Builder::change_materials`]: materials of the objects, by name or by figures;
+//! - [`crate::scene_figures`]: figures: what they wear, how they move;
+//! - [`crate::scene_frames`]: recorded frames as objects;
+//! - [`toile_drape::Scene::check`], [`toile_drape::World::of_scene`]: how the scene is checked and made a
+//!   world.
+//!
+//! A named shape of solid is one more field of `ObjectFile` that a mesh is made of here.
 
 use crate::bodies::body_of;
 use crate::choice::figure_named;

@@ -1,4 +1,15 @@
 //! The checkpoint file from which an interrupted run of a scene is resumed.
+//!
+//! # Decided with
+//! - [`crate::scene::run_scene`], [`crate::scene_checkpoint::RunOptions`]: the options that ask for it;
+//! - [`crate::scene_checkpoint::CheckpointTimes::due`], [`toile_drape::SceneRun::steps_to_checkpoint`]: at
+//!   which steps it is due;
+//! - [`toile_interchange::write_checkpoint`]: the checkpoint as text; damage and other versions refused;
+//! - [`toile_drape::SceneRun::resume`]: another scene is refused;
+//! - [`crate::scene`] (`keep_landmark`), [`crate::scene_checkpoint::SavedRun::before`]: checkpoints kept
+//!   beside frames; the one before a time found again;
+//! - [`crate::frame_counts::FrameCounts`], [`crate::recorder::Recorder::resume`]: counts and frames that go
+//!   on.
 
 use crate::frame_counts::FrameCounts;
 use crate::state_picture::Ways;

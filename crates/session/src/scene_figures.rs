@@ -1,4 +1,16 @@
 //! Figures of a scene: what they wear, and how they move.
+//!
+//! # Decided with
+//! - [`crate::dressed_figure::DressedFigure::of`]: all that one wears, sewn and draped;
+//! - [`crate::figure_track::FigureTrack::course`]: into the clip and through it;
+//! - [`crate::clips::own_clip`], [`crate::clips::open_clip`]: clips by name, of files;
+//! - [`toile_body::Player`], [`toile_body::Cleared`]: clips played; limbs kept apart;
+//! - [`toile_geometry::Room`]: how far cloth keeps off in a pinch;
+//! - [`toile_drape::Track`]: positions of the skin;
+//! - [`crate::frame_counts::FrameCounts::add`]: what saved frames showed.
+//!
+//! The way into a clip: crate `body`, `lead_in.rs`. The skin against the cloth: crate `drape`,
+//! `xpbd/skin_contacts.rs`, `xpbd/skin_edges.rs`, `xpbd/carried_plane.rs`.
 
 use crate::clips::{open_clip, own_clip};
 use crate::dressed_figure::DressedFigure;

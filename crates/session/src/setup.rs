@@ -1,5 +1,16 @@
 //! The setup of a drape, made from draft, fabrics and mannequin. `derived.rs` adds the coarser mesh of a fine
 //! quality.
+//!
+//! # Decided with
+//! - [`crate::choice::Quality`]: length of edges, steps, residual;
+//! - [`toile_drape::GarmentSetup`]: the setup as it is simulated;
+//! - [`toile_drape::ContactSettings`], [`crate::setup::CLOTH_OFFSET`], [`crate::setup::GRAVITY`]: how far
+//!   cloth keeps off; gravity;
+//! - [`crate::setup::cloth`], [`toile_pattern::Piece`]: warp and weft by the grain of a piece;
+//! - [`crate::setup::placement_body`], [`toile_assembly::PlacementBody`]: the body that panels are placed
+//!   round;
+//! - [`crate::setup::level`], [`crate::outfit::Outfit::new`]: layers; several garments;
+//! - [`crate::setup::counted`]: strain near gathers, which is not counted.
 
 use crate::Quality;
 use crate::fabrics::cloth_material;

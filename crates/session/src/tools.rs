@@ -1,4 +1,17 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
+//!
+//! # Decided with
+//! - [`toile_body::Mannequin`]: bodies made;
+//! - [`toile_body::Fit`], [`toile_body::Scan`]: our body fitted to a mesh; a mesh measured;
+//! - [`crate::mesh_file::open_person`]: meshes of persons;
+//! - [`crate::clips::open_clip`], [`toile_interchange::read_bvh`], [`toile_interchange::read_x3d`]: motions,
+//!   by name and of files;
+//! - [`crate::bodies::edit_body`], [`toile_body::Scaling`], [`toile_interchange::read_proportions`]: changed
+//!   beside measurements;
+//! - [`crate::tools::sound_draft`], [`crate::tools::check_ending`]: faults and endings that are refused;
+//! - [`toile_interchange::write_body_glb`], [`toile_interchange::write_mannequin`]: files that are written.
+//!
+//! Options: crate `cli`, `body_options.rs`, `tool_commands.rs`.
 
 use crate::clips::{open_clip, own_clip};
 use crate::fitting::document_text;

@@ -1,5 +1,18 @@
 //! Judges what a drape or the run of a scene came to: the verdict that reports, pictures, the window and the
 //! exit status of the command tell.
+//!
+//! # Decided with
+//! - [`toile_drape::Verdict`], [`toile_drape::Aspect`]: the verdict and its aspects;
+//! - [`toile_drape::supports`], [`toile_drape::OpenAttachment`]: what carries the cloth; attachments that
+//!   stay open;
+//! - [`crate::crumple::short_seams`], [`crate::crossings::Crossings::warning`]: seams in a heap; crossings;
+//! - [`toile_drape::GarmentRun`], [`crate::pace::Pace::follow`]: what a run says itself; its speed;
+//! - [`toile_drape::Measures`]: penetration, strain, residual;
+//! - [`crate::report::Report`], [`crate::scene`] (`report`), [`crate::pictures::drape_png`],
+//!   [`crate::event::Draped`]: who tells it: reports, pictures, events;
+//! - [`crate::setup`] (`counted`): gathers, whose strain is not counted.
+//!
+//! As exit status: crate `cli`, `output.rs`. In the window: `app/garment_pane.rs`.
 
 use crate::crossings::Crossings;
 use crate::crumple::short_seams;

@@ -1,4 +1,12 @@
 //! Progress reports of long work, and the request to stop it.
+//!
+//! # Decided with
+//! - [`crate::session::Session::execute_all`], [`crate::command::Command::weight`]: shares of commands;
+//! - [`crate::watched_search::watched`], [`toile_marker::SearchWatcher`]: searches for markers;
+//! - [`crate::timing::Timing`]: seconds spent;
+//! - [`crate::session::Session::snapshot`] (`snapshot.rs`): work on another thread.
+//!
+//! Shown by crate `cli` (`bar.rs`, Ctrl-C) and the window (`app/job.rs`).
 
 use crate::SessionError;
 use std::ops::ControlFlow;

@@ -2,6 +2,17 @@
 //! runs live. A draped garment follows the edits of its pattern; the change to its simulation is computed
 //! on another thread too. If it cannot follow, because its wearer, cloth or fellow garments changed, it
 //! is draped anew by itself; of several changes meanwhile only the newest counts.
+//!
+//! # Decided with
+//! - [`toile_session::LiveRun`]: the run;
+//! - [`toile_session::GarmentEdit`], [`toile_session::CannotFollow`]: how the garment follows an edit;
+//! - [`crate::app::background_work::BackgroundWork::follow_edits`],
+//!   [`crate::app::background_work::BackgroundWork::hang`]: edits handed to the run; the garment hung anew;
+//! - [`crate::app::background_work::BackgroundWork::status`], [`crate::app::garment_pane`]: why it is out of
+//!   date; the words;
+//! - [`toile_session::Session::snapshot`] (`snapshot.rs`), [`crate::app::job::Job`]: work on a copy, on a
+//!   thread;
+//! - [`crate::app::ToileApp::drape`] (`perform.rs`): the command of the user.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};

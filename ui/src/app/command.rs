@@ -1,4 +1,17 @@
 //! A command of the window: name, key, condition and action.
+//!
+//! # Decided with
+//! - [`crate::app::document_commands::DOCUMENT_COMMANDS`], [`crate::app::tool_commands::TOOL_COMMANDS`]: the
+//!   tables of commands;
+//! - [`crate::app::command_table::pressed`]: keys, and those that wait while something is typed;
+//! - [`crate::views::pattern::PatternView::keys`] (`input.rs`), [`crate::tools::Tool::takes_keys`]: other
+//!   keys; keys that go to a tool;
+//! - [`crate::app::ToileApp::is_on`] (`bars.rs`): check marks, by hand;
+//! - [`crate::app::ToileApp::canvas_menu`] (`bars.rs`): the menu on the canvas, by hand: a name of no command
+//!   is left out silently;
+//! - [`crate::app::ToileApp::ask_find`] (`palette.rs`): commands found by name.
+//!
+//! `docs/GUIDE.md` names the keys.
 
 use super::ToileApp;
 use egui::{Key, KeyboardShortcut, Modifiers};

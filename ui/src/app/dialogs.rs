@@ -1,4 +1,17 @@
 //! Dialogs: questions to answer before something is done.
+//!
+//! # Decided with
+//! - [`crate::app::answer::Answer`], [`crate::app::answer::main_button`]: answers; the button that Enter
+//!   presses;
+//! - [`crate::app::ToileApp::guard_closing`], [`crate::app::ToileApp::before_leaving`] (`files.rs`): asked
+//!   before unsaved work is lost;
+//! - [`crate::app::notice::Notice`]: messages of the status line;
+//! - [`crate::app::export_choice`], [`crate::app::print_choice`], [`crate::app::file_choice`]: exports,
+//!   prints, files;
+//! - [`crate::tools`] (`refusal.rs`, `refuse`): words of refusals.
+//!
+//! By hand: files to export (`GROUPS` of `export_choice`), kinds of files that are listed (`list` of
+//! `file_choice`).
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};

@@ -1,5 +1,18 @@
 //! The pane with the marker: its order and fabric, the search for a short one, and the edits made in its
 //! view.
+//!
+//! # Decided with
+//! - [`crate::app::ToileApp::cloth_fields`] (`marker_cloth.rs`), [`crate::app::ToileApp::laying_rows`]
+//!   (`marker_laying.rs`), [`crate::app::ToileApp::rule_fields`] (`marker_rules.rs`): fields: the fabric, how
+//!   it is laid, rules of pieces;
+//! - [`crate::app::ToileApp::mend_button`] (`marker_cloth.rs`), [`toile_session::kept_words`]: what does not
+//!   follow the garment;
+//! - [`toile_session::Session::marker_search`] (`markers.rs`): the search;
+//! - [`crate::app::ToileApp::drop_pieces`] (`marker_drop.rs`): pieces let go;
+//! - [`crate::views::marker::MarkerView`], [`crate::views`] (`marker_paint.rs`): the view of it;
+//! - [`toile_pattern::plan::place_pieces`], [`toile_pattern::plan::set_marker_cloth`]: the edits it gives.
+//!
+//! By hand: a new setting of the fabric needs a field here.
 
 use super::ToileApp;
 use super::job::Job;

@@ -1,4 +1,20 @@
 //! The window: its contents, and one frame of it.
+//!
+//! # Decided with
+//! - [`toile_session::Session`]: the document and all that is derived;
+//! - [`crate::app::command_table`], [`crate::app::perform`]: commands of the window, and what they do;
+//! - [`crate::app::ToileApp::refresh`], [`crate::app::ToileApp::handle_events`]: what follows on a change,
+//!   and on events; checks wait for the end of a drag;
+//! - [`crate::app::ToileApp::list_findings`] (`findings.rs`): faults of the pattern;
+//! - [`crate::app::background_work::BackgroundWork`], [`crate::app::job::Job`]: work on other threads;
+//! - [`crate::app::ToileApp::keep_unsaved`], [`crate::app::ToileApp::ask_recover`] (`welcome.rs`): state kept
+//!   for recovery; offered after a crash;
+//! - [`crate::app::preferences::Preferences`], [`crate::app::panes::Panes`]: settings that stay; what is on
+//!   show;
+//! - [`crate::app::arrange`], [`crate::app::sewing`], [`crate::app::files`]: parts copied and lined up;
+//!   seams; files.
+//!
+//! By hand: events that are told by a message, in `handle_events`.
 
 mod answer;
 mod arrange;

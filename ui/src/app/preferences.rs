@@ -1,4 +1,10 @@
 //! Settings that the window remembers: recent files, theme, layout, paper, size.
+//!
+//! # Decided with
+//! - [`crate::app::panes::Panes`]: what is on show;
+//! - [`crate::app::ToileApp::is_on`] (`bars.rs`): check marks, by hand;
+//! - [`crate::app::ToileApp::ask_print_choice`] (`print_choice.rs`): papers; one that is not in `paper`, too,
+//!   is forgotten.
 
 use super::Beginning;
 use super::panes::Panes;

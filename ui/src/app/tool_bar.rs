@@ -1,4 +1,13 @@
 //! The tool bar: icons of the tools in named groups, with their names beside them if wanted.
+//!
+//! # Decided with
+//! - [`crate::app::tool_commands::TOOL_COMMANDS`]: name and key of each tool;
+//! - [`crate::tools::slots::SlotTool`]: names its command: by that its button is shown as chosen;
+//! - [`crate::app::tool_icons`] (`strokes`): its sign;
+//! - [`crate::app::ToileApp::canvas_menu`] (`bars.rs`): the menu on the canvas.
+//!
+//! By hand: a new tool in `GROUPS` and in that menu; `docs/GUIDE.md`, `ui/tests/drafting.rs` or
+//! `ui/tests/alter.rs`. `ui/tests/every_slot.rs` and `ui/tests/commands.rs` find it by themselves.
 
 use super::ToileApp;
 use super::command::{UiCommand, shortcut_words};

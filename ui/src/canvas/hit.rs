@@ -1,5 +1,13 @@
 //! Finds the parts at a place of the table, the likeliest first: handle, point, notch or name of a sheet,
 //! edge, inner line, curve, panel. Guides are put into the order later, before panels.
+//!
+//! # Decided with
+//! - [`crate::views::pattern::PatternView::pointer`]: hits and snaps put together;
+//! - [`crate::views::pattern::PatternView::add_guide_hit`] (`guides.rs`): guides among the hits;
+//! - [`crate::tools::select`] (`clicked`): what of it is chosen;
+//! - [`crate::canvas::snap::snaps`], [`crate::canvas::guides::on_guides`]: snapping; snapping to guides;
+//! - [`crate::tools`] (`toward.rs`, `turned`): round angles;
+//! - [`crate::views::marker::MarkerView::at`]: pieces of a marker.
 
 use super::scene::{PanelScene, PointRole, Scene};
 use super::selection::{Item, Selection};

@@ -1,5 +1,22 @@
 //! Tools: small state machines that turn canvas events into edits. They read the document and produce
 //! edits, and are independent of the GUI toolkit.
+//!
+//! # Decided with
+//! - [`crate::tools::slots::SlotTool`]: tools that are given one thing after another;
+//! - [`crate::tools::draw`], [`crate::tools::arc`], [`crate::tools::ring`]: draw on a sheet;
+//! - [`crate::tools::panel`], [`crate::tools::alter`], [`crate::tools::parts`], [`crate::tools::seam`]: work
+//!   on panels, alter them, move parts, sew;
+//! - [`crate::tools::select`] (`drag`), [`crate::tools::rounding::rounded_place`], [`crate::tools::walk`]:
+//!   drags, and the round numbers they keep to; a seam walked;
+//! - [`crate::app::ToileApp::follow_outcome`] (`perform.rs`), [`toile_session::Session::preview`]
+//!   (`gesture.rs`), [`toile_session::Session::commit`] (`gesture.rs`): outcomes of tools carried out; a
+//!   preview and its end;
+//! - [`crate::views::pattern::PatternView::follow`], [`crate::app::ToileApp::refresh`]: the preview drawn;
+//!   checks wait until it is over;
+//! - [`crate::tools::refusal::refuse`]: refusals in words;
+//! - [`toile_pattern::plan`]: the edits it gives.
+//!
+//! By hand: `step`, `overlay` and `hint` name pairs of tool and state.
 
 mod along;
 pub mod alter;

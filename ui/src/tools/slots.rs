@@ -1,5 +1,14 @@
 //! Slot tools: tools that collect answers to a list of slots, then make a plan. Typed text is handled in
 //! `typing`, answers in `answering`, transitions in `slot_steps`.
+//!
+//! # Decided with
+//! - [`crate::tools::slot_steps`] (`accept`), [`crate::tools::answering::answer`]: how it goes on; what is
+//!   given;
+//! - [`crate::tools::slot_overlay::overlay`]: the overlay and the hints;
+//! - [`crate::tools::typing::ways`]: what may be typed;
+//! - [`crate::tools::planning::Planning`]: planners one after another; places;
+//! - [`crate::app`] (`tool_commands.rs`, `TOOL_COMMANDS`, `tool_bar.rs`): its command and button;
+//! - [`crate::views::pattern::PatternView::cursor`] (`input.rs`): shape of the pointer.
 
 use super::{Pointer, Reading};
 use crate::canvas::placed::Placed;

@@ -1,5 +1,18 @@
 //! Typed input of a slot tool: numbers for the present slot, for a place in one of several ways, and a
 //! name; or numbers and a name for the part made last.
+//!
+//! # Decided with
+//! - [`crate::tools::number::parse`], [`crate::tools::composed::formula`]: text to number; formulas of what
+//!   was typed;
+//! - [`crate::tools::newest::set_handles`]: numbers of what was made last;
+//! - [`crate::tools::along::mark_along`], [`crate::tools::list`]: distances along edges; several numbers;
+//! - [`crate::fields::TypedTexts`]: fields of the inspector and the tables;
+//! - [`toile_pattern::plan::read_number`], [`toile_pattern::plan::number_text`]: text to a number of the
+//!   document, with its units; and back;
+//! - [`crate::app`] (`pacing.rs`, `Pacing`): keys that come in one frame.
+//!
+//! Units of bare numbers and names that wait for their part: crate `pattern`, `bare.rs` and `bind.rs` in
+//! `plan`.
 
 use super::Reading;
 use super::newest::{self, Handle};

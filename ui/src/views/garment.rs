@@ -1,4 +1,13 @@
 //! The 3D view: mannequin and garment, seen by an orbiting camera.
+//!
+//! # Decided with
+//! - [`crate::gpu::orbit::Orbit`]: the camera;
+//! - [`crate::gpu::solid::ClothLook`], [`crate::gpu::StageRenderer::draw`]: meshes with colours; how they are
+//!   drawn;
+//! - [`crate::app`] (`background_work.rs`, `follow_run`): frames of the run;
+//! - [`crate::app`] (`garment_pane.rs`): the pane round it.
+//!
+//! Light stands in `gpu/stage.wgsl`.
 
 use crate::gpu::orbit::Orbit;
 use crate::gpu::solid::{ClothLook, ClothSolid, Corner, floor, mannequin};

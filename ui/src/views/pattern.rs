@@ -1,5 +1,13 @@
 //! The pattern view: pans and zooms, and turns pointer and keys into events for the tool in hand. It does
 //! not change the document: it returns the outcomes of the events.
+//!
+//! # Decided with
+//! - [`crate::views::pattern::PatternView::events`] (`input.rs`): pointer and keys as events;
+//! - [`crate::views::pattern::PatternView::follow`]: a drag as it is shown;
+//! - [`crate::canvas`]: what is drawn, hit and snapped to;
+//! - [`crate::views::pattern::PatternView::show_finding_marks`] (`marks.rs`): findings at their parts;
+//! - [`crate::views::pattern::PatternView::reveal`] (`revealed.rs`): brought into view;
+//! - [`crate::canvas::walked`] (`WalkedLast`), [`crate::views::pattern::walked`]: a seam that is walked.
 
 mod guides;
 mod input;

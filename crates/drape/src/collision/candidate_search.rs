@@ -1,6 +1,18 @@
 //! Search for candidate pairs: features of the cloth that may come near each other or cross. A search of the tree
 //! gives pairs of leaves ([`ClothSurface::near_leaves`]); a query gives neighbour lists that later queries go on
 //! from ([`ClothSurface::query`]). Candidates are then read from either.
+//!
+//! # Decided with
+//! - [`crate::collision::Reach`]: how near is near;
+//! - [`crate::collision`] (`proximity.rs`), [`crate::collision::nearness`],
+//!   [`crate::collision::feature_pair`]: pairs measured;
+//! - [`crate::collision::leaf_aabbs`], [`crate::collision::boxes`]: boxes of features and of regions;
+//! - [`crate::collision::curvature`], [`crate::collision`] (`regions.rs`): regions that cannot touch
+//!   themselves, and those far apart;
+//! - [`crate::collision::bvtt_front`], [`crate::collision::front_query`], [`crate::collision::moves`]: what
+//!   an earlier query found and still holds;
+//! - [`crate::collision::neighbour_lists`]: neighbour lists;
+//! - [`crate::xpbd`] (`cloth.rs`, `substeps_before_detection`): when XPBD looks again.
 
 use super::boxes::{Bounds, Region};
 use super::curvature::Clearance;

@@ -1,5 +1,18 @@
 //! Detection of contacts of cloth with cloth. The laws are those of contact with a solid, applied to the vector between
 //! two features instead of the position of a point.
+//!
+//! # Decided with
+//! - [`crate::contact_settings::ContactSettings`]: offset and stiffness;
+//! - [`crate::collision`] (`surface.rs`), [`crate::collision::mollifier`]: room for the offset; edges that
+//!   are nearly parallel;
+//! - [`crate::rest_data`] (`lump`): friction and restitution of a vertex;
+//! - [`crate::xpbd`] (`bounce.rs`, `bounce`), [`crate::method::MethodKind::supports`] (`features.rs`): XPBD
+//!   alone lets impacts bounce;
+//! - [`crate::collision::friction_memory::anchor`], [`crate::collision::friction_memory::after_step`]: where
+//!   cloth sticks to cloth;
+//! - [`crate::xpbd::ClothContacts`], [`crate::xpbd::Xpbd::store_cloth_friction`] (`cloth.rs`): detection and
+//!   friction of cloth in XPBD;
+//! - [`crate::collision::contact_set::ContactSet::remember_step`]: what a step leaves to the next.
 
 use super::candidate_search::Near;
 use super::cloth_contact::ClothContact;

@@ -1,4 +1,20 @@
 //! Search for entanglement: crossings of cloth with cloth, and vertices on the wrong side of a layer.
+//!
+//! # Decided with
+//! - [`crate::collision::intersections`], [`crate::collision::layers::layer_crossings`]: crossings within a
+//!   layer and between layers;
+//! - [`crate::collision`] (`recovery.rs`): direction that is not turned back, and the pull;
+//! - [`crate::collision::contact_set::ContactSet::is_in_order`],
+//!   [`crate::collision::contact_set::ContactSet::remember_crossings`]: tangled or not; remembered;
+//! - [`crate::kinetic_damping::KineticDamping::watch_crossings`],
+//!   [`crate::garment::GarmentRun::swing_again`]: the swing ends for a tangle and is taken again;
+//! - [`crate::newton`] (`chord.rs`, `elimination.rs`): not used while there is a tangle;
+//! - [`crate::xpbd::ClothContacts::min_substeps`]: XPBD looks sooner;
+//! - [`crate::methods::implicit`]: the bound on energy does not hold;
+//! - [`crate::collision::Tally`], [`crate::world`] (`transfer.rs`, `crossing_counts`): counted over a run,
+//!   carried over an edit.
+//!
+//! Told by crate `session`, `verdict.rs`, `crossings.rs`.
 
 use super::candidate_search::Near;
 use super::intersections::crossings;

@@ -1,5 +1,12 @@
 //! Pairs of features that are exempt from contact and from impacts. Contact forces would lock a crossing in place;
 //! between exempt features the recovery forces of [`Recovery`](super::Recovery) can undo it.
+//!
+//! # Decided with
+//! - [`crate::pair_policies::PairPolicies`]: objects that pass through each other;
+//! - [`crate::collision::entanglement`]: tangles, whose pairs are let through;
+//! - [`crate::contact_settings::ContactSettings`]: no contact of cloth at all where the cloth offset is 0;
+//! - [`crate::garment::GarmentSetup::sewing_environment`]: none while a garment is sewn;
+//! - [`crate::method::MethodKind::supports`] (`features.rs`): methods that know no contact of cloth.
 
 use super::entanglement::Entanglement;
 use super::feature_pair::FeaturePair;

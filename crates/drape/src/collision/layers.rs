@@ -1,6 +1,16 @@
 //! Order of cloths worn one over another: vertices on the wrong side of a layer, edges that cross one, and the
 //! direction of recovery for both. The outside of a cloth is the side of its triangles' normals; the cloth with the
 //! larger layer number belongs on the outside of the other.
+//!
+//! # Decided with
+//! - [`crate::world::World::layers`] (`compile.rs`), [`crate::merge::merged_layers`]: layer of a vertex, of
+//!   merged ones;
+//! - [`crate::collision::layer_order::layer_order`]: which of two lies outside;
+//! - [`crate::collision`] (`recovery.rs`, `violation_pull`): pull back to the right side;
+//! - [`crate::system::SystemBuilder::offset_layers`], [`crate::garment::GarmentSetup::sewing_environment`]:
+//!   panels apart by layers while sewn;
+//! - [`crate::measure`](mod@crate::measure) (`by_layer`): vertices on the wrong side, counted;
+//! - [`crate::scene::Scene::check_layers`], [`crate::world::World::check`]: layers that are refused.
 
 use super::intersections::{CrossingGeometry, EdgeFaceIntersection, area_vector};
 use super::layer_order::{BETWEEN_LAYERS, layer_order};

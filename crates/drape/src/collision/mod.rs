@@ -1,5 +1,20 @@
 //! Collision of cloth with cloth: which pairs of features might touch, which do, what a contact costs, how far a motion
 //! may go, and how cloth that has crossed is led apart.
+//!
+//! # Decided with
+//! - [`crate::collision::detector::ContactDetector`]: all of one detection: near pairs, their contacts,
+//!   tangles;
+//! - [`crate::collision::candidate_search`]: which pairs are near, and which need no look;
+//! - `step_truncation.rs`: moves of Newton's method cut before cloth meets;
+//! - [`crate::collision::impact_resolution`], [`crate::collision::impact`], `zones.rs`: impacts in a motion
+//!   of XPBD found and resolved;
+//! - `separation_filter.rs`, [`crate::collision::impact_pair`]: pairs that cannot meet; the gap of those that
+//!   can;
+//! - [`crate::collision::entanglement`]: a tangle noticed and led apart;
+//! - [`crate::collision::layer_order`](mod@crate::collision::layer_order), [`crate::collision::layers`]: the
+//!   order of garments worn over one another;
+//! - [`crate::collision::exemptions`], [`crate::collision::memory::ClothMemory`]: pairs that are let through;
+//!   what a state remembers of contact with cloth.
 
 mod boxes;
 mod bvtt_front;

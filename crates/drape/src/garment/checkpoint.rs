@@ -1,4 +1,18 @@
 //! Checkpoints of a garment's run: saving it between two steps and resuming it.
+//!
+//! # Decided with
+//! - [`crate::garment::stage::StageState`], [`crate::state::State`], [`crate::control::Control`]: what is
+//!   saved;
+//! - [`crate::garment::GarmentRun::is_checkpoint`], [`crate::garment::GarmentRun::forget_after`]: between
+//!   which steps; what is forgotten there;
+//! - [`crate::contacts::Contacts::forget`], [`crate::kinetic_damping::SwingWorkspace::forget_contacts`]:
+//!   contacts found anew;
+//! - [`crate::garment::digest::SetupDigest::of`]: another setup is refused;
+//! - [`crate::world::Simulation::laid_out`], [`crate::world::Simulation::restore`]: the layout and state
+//!   taken back;
+//! - [`crate::exact`], [`crate::digest`]: infinite numbers; digests.
+//!
+//! By hand: `SetupDigest::of` lists the settings. No command writes a garment's checkpoint.
 
 use super::digest::SetupDigest;
 use super::setup::GarmentWorld;

@@ -1,5 +1,14 @@
 //! Edits of the pattern of a worn garment: other rest shapes, or another mesh of the same panels. The simulation goes
 //! on from the present positions.
+//!
+//! # Decided with
+//! - [`crate::garment::GarmentRun::takes_edits`], [`crate::garment::GarmentRun::restart_stage`]: when an edit
+//!   is taken; stages begun again;
+//! - [`crate::world::Simulation::reshape`], [`crate::system::System::reshaped`]: other rest shapes of the
+//!   same mesh;
+//! - [`crate::contact_refinement`]: samples under other rest shapes;
+//! - [`crate::world::World::replace_mesh`] (`edit.rs`), [`crate::carry::Carry`]: another mesh and its shape;
+//! - [`crate::equilibrium::Equilibrium`]: a prediction of the new rest; tests alone ask for it.
 
 use super::stage::{Attempts, Settling};
 use super::{GarmentLevel, GarmentRun, Stage, StageState};

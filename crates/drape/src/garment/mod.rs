@@ -1,6 +1,22 @@
 //! The run of a garment through its stages: sewing, swing and settling, from the coarsest mesh of its panels to the
 //! finest. One call of `advance` is one step. Between some steps the run can be saved; resumed in another process it
 //! goes on to the same bytes.
+//!
+//! # Decided with
+//! - [`crate::garment::stage::StageState`]: what each stage remembers;
+//! - [`crate::sew`], [`crate::kinetic_damping`], [`crate::pseudo_transient`]: a step of sewing, of the swing,
+//!   of settling, and when each ends;
+//! - [`crate::garment::GarmentRun::merge`], [`crate::sew::SewRun::closed`]: sewn vertices merged once the
+//!   seams are closed;
+//! - [`crate::garment::setup`]: environment while sewn and when worn; limits on coarser meshes;
+//! - [`crate::garment::tight`], [`crate::garment::watch`]: a tight garment sewn again round a thinner body; a
+//!   garment that fell off;
+//! - [`crate::garment::edit`], [`crate::garment::checkpoint`]: stages begun again after an edit of the
+//!   pattern; a run saved and resumed;
+//! - [`crate::garment::GarmentRun::swing_again`], [`crate::garment::GarmentRun::unsettle`]: back to the swing
+//!   after a tangle; settling begun again for a hand;
+//! - [`crate::garment::GarmentRun::findings`], [`crate::garment::body_crossings`]: what a run tells of
+//!   itself; crossings that end in finer contact.
 
 mod checkpoint;
 mod digest;

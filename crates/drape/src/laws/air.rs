@@ -4,6 +4,17 @@
 //! and w_t in the plane, F = -rho A / 2 (C_n |w_n| w_n + C_t |w_t| w_t): form drag and skin
 //! friction of a plate (Ling, Damodaran and Gay 1996; Hoerner 1965, 3-15 for the coefficients).
 //! F is minus the gradient with respect to w of rho A / 6 (C_n |w_n|^3 + C_t |w_t|^3), which is convex.
+//!
+//! # Decided with
+//! - [`crate::environment::Environment::check`]: air that is refused;
+//! - [`crate::incremental_potential`] (`AirTerm`),
+//!   [`crate::incremental_potential::IncrementalPotential::begin_step`]: air in implicit steps;
+//! - [`crate::incremental_potential::add_forces_of_motion`]: air in explicit methods;
+//! - [`crate::xpbd`] (`air.rs`, `AddAirImpulses`, `triangle_sums.rs`): air in XPBD; sums at vertices;
+//! - [`crate::xpbd::Losses`]: left out where only an equilibrium is sought;
+//! - [`crate::reference::block_descent`]: air vertex by vertex;
+//! - [`crate::patches`] (`is_plain`): patches leave air to velocity Verlet;
+//! - [`crate::garment::GarmentSetup::worn_environment`]: garments hang in still air.
 
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};

@@ -13,6 +13,18 @@
 //! Curvatures are linear in the vertex positions, so E = A/2 kappa : D : kappa is quadratic with a
 //! constant positive semidefinite Hessian that is the same for x, y and z. No moment acts at a free
 //! edge: the gradient across it is the one that minimises the triangle's energy.
+//!
+//! # Decided with
+//! - [`crate::laws::rest_sheet::RestSheet`]: slope across each edge at rest;
+//! - [`crate::rest_data`] (`Bending`), [`crate::bending_structure::BendingStructure`]: stiffness of each
+//!   material made one matrix for the whole cloth; its structure under other rest shapes;
+//! - [`crate::newton`], [`crate::hessian::Hessian`]: energy and force; the Hessian;
+//! - [`crate::laws::fold::FoldTerm`], [`crate::incremental_potential::relax`]: folds that stay, viscosity;
+//! - [`crate::xpbd`] (`bending.rs`), [`crate::patches`] (`patch.rs`, `bending_rows`): bending in XPBD, in
+//!   patches;
+//! - [`crate::reference::block_descent`]: bending vertex by vertex.
+//!
+//! A fold line of a pattern has no angle at rest: the mesh has edges on it, no more.
 
 use super::rest_sheet::{Across, IllConditioned, RestSheet, hat_gradients, outward};
 use nalgebra::{Matrix3, Vector3};

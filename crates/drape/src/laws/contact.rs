@@ -1,4 +1,16 @@
 //! Contact of a point with a plane: normal force and Coulomb friction.
+//!
+//! # Decided with
+//! - [`crate::contacts`] (`find`): contacts with solids, and the stiffness of each;
+//! - [`crate::collision::ContactDetector::contact`]: contacts of cloth: the mean friction of both sides;
+//! - [`crate::collision`] (`mollifier.rs`): weaker between edges that are nearly parallel;
+//! - [`crate::contacts::Contacts::begin_step`]: friction in the first step of a contact;
+//! - [`crate::contacts::Contacts::damp`]: explicit methods damp the push;
+//! - [`crate::xpbd`] (`contact.rs`, `solve`, `several_solids.rs`, `solve_together`): the same in XPBD;
+//! - [`crate::xpbd`] (`contact_block.rs`): the same for several vertices at once;
+//! - [`crate::patches`] (`patch_contacts.rs`, `update_force`): the same in patches.
+//!
+//! By hand: the copies in XPBD and in patches follow this law.
 
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;

@@ -4,6 +4,15 @@
 //! E_uu = (f_u.f_u - 1) / 2, E_vv = (f_v.f_v - 1) / 2, gamma = f_u.f_v, the energy per area is
 //! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2), or that of another law in
 //! [`crate::laws::stretch`] (Volino, Magnenat-Thalmann and Faure 2009, section 3).
+//!
+//! # Decided with
+//! - [`crate::laws::stretch::MembraneLaw`]: stress and energy by strain;
+//! - [`crate::materials::Materials::law`]: the law of a triangle, made from the figures of its material;
+//! - [`crate::incremental_potential::IncrementalPotential::law`]: the law of a triangle with viscosity and
+//!   kept strain;
+//! - [`crate::newton`]: energy, force and Hessian summed over triangles;
+//! - [`crate::xpbd`] (`membrane.rs`), [`crate::patches`] (`tensions.rs`): stretch in XPBD, in patches;
+//! - [`crate::measure::stretch_per_triangle`]: stretch of a picture: the larger of warp and weft.
 
 use crate::laws::stretch::StrainLaw;
 use nalgebra::Matrix3;

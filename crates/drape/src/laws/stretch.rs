@@ -19,6 +19,20 @@
 //! where E shortens every direction. Otherwise it is wrinkled: one tension T along the direction t that maximises
 //! (t.E.t)^2 / (2 q(t)), q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
 //! compressive and the energy is convex, so its Hessian is exact and positive semidefinite.
+//!
+//! # Decided with
+//! - [`crate::materials::Materials::law`], [`crate::incremental_potential::IncrementalLaw`]: who holds the
+//!   law, made from the figures of a material; the law with viscosity and kept strain;
+//! - [`crate::xpbd`] (`membrane.rs`): the law in single precision, for XPBD;
+//! - [`crate::features::Feature`]: a kind of law as a feature;
+//! - [`crate::methods`] (`newton_solver.rs`, `is_stiff`), [`crate::sew::SewRun::new`],
+//!   [`crate::kinetic_damping`] (`substep`), [`crate::reference`] (`metric.rs`): know the linear stiffness
+//!   alone;
+//! - [`crate::patches`] (`is_plain`, `membrane.rs`, `EdgeMembrane`, `limits.rs`): patches know linear laws
+//!   alone.
+//!
+//! By hand: cases in `drape/tests/features.rs`, recorded states in `lab/tests/recorded/states.rs`, a strip in
+//! `lab/src/laws/strain.rs`, pages `docs/methods/laws.md` and `docs/FORMATS.md`.
 
 use crate::Compression;
 use std::sync::LazyLock;

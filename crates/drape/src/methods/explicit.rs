@@ -10,6 +10,18 @@
 //! (Hairer, Norsett and Wanner 1993, II; Hairer, Lubich and Wanner 2006, I.5). Contact adds w^2 =
 //! stiffness / density: at 1e6 N/m3 and 0.2 kg/m2 the substep must stay below 2 / 2236 s = 0.89 ms
 //! however soft the cloth is, and below 0.73 ms by its dashpot.
+//!
+//! # Decided with
+//! - [`crate::methods::frequency::FrequencySearch::stable_step`]: largest frequency of a model;
+//! - [`crate::methods::explicit::STABILITY_FRACTION`], [`crate::methods::explicit::Explicit::substep_count`]:
+//!   share of the stability limit that is used; number of substeps;
+//! - [`crate::patches`] (`limits.rs`, `stretch.rs`): frequency of patches, raised by stretch;
+//! - [`crate::patches`] (`take_automatic`): patches: a stretch of time begun anew with more substeps;
+//! - [`crate::kinetic_damping::KineticDamping::substep`]: substeps of the swing;
+//! - [`crate::xpbd`] (`xpbd_method.rs`, `SUBSTEPS`): substeps of XPBD where none are given;
+//! - [`crate::methods::energy::EnergyMonitor::is_possible`]: a state that shows instability.
+//!
+//! Substeps that are chosen or given beforehand are not divided when they fail.
 
 use super::energy::{EnergyMonitor, fastest_vertex, first_impossible_speed};
 use super::frequency::{FrequencySearch, damped_contact_frequency};

@@ -1,4 +1,15 @@
 //! The guard around every method: states that are not finite are refused, failed steps undone, results checked.
+//!
+//! # Decided with
+//! - [`crate::methods::implicit::Implicit::advance_in_pieces`]: an implicit step that fails is divided;
+//! - [`crate::xpbd::Xpbd::advance_about`], [`crate::xpbd::Xpbd::advance_with_cloth_contact`] (`cloth.rs`): a
+//!   step of XPBD that fails is divided;
+//! - [`crate::step::step_in_time`]: a step of sewing that fails is undone and halved;
+//! - [`crate::kinetic_damping::KineticDamping::advance`]: a round of the swing that fails is undone;
+//! - [`crate::pseudo_transient::PseudoTransientContinuation::advance`]: a step to rest that fails is undone
+//!   and taken shorter;
+//! - [`crate::scene_run::SceneRun::apply_edit`], [`crate::world::Simulation::edit_all`]: a failed edit leaves
+//!   the run as it was.
 
 use crate::incremental_potential::relax;
 use crate::method::{Method, StepReport};

@@ -1,4 +1,16 @@
 //! Methods: one trait with a whole step in it, chosen once by name from a closed list.
+//!
+//! # Decided with
+//! - [`crate::methods::newton_solver::Newton::LIMITS`], [`crate::methods::newton_solver::OneSolve::LIMITS`]:
+//!   iterations and residual of Newton's method and of one solve;
+//! - [`crate::reference::projective`], [`crate::reference::lbfgs`], [`crate::reference::block_descent`]:
+//!   limits of the methods for comparison;
+//! - [`crate::method::MethodSettings`]: iterations and substeps that a user may set, by family;
+//! - [`crate::methods::implicit`] (`CONVERGED_RESIDUAL`): how exactly an implicit step is solved;
+//! - [`crate::xpbd::XpbdSettings`]: substeps and iterations of XPBD;
+//! - [`crate::methods::rest::Rest::new`]: how a scene is brought to rest;
+//! - [`crate::sew::SewRun::advance`], [`crate::pseudo_transient::PseudoTransientContinuation::advance`]:
+//!   iterations of a garment.
 
 mod energy;
 pub(crate) mod explicit;

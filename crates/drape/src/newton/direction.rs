@@ -1,5 +1,20 @@
 //! The direction of a Newton step: the linear solve, the prediction of contact kinks, and the truncation of the
 //! step.
+//!
+//! # Decided with
+//! - [`crate::methods`] (`newton_solver.rs`, `is_stiff`), [`crate::sew::SewRun::advance`],
+//!   [`crate::pseudo_transient::PseudoTransientContinuation::advance`]: who chooses to iterate or to
+//!   factorise;
+//! - [`crate::newton::LinearSolver`]: the kinds of linear solver;
+//! - [`toile_sparse::factor`], [`toile_sparse::Pcg`]: factorisation; conjugate gradients and their
+//!   preconditioner;
+//! - [`crate::newton::NewtonReport::next_curvature`]: how much of the indefinite part of the Hessian the next
+//!   step keeps;
+//! - [`crate::laws::membrane::Curvature`], [`crate::laws::contact::ContactLaw::missing_curvature`]: what is
+//!   left out to keep the Hessian positive definite;
+//! - [`crate::newton::contact_kinks`]: direction found anew where a contact sticks or lands;
+//! - [`crate::collision::truncate_moves`]: step cut so that cloth does not pass through cloth;
+//! - [`crate::newton::Workspace::line_search`]: step halved until the potential falls.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::System;

@@ -5,6 +5,22 @@
 //!
 //! With w = m/h^2 and y = x_n + h v_n a minimum of Phi is a step of implicit Euler (Martin et al.
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
+//!
+//! # Decided with
+//! - [`crate::methods`] (`rules.rs`): inertia of a step in time: the weights w and the targets y;
+//! - [`crate::incremental_potential::IncrementalPotential`]: viscosity, air and kept folds, taken at the
+//!   start of a step;
+//! - [`crate::newton::direction`]: direction and length of a step: linear solve, contact kinks, truncation;
+//! - [`crate::hessian::Hessian`]: the matrix and its factor;
+//! - [`crate::laws`]: energy, gradient and Hessian of each force;
+//! - [`crate::newton::chord`], [`crate::newton::elimination`], [`crate::newton::prediction`]: further uses of
+//!   the same factor;
+//! - [`crate::step`] (`implicit_euler`): the rule of sewing;
+//! - [`crate::methods`] (`newton_solver.rs`, `Newton`),
+//!   [`crate::pseudo_transient::PseudoTransientContinuation`]: who minimises: steps in time, the way to rest.
+//!
+//! A new parallel sum is collected by fixed chunks and added in order, as in `potential` and
+//! [`toile_sparse::dot`], so that it is the same at any number of threads.
 
 mod chord;
 mod contact_kinks;

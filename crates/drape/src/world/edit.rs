@@ -1,5 +1,16 @@
 //! Edits of a world. Each is checked, changes the world, and returns which level of the system has to be compiled
 //! again.
+//!
+//! # Decided with
+//! - [`crate::world::edit::Change`]: structure, shapes or boundary conditions: what is compiled again;
+//! - [`crate::world::simulation::Simulation::edit_all`],
+//!   [`crate::world::simulation::Simulation::restructure`]: edits done on a copy; another structure;
+//! - [`crate::world::transfer::Transfer::state`]: what the state keeps;
+//! - [`crate::scene_run::SceneRun::edit`]: features checked, method built anew;
+//! - [`crate::world::object::Object::check`], [`crate::world::present::Present::mesh_of`]: checks; the shape
+//!   of cloth that becomes solid.
+//!
+//! By hand: `Remove` must take away all that names the object: merged pairs, attachments, policies.
 
 use super::attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
 use super::object::{Kind, Layers, MeshVertex, Object, ObjectId};

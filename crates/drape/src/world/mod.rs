@@ -1,6 +1,21 @@
 //! The world: objects with stable numbers and meshes of their own, merged vertices, attachments and the environment.
 //! The simulated system is compiled from it. After an edit of the world the system is compiled again and the state is
 //! transferred to it.
+//!
+//! # Decided with
+//! - [`crate::world::object::Object`], [`crate::world::attachment::ObjectAttachment`]: objects and
+//!   attachments, and their checks;
+//! - [`crate::world::edit::WorldEdit`]: what can be changed, and what each change asks for;
+//! - [`crate::world::World::compile`] (`compile.rs`): the system made of the world; boundary conditions,
+//!   solids, layers, policies;
+//! - [`crate::world::present::Present`], [`crate::world::vertex_map::VertexMap`]: where objects are now;
+//!   their vertices in the merged cloth;
+//! - [`crate::world::simulation::Simulation`], [`crate::world::transfer::Transfer`]: edits between steps; the
+//!   state carried over;
+//! - [`crate::world::saved::SavedWorld`]: the world in a checkpoint;
+//! - [`crate::scene::Scene::check`]: a scene is checked before a world is made of it;
+//! - [`crate::scene_run::SceneRun::edit`], [`crate::garment`] (`edit.rs`): edits while a scene runs; edits of
+//!   the pattern of a worn garment.
 
 mod attachment;
 mod compile;

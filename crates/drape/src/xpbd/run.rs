@@ -1,4 +1,21 @@
 //! Substeps: prediction, constraints, contact, velocities, each in parallel over domains.
+//!
+//! # Decided with
+//! - [`crate::xpbd::particles`]: free motion before constraints, velocities after them;
+//! - [`crate::xpbd::vertex_partition`], [`crate::xpbd::domains`]: order of vertices, and domains that are
+//!   solved at the same time;
+//! - [`crate::xpbd::region::Region`], [`crate::xpbd::membrane`], [`crate::xpbd::bending`]: constraints of one
+//!   domain: stretch and bending;
+//! - [`crate::xpbd::contact`], [`crate::xpbd::contact_block`], [`crate::xpbd::several_solids`]: contact with
+//!   solids: one vertex, sixteen at once, between several solids;
+//! - [`crate::xpbd::cloth`], [`crate::xpbd::bounce`]: contact of cloth with cloth, restitution;
+//! - [`crate::xpbd::attachment_constraint`], [`crate::xpbd::tie_constraint`]: elastics, attachments and ties;
+//! - [`crate::xpbd::air`], [`crate::xpbd::viscosity`]: drag and viscosity as impulses;
+//! - [`crate::lanes`], [`crate::lane_arithmetic`]: vectors of the processor's width.
+//!
+//! Patches, the other method that cuts a cloth into parts: `patches/sheet.rs`, `patches/edges.rs`,
+//! `patches/octets.rs`. By hand: `contact_block` repeats the contact of `contact` for several vertices at
+//! once.
 
 use super::air::{AddAirImpulses, AirStep};
 use super::bending::{BendingForce, Filter};

@@ -2,6 +2,21 @@
 //!
 //! A pattern file (`*.toile.json`) declares its unit once. Bare numbers in it are lengths in that unit or
 //! angles in degrees; texts are formulas. Parts are referred to by id, in formulas by name.
+//!
+//! # Decided with
+//! - [`toile_pattern::fields`](mod@toile_pattern::fields): which fields a part has, said once for all;
+//! - [`crate::native::part_reader`], [`crate::native::part_writer`]: readers and writers of any part by its
+//!   fields;
+//! - [`crate::native::reader`], [`crate::native::writer`], [`crate::native::units`]: ids, names, numbers in
+//!   the file's unit;
+//! - [`crate::native::read`], [`crate::native::write`]: the root of the file;
+//! - [`crate::native::fitting::Fitting`], [`crate::native::read_fitting`], [`crate::native::write_fitting`]:
+//!   how a garment is tried on;
+//! - [`crate::native::item::Item::note_unknown`], [`crate::native::json::parse`]: unknown fields told; damage
+//!   refused with its place;
+//! - [`crate::native::VERSION`], [`crate::native::check_version`]: versions that are read.
+//!
+//! By hand: `VERSION` is raised when an older program would misread a file; the fields of a fitting.
 
 mod fitting;
 pub(crate) mod item;

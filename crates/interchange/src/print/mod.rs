@@ -2,6 +2,17 @@
 //!
 //! The pieces lie on a drawing of any size with its lower left corner at the origin. Sheets show windows of
 //! the drawing that overlap by 10 mm. Every size is a layer.
+//!
+//! # Decided with
+//! - [`toile_cut::CutPiece::drawing`] (`drawing.rs`): the lines of a piece;
+//! - [`crate::print::draw`] (`prints`), [`crate::print::draw::style`]: which lines are printed and how;
+//! - [`crate::print::paper::Paper`], [`crate::print::paper::tiles`]: papers; sheets that are needed;
+//! - [`crate::print::title::block_marks`], [`crate::print::title`] (`legend`): title block, legend;
+//! - [`crate::print::pdf`], [`crate::print::svg`]: the formats;
+//! - [`toile_lettering::missing_note`]: letters of no font.
+//!
+//! The compiler asks a new paper here and in crate `cli`, `print_arguments.rs`. By hand: the window's list
+//! (`app/print_choice.rs`, `app/preferences.rs`); a new kind of line in `legend`.
 
 mod draw;
 mod mark;

@@ -1,5 +1,15 @@
 //! Physical laws that the simulation is validated against: small scenes with a known outcome. The force laws
 //! of materials and contact are in crate `drape`.
+//!
+//! # Decided with
+//! - [`crate::laws::LAWS`], [`crate::laws::validate`]: the laws, listed by hand; how they are measured;
+//! - [`crate::check::Check`], [`crate::tolerance::Tolerance`]: a number beside the expected one; how near it
+//!   must be;
+//! - [`crate::law_report::law_table`]: told as Markdown;
+//! - [`crate::settle`], [`crate::flat`]: cloth brought to rest; sheets.
+//!
+//! Run by `lab/tests/laws.rs`, which names the quick ones, and by `toile validate`. Described in
+//! `docs/methods/laws.md`.
 
 mod bounce;
 mod buckling;

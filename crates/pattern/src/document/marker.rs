@@ -1,6 +1,20 @@
 //! Markers: layouts of pieces of one or more sizes on a fabric, to be cut together.
 //!
 //! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
+//!
+//! # Decided with
+//! - [`crate::document::cloth_settings::ClothSettings`]: how the fabric is laid: settings, defaults, which
+//!   come first;
+//! - [`crate::document::piece_rule::LayingRule`], [`crate::document::piece_rule::MatchedMarks`]: rules of
+//!   single pieces; marks on the same place of a print;
+//! - [`crate::document::Pattern::marker_fabric`], [`crate::document::Pattern::marker_keeps`]: the garment's
+//!   cloth or its own, and what does not follow;
+//! - [`crate::plan`] (`marker.rs`): edits: markers made and ordered, pieces laid, turned, locked;
+//! - [`crate::evaluate`] (`markers.rs`): parts it names that are gone;
+//! - [`crate::document::cloth_record::ClothRecord`]: the cloth as journals write it.
+//!
+//! Shown in the window (`app/marker_cloth.rs`, `app/marker_laying.rs`, `app/marker_rules.rs`); searched for
+//! by crate `marker`.
 
 use super::cloth_record::ClothRecord;
 use super::{ClothSettings, MatchedMarks, Panel, Pattern, PieceRule, RuledPieces};

@@ -1,4 +1,20 @@
 //! The document: the pattern that is edited, saved and undone.
+//!
+//! # Decided with
+//! - [`crate::fields`](mod@crate::fields): each part lists its fields once, with `fields!`;
+//! - [`crate::document::operation`], [`crate::document::panel`], [`crate::document::sheet`],
+//!   [`crate::document::seam`], [`crate::document::marker`], [`crate::document::guide`]: parts of the
+//!   document;
+//! - [`crate::ids`], [`crate::name`]: ids that are given once; names that survive operations;
+//! - [`crate::edit::Edit`]: every change of a document;
+//! - [`crate::evaluate::Evaluation::take_over`] (`changes.rs`): lists of the document that an evaluation
+//!   compares;
+//! - [`crate::document::Pattern::blank`], [`crate::plan::NewPanel`]: what a new pattern has; fabric and
+//!   allowance of a new panel;
+//! - [`crate::describe`]: names of parts in words.
+//!
+//! By hand: a new list of parts in `take_over` and in `edit/references.rs` (`entities`). The compiler asks in
+//! edits. A new pattern is begun by crate `session`, `perform.rs`.
 
 mod builder;
 mod cloth_record;

@@ -1,4 +1,21 @@
 //! Operations: steps that alter a panel (dart, fold, pleat, split), stored in order.
+//!
+//! # Decided with
+//! - [`crate::stage`]: the geometry, a file for each operation;
+//! - [`crate::evaluate`] (`operations.rs`, `done`, `reshape.rs`): numbers evaluated and handed to the
+//!   geometry, with faults;
+//! - [`crate::drafting`] (`closing`): edges that a seam of the draft closes;
+//! - [`crate::document::panel::Panel::is_altered`] (`lineage.rs`),
+//!   [`crate::document::panel::Panel::is_split`] (`lineage.rs`): whether it moves parts of the panel or
+//!   divides it;
+//! - [`crate::evaluate`] (`operations.rs`, `keeps_outline`): whether it leaves the outline as it was;
+//! - [`crate::plan::add_operation`]: operations put, moved and removed; folds come last;
+//! - [`crate::plan`] (`reshape.rs`, `split.rs`, `on_panel.rs`): wishes turned into operations;
+//! - [`crate::press::press_arrows`], [`crate::kinks`]: arrows of what is pressed; kinks that it leaves.
+//!
+//! The compiler asks in all of these but `is_altered` and `is_split`, which name kinds by hand. By hand, too:
+//! a tool of the window, its choices in the inspector, `interchange/tests/operation_table.rs`,
+//! `pattern/tests/plans`.
 
 use crate::fields::{Choice, Clash, Told, ValueField, group, key, length, plain};
 use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId, fields};

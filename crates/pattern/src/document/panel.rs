@@ -1,4 +1,15 @@
 //! Panels: flat pieces of the garment, traced from a sheet.
+//!
+//! # Decided with
+//! - [`crate::plan`] (`trace.rs`, `ALLOWANCE`), [`crate::document::edge_corner::EdgeCorner`]: allowance of a
+//!   new panel; corners of the cut line;
+//! - [`crate::evaluate`] (`panels.rs`, `PanelEvaluation`): allowance, grain and lines evaluated;
+//! - [`crate::drafting`] (`panel`, `piece`): grain and allowance on the draft;
+//! - [`crate::stage::Stage::mirror_image`]: grain turned over with a mirrored piece;
+//! - [`crate::draft::Worn::mirror_image`]: which part of the body the mirrored piece is worn on;
+//! - [`crate::plan::numbers_of`]: its numbers for the window.
+//!
+//! Upright where a panel has no grain; a side of a split has its own.
 
 use crate::fields::{Choice, Clash, ITSELF, Told, ValueField, angle, group, key, length};
 use crate::{

@@ -1,4 +1,14 @@
 //! Sheets: drafting planes with points and curves.
+//!
+//! # Decided with
+//! - [`toile_geometry::Curve`]: plane curves;
+//! - [`crate::evaluate`] (`points.rs`, `curves.rs`): points and curves evaluated;
+//! - [`crate::plan::add_point`], [`crate::plan::add_curve`]: points and curves put on a sheet;
+//! - [`crate::plan`] (`swept.rs`): bulge of an arc as an angle;
+//! - [`crate::plan::move_point`], [`crate::plan::transform_points`]: one point moved, many points moved;
+//! - [`crate::plan`] (`face.rs`, `chain.rs`): curves that a panel follows.
+//!
+//! A tool of the window draws them (`tools/draw.rs`).
 
 use crate::fields::{Clash, ITSELF, Told, ValueField, angle, group, key, length, plain};
 use crate::{CurveId, LineName, Mark, Number, OperationId, PanelId, PointId, SheetId, fields};

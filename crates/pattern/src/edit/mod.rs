@@ -1,5 +1,12 @@
 //! Edits: every change of a document puts in a part, removes a part, or moves a part within its list.
 //! Planners work out the edits that an action of the user needs.
+//!
+//! # Decided with
+//! - [`crate::document::Pattern::apply`] (`apply.rs`): edits applied, all or none;
+//! - [`crate::edit::references`]: which parts a part refers to, and which refer to it;
+//! - [`crate::plan::remove_parts`]: parts taken away with one;
+//! - [`crate::ids::Ids`], [`crate::document::Pattern`]: ids given once;
+//! - [`crate::plan`]: planners, which make the edits.
 
 mod apply;
 mod references;

@@ -4,6 +4,18 @@
 //! dependencies between them. An update takes over changed definitions, sorts the graph anew if dependencies
 //! changed (strongly connected components by Tarjan 1972, on an explicit stack), and recomputes dependants in
 //! that order, stopping where a value stays the same to the bit.
+//!
+//! # Decided with
+//! - [`crate::evaluate::Evaluation::take_over`] (`changes.rs`): which definitions changed;
+//! - [`crate::evaluate::needs::Needs`]: what each value needs;
+//! - [`crate::evaluate::Evaluation::update`] (`graph.rs`): order of recomputing, where it stops;
+//! - [`crate::evaluate::compute`]: one value of any kind;
+//! - [`crate::evaluate::wearer::Wearer`], [`crate::evaluate::numbers::Computation::quantity`]: the wearer;
+//!   values that a size has of its own;
+//! - [`crate::diagnostic::Code`]: faults found meanwhile;
+//! - [`crate::drafting::Drafting`]: the draft made of it.
+//!
+//! Beside the pattern: crate `session`, `derived.rs`. By hand: a new list of the document in `take_over`.
 
 mod changes;
 mod compute;

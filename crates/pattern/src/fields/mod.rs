@@ -5,6 +5,18 @@
 //! Derived from this list alone: references ([`references()`]), new ids in copies ([`Remap`]), numbers with
 //! their labels for inspectors ([`numbers_of`](crate::plan::numbers_of)), marks ([`marks`]), and in the crate
 //! `interchange` the reader and the writer of files with their known fields.
+//!
+//! # Decided with
+//! - [`crate::fields::field::ValueField`], [`crate::fields::field::NumberField`]: key, label, bounds and
+//!   default of a field;
+//! - [`crate::fields::kind::Kind`], [`crate::fields::choice::Choice`]: kinds told by their fields; words of a
+//!   closed list;
+//! - [`crate::fields::number_at::NumberAddress`]: numbers by the path of their keys;
+//! - [`crate::edit`] (`references.rs`): parts that a part refers to, in edits;
+//! - [`crate::plan::set_number`]: numbers read and set;
+//! - [`crate::plan::paste`]: copies with new ids.
+//!
+//! Files, and random patterns in `interchange/tests/random_pattern`, follow the lists.
 
 mod choice;
 mod count;

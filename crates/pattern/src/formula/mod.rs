@@ -3,6 +3,20 @@
 //! A formula holds the ids of the parts that it names and is printed with their current names, so that
 //! renaming a part leaves all formulas unchanged. It is kept in postfix order with jumps, so that computing
 //! it needs no recursion, however long it is.
+//!
+//! # Decided with
+//! - [`crate::formula::parse::parse`], [`crate::formula::cursor`]: text read;
+//! - [`crate::formula::names::Names`], [`crate::formula::written::Written`], [`crate::formula::by_id`]: names
+//!   turned into ids; names of lost parts; ids in journals;
+//! - [`crate::formula::compute::compute`]: computed, with lengths kept apart from plain numbers;
+//! - [`crate::formula::print`], [`crate::formula::complete`], [`crate::suggest::nearest`]: shown with the
+//!   names of the day, completed, suggested;
+//! - [`crate::plan`] (`bare.rs`, `bind.rs`): units of bare numbers; names bound once parts exist;
+//! - [`crate::evaluate`] (`needs.rs`, `part`): parts that a formula needs;
+//! - [`crate::plan`] (`formula_change.rs`, `moving.rs`): what becomes of a formula when its point is dragged.
+//!
+//! The compiler asks for a new function in `call` of `compute` and `bare`. By hand: `FUNCTIONS` and
+//! `FUNCTION_NAMES` in `parse`, `docs/GUIDE.md`, `docs/methods/pattern.md`.
 
 mod by_id;
 mod complete;

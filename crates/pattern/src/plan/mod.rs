@@ -1,4 +1,24 @@
 //! Planners: each turns a request into edits.
+//!
+//! # Decided with
+//! - [`crate::plan::construct`], [`crate::plan::figure`], [`crate::plan::additions`]: points, curves and
+//!   figures drawn;
+//! - [`crate::plan::face`], [`crate::plan::chain`], [`crate::plan::crossings`], [`crate::plan::trace`]:
+//!   curves round a tap or along a trace; the panel made of them;
+//! - [`crate::plan::moving`], [`crate::plan::formula_change`], [`crate::plan::transform`],
+//!   [`crate::plan::align`](mod@crate::plan::align): one point moved; many moved, turned, lined up;
+//! - [`crate::plan::operations`], [`crate::plan::reshape`], [`crate::plan::split`]: operations put on panels;
+//! - [`crate::plan::seam`], [`crate::plan::notch`], [`crate::plan::matched`], [`crate::plan::on_stage`],
+//!   [`crate::plan::along`]: seams and notches; edges as they are finished, distances along them;
+//! - [`crate::plan::fragment`], [`crate::plan::paste`](mod@crate::plan::paste), [`crate::plan::names`]: parts
+//!   copied and pasted, with free names;
+//! - [`crate::plan::divide`], [`crate::plan::rename`](mod@crate::plan::rename), [`crate::plan::remove`]:
+//!   edges divided, parts renamed and removed;
+//! - [`crate::plan::numbers`], [`crate::plan::typed`], [`crate::plan::sizes`], [`crate::plan::marker`],
+//!   [`crate::plan::guide`]: numbers set and typed; sizes, markers, guides.
+//!
+//! Asked by tools of the window (`tools/mod.rs`), its commands (`app/arrange.rs`, `app/sewing.rs`) and
+//! `inspector.rs`.
 
 mod additions;
 mod align;

@@ -1,4 +1,22 @@
 //! Stages: a panel as drawn, and after each of its operations. Plain numbers.
+//!
+//! # Decided with
+//! - [`crate::document::OperationKind`], [`crate::name::Name`]: the operations; names of corners and lines
+//!   that outlive them;
+//! - [`crate::stage::dart`], [`crate::stage::diamond`], [`crate::stage::pivot`]: darts taken out, pointed at
+//!   both ends, pivoted;
+//! - [`crate::stage::truing`], [`crate::stage::fair`], [`crate::stage::kept_length`]: darts trued;
+//! - [`crate::press::press_arrows`], [`crate::kinks`]: which way darts and pleats are pressed; kinks that are
+//!   left;
+//! - [`crate::stage::pleat`](mod@crate::stage::pleat), [`crate::stage::spread`](mod@crate::stage::spread),
+//!   [`crate::stage::split`](mod@crate::stage::split), [`crate::stage::fold`]: pleated, spread, split,
+//!   unfolded;
+//! - [`crate::stage::partition`], [`crate::stage::motion`]: cut apart; parts moved;
+//! - [`crate::stage::place`]: places along lines;
+//! - [`crate::evaluate`] (`operations.rs`, `stage`, `reshape.rs`): who calls it, with numbers evaluated.
+//!
+//! Cloth at a dart's mouth and its fold lines: crate `cut` (`dart.rs`, `allowance.rs`, `press.rs`). Words:
+//! `inspector/press_words.rs` of the window.
 
 mod dart;
 mod diamond;

@@ -1,5 +1,14 @@
 //! Trued darts: the edges beside their mouths are redrawn so that they run on across the closed darts, and
 //! the legs of each dart become equally long.
+//!
+//! # Decided with
+//! - [`crate::stage::fair::Row`], [`crate::stage::fair::MAX_GROWTH`]: the edge redrawn; how much longer it
+//!   may become;
+//! - [`crate::stage::kept_length::width_kept`], [`crate::plan::finished_length`]: a width that keeps the
+//!   finished length; the length told;
+//! - [`crate::evaluate`] (`operations.rs`, `trued`): who calls it for the darts of a panel;
+//! - [`crate::kinks`]: kinks across darts, pleats and seams;
+//! - [`crate::document::Operation`], [`crate::document::EdgeCorner`]: a kink that is meant.
 
 use super::dart::parameter;
 use super::fair::{Closing, NotTrued, Row, arriving, between, leaving};

@@ -4,6 +4,17 @@
 //! Every process has its own three files there: `ID.lock`, which it holds locked as long as it
 //! lives, and the last two states of its document, `ID.newest` and `ID.before`. A state whose lock
 //! nobody holds was left by a crash.
+//!
+//! # Decided with
+//! - [`crate::recovery::keeper::Recovery`]: the state kept, and when it is let go;
+//! - [`crate::recovery::state_file::DocumentState`], [`crate::recovery::past_step::PastStep`]: the file, and
+//!   the last steps in it;
+//! - [`crate::recovery::abandoned::abandoned`]: found after a crash;
+//! - [`crate::session::Session::restore`] (`perform.rs`): opened again;
+//! - [`toile_interchange::write_atomically`]: how other files are written whole; states kept here do it
+//!   themselves.
+//!
+//! When: the window, `app/mod.rs`; offered in `app/welcome.rs`.
 
 mod abandoned;
 mod keeper;
