@@ -4,10 +4,13 @@
 //! re-exports on the way are followed. Left apart are a file and the one that has its `mod` line, `pub use` as such, and
 //! all that is built for tests only. Where there is a circle, the imports that tie it are told.
 
+mod tokens;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use syn::buffer::{Cursor, TokenBuffer};
 use toile_house::root;
+use tokens::{attribute, past_item};
 
 /// A path of names, as in `crate::a::B`.
 type Path = Vec<String>;
@@ -236,33 +239,6 @@ impl Crate {
 const DEFINING: [&str; 8] = [
     "struct", "enum", "union", "trait", "type", "fn", "const", "static",
 ];
-
-/// Whether an attribute that begins here keeps what follows for tests, and what comes after it.
-fn attribute(at: Cursor<'_>) -> Option<(bool, Cursor<'_>)> {
-    let (_, rest) = at.punct().filter(|(mark, _)| mark.as_char() == '#')?;
-    let (inside, _, _, rest) = rest.any_group()?;
-    let is_test = || {
-        let (cfg, within) = inside.ident()?;
-        let (word, end) = within.any_group()?.0.ident()?;
-        Some(cfg == "cfg" && word == "test" && end.eof())
-    };
-    Some((is_test().unwrap_or(false), rest))
-}
-
-/// Beyond the item that begins here: its braces or its semicolon.
-fn past_item(mut at: Cursor<'_>) -> Cursor<'_> {
-    while let Some((_, after)) = at.token_tree() {
-        let is_end = match at.any_group() {
-            Some((_, delimiter, ..)) => format!("{delimiter:?}") == "Brace",
-            None => at.punct().is_some_and(|(mark, _)| mark.as_char() == ';'),
-        };
-        at = after;
-        if is_end {
-            break;
-        }
-    }
-    at
-}
 
 /// The path that begins here, and what comes after it.
 fn path_at(at: Cursor<'_>) -> Option<(Path, Cursor<'_>)> {
