@@ -172,6 +172,41 @@ fn order_and_fabric_are_set_or_refused() {
 }
 
 #[test]
+fn a_rule_takes_over_what_changed_in_another_and_keeps_the_rest() {
+    for RuleFlag { label, of, usual } in RULE_FLAGS {
+        let mut own = LayingRule {
+            gap: Some(0.004),
+            turns: Some(vec![Turn(0.0)]),
+            ..LayingRule::default()
+        };
+        let kept = own.clone();
+        let before = LayingRule {
+            turns: Some(vec![Turn(PI)]),
+            ..LayingRule::default()
+        };
+        let mut now = before.clone();
+        own.take_changes(&before, &now);
+        assert_eq!(own, kept, "{label}");
+        *of(&mut now) = Some(!usual(false));
+        own.take_changes(&before, &now);
+        assert_eq!(*of(&mut own), Some(!usual(false)), "{label}");
+        *of(&mut own) = None;
+        assert_eq!(own, kept, "{label}: it is a flag of its own");
+    }
+    let of_all = LayingRule {
+        gap: Some(0.01),
+        on_print: Some(false),
+        ..LayingRule::default()
+    };
+    let own = LayingRule {
+        gap: Some(0.0),
+        ..LayingRule::default()
+    };
+    let whole = own.over(&of_all);
+    assert_eq!((whole.gap, whole.on_print), (Some(0.0), Some(false)));
+}
+
+#[test]
 fn locked_pieces_stay_and_what_is_not_there_is_named() {
     let (pattern, id, [front, back]) = laid();
     let evaluation = evaluated(&pattern);

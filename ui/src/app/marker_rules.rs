@@ -7,7 +7,8 @@ use egui::{Button, Id, Ui};
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_pattern::plan;
 use toile_pattern::{
-    LayingRule, MarkRef, Marker, MatchedMarks, PieceRule, RuledPieces, Turn, Want,
+    LayingRule, MarkRef, Marker, MatchedMarks, PieceRule, RULE_FLAGS, RuleFlag, RuledPieces, Turn,
+    Want,
 };
 
 /// Quarter turns (rad), with their labels.
@@ -76,18 +77,10 @@ impl ToileApp {
                 rule.turns = Some(turns);
             }
         }
-        let flags = [
-            ("May be turned over", &mut rule.turn_over, false),
-            ("May hide flaws", &mut rule.over_flaws, false),
-            (
-                "Lies on the print",
-                &mut rule.on_print,
-                marker.matched.is_empty(),
-            ),
-        ];
-        for (words, flag, usual) in flags {
-            let mut is_on = flag.unwrap_or(usual);
-            if ui.checkbox(&mut is_on, words).changed() {
+        for RuleFlag { label, of, usual } in RULE_FLAGS {
+            let flag = of(rule);
+            let mut is_on = flag.unwrap_or(usual(!marker.matched.is_empty()));
+            if ui.checkbox(&mut is_on, *label).changed() {
                 *flag = Some(is_on);
             }
         }
@@ -122,7 +115,7 @@ impl ToileApp {
                 });
                 rules.len() - 1
             });
-            change(&mut rules[k].rule, before, now);
+            rules[k].rule.take_changes(before, now);
         }
         rules.retain(|rule| {
             let is_empty = rule.rule == LayingRule::default();
@@ -172,18 +165,4 @@ impl ToileApp {
             self.follow_marker();
         }
     }
-}
-
-/// Copies the fields that differ between two rules into a third.
-fn change(rule: &mut LayingRule, before: &LayingRule, now: &LayingRule) {
-    macro_rules! take {
-        ($($field:ident),*) => {
-            $(if before.$field != now.$field {
-                rule.$field.clone_from(&now.$field);
-            })*
-        };
-    }
-    take!(
-        gap, block, tilt, turns, turn_over, on_fold, over_flaws, on_print
-    );
 }

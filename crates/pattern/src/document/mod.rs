@@ -45,7 +45,8 @@ pub use operation::{
 };
 pub use panel::{Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use piece_rule::{
-    FurtherFabric, LayingRule, MarkRef, MatchedMarks, PieceRule, RuledPieces, Turn,
+    FurtherFabric, LayingRule, MarkRef, MatchedMarks, PieceRule, RULE_FLAGS, RuleFlag, RuledPieces,
+    Turn,
 };
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};

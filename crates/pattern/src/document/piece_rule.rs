@@ -5,36 +5,83 @@ use crate::{FabricId, NotchId, PanelId, fields};
 use serde::{Deserialize, Serialize};
 use strum::EnumIter;
 
-/// Rule for laying a piece, in addition to the settings of its fabric. Fields that are not given are taken
-/// from a rule for more pieces, else from the default.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct LayingRule {
-    /// Least distance of the piece from any other (m).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub gap: Option<f64>,
-    /// Extra fabric cut all round the piece, to be cut to shape later (m).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub block: Option<f64>,
-    /// Greatest angle between the grain of the piece and the warp (rad).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tilt: Option<f64>,
-    /// Allowed angles from the warp to the grain of the piece (rad).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub turns: Option<Vec<Turn>>,
-    /// Whether the piece may be turned over.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub turn_over: Option<bool>,
-    /// Whether half of the piece lies on the fold, if both the fabric and the panel are folded.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub on_fold: Option<bool>,
-    /// Whether the piece may hide flaws.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub over_flaws: Option<bool>,
-    /// Whether the hem and the middle of the piece are aligned with the print.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub on_print: Option<bool>,
+/// Declares [`LayingRule`], and all that treats its fields alike.
+macro_rules! laying_rule {
+    ($($(#[$about:meta])* $field:ident: $type:ty,)*) => {
+        /// Rule for laying a piece, in addition to the settings of its fabric. Fields that are not given are taken
+        /// from a rule for more pieces, else from the default.
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        #[serde(default)]
+        pub struct LayingRule {
+            $($(#[$about])* #[serde(skip_serializing_if = "Option::is_none")] pub $field: Option<$type>,)*
+        }
+
+        impl LayingRule {
+            /// This rule completed by a rule for more pieces: fields left open here are taken from the rule below.
+            #[must_use]
+            pub fn over(self, below: &Self) -> Self {
+                let below = below.clone();
+                Self { $($field: self.$field.or(below.$field),)* }
+            }
+
+            /// Takes over the fields in which two states of another rule differ, as the second state has them.
+            pub fn take_changes(&mut self, before: &Self, now: &Self) {
+                $(if before.$field != now.$field {
+                    self.$field.clone_from(&now.$field);
+                })*
+            }
+        }
+    };
 }
+
+laying_rule! {
+    /// Least distance of the piece from any other (m).
+    gap: f64,
+    /// Extra fabric cut all round the piece, to be cut to shape later (m).
+    block: f64,
+    /// Greatest angle between the grain of the piece and the warp (rad).
+    tilt: f64,
+    /// Allowed angles from the warp to the grain of the piece (rad).
+    turns: Vec<Turn>,
+    /// Whether the piece may be turned over.
+    turn_over: bool,
+    /// Whether half of the piece lies on the fold, if both the fabric and the panel are folded.
+    on_fold: bool,
+    /// Whether the piece may hide flaws.
+    over_flaws: bool,
+    /// Whether the hem and the middle of the piece are aligned with the print.
+    on_print: bool,
+}
+
+/// A flag of a rule that the window shows.
+#[derive(Clone, Copy, Debug)]
+pub struct RuleFlag {
+    /// Label in the window.
+    pub label: &'static str,
+    /// The flag of a rule.
+    pub of: fn(&mut LayingRule) -> &mut Option<bool>,
+    /// Value where no rule says it, on a marker that has matched marks or has none.
+    pub usual: fn(has_marks: bool) -> bool,
+}
+
+/// The flags of a rule that the window shows, in its order.
+pub const RULE_FLAGS: &[RuleFlag] = &[
+    RuleFlag {
+        label: "May be turned over",
+        of: |rule| &mut rule.turn_over,
+        usual: |_| false,
+    },
+    RuleFlag {
+        label: "May hide flaws",
+        of: |rule| &mut rule.over_flaws,
+        usual: |_| false,
+    },
+    RuleFlag {
+        label: "Lies on the print",
+        of: |rule| &mut rule.on_print,
+        usual: |has_marks| !has_marks,
+    },
+];
 
 /// An angle from the warp to a piece's grain (rad).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -68,31 +115,6 @@ fields!(LayingRule, |self, v| {
 });
 
 impl LayingRule {
-    /// This rule completed by a rule for more pieces: fields left open here are taken from the rule below.
-    #[must_use]
-    pub fn over(self, below: &Self) -> Self {
-        let Self {
-            gap,
-            block,
-            tilt,
-            turns,
-            turn_over,
-            on_fold,
-            over_flaws,
-            on_print,
-        } = self;
-        Self {
-            gap: gap.or(below.gap),
-            block: block.or(below.block),
-            tilt: tilt.or(below.tilt),
-            turns: turns.or_else(|| below.turns.clone()),
-            turn_over: turn_over.or(below.turn_over),
-            on_fold: on_fold.or(below.on_fold),
-            over_flaws: over_flaws.or(below.over_flaws),
-            on_print: on_print.or(below.on_print),
-        }
-    }
-
     /// The first field with which no piece can be laid: the fault, and the advice.
     pub fn fault(&self) -> Option<(String, &'static str)> {
         let lengths = [
