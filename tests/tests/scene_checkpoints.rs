@@ -124,13 +124,13 @@ fn a_new_process_goes_on_to_the_same_bytes() {
         let value = |name: &str| std::env::var(name).unwrap();
         let scene = scene(method(&value(METHOD)));
         let checkpoint = read_checkpoint(&read_text(Path::new(&file)).unwrap()).unwrap();
-        let mut run = SceneRun::resume(&scene, checkpoint).unwrap();
+        let mut run = SceneRun::resume(&scene, checkpoint, toile_reference::build).unwrap();
         std::fs::write(value(OUT), go_on(&mut run, STEPS)).unwrap();
         return;
     }
     for kind in [MethodKind::Xpbd, MethodKind::ImplicitEuler] {
         let scene = scene(kind);
-        let mut run = SceneRun::new(&scene).unwrap();
+        let mut run = SceneRun::new(&scene, toile_reference::build).unwrap();
         check(&mut run, &scene);
         // Once a second where nothing is merged, and where something is.
         for _ in 0..2 {
@@ -150,10 +150,10 @@ fn a_new_process_goes_on_to_the_same_bytes() {
 #[test]
 fn what_cannot_be_saved_or_resumed_is_refused_by_name() {
     let sewn = scene(MethodKind::Xpbd);
-    let mut run = SceneRun::new(&sewn).unwrap();
+    let mut run = SceneRun::new(&sewn, toile_reference::build).unwrap();
     let checkpoint = run.checkpoint().unwrap();
     let refused = |scene: &Scene, checkpoint| {
-        let resumed = SceneRun::resume(scene, checkpoint);
+        let resumed = SceneRun::resume(scene, checkpoint, toile_reference::build);
         resumed.err().unwrap().to_string()
     };
     let mut other = sewn.clone();
@@ -174,7 +174,7 @@ fn what_cannot_be_saved_or_resumed_is_refused_by_name() {
     }
     for kind in [MethodKind::Rest, MethodKind::ImplicitMidpoint] {
         let scene = scene(kind);
-        let run = SceneRun::new(&scene).unwrap();
+        let run = SceneRun::new(&scene, toile_reference::build).unwrap();
         let said = run.checkpoint().err().unwrap().to_string();
         assert!(said.contains(kind.name()), "{said}");
     }

@@ -20,7 +20,7 @@ use crate::{DrapeError, Material};
 use serde::{Deserialize, Serialize};
 
 /// Distance from a solid to which its distance field extends (m).
-pub(crate) const FIELD_REACH: f64 = 0.03;
+pub const FIELD_REACH: f64 = 0.03;
 
 /// Largest extra offset of the contact samples of a triangle that crosses a solid (m): a crossing that remains then is
 /// not cured by distance.

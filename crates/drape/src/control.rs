@@ -59,7 +59,7 @@ impl Attachments {
     }
 
     /// Whether two lists share their memory, not only equal contents.
-    pub(crate) fn is(&self, other: &Self) -> bool {
+    pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 

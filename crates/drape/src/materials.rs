@@ -30,7 +30,8 @@ impl Materials {
     }
 
     /// The membrane law of a triangle.
-    pub(crate) fn law(&self, triangle: usize) -> &MembraneLaw {
+    #[inline]
+    pub fn law(&self, triangle: usize) -> &MembraneLaw {
         &self.laws[self.of_triangle[triangle] as usize]
     }
 
@@ -40,12 +41,12 @@ impl Materials {
     }
 
     /// Whether any material is viscous in stretch.
-    pub(crate) fn have_viscous_stretch(&self) -> bool {
+    pub fn have_viscous_stretch(&self) -> bool {
         self.list.iter().any(|m| m.is_viscous()[0])
     }
 
     /// Whether any material relaxes in stretch or bending.
-    pub(crate) fn keep_strain(&self) -> bool {
+    pub fn keep_strain(&self) -> bool {
         self.list.iter().any(Material::keeps_strain)
     }
 }

@@ -31,7 +31,7 @@ pub enum Memory {
 
 impl Memory {
     /// The memory of buried contact samples, ascending.
-    pub(crate) fn of_buried(samples: impl Iterator<Item = u32>) -> Self {
+    pub fn of_buried(samples: impl Iterator<Item = u32>) -> Self {
         let samples: Vec<u32> = samples.collect();
         match samples.is_empty() {
             true => Self::Nothing,
@@ -40,7 +40,7 @@ impl Memory {
     }
 
     /// The buried contact samples, ascending.
-    pub(crate) fn buried(&self) -> &[u32] {
+    pub fn buried(&self) -> &[u32] {
         match self {
             Self::Buried(samples) => samples,
             _ => &[],

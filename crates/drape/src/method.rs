@@ -73,7 +73,20 @@ pub trait Method: Send {
     fn residual(&self) -> Option<f64> {
         None
     }
+
+    /// Most iterations in a (sub)step; none for explicit methods, which do not iterate, and for equilibrium methods,
+    /// whose iterations are their steps.
+    fn most_iterations(&self) -> Option<usize> {
+        None
+    }
 }
+
+/// Makes a method of given settings, without memory of a run: [`MethodSettings::build`] those of garments and scenes,
+/// the function `build` of crate `reference` every one.
+///
+/// # Errors
+/// A method that the builder does not have.
+pub type MethodBuilder = fn(&MethodSettings) -> Result<Box<dyn Method>, DrapeError>;
 
 /// The closed list of methods.
 #[derive(

@@ -97,7 +97,7 @@ impl ModelParts {
     }
 
     /// Whether another model shares triangles, rest shapes and materials.
-    pub(crate) fn has_cloth_of(&self, other: &Self) -> bool {
+    pub fn has_cloth_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.topology, &other.topology)
             && Arc::ptr_eq(&self.rest, &other.rest)
             && Arc::ptr_eq(&self.materials, &other.materials)
@@ -110,7 +110,7 @@ impl ModelParts {
     }
 
     /// Whether another model shares prescribed vertices and elastics between vertices.
-    pub(crate) fn has_couplings_of(&self, other: &Self) -> bool {
+    pub fn has_couplings_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.prescribed, &other.prescribed)
             && Arc::ptr_eq(&self.couplings, &other.couplings)
     }

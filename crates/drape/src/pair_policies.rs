@@ -120,7 +120,7 @@ impl PairPolicies {
     /// The object of a contact sample on some vertices, for [`Self::ignores_solid`]; none where no object ignores a
     /// solid.
     #[inline]
-    pub(crate) fn object_of_sample(&self, vertices: &[u32]) -> Option<u16> {
+    pub fn object_of_sample(&self, vertices: &[u32]) -> Option<u16> {
         if self.ignored_solids.is_empty() {
             return None;
         }
@@ -129,7 +129,7 @@ impl PairPolicies {
 
     /// Whether the object of a sample ignores the solid with an index.
     #[inline]
-    pub(crate) fn ignores_solid(&self, object: Option<u16>, collider: usize) -> bool {
+    pub fn ignores_solid(&self, object: Option<u16>, collider: usize) -> bool {
         let ignored = &self.ignored_solids;
         object.is_some_and(|object| ignored.binary_search(&(object, collider as u32)).is_ok())
     }

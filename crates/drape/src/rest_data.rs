@@ -17,13 +17,13 @@ use toile_sparse::ScalarMatrix;
 #[derive(Clone)]
 pub struct RestData {
     /// Membrane element of each triangle.
-    pub(crate) elements: Vec<MembraneElement>,
+    pub elements: Vec<MembraneElement>,
     /// Bending matrix over the vertices, the same for x, y and z (N/m).
-    pub(crate) bending: ScalarMatrix,
+    pub bending: ScalarMatrix,
     /// Viscous matrix of bending in the pattern of `bending`; none without viscosity.
-    pub(crate) viscous_bending: Option<ScalarMatrix>,
+    pub viscous_bending: Option<ScalarMatrix>,
     /// Curvature stencil of each triangle; empty unless bending has viscosity or internal strain.
-    pub(crate) stencils: Vec<BendingStencil>,
+    pub stencils: Vec<BendingStencil>,
     /// The shared stencils where the topology has a structure of bending; else empty.
     pub(crate) curvatures: Stencils,
     /// Mass of each vertex (kg).

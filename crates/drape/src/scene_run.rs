@@ -5,37 +5,17 @@ use crate::action::{Action, Hand, Input};
 use crate::collision::Tally;
 use crate::measure::{Measures, measure, self_intersections};
 use crate::merge::keeps_corners;
-use crate::method::Method;
+use crate::method::{Method, MethodBuilder};
 use crate::methods::whole_energy;
 use crate::scene_checkpoint::{SceneCheckpoint, scene_digest};
 use crate::world::{Edited, ObjectId, Simulation, Solids, World, WorldEdit};
 use crate::{
-    Attachments, Cloth, Control, DrapeError, Elastic, MethodKind, MethodSettings, Scene, State,
+    Attachments, Cloth, Control, DrapeError, Elastic, MethodKind, Scene, State, TimeSettings,
     Workspace,
 };
 use std::collections::BTreeMap;
 use std::ops::{Deref, Range};
 use toile_geometry::{SurfaceTree, TriangleMesh};
-
-/// Duration, step and method of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeSettings {
-    /// Time simulated before time 0 (s).
-    pub lead_in: f64,
-    /// Time simulated from 0 on (s).
-    pub duration: f64,
-    /// Step in time (s).
-    pub step: f64,
-    /// The method.
-    pub method: MethodSettings,
-}
-
-impl TimeSettings {
-    /// All simulated time (s).
-    pub fn whole(&self) -> f64 {
-        self.lead_in + self.duration
-    }
-}
 
 /// The run of a scene.
 pub struct SceneRun {
@@ -43,6 +23,8 @@ pub struct SceneRun {
     settings: TimeSettings,
     workspace: Workspace,
     method: Box<dyn Method>,
+    /// Makes the method, at the start and after edits.
+    builder: MethodBuilder,
     steps: usize,
     split_steps: usize,
     refinements: usize,
@@ -92,12 +74,12 @@ impl SceneRun {
         &mut self.simulation.state
     }
 
-    /// The run of a scene.
+    /// The run of a scene by a method that `builder` makes.
     ///
     /// # Errors
-    /// Those of [`Scene::check`] and [`Simulation::new`], a scene without cloth, and a feature that the method does not
-    /// support.
-    pub fn new(scene: &Scene) -> Result<Self, DrapeError> {
+    /// Those of [`Scene::check`] and [`Simulation::new`], a scene without cloth, a feature that the method does not
+    /// support, and a method that the builder does not have.
+    pub fn new(scene: &Scene, builder: MethodBuilder) -> Result<Self, DrapeError> {
         let world = World::of_scene(scene)?;
         world.check_features(scene.method.kind)?;
         let settings = TimeSettings {
@@ -112,20 +94,22 @@ impl SceneRun {
         };
         let mut simulation = Simulation::new(world)?;
         simulation.state.time = -scene.lead_in;
-        let run = Self::of_simulation(simulation, settings)?;
+        let run = Self::of_simulation(simulation, settings, builder)?;
         Ok(Self {
             origin: Some(origin),
             ..run
         })
     }
 
-    /// A run from the present state of a simulation, for instance of a draped garment.
+    /// A run from the present state of a simulation, for instance of a draped garment, by a method that `builder`
+    /// makes.
     ///
     /// # Errors
-    /// A feature of the world that the method does not support.
+    /// A feature of the world that the method does not support, and a method that the builder does not have.
     pub fn of_simulation(
         simulation: Simulation,
         settings: TimeSettings,
+        builder: MethodBuilder,
     ) -> Result<Self, DrapeError> {
         simulation.world().check_features(settings.method.kind)?;
         Ok(Self {
@@ -133,7 +117,8 @@ impl SceneRun {
             simulation,
             settings,
             workspace: Workspace::default(),
-            method: settings.method.build(),
+            method: builder(&settings.method)?,
+            builder,
             steps: 0,
             split_steps: 0,
             refinements: 0,
@@ -149,14 +134,18 @@ impl SceneRun {
     /// Resumes a checkpoint of a scene.
     ///
     /// # Errors
-    /// A checkpoint of another scene, or one whose fields contradict each other.
-    pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint) -> Result<Self, DrapeError> {
+    /// Those of [`Self::new`], a checkpoint of another scene, or one whose fields contradict each other.
+    pub fn resume(
+        scene: &Scene,
+        checkpoint: SceneCheckpoint,
+        builder: MethodBuilder,
+    ) -> Result<Self, DrapeError> {
         let refuse = |place: &str, what: String| DrapeError::Scene {
             place: format!("checkpoint, {place}"),
             what,
             remedy: "go on with the scene that it was saved of, or begin anew".to_owned(),
         };
-        let mut run = Self::new(scene)?;
+        let mut run = Self::new(scene, builder)?;
         if checkpoint.scene != run.digest() {
             return Err(refuse("scene", "it was saved of another scene".to_owned()));
         }
@@ -259,11 +248,13 @@ impl SceneRun {
     }
 
     /// Rebuilds the method; its memory is in the state.
-    fn rebuild_method(&mut self) {
+    fn rebuild_method(&mut self) -> Result<(), DrapeError> {
+        let method = (self.builder)(&self.settings.method)?;
         self.tally = self.cloth_tally();
-        self.method = self.settings.method.build();
+        self.method = method;
         self.workspace = Workspace::default();
         self.is_renewed = true;
+        Ok(())
     }
 
     /// Duration, step and method.
@@ -322,11 +313,11 @@ impl SceneRun {
             self.is_reshaped = false;
             self.own_attachments = self.system.control.attachments.clone();
             self.pull()?;
-            self.rebuild_method();
+            self.rebuild_method()?;
         }
         let in_time = !self.settings.method.kind.is_equilibrium();
         if in_time && self.has_cloth_contact() && self.steps.is_multiple_of(self.span()) {
-            self.rebuild_method();
+            self.rebuild_method()?;
         }
         Ok(())
     }
@@ -417,7 +408,7 @@ impl SceneRun {
         self.own_attachments = self.system.control.attachments.clone();
         self.pull()?;
         // The method may have cached solids and policies.
-        self.rebuild_method();
+        self.rebuild_method()?;
         Ok(edited)
     }
 

@@ -183,7 +183,7 @@ impl System {
     }
 
     /// Sum of the stiffnesses of the elastics at a vertex at small gaps (N/m).
-    pub(crate) fn elastic_stiffness(&self, v: usize) -> f64 {
+    pub fn elastic_stiffness(&self, v: usize) -> f64 {
         let between = self.couplings.at(v).iter();
         let between = between.map(|&e| self.couplings.all[e as usize].1.stiffness);
         let to_points = self.control.attachments.at(v).1.iter();

@@ -69,7 +69,8 @@ impl Topology {
     }
 
     /// Corners (3 t + k) that use a vertex.
-    pub(crate) fn corners_of(&self, vertex: usize) -> &[u32] {
+    #[inline]
+    pub fn corners_of(&self, vertex: usize) -> &[u32] {
         let uses = self.corner_start[vertex] as usize..self.corner_start[vertex + 1] as usize;
         &self.corners[uses]
     }

@@ -10,8 +10,8 @@ mod solids;
 use sheets::{object, sheet};
 use solids::block;
 use toile_drape::{
-    ContactSettings, Damping, DrapeError, Material, MethodKind, Motion, MotionKey, ObjectKind,
-    Scene, SceneObject, SceneRun,
+    ContactSettings, Damping, DrapeError, Material, MethodKind, MethodSettings, Motion, MotionKey,
+    ObjectKind, Scene, SceneObject, SceneRun,
 };
 use toile_geometry::Vec3;
 
@@ -61,7 +61,11 @@ fn a_sheet_dropped_from_h_comes_back_to_e_squared_h() {
     let speed = (2.0 * 9.81 * height).sqrt();
     for e in [0.0, 0.4, 0.8] {
         let cloth = bouncing("cloth", offset + height, e);
-        let mut run = SceneRun::new(&scene(vec![cloth, board(ObjectKind::Static)])).unwrap();
+        let mut run = SceneRun::new(
+            &scene(vec![cloth, board(ObjectKind::Static)]),
+            MethodSettings::build,
+        )
+        .unwrap();
         let (mut down, mut highest) = (false, 0.0f64);
         while !run.finished() {
             let before = run.energy();
@@ -102,7 +106,7 @@ fn a_board_that_comes_up_throws_by_its_own_speed_too() {
         ]);
         still.gravity = Vec3::zeros();
         still.duration = 0.15;
-        let mut run = SceneRun::new(&still).unwrap();
+        let mut run = SceneRun::new(&still, MethodSettings::build).unwrap();
         while !run.finished() {
             run.advance().unwrap();
         }
@@ -118,7 +122,7 @@ fn sheets_that_meet_part_with_a_share_of_their_speed_and_keep_momentum() {
         meeting.gravity = Vec3::zeros();
         meeting.duration = 0.1;
         meeting.contact.cloth_offset = 2e-3;
-        let mut run = SceneRun::new(&meeting).unwrap();
+        let mut run = SceneRun::new(&meeting, MethodSettings::build).unwrap();
         for (k, v) in run.state_mut().velocities.iter_mut().enumerate() {
             *v = Vec3::y() * if k < 25 { 0.25 } else { -0.75 };
         }
@@ -135,7 +139,11 @@ fn sheets_that_meet_part_with_a_share_of_their_speed_and_keep_momentum() {
 #[test]
 fn restitution_out_of_range_or_unknown_to_the_method_is_refused() {
     for wrong in [-0.1, 1.5, f64::NAN] {
-        let error = SceneRun::new(&scene(vec![bouncing("ball", 0.1, wrong)])).err();
+        let error = SceneRun::new(
+            &scene(vec![bouncing("ball", 0.1, wrong)]),
+            MethodSettings::build,
+        )
+        .err();
         let said = error.unwrap().to_string();
         assert!(
             said.contains("restitution") && said.contains("0 to 1"),
@@ -144,7 +152,7 @@ fn restitution_out_of_range_or_unknown_to_the_method_is_refused() {
     }
     let mut blind = scene(vec![bouncing("ball", 0.1, 0.5)]);
     blind.method = MethodKind::ImplicitEuler.into();
-    match SceneRun::new(&blind) {
+    match SceneRun::new(&blind, MethodSettings::build) {
         Err(error @ DrapeError::Scene { .. }) => {
             let said = error.to_string();
             assert!(said.contains("\"ball\"") && said.contains("xpbd"), "{said}");

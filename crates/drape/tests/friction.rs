@@ -49,7 +49,7 @@ fn border(state: &State) -> f64 {
 
 /// The height of the border after 1/3 s and after as long again.
 fn before_and_after(kind: MethodKind, (system, mut state): (System, State)) -> [f64; 2] {
-    let mut method = MethodSettings::from(kind).build();
+    let mut method = MethodSettings::from(kind).build().unwrap();
     [0, 1].map(|_| {
         for _ in 0..40 {
             method.advance(&system, &mut state, STEP).unwrap();
@@ -103,7 +103,7 @@ fn cloth_keeps_its_place_on_a_plate_that_creeps_and_turns() {
         let places = state.positions.iter().map(|&x| pose.undo(x));
         places.collect::<Vec<Vec3>>()
     };
-    let mut method = MethodSettings::from(MethodKind::Xpbd).build();
+    let mut method = MethodSettings::from(MethodKind::Xpbd).build().unwrap();
     let mut state = state;
     let mut at = Vec::new();
     for step in 0..120 {
@@ -134,7 +134,9 @@ fn the_first_step_of_a_contact_has_friction() {
         builder.colliders = vec![collider([-0.5, -0.1, -0.5], [0.5, 0.0, 0.5])];
     });
     state.velocities.fill(Vec3::new(speed, 0.0, 0.0));
-    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
+    let mut method = MethodSettings::from(MethodKind::ImplicitEuler)
+        .build()
+        .unwrap();
     method.advance(&system, &mut state, STEP).unwrap();
     let after = state.velocities.iter().map(|v| v.x).sum::<f64>() / state.velocities.len() as f64;
     let expected = speed - friction * 9.81 * STEP;
@@ -166,7 +168,7 @@ fn moves_on_cloth(kind: MethodKind, share: f64) -> f64 {
     });
     let angle = (share * friction).atan();
     system.control.gravity = Vec3::new(angle.sin(), -angle.cos(), 0.0) * 9.81;
-    let mut method = MethodSettings::from(kind).build();
+    let mut method = MethodSettings::from(kind).build().unwrap();
     let place = |state: &State| {
         let above = &state.positions[held..];
         above.iter().map(|x| x.x).sum::<f64>() / above.len() as f64

@@ -62,7 +62,7 @@ fn scene(cloths: Vec<SceneObject>) -> Scene {
 }
 
 fn finish(scene: Scene) -> (SceneRun, Measures) {
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -185,7 +185,7 @@ fn the_pull_between_layers_keeps_momentum() {
         let masses = run.system.rest.mass.iter().zip(&run.state.positions);
         masses.map(|(m, p)| p * *m).sum::<Vec3>() / run.system.rest.mass.iter().sum::<f64>()
     };
-    let start = middle(&SceneRun::new(&free).unwrap());
+    let start = middle(&SceneRun::new(&free, MethodSettings::build).unwrap());
     let (run, measures) = finish(free);
     let off = (middle(&run) - start).norm();
     let tally = run.cloth_tally().unwrap();
@@ -223,7 +223,7 @@ fn what_a_saved_state_knows_of_layers_goes_on_to_the_same_bytes() {
     }
     for kind in [MethodKind::Xpbd, MethodKind::ImplicitEuler] {
         let go = |state: &mut State, steps: usize| {
-            let mut method = MethodSettings::from(kind).build();
+            let mut method = MethodSettings::from(kind).build().unwrap();
             for _ in 0..steps {
                 method.advance(&system, state, 0.01).unwrap();
             }
@@ -249,7 +249,7 @@ fn layers_that_cannot_be_in_order_are_refused_by_name() {
             worn("coat", level(4, |_, _| 0.11), 2),
         ])
     };
-    let refused = |scene: Scene| match SceneRun::new(&scene) {
+    let refused = |scene: Scene| match SceneRun::new(&scene, MethodSettings::build) {
         Err(error @ DrapeError::Scene { .. }) => error.to_string(),
         _ => panic!("not refused"),
     };
@@ -281,7 +281,7 @@ fn layers_that_cannot_be_in_order_are_refused_by_name() {
     let mut one = two();
     one.objects[1].layer = 1;
     one.contact.cloth_offset = 0.0;
-    assert!(SceneRun::new(&one).is_ok());
+    assert!(SceneRun::new(&one, MethodSettings::build).is_ok());
 }
 
 #[test]

@@ -6,7 +6,9 @@
 mod sheets;
 
 use sheets::{object, sheet};
-use toile_drape::{MethodKind, Scene, SceneElastic, SceneEnd, SceneObject, SceneRun};
+use toile_drape::{
+    MethodKind, MethodSettings, Scene, SceneElastic, SceneEnd, SceneObject, SceneRun,
+};
 use toile_geometry::{TriangleMesh, Vec3};
 
 fn square(at: Vec3) -> TriangleMesh {
@@ -32,7 +34,7 @@ fn run(objects: [SceneObject; 2], elastics: Vec<SceneElastic>) -> SceneRun {
         elastics,
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     run.advance().unwrap();
     run
 }
@@ -76,7 +78,7 @@ fn two_pinned_vertices_apart_stay_apart() {
         elastics: vec![elastic(vertex(1, 2)), elastic(vertex(2, 0))],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     run.advance().unwrap();
     assert_eq!(run.state.positions.len(), 26);
     assert_eq!(run.meshes()[0].positions[0], Vec3::new(0.1, 0.0, 0.0));
@@ -125,7 +127,7 @@ fn crossings_found_before_a_merging_are_told_after_it() {
         method: MethodKind::Xpbd.into(),
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     run.advance().unwrap();
     assert_eq!(run.state.positions.len(), 26, "nothing was merged");
     let tally = run.cloth_tally().unwrap();

@@ -8,8 +8,8 @@ mod sheets;
 mod solids;
 
 use toile_drape::{
-    Material, MethodKind, Motion, MotionKey, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip,
-    SceneObject, SceneRun,
+    Material, MethodKind, MethodSettings, Motion, MotionKey, ObjectKind, Scene, SceneElastic,
+    SceneEnd, SceneGrip, SceneObject, SceneRun,
 };
 use toile_geometry::Vec3;
 
@@ -62,7 +62,7 @@ fn carried(way: Vec3, friction: f64) -> Scene {
 }
 
 fn middle_after(scene: Scene) -> Vec3 {
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -109,7 +109,7 @@ fn led_vertices_are_where_their_motion_has_them() {
         }],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
         let pose = motion.pose(run.state.time);
@@ -153,7 +153,7 @@ fn cloth_tied_to_a_moving_solid_goes_with_it() {
         stiffness: 5000.0,
         merge_within: None,
     });
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -168,7 +168,10 @@ fn cloth_tied_to_a_moving_solid_goes_with_it() {
     assert!((ends[0] - ends[1]).norm() < 2e-3, "{ends:?}");
     // A method that knows no moving solids refuses it by name.
     scene.method = MethodKind::ImplicitEuler.into();
-    let said = SceneRun::new(&scene).err().unwrap().to_string();
+    let said = SceneRun::new(&scene, MethodSettings::build)
+        .err()
+        .unwrap()
+        .to_string();
     assert!(said.contains("moving objects"), "{said}");
 }
 
@@ -177,7 +180,10 @@ fn motions_that_cannot_be_followed_are_refused() {
     let refused = |change: &dyn Fn(&mut Scene)| {
         let mut scene = carried(Vec3::zeros(), 0.4);
         change(&mut scene);
-        SceneRun::new(&scene).err().unwrap().to_string()
+        SceneRun::new(&scene, MethodSettings::build)
+            .err()
+            .unwrap()
+            .to_string()
     };
     let said = refused(&|scene| scene.method = MethodKind::ImplicitEuler.into());
     assert!(said.contains("xpbd") && said.contains("plate"), "{said}");

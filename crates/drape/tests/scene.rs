@@ -5,8 +5,8 @@ mod sheets;
 
 use sheets::{object, sheet};
 use toile_drape::{
-    Cloth, DrapeError, Material, MethodKind, ObjectKind, Scene, SceneElastic, SceneEnd,
-    SceneObject, SceneRun,
+    Cloth, DrapeError, Material, MethodKind, MethodSettings, ObjectKind, Scene, SceneElastic,
+    SceneEnd, SceneObject, SceneRun,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -37,7 +37,7 @@ fn a_free_sheet_falls_as_implicit_euler_falls() {
         step: 0.01,
         ..Scene::default()
     };
-    let run = finish(SceneRun::new(&scene).expect("sound"));
+    let run = finish(SceneRun::new(&scene, MethodSettings::build).expect("sound"));
     // Implicit Euler after n steps: fallen g h^2 n (n + 1) / 2.
     let expected = 1.0 - 9.81 * 0.01 * 0.01 * 50.0 * 51.0 / 2.0;
     for p in &run.state.positions {
@@ -68,7 +68,7 @@ fn a_hanging_strip_stretches_by_its_weight() {
         method: MethodKind::Rest.into(),
         ..Scene::default()
     };
-    let mut run = finish(SceneRun::new(&scene).expect("sound"));
+    let mut run = finish(SceneRun::new(&scene, MethodSettings::build).expect("sound"));
     let tip = run.state.positions.last().expect("has vertices").y;
     let pieces = 1000;
     let expected: f64 = (0..pieces)
@@ -118,7 +118,7 @@ fn elastics_merge_what_they_draw_together_and_keep_momentum() {
         },
         ..Scene::default()
     };
-    let run = finish(SceneRun::new(&scene).expect("sound"));
+    let run = finish(SceneRun::new(&scene, MethodSettings::build).expect("sound"));
     assert_eq!(run.state.positions.len(), 45);
     assert_eq!(run.system.mesh(&run.state.positions).component_count(), 1);
     let momentum: Vec3 = run
@@ -142,7 +142,7 @@ fn bad_scenes_are_refused_with_place_and_remedy() {
         ..Scene::default()
     };
     let message = |scene: Scene| {
-        SceneRun::new(&scene)
+        SceneRun::new(&scene, MethodSettings::build)
             .err()
             .expect("must be refused")
             .to_string()
@@ -187,13 +187,13 @@ fn bad_scenes_are_refused_with_place_and_remedy() {
     let mut broken = good();
     broken.objects[0].mesh.positions[1].x = f64::NAN;
     assert!(matches!(
-        SceneRun::new(&broken),
+        SceneRun::new(&broken, MethodSettings::build),
         Err(DrapeError::Mesh { .. })
     ));
     let mut empty = good();
     empty.objects[0].mesh.positions[1] = empty.objects[0].mesh.positions[0];
     assert!(matches!(
-        SceneRun::new(&empty),
+        SceneRun::new(&empty, MethodSettings::build),
         Err(DrapeError::EmptyTriangle { .. })
     ));
 }
@@ -230,7 +230,7 @@ fn huge_steps_and_stiff_crushed_cloth_end_finite_or_say_so() {
             step,
             ..Scene::default()
         };
-        let mut run = SceneRun::new(&scene).expect("sound");
+        let mut run = SceneRun::new(&scene, MethodSettings::build).expect("sound");
         while !run.finished() {
             match run.advance() {
                 Ok(()) => assert_eq!(run.state.first_not_finite(), None, "{stretch} {step}"),

@@ -18,8 +18,8 @@ use toile_drape::collision::{
     Motions, Nearness, Reach, crossings, nearnesses, truncate_moves,
 };
 use toile_drape::{
-    Cloth, ContactSettings, Material, Measures, MethodKind, PseudoTransientContinuation,
-    RestSettings, Scene, SceneRun, State, SystemBuilder, Workspace,
+    Cloth, ContactSettings, Material, Measures, MethodKind, MethodSettings,
+    PseudoTransientContinuation, RestSettings, Scene, SceneRun, State, SystemBuilder, Workspace,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
 
@@ -287,7 +287,7 @@ fn fall(method: MethodKind, cloth_offset: f64) -> (bool, Measures) {
         objects: vec![object("low", low, corners), object("high", high, vec![])],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -377,7 +377,7 @@ fn pressed_by_substeps(slope: f64, duration: f64) -> (f64, [f64; 2]) {
         objects: vec![object("low", low, every), object("high", high, vec![])],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -443,7 +443,7 @@ fn a_planted_crossing_is_undone() {
         ],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     assert!(run.measure().self_intersections > 4);
     while !run.finished() {
         run.advance().unwrap();

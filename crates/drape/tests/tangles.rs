@@ -10,11 +10,11 @@ mod solids;
 mod tangles;
 
 use tangles::tangle;
-use toile_drape::SceneRun;
+use toile_drape::{MethodSettings, SceneRun};
 
 /// Crossings at the start, and at the end: cloth with cloth, cloth with a body.
 fn undo(seed: u64) -> [[usize; 2]; 2] {
-    let mut run = SceneRun::new(&tangle(seed)).expect("a sound scene");
+    let mut run = SceneRun::new(&tangle(seed), MethodSettings::build).expect("a sound scene");
     let count = |run: &mut SceneRun| {
         let measures = run.measure();
         [measures.self_intersections, measures.body_intersections]

@@ -8,8 +8,9 @@ mod solids;
 
 use sheets::{object, sheet};
 use toile_drape::{
-    AttachmentEnd, Kind, MeshVertex, MethodKind, Motion, MotionKey, ObjectAttachment, ObjectId,
-    ObjectKind, Pose, Scene, SceneObject, SceneRun, SharedTrack, Track, WorldEdit,
+    AttachmentEnd, Kind, MeshVertex, MethodKind, MethodSettings, Motion, MotionKey,
+    ObjectAttachment, ObjectId, ObjectKind, Pose, Scene, SceneObject, SceneRun, SharedTrack, Track,
+    WorldEdit,
 };
 use toile_geometry::Vec3;
 
@@ -77,7 +78,7 @@ fn beside(block: SceneObject) -> Scene {
 }
 
 fn attached(scene: &Scene, ends: [AttachmentEnd; 2], stiffness: f64) -> SceneRun {
-    let mut run = SceneRun::new(scene).unwrap();
+    let mut run = SceneRun::new(scene, MethodSettings::build).unwrap();
     let attachment = ObjectAttachment {
         ends,
         stiffness,
@@ -253,7 +254,7 @@ fn what_is_not_there_is_refused_and_so_are_methods_and_kinds_that_cannot_follow(
         (of_track(0, Vec3::repeat(f64::NAN)), "not finite"),
         (frame, "has no frame of its own"),
     ] {
-        let mut run = SceneRun::new(&bending).unwrap();
+        let mut run = SceneRun::new(&bending, MethodSettings::build).unwrap();
         let attachment = ObjectAttachment {
             ends: [vertex(sheet, 0), end],
             stiffness: 1.0,

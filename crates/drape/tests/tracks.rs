@@ -8,8 +8,8 @@ mod sheets;
 mod solids;
 
 use toile_drape::{
-    Material, MethodKind, Motion, MotionKey, ObjectKind, Scene, SceneObject, SceneRun, SharedTrack,
-    State, Track,
+    Material, MethodKind, MethodSettings, Motion, MotionKey, ObjectKind, Scene, SceneObject,
+    SceneRun, SharedTrack, State, Track,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -61,7 +61,7 @@ fn over(solid: TriangleMesh, kind: ObjectKind, [wide, high]: [f64; 2]) -> Scene 
 }
 
 fn end_of(scene: &Scene) -> State {
-    let mut run = SceneRun::new(scene).unwrap();
+    let mut run = SceneRun::new(scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -113,7 +113,7 @@ fn cloth_stays_on_a_ball_that_breathes_and_sways() {
             .collect()
     });
     let scene = over(ball, kind, [0.6, 0.165]);
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     let mut touched = 0;
     while !run.finished() {
         run.advance().unwrap();
@@ -139,7 +139,10 @@ fn a_track_that_does_not_fit_is_refused() {
     let count = ball.positions.len();
     let refused = |kind: ObjectKind| {
         let scene = over(ball.clone(), kind, [0.1, 0.2]);
-        SceneRun::new(&scene).err().unwrap().to_string()
+        SceneRun::new(&scene, MethodSettings::build)
+            .err()
+            .unwrap()
+            .to_string()
     };
     let said = refused(tracked(move |_| vec![Vec3::zeros(); count - 1]));
     assert!(
@@ -180,7 +183,7 @@ fn a_tip_that_rises_under_the_middle_of_a_face_lifts_it() {
     let kind = tracked(move |time| spire(at(time)).positions);
     let mut scene = over(spire(at(0.0)), kind, [0.2, 0.1]);
     scene.duration = 0.3;
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
         let measures = run.measure();
@@ -224,7 +227,7 @@ fn a_ridge_that_rises_lifts_the_edges_that_lie_across_it() {
     let kind = tracked(move |time| roof(at(time)).positions);
     let mut scene = over(roof(at(0.0)), kind, [0.2, 0.1]);
     scene.duration = 0.4;
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
         let crossings = run.measure().body_intersections;
@@ -269,7 +272,7 @@ fn cloth_between_two_parts_of_a_skin_keeps_between_them_and_is_let_go_where_they
     };
     scene.objects[0].mesh = sheet;
     scene.duration = 1.2;
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     let mut buried = 0;
     while !run.finished() {
         run.advance().unwrap();

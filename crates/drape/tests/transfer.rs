@@ -14,8 +14,9 @@ use numbers::Numbers;
 use sheets::{object, sheet};
 use std::collections::BTreeMap;
 use toile_drape::{
-    AttachmentEnd, Cloth, ContactSettings, Material, MeshVertex, MethodKind, Object,
-    ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, SolidFriction, WorldEdit,
+    AttachmentEnd, Cloth, ContactSettings, Material, MeshVertex, MethodKind, MethodSettings,
+    Object, ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, SolidFriction,
+    WorldEdit,
 };
 use toile_geometry::Vec3;
 
@@ -217,7 +218,7 @@ fn a_hundred_sequences_of_edits_keep_momentum_pins_and_what_they_do_not_touch() 
     let mut counts = [0usize; 4];
     for seed in 0..100 {
         let mut random = Numbers(seed * 7919 + 1);
-        let mut run = SceneRun::new(&scene(seed)).unwrap();
+        let mut run = SceneRun::new(&scene(seed), MethodSettings::build).unwrap();
         for number in 0..5 {
             for _ in 0..within(&mut random, 1..4) {
                 run.advance().unwrap();
@@ -326,7 +327,7 @@ fn a_sheet_at_rest_on_a_slope_stays_where_it_is_when_something_else_is_merged() 
             method: kind.into(),
             ..Scene::default()
         };
-        let mut run = SceneRun::new(&scene).unwrap();
+        let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
         let steps = |run: &mut SceneRun, count| {
             for _ in 0..count {
                 run.advance().unwrap();

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use toile_drape::{
     Cloth, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, Kind, Material, MeshVertex,
-    MethodKind, Motion, MotionKey, ObjectId, RestSettings, SceneRun, SewSettings, Stage,
-    TimeSettings, WorldEdit,
+    MethodKind, MethodSettings, Motion, MotionKey, ObjectId, RestSettings, SceneRun, SewSettings,
+    Stage, TimeSettings, WorldEdit,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
@@ -173,7 +173,8 @@ fn a_draped_tube_goes_along_with_its_ball_and_falls_when_its_seams_are_opened() 
             .0
     };
     let (ball, tube) = (of(Kind::Static), of(Kind::Deformable));
-    let mut run = SceneRun::of_simulation(simulation, settings).expect("sound");
+    let mut run =
+        SceneRun::of_simulation(simulation, settings, MethodSettings::build).expect("sound");
     let height = |run: &SceneRun| {
         let places = &run.state.positions;
         places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64

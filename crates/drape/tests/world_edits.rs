@@ -9,8 +9,9 @@ mod solids;
 
 use sheets::{object, sheet};
 use toile_drape::{
-    AttachmentEnd, Cloth, ContactSettings, Kind, Layers, MeshVertex, MethodKind, Motion, MotionKey,
-    Object, ObjectAttachment, ObjectKind, PairPolicy, Scene, SceneObject, SceneRun, WorldEdit,
+    AttachmentEnd, Cloth, ContactSettings, Kind, Layers, MeshVertex, MethodKind, MethodSettings,
+    Motion, MotionKey, Object, ObjectAttachment, ObjectKind, PairPolicy, Scene, SceneObject,
+    SceneRun, WorldEdit,
 };
 use toile_geometry::{Vec2, Vec3};
 
@@ -48,10 +49,13 @@ fn objects_that_ignore_each_other_pass_through_each_other_until_they_are_told_to
             let places = run.mesh_of(falling).unwrap().positions;
             places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min)
         };
-        let mut run = SceneRun::new(&Scene {
-            method: kind.into(),
-            ..scene.clone()
-        })
+        let mut run = SceneRun::new(
+            &Scene {
+                method: kind.into(),
+                ..scene.clone()
+            },
+            MethodSettings::build,
+        )
         .unwrap();
         run.edit(WorldEdit::SetPolicy([falling, held], PairPolicy::Ignore))
             .unwrap();
@@ -83,7 +87,7 @@ fn objects_that_ignore_each_other_pass_through_each_other_until_they_are_told_to
         );
     }
     // Without a policy the held sheet catches the other one.
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     for _ in 0..48 {
         run.advance().unwrap();
     }
@@ -120,7 +124,7 @@ fn beside_a_moving_block() -> SceneRun {
         method: MethodKind::Xpbd.into(),
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     for _ in 0..30 {
         run.advance().unwrap();
     }
@@ -311,7 +315,7 @@ fn vertices_that_are_one_by_way_of_others_are_opened_together_and_stay_apart() {
         duration: 9.0,
         ..Scene::default()
     };
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, MethodSettings::build).unwrap();
     run.advance().unwrap();
     let whole = 27;
     assert_eq!(run.state.positions.len(), whole - 2);

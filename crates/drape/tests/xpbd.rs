@@ -454,7 +454,7 @@ fn it_is_a_method_by_name() {
         .find(|(name, _)| *name == "xpbd")
         .expect("listed");
     let (system, mut state) = busy_scene(10);
-    let mut method = toile_drape::MethodSettings::from(*kind).build();
+    let mut method = toile_drape::MethodSettings::from(*kind).build().unwrap();
     let report = method
         .advance(&system, &mut state, 1.0 / 60.0)
         .expect("sound");

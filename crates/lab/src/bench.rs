@@ -202,12 +202,12 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             }
             let (system, state) = card.system(&cloth, &card.cloths[1].pins)?;
             result.vertices = system.vertex_count();
-            frames(&system, state, (kind.into(), FRAMES), &mut result);
+            frames(&system, state, (kind.into(), FRAMES), &mut result)?;
         }
         Work::Square(square, side, kind) => {
             let (system, state) = square.build(side)?;
             result.vertices = system.vertex_count();
-            frames(&system, state, (kind.into(), SQUARE_FRAMES), &mut result);
+            frames(&system, state, (kind.into(), SQUARE_FRAMES), &mut result)?;
         }
         Work::Touching(side) => touching(side, &mut result)?,
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
@@ -238,7 +238,7 @@ fn touching(side: u32, result: &mut Timed) -> Result<(), LabError> {
         substeps: Some(TOUCHING_SUBSTEPS),
         ..MethodKind::Xpbd.into()
     };
-    let end = frames(&system, state, (settings, SQUARE_FRAMES), result);
+    let end = frames(&system, state, (settings, SQUARE_FRAMES), result)?;
     let crossed = crossed(&system, &end.positions);
     result
         .counted
@@ -252,8 +252,8 @@ fn frames(
     mut state: State,
     (settings, count): (MethodSettings, usize),
     result: &mut Timed,
-) -> State {
-    let mut method = settings.build();
+) -> Result<State, LabError> {
+    let mut method = toile_reference::build(&settings)?;
     let step = 1.0 / 60.0;
     // The first frame sizes the workspace.
     let mut substeps = 0;
@@ -294,7 +294,7 @@ fn frames(
             result.counted.insert(name.to_owned(), value);
         }
     }
-    state
+    Ok(state)
 }
 
 /// The sewn shirt to rest, from its coarsest mesh to the finest; times of each mesh apart.

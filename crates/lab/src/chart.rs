@@ -35,7 +35,7 @@ impl Setting<'_> {
             vertices: self.system.vertex_count(),
             method: kind.name(),
             step,
-            iterations: kind.most_iterations(),
+            iterations: None,
             wall_ms: 0.0,
             cpu_ms: None,
             error_mm: None,
@@ -45,10 +45,17 @@ impl Setting<'_> {
     }
 
     /// One run in time.
-    fn run(&self, kind: MethodKind, step: f64, reference: &Reference, budget: f64) -> Point {
+    fn run(
+        &self,
+        kind: MethodKind,
+        step: f64,
+        reference: &Reference,
+        budget: f64,
+    ) -> Result<Point, LabError> {
+        let mut method = toile_reference::build(&kind.into())?;
         let mut point = self.point(kind, step);
+        point.iterations = method.most_iterations();
         let mut state = self.start.clone();
-        let mut method = MethodSettings::from(kind).build();
         let steps = (self.card.duration / step).round().max(1.0) as usize;
         let clock = Clock::start();
         let mut done = 0;
@@ -83,11 +90,17 @@ impl Setting<'_> {
             }
             point.error_mm = Some(1e3 * error);
         }
-        point
+        Ok(point)
     }
 
     /// One way to rest.
-    fn settle(&self, kind: MethodKind, residual: f64, rest: &[Vec3], budget: f64) -> Point {
+    fn settle(
+        &self,
+        kind: MethodKind,
+        residual: f64,
+        rest: &[Vec3],
+        budget: f64,
+    ) -> Result<Point, LabError> {
         let mut point = self.point(kind, residual);
         let mut state = self.start.clone();
         let settings = MethodSettings {
@@ -95,7 +108,7 @@ impl Setting<'_> {
             iterations: Some(200_000),
             ..kind.into()
         };
-        let mut method = settings.build();
+        let mut method = toile_reference::build(&settings)?;
         let clock = Clock::start();
         while !method.finished() {
             if let Err(error) = method.advance(&self.system, &mut state, 1.0 / 60.0) {
@@ -115,7 +128,7 @@ impl Setting<'_> {
         if point.failure.is_none() {
             point.error_mm = Some(1e3 * apart(&state.positions, rest));
         }
-        point
+        Ok(point)
     }
 }
 
@@ -215,7 +228,7 @@ fn move_all(
                 if old.is_some_and(|at| found[at].failure.is_some()) {
                     continue;
                 }
-                let point = setting.run(kind, step, &reference, plan.budget);
+                let point = setting.run(kind, step, &reference, plan.budget)?;
                 match old {
                     None => found.push(point),
                     Some(at) if repeat > 0 && point.cost() < found[at].cost() => found[at] = point,
@@ -243,7 +256,7 @@ fn settle_all(
     for &residual in plan.residuals {
         for (name, kind) in methods.clone() {
             tell(0.9, &format!("{}, {name}, to {residual:.0e}", setting.mesh))?;
-            let mut point = setting.settle(kind, residual, &rest.positions, plan.budget);
+            let mut point = setting.settle(kind, residual, &rest.positions, plan.budget)?;
             if !known {
                 point.error_mm = None;
                 point

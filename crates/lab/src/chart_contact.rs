@@ -12,9 +12,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use toile_drape::collision::{ClothSurface, LinearTrajectories, crossings};
-use toile_drape::{
-    Collider, Feature, Material, MethodKind, MethodSettings, State, System, SystemBuilder,
-};
+use toile_drape::{Collider, Feature, Material, MethodKind, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_picture::{Axis, Chart, Series};
 use toile_session::Watcher;
@@ -101,8 +99,8 @@ fn run(
     (system, start): (&System, &State),
     (kind, step): (MethodKind, f64),
     budget: f64,
-) -> Touched {
-    let mut method = MethodSettings::from(kind).build();
+) -> Result<Touched, LabError> {
+    let mut method = toile_reference::build(&kind.into())?;
     let mut state = start.clone();
     let steps = (duration / step).round().max(1.0) as usize;
     let clock = Clock::start();
@@ -119,7 +117,7 @@ fn run(
     }
     let simulated = done.max(1) as f64 * step;
     let tally = method.cloth_tally().unwrap_or_default();
-    Touched {
+    Ok(Touched {
         scene,
         vertices: system.vertex_count(),
         method: kind.name(),
@@ -133,7 +131,7 @@ fn run(
         cut: tally.cut,
         pieces,
         failure,
-    }
+    })
 }
 
 /// Runs every method that knows contact of cloth with cloth, with it and without.
@@ -157,7 +155,7 @@ pub fn contact_chart(plan: ChartPlan, watcher: &mut dyn Watcher) -> Result<Vec<T
                     }
                     system = system.with(|builder| builder.contact.cloth_offset = offset);
                     let ready = (&system, &start);
-                    found.push(run((name, duration), ready, (kind, step), plan.budget));
+                    found.push(run((name, duration), ready, (kind, step), plan.budget)?);
                 }
             }
         }
@@ -275,7 +273,7 @@ mod tests {
         let (mut system, start) = fall(0.3, 20).unwrap();
         let fell = |system: &System| {
             let how = (MethodKind::Xpbd, 1.0 / 60.0);
-            run(("fall", 0.4), (system, &start), how, f64::INFINITY)
+            run(("fall", 0.4), (system, &start), how, f64::INFINITY).unwrap()
         };
         system = system.with(|builder| {
             builder.contact.cloth_offset = 0.0;

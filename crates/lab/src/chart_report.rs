@@ -372,7 +372,9 @@ mod tests {
             vertices: 169,
             method: kind.name(),
             step: 0.01,
-            iterations: kind.most_iterations(),
+            iterations: toile_reference::build(&kind.into())
+                .unwrap()
+                .most_iterations(),
             wall_ms: cost,
             cpu_ms: None,
             error_mm: Some(0.5),

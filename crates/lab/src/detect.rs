@@ -86,7 +86,7 @@ const TURN: f64 = 2.0;
 
 /// Takes some frames of XPBD; what one takes (s), the looks for contacts in it, and its processor time (s).
 fn frames(system: &System, state: &mut State, count: usize) -> Result<[f64; 3], LabError> {
-    let mut method = MethodSettings::from(MethodKind::Xpbd).build();
+    let mut method = MethodSettings::from(MethodKind::Xpbd).build()?;
     let clock = Clock::start();
     for _ in 0..count {
         method.advance(system, state, STEP)?;
@@ -168,7 +168,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             substeps: Some((SUBSTEPS / looks).round().max(1.0) as u32),
             ..MethodKind::Xpbd.into()
         }
-        .build();
+        .build()?;
         for _ in 0..QUERIES {
             method.advance(&system, &mut start, STEP / looks)?;
             path.push(start.positions.clone());
@@ -236,7 +236,7 @@ pub(crate) fn cost(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     frames(&system, &mut state, 30)?;
     let with = 1e3 * frames(&system, &mut state.clone(), FRAMES)?[0];
     let without = 1e3 * frames(&free, &mut state.clone(), FRAMES)?[0];
-    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
+    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build()?;
     let step = Clock::start();
     method.advance(&free, &mut state, STEP)?;
     let implicit = 1e3 * step.wall();
@@ -266,7 +266,8 @@ mod tests {
             substeps: Some(4),
             ..MethodKind::Xpbd.into()
         }
-        .build();
+        .build()
+        .expect("a method");
         for _ in 0..120 {
             method.advance(&system, &mut state, STEP).expect("a step");
         }

@@ -7,8 +7,7 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use toile_drape::{
-    Cloth, Collider, Material, MethodKind, MethodSettings, State, System, SystemBuilder, Workspace,
-    whole_energy,
+    Cloth, Collider, Material, MethodKind, State, System, SystemBuilder, Workspace, whole_energy,
 };
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_session::Watcher;
@@ -285,9 +284,9 @@ fn free_mass(system: &System) -> f64 {
     free.filter(|&(_, &pinned)| !pinned).map(|(m, _)| m).sum()
 }
 
-fn run(mut case: Case, kind: MethodKind, budget: f64) -> (Outcome, String) {
+fn run(mut case: Case, kind: MethodKind, budget: f64) -> Result<(Outcome, String), LabError> {
     let mut state = case.state.clone();
-    let mut method = MethodSettings::from(kind).build();
+    let mut method = toile_reference::build(&kind.into())?;
     // What is no number has no energy; every method is to refuse it.
     let finite = state.first_not_finite().is_none();
     let mut allowance = finite.then(|| Allowance::new(&case));
@@ -300,30 +299,30 @@ fn run(mut case: Case, kind: MethodKind, budget: f64) -> (Outcome, String) {
             allowance.jump(&mut case.system, &state, jumped);
         }
         if let Err(error) = method.advance(&case.system, &mut state, case.step) {
-            return (Outcome::Stopped, error.to_string());
+            return Ok((Outcome::Stopped, error.to_string()));
         }
         if let Some(vertex) = state.first_not_finite() {
-            return (
+            return Ok((
                 Outcome::Unsound,
                 format!("vertex {vertex} is not finite after step {n}"),
-            );
+            ));
         }
         if let Some(allowance) = &mut allowance {
             allowance.fall(&case.system, case.step);
             if let Some(words) = allowance.exceeded_by(&case.system, &state) {
-                return (Outcome::Unsound, format!("{words} after step {n}"));
+                return Ok((Outcome::Unsound, format!("{words} after step {n}")));
             }
         }
         let jumped = allowance.as_ref().map_or(0.0, |a| a.jumped);
         if clock.spent() > budget {
-            return verdict(&case, &state, jumped, Some(n + 1));
+            return Ok(verdict(&case, &state, jumped, Some(n + 1)));
         }
         if method.finished() {
             break;
         }
     }
     let jumped = allowance.as_ref().map_or(0.0, |a| a.jumped);
-    verdict(&case, &state, jumped, None)
+    Ok(verdict(&case, &state, jumped, None))
 }
 
 /// A cloth that fell freely all the time, thrown by all the energy that a body that jumped put in,
@@ -373,7 +372,7 @@ pub fn hard_cases(watcher: &mut dyn Watcher) -> Result<Vec<HardRun>, LabError> {
             if watcher.progress(name, share, method) == ControlFlow::Break(()) {
                 return Err(LabError::Cancelled);
             }
-            let (outcome, detail) = run(make()?, kind, BUDGET);
+            let (outcome, detail) = run(make()?, kind, BUDGET)?;
             runs.push(HardRun {
                 case: name,
                 method,
@@ -393,7 +392,7 @@ mod tests {
     fn every_method_refuses_what_is_no_number() {
         for make in [not_a_number, infinite] {
             for (name, kind) in MethodKind::ALL {
-                let (outcome, detail) = run(make().unwrap(), kind, BUDGET);
+                let (outcome, detail) = run(make().unwrap(), kind, BUDGET).unwrap();
                 assert_eq!(outcome, Outcome::Stopped, "{name}: {detail}");
                 assert!(detail.contains("vertex"), "{name}: {detail}");
             }
@@ -402,7 +401,8 @@ mod tests {
 
     #[test]
     fn cloth_that_a_body_jumped_into_is_thrown_by_no_more_than_that_gave() {
-        let (outcome, detail) = run(jumping_body().unwrap(), MethodKind::Bdf2, f64::INFINITY);
+        let (outcome, detail) =
+            run(jumping_body().unwrap(), MethodKind::Bdf2, f64::INFINITY).unwrap();
         assert_eq!(outcome, Outcome::Sound, "{detail}");
     }
 
@@ -410,7 +410,7 @@ mod tests {
     fn the_implicit_midpoint_rule_refuses_energy_that_nothing_gave() {
         for make in [jumping_body, stretched] {
             let (outcome, detail) =
-                run(make().unwrap(), MethodKind::ImplicitMidpoint, f64::INFINITY);
+                run(make().unwrap(), MethodKind::ImplicitMidpoint, f64::INFINITY).unwrap();
             assert_eq!(outcome, Outcome::Stopped, "{detail}");
             assert!(detail.contains("the energy grew"), "{detail}");
         }

@@ -66,7 +66,7 @@ pub(crate) fn converged(kind: MethodKind, tolerance: f64, most: usize) -> Method
 /// Runs a state for some steps, showing it to `watch` after each.
 ///
 /// # Errors
-/// The method stopped, or left the finite numbers without saying so.
+/// The method cannot be made, stopped, or left the finite numbers without saying so.
 pub fn in_time(
     system: &System,
     state: &mut State,
@@ -74,7 +74,7 @@ pub fn in_time(
     [step, duration]: [f64; 2],
     mut watch: impl FnMut(&State),
 ) -> Result<(), LabError> {
-    let mut method = settings.build();
+    let mut method = toile_reference::build(&settings)?;
     let steps = (duration / step).round() as usize;
     for _ in 0..steps {
         method.advance(system, state, step)?;

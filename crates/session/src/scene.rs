@@ -146,7 +146,7 @@ impl Begun {
             }
             (None, true) => SavedRun::read(&place.folder)?,
             (None, false) => {
-                let run = SceneRun::new(scene)?;
+                let run = SceneRun::new(scene, toile_reference::build)?;
                 return Ok(Self {
                     crossings: Crossings::new(&run),
                     album: album(&run)?,
@@ -156,8 +156,8 @@ impl Begun {
                 });
             }
         };
-        let run = SceneRun::resume(scene, saved.run)?;
-        let mut album = album(&SceneRun::new(scene)?)?;
+        let run = SceneRun::resume(scene, saved.run, toile_reference::build)?;
+        let mut album = album(&SceneRun::new(scene, toile_reference::build)?)?;
         album.resume(&run, &saved.ways)?;
         let recorder = match records {
             true => Some(Recorder::resume(place.frames(), saved.frame_bytes)?),

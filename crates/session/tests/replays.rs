@@ -156,7 +156,7 @@ fn told(run: &SceneRun) -> String {
 fn recorded(inputs: &[Input], threads: usize) -> (Vec<String>, Vec<String>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build().unwrap().install(|| {
-        let mut run = SceneRun::new(&scene(0.2)).unwrap();
+        let mut run = SceneRun::new(&scene(0.2), toile_reference::build).unwrap();
         let (mut states, mut checkpoints) = (vec![told(&run)], Vec::new());
         loop {
             if run.is_landmark() {
@@ -194,7 +194,7 @@ fn a_run_is_done_again_from_its_inputs_and_from_any_frame() {
         let mut kept = checkpoints.iter().map(|text| read(text));
         let checkpoint = kept.rfind(|saved| saved.steps() <= frame).unwrap();
         assert!(frame - checkpoint.steps() < 60);
-        let mut run = SceneRun::resume(&scene(0.2), checkpoint).unwrap();
+        let mut run = SceneRun::resume(&scene(0.2), checkpoint, toile_reference::build).unwrap();
         while run.steps() < frame {
             run.advance_by(&inputs).unwrap();
         }
@@ -204,7 +204,7 @@ fn a_run_is_done_again_from_its_inputs_and_from_any_frame() {
 
 #[test]
 fn a_checkpoint_is_taken_after_every_edit() {
-    let mut run = SceneRun::new(&scene(0.2)).unwrap();
+    let mut run = SceneRun::new(&scene(0.2), toile_reference::build).unwrap();
     let given = inputs();
     for input in &given {
         while (run.steps() as u64) < input.step {
@@ -220,7 +220,8 @@ fn a_checkpoint_is_taken_after_every_edit() {
             continue;
         }
         let text = write_checkpoint(&run.checkpoint().unwrap()).unwrap();
-        let mut resumed = SceneRun::resume(&scene(0.2), read(&text)).unwrap();
+        let mut resumed =
+            SceneRun::resume(&scene(0.2), read(&text), toile_reference::build).unwrap();
         assert_eq!(resumed.world(), run.world());
         for _ in 0..3 {
             resumed.advance().unwrap();
@@ -238,9 +239,11 @@ fn a_checkpoint_is_taken_after_every_edit() {
 
 #[test]
 fn checkpoints_of_another_track_and_actions_that_do_not_fit_are_refused() {
-    let mut run = SceneRun::new(&scene(0.2)).unwrap();
+    let mut run = SceneRun::new(&scene(0.2), toile_reference::build).unwrap();
     let saved = write_checkpoint(&run.checkpoint().unwrap()).unwrap();
-    let said = SceneRun::resume(&scene(0.3), read(&saved)).err().unwrap();
+    let said = SceneRun::resume(&scene(0.3), read(&saved), toile_reference::build)
+        .err()
+        .unwrap();
     assert!(said.to_string().contains("another scene"), "{said}");
 
     let spot = |object: usize, triangle, weights| Spot::Triangle {
@@ -276,14 +279,17 @@ fn checkpoints_of_another_track_and_actions_that_do_not_fit_are_refused() {
 
 #[test]
 fn hands_pull_at_their_spot_and_let_go_of_what_is_removed() {
-    let mut run = SceneRun::new(&Scene {
-        gravity: Vec3::zeros(),
-        objects: vec![
-            sheet("a", Vec3::zeros(), vec![]),
-            sheet("b", Vec3::x(), vec![]),
-        ],
-        ..scene(0.0)
-    })
+    let mut run = SceneRun::new(
+        &Scene {
+            gravity: Vec3::zeros(),
+            objects: vec![
+                sheet("a", Vec3::zeros(), vec![]),
+                sheet("b", Vec3::x(), vec![]),
+            ],
+            ..scene(0.0)
+        },
+        toile_reference::build,
+    )
     .unwrap();
     let weights = [0.25, 0.25, 0.5];
     let spot = Spot::Triangle {

@@ -104,7 +104,8 @@ pub fn tangles(arguments: &[String]) -> Result<(), String> {
     for seed in 0..count {
         let said = |error: toile_drape::DrapeError| format!("seed {seed}: {error}");
         let start = Instant::now();
-        let mut run = SceneRun::new(&planted::tangle(seed)).map_err(said)?;
+        let mut run =
+            SceneRun::new(&planted::tangle(seed), toile_reference::build).map_err(said)?;
         let before = run.measure();
         while !run.finished() {
             run.advance().map_err(said)?;

@@ -85,6 +85,10 @@ impl<M: Method> Method for Guarded<M> {
         self.method.residual()
     }
 
+    fn most_iterations(&self) -> Option<usize> {
+        self.method.most_iterations()
+    }
+
     fn cloth_tally(&self) -> Option<crate::collision::Tally> {
         self.method.cloth_tally()
     }

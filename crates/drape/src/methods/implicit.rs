@@ -284,6 +284,10 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
 }
 
 impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
+    fn most_iterations(&self) -> Option<usize> {
+        Some(self.limits.iterations)
+    }
+
     fn advance(
         &mut self,
         system: &System,

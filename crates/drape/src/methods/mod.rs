@@ -1,86 +1,80 @@
-//! Methods: one trait with a whole step in it, chosen once by name from a closed list.
+//! Methods: those of garments and scenes, chosen once by name from a closed list, and the parts of which methods are
+//! made.
 //!
 //! # Decided with
 //! - [`crate::methods::newton_solver::Newton::LIMITS`], [`crate::methods::newton_solver::OneSolve::LIMITS`]:
 //!   iterations and residual of Newton's method and of one solve;
-//! - [`crate::reference::projective`], [`crate::reference::lbfgs`], [`crate::reference::block_descent`]:
-//!   limits of the methods for comparison;
 //! - [`crate::method::MethodSettings`]: iterations and substeps that a user may set, by family;
 //! - [`crate::methods::implicit`] (`CONVERGED_RESIDUAL`): how exactly an implicit step is solved;
 //! - [`crate::xpbd::XpbdSettings`]: substeps and iterations of XPBD;
 //! - [`crate::methods::rest::Rest::new`]: how a scene is brought to rest;
 //! - [`crate::sew::SewRun::advance`], [`crate::pseudo_transient::PseudoTransientContinuation::advance`]:
 //!   iterations of a garment.
+//!
+//! Limits of the methods for comparison: crate `reference`.
 
 mod energy;
-pub(crate) mod explicit;
+pub mod explicit;
 mod frequency;
 mod guard;
-pub(crate) mod implicit;
+pub mod implicit;
 mod newton_solver;
 mod rest;
 mod rules;
 mod velocity_verlet;
 
-pub use energy::whole_energy;
-pub(crate) use energy::{energy_bound, is_possible_speed};
-pub(crate) use frequency::damped_contact_frequency;
-pub use frequency::largest_frequency;
+pub use energy::{energy_bound, is_possible_speed, whole_energy};
+pub use frequency::{damped_contact_frequency, largest_frequency};
+pub use guard::Guarded;
+pub use rules::Euler;
+pub use velocity_verlet::VelocityVerlet;
 
+use crate::DrapeError;
 use crate::method::{Method, MethodKind, MethodSettings};
-use crate::patches::PatchVerlet;
 use crate::reference::block_descent::BlockDescent;
 use crate::reference::lbfgs::Lbfgs;
 use crate::reference::projective::Projective;
 use crate::reference::{forward_euler, relaxation, runge_kutta, symplectic_euler};
 use explicit::Explicit;
-use guard::Guarded;
-use implicit::{Implicit, Solver};
+use implicit::Implicit;
 use newton_solver::{Newton, OneSolve};
 
-impl MethodKind {
-    /// Most iterations in a (sub)step where the settings give none; none for explicit methods, which do not iterate,
-    /// and for equilibrium methods, whose iterations are their steps.
-    pub fn most_iterations(self) -> Option<usize> {
-        match self {
-            Self::ImplicitEuler => Some(Newton::<false>::LIMITS.iterations),
-            Self::Bdf2 | Self::ImplicitMidpoint => Some(Newton::<true>::LIMITS.iterations),
-            Self::SemiImplicitEuler => Some(OneSolve::LIMITS.iterations),
-            Self::ProjectiveDynamics => Some(Projective::LIMITS.iterations),
-            Self::Lbfgs => Some(Lbfgs::LIMITS.iterations),
-            Self::VertexBlockDescent => Some(BlockDescent::<false>::LIMITS.iterations),
-            Self::ChebyshevBlockDescent => Some(BlockDescent::<true>::LIMITS.iterations),
-            Self::Xpbd => Some(crate::XpbdSettings::default().iterations as usize),
-            Self::ForwardEuler
-            | Self::SymplecticEuler
-            | Self::VelocityVerlet
-            | Self::RungeKutta4
-            | Self::PatchVerlet
-            | Self::DynamicRelaxation
-            | Self::Rest => None,
-        }
-    }
-}
-
 impl MethodSettings {
-    /// A new method without memory of a run.
-    pub fn build(&self) -> Box<dyn Method> {
-        match self.kind {
+    /// A new method without memory of a run, of those that garments and scenes use.
+    ///
+    /// # Errors
+    /// A method for comparison: crate `reference`, above this one, makes those.
+    pub fn build(&self) -> Result<Box<dyn Method>, DrapeError> {
+        self.own().ok_or_else(|| {
+            let all = MethodKind::ALL.into_iter();
+            let own = all.filter(|&(_, kind)| Self::from(kind).own().is_some());
+            let names: Vec<_> = own.map(|(name, _)| name).collect();
+            DrapeError::Scene {
+                place: "method".to_owned(),
+                what: format!(
+                    "\"{}\" is a method for comparison, which this run cannot make",
+                    self.kind.name()
+                ),
+                remedy: format!(
+                    "give the run the builder of crate `reference`, or use one of {}",
+                    names.join(", ")
+                ),
+            }
+        })
+    }
+
+    /// The method; none where it is one for comparison.
+    fn own(&self) -> Option<Box<dyn Method>> {
+        Some(match self.kind {
             MethodKind::ForwardEuler => {
                 Guarded::boxed(Explicit::<forward_euler::ForwardEuler>::new(self))
             }
             MethodKind::SymplecticEuler => {
                 Guarded::boxed(Explicit::<symplectic_euler::SymplecticEuler>::new(self))
             }
-            MethodKind::VelocityVerlet => {
-                Guarded::boxed(Explicit::<velocity_verlet::VelocityVerlet>::new(self))
-            }
+            MethodKind::VelocityVerlet => Guarded::boxed(Explicit::<VelocityVerlet>::new(self)),
             MethodKind::RungeKutta4 => {
                 Guarded::boxed(Explicit::<runge_kutta::RungeKutta4>::new(self))
-            }
-            MethodKind::PatchVerlet => {
-                let fallback = Explicit::<velocity_verlet::VelocityVerlet>::new(self);
-                Guarded::boxed(PatchVerlet::new(self, Box::new(fallback)))
             }
             MethodKind::SemiImplicitEuler => {
                 Guarded::boxed(Implicit::<rules::Euler, OneSolve>::new(self))
@@ -105,6 +99,7 @@ impl MethodSettings {
             }
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
             MethodKind::Xpbd => Guarded::boxed(crate::xpbd::XpbdMethod::new(self)),
-        }
+            MethodKind::PatchVerlet => return None,
+        })
     }
 }

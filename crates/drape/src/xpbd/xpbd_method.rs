@@ -38,6 +38,10 @@ impl Method for XpbdMethod {
         true
     }
 
+    fn most_iterations(&self) -> Option<usize> {
+        Some(self.settings.iterations as usize)
+    }
+
     fn cloth_tally(&self) -> Option<Tally> {
         Some(self.cloth.contacts.tally)
     }

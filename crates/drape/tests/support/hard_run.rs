@@ -1,7 +1,7 @@
 //! Hard scenes run to their ends, and what is measured on the way.
 
 use super::hard_scenes::HardScene;
-use toile_drape::SceneRun;
+use toile_drape::{MethodSettings, SceneRun};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Where everything lies at the end.
@@ -112,7 +112,7 @@ fn momenta(run: &SceneRun) -> [Vec3; 2] {
 
 /// Runs a scene to its end.
 pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
-    let mut run = SceneRun::new(&hard.scene).expect("a sound scene");
+    let mut run = SceneRun::new(&hard.scene, MethodSettings::build).expect("a sound scene");
     let mut first = 0;
     for (object, velocity) in hard.velocities.iter().enumerate() {
         let count = hard.scene.objects[object].mesh.positions.len();

@@ -113,7 +113,7 @@ fn ratio(kind: MeshKind, friction: f64) -> Result<f64, LabError> {
     let (flat, system, mut state) = strip(kind, friction)?;
     let end = flat.points.iter().map(|p| p.x).fold(0.0, f64::max);
     let drawn = flat.chosen(|p| p.x > end - 1e-9);
-    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
+    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build()?;
     for _ in 0..STEPS {
         for &v in &drawn {
             state.positions[v as usize].y -= DRAWN / STEPS as f64;

@@ -192,7 +192,7 @@ fn sewn() -> Scene {
 }
 
 fn played(scene: &Scene) -> Size {
-    let mut run = SceneRun::new(scene).unwrap();
+    let mut run = SceneRun::new(scene, toile_reference::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }

@@ -141,7 +141,9 @@ fn note_moves(record: &mut Record, name: &str, (system, state): &Frozen) {
 /// One step by implicit Euler: what depends on the motion, too.
 fn note_step(record: &mut Record, name: &str, (system, state): &Frozen) {
     let mut state = state.clone();
-    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
+    let mut method = MethodSettings::from(MethodKind::ImplicitEuler)
+        .build()
+        .unwrap();
     method.advance(system, &mut state, 1.0 / 120.0).unwrap();
     record.vectors(&format!("{name}, places after a step"), &state.positions);
     let settled = state

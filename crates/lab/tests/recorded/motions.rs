@@ -3,7 +3,7 @@
 use crate::record::Record;
 use crate::states::{self, Frozen};
 use toile_drape::{
-    Collider, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, MethodKind, MethodSettings,
+    Collider, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, MethodKind,
     PseudoTransientContinuation, RestSettings, SewSettings, Stage, State, Workspace,
 };
 use toile_geometry::Vec3;
@@ -35,7 +35,7 @@ pub fn note_methods(record: &mut Record) {
     for (case, (system, start)) in &cases {
         for (method, kind) in MethodKind::ALL {
             let mut state = start.clone();
-            let mut advancing = MethodSettings::from(kind).build();
+            let mut advancing = toile_reference::build(&kind.into()).unwrap();
             for step in 1..=10 {
                 let name = format!("{case}, {method}, step {step}");
                 if let Err(error) = advancing.advance(system, &mut state, STEP) {

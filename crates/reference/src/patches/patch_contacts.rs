@@ -1,12 +1,12 @@
 //! Contact of vertices with solids within the substeps of patches: tangent planes of the surfaces are
-//! detected every few substeps, the penalty law of [`crate::laws::contact`] acts in every one.
+//! detected every few substeps, the penalty law of [`toile_drape::laws::contact`] acts in every one.
 
 use super::Lane;
-use crate::contact_settings::FIELD_REACH;
-use crate::laws::contact::{TANGENTIAL_RATIO, damped_push, gentle_push};
-use crate::memory::Memory;
-use crate::{SolidFriction, State, System};
 use rayon::prelude::*;
+use toile_drape::FIELD_REACH;
+use toile_drape::Memory;
+use toile_drape::laws::contact::{TANGENTIAL_RATIO, damped_push, gentle_push};
+use toile_drape::{SolidFriction, State, System};
 use toile_geometry::Vec3;
 
 /// The contact of a vertex with the tangent plane of a near surface, valid until the next detection.

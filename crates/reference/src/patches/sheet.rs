@@ -4,9 +4,9 @@ use super::Lane;
 use super::limits;
 use super::patch::{Patch, Substeps, merge_extremes};
 use super::patch_contacts::{PatchContact, PatchContacts};
-use crate::methods::damped_contact_frequency;
-use crate::{Attachments, Model, State, System};
 use rayon::prelude::*;
+use toile_drape::methods::damped_contact_frequency;
+use toile_drape::{Attachments, Model, State, System};
 use toile_geometry::Vec3;
 
 /// Rings of a patch's halo, each two edges wide: patches exchange halos after as many substeps.
@@ -345,9 +345,9 @@ fn cut(system: &System, count: usize) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SystemBuilder;
-    use crate::{Cloth, Collider, Material};
     use std::sync::Arc;
+    use toile_drape::SystemBuilder;
+    use toile_drape::{Cloth, Collider, Material};
     use toile_geometry::{SurfaceTree, TriangleMesh};
 
     fn grid(side: u32, size: f64, height: f64) -> TriangleMesh {

@@ -2,7 +2,7 @@
 
 use crate::fixtures::{ball, cloth, sheet};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, MethodKind, MethodSettings, SolidFriction, State, System};
+use toile_drape::{Collider, Material, MethodKind, SolidFriction, State, System};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// Methods that run, at their own settings: all but the one that is never stable.
@@ -13,7 +13,7 @@ fn sound() -> impl Iterator<Item = (&'static str, MethodKind)> {
 }
 
 fn run(name: &str, kind: MethodKind, system: &System, state: &mut State, steps: usize) {
-    let mut method = MethodSettings::from(kind).build();
+    let mut method = toile_reference::build(&kind.into()).unwrap();
     let steps = if kind.is_equilibrium() { 500 } else { steps };
     for _ in 0..steps {
         method

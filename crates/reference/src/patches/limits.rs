@@ -1,8 +1,8 @@
 //! Bounds on the largest angular frequency of a cloth, by which substeps are chosen.
 
-use crate::methods::largest_frequency;
-use crate::{State, System};
 use nalgebra::Matrix3;
+use toile_drape::largest_frequency;
+use toile_drape::{State, System};
 
 /// Largest deviation of the principal squared stretches from 1 at which a layout counts as isometric to the
 /// rest shapes.
@@ -78,7 +78,7 @@ pub fn stiffening(r: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cloth, Material};
+    use toile_drape::{Cloth, Material};
     use toile_geometry::{TriangleMesh, Vec3};
 
     fn sheet([columns, rows]: [u32; 2], size: [f64; 2]) -> TriangleMesh {

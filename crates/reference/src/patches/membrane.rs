@@ -1,6 +1,6 @@
 //! The linear membrane in terms of the squared lengths of a triangle's edges.
 
-use crate::laws::membrane::MembraneElement;
+use toile_drape::laws::membrane::MembraneElement;
 
 /// The membrane of one triangle by its edges x1 - x0, x2 - x0 and x2 - x1: with q their squared
 /// lengths less those at rest, Green strain is linear in q, so the energy is q.Kq / 4 with a
@@ -50,7 +50,7 @@ impl EdgeMembrane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laws::stretch::MembraneLaw;
+    use toile_drape::laws::stretch::MembraneLaw;
     use toile_geometry::{Vec2, Vec3};
 
     #[test]

@@ -1,9 +1,9 @@
 //! Sparse constant matrices stored by groups of eight rows; groups with equal values share them.
 
 use super::octets::{Indices, Octet, PAD, WIDTH, gather, gather_points, load, load_points};
-use crate::lane_arithmetic::{F64s, Number, Triple};
 use pulp::Simd;
 use std::collections::BTreeMap;
+use toile_drape::lane_arithmetic::{F64s, Number, Triple};
 
 /// A constant sparse matrix. An entry of a group of eight rows is a value for each row and the eight operands:
 /// consecutive (a run) or at indices.

@@ -11,10 +11,10 @@ use super::octets::{
 };
 use super::rows::{Rows, cheapest_min_run, rounding};
 use super::stretch::Stretches;
-use crate::System;
-use crate::lane_arithmetic::{F64s, Triple};
 use pulp::Simd;
 use std::collections::BTreeMap;
+use toile_drape::System;
+use toile_drape::lane_arithmetic::{F64s, Triple};
 
 /// The membrane of the triangles of a patch, by its edges.
 pub struct Tensions {

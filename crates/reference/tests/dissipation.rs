@@ -1,7 +1,7 @@
 //! Viscosity, kept strain and air against closed forms, through the methods in time.
 #![allow(clippy::unwrap_used)]
 
-#[path = "support/strips.rs"]
+#[path = "../../drape/tests/support/strips.rs"]
 mod strips;
 
 use strips::{KINDS, Kind, strip};
@@ -29,7 +29,7 @@ fn free_strip(material: Material) -> (Cloth, System, State) {
 }
 
 fn run(system: &System, state: &mut State, kind: MethodKind, step: f64, time: f64) {
-    let mut method = MethodSettings::from(kind).build();
+    let mut method = toile_reference::build(&kind.into()).unwrap();
     for _ in 0..(time / step).round() as usize {
         method.advance(system, state, step).unwrap();
     }
@@ -127,7 +127,8 @@ fn a_stretched_strip_keeps_its_share_and_lets_go_of_the_rest() {
         tolerance: Some(1e-6),
         ..MethodKind::Rest.into()
     }
-    .build();
+    .build()
+    .unwrap();
     while !rest.finished() {
         rest.advance(&system, &mut state, 0.0).unwrap();
     }
@@ -187,7 +188,8 @@ fn kept_fold(kind: Kind) -> f64 {
         tolerance: Some(1e-7),
         ..MethodKind::Rest.into()
     }
-    .build();
+    .build()
+    .unwrap();
     while !rest.finished() {
         rest.advance(&system, &mut state, 0.0).unwrap();
     }

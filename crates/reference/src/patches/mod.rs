@@ -36,12 +36,12 @@ mod sheet;
 mod stretch;
 mod tensions;
 
-use crate::method::{Method, MethodSettings, StepReport};
-use crate::methods::{energy_bound, is_possible_speed};
-use crate::{ContactSample, DrapeError, State, System};
 use lane::Lane;
 use limits::stiffening;
 use sheet::Sheet;
+use toile_drape::methods::{energy_bound, is_possible_speed};
+use toile_drape::{ContactSample, DrapeError, State, System};
+use toile_drape::{Method, MethodSettings, StepReport};
 
 /// Patch Verlet with its private memory.
 pub struct PatchVerlet {

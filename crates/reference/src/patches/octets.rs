@@ -2,8 +2,8 @@
 //! each one vector.
 
 use super::Lane;
-use crate::lane_arithmetic::{F64s, Triple};
 use pulp::Simd;
+use toile_drape::lane_arithmetic::{F64s, Triple};
 
 /// Numbers in a group.
 pub const WIDTH: usize = 8;

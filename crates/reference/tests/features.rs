@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "support/sheets.rs"]
+#[path = "../../drape/tests/support/sheets.rs"]
 mod sheets;
-#[path = "support/solids.rs"]
+#[path = "../../drape/tests/support/solids.rs"]
 mod solids;
 
 use sheets::{object, sheet};
@@ -184,7 +184,7 @@ fn sliding() -> Scene {
 /// Positions after some steps.
 fn after(mut scene: Scene, kind: MethodKind) -> Result<Vec<TriangleMesh>, DrapeError> {
     scene.method = kind.into();
-    let mut run = SceneRun::new(&scene)?;
+    let mut run = SceneRun::new(&scene, toile_reference::build)?;
     for _ in 0..12 {
         run.advance()?;
     }
@@ -253,7 +253,9 @@ fn what_no_method_knows_together_is_said() {
     let [_, moving] = cases(Feature::MovingObjects).remove(0);
     let folded = with(moving, |s| s.method = MethodKind::Xpbd.into());
     let folded = of(folded, |m| m.relaxed_fraction = [0.0, 0.2]);
-    let error = SceneRun::new(&folded).err().map(|e| e.to_string());
+    let error = SceneRun::new(&folded, toile_reference::build)
+        .err()
+        .map(|e| e.to_string());
     let error = error.unwrap_or_default();
     for part in [
         "kept share",

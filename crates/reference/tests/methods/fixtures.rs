@@ -41,7 +41,7 @@ pub fn method(kind: MethodKind, substeps: u32) -> Box<dyn Method> {
         substeps: Some(substeps),
         ..kind.into()
     };
-    settings.build()
+    toile_reference::build(&settings).unwrap()
 }
 
 /// A solid ball at the origin.

@@ -7,6 +7,6 @@ mod hard;
 mod order;
 mod patches;
 mod rest;
-#[path = "../support/sheets.rs"]
+#[path = "../../../drape/tests/support/sheets.rs"]
 mod sheets;
 mod table;

@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "support/sheets.rs"]
+#[path = "../../drape/tests/support/sheets.rs"]
 mod sheets;
-#[path = "support/solids.rs"]
+#[path = "../../drape/tests/support/solids.rs"]
 mod solids;
 
 use sheets::{object, sheet};
@@ -50,7 +50,7 @@ fn lying(heights: &[f64], thickness: f64, contact: ContactSettings) -> Scene {
 /// Least and largest height of the `which`th object when it lies.
 fn heights(mut scene: Scene, kind: MethodKind, which: usize) -> [f64; 2] {
     scene.method = kind.into();
-    let mut run = SceneRun::new(&scene).unwrap();
+    let mut run = SceneRun::new(&scene, toile_reference::build).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -109,7 +109,9 @@ fn a_distance_is_kept_as_far_as_surfaces_are_felt_and_refused_beyond() {
         lying(&[0.1], 0.0, offset(0.04)),
         lying(&[0.1], 0.08, ContactSettings::default()),
     ] {
-        let error = SceneRun::new(&scene).err().map(|e| e.to_string());
+        let error = SceneRun::new(&scene, toile_reference::build)
+            .err()
+            .map(|e| e.to_string());
         let error = error.unwrap_or_default();
         assert!(
             error.contains("0.04") && error.contains("at most"),

@@ -1,9 +1,9 @@
 //! Principal stretches of triangles from the strains of their edges.
 
 use super::octets::{Indices, Octet, Operands, PAD, WIDTH, lane_groups};
-use crate::lane_arithmetic::{F64s, Number};
 use pulp::Simd;
 use std::collections::BTreeMap;
+use toile_drape::lane_arithmetic::{F64s, Number};
 
 /// Triangles in groups of eight.
 pub struct Stretches {
@@ -124,7 +124,7 @@ mod tests {
     use super::super::membrane::EdgeMembrane;
     use super::super::octets::padded;
     use super::*;
-    use crate::laws::membrane::MembraneElement;
+    use toile_drape::laws::membrane::MembraneElement;
     use toile_geometry::Vec2;
 
     struct Extremes<'a>(&'a Stretches, &'a [f64]);

@@ -11,9 +11,9 @@ use super::octets::{PAD, Points, lane_group_start, lane_groups, load, padded, st
 use super::patch_contacts::PatchContact;
 use super::rows::{Rows, rounding};
 use super::tensions::{PatchTopology, Tensions, groups_by_ring};
-use crate::lane_arithmetic::{F64s, Number, Triple};
-use crate::{Elastic, ElasticEnd, System};
 use pulp::Simd;
+use toile_drape::lane_arithmetic::{F64s, Number, Triple};
+use toile_drape::{Elastic, ElasticEnd, System};
 
 /// Vertices advanced by one task.
 pub struct Patch {
@@ -457,9 +457,7 @@ fn with_halo(system: &System, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)
         let end = vertices.len();
         for at in front..end {
             let v = vertices[at].0 as usize;
-            let uses = system.topology.corner_start[v] as usize
-                ..system.topology.corner_start[v + 1] as usize;
-            let corners = system.topology.corners[uses].iter();
+            let corners = system.topology.corners_of(v).iter();
             let triangles =
                 corners.flat_map(|&corner| system.topology.triangles[corner as usize / 3]);
             let (columns, _) = system.rest.bending.row_entries(v);

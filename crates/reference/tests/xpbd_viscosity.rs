@@ -1,7 +1,7 @@
 //! Viscosity of XPBD (Kelvin-Voigt) against closed forms, at the default substep and at fine ones.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "support/strips.rs"]
+#[path = "../../drape/tests/support/strips.rs"]
 mod strips;
 
 use strips::{KINDS, Kind, strip};
@@ -21,7 +21,7 @@ fn near(what: &str, got: f64, expected: f64, share: f64) {
 }
 
 fn run(system: &System, state: &mut State, step: f64, time: f64) {
-    let mut method = MethodSettings::from(MethodKind::Xpbd).build();
+    let mut method = toile_reference::build(&MethodKind::Xpbd.into()).unwrap();
     for _ in 0..(time / step).round() as usize {
         method.advance(system, state, step).unwrap();
     }
@@ -80,7 +80,7 @@ fn course(
         substeps: (kind == MethodKind::Xpbd).then_some(1),
         ..kind.into()
     };
-    let mut method = settings.build();
+    let mut method = toile_reference::build(&settings).unwrap();
     let mut after_step = |_| {
         method.advance(system, &mut state, step).unwrap();
         end(cloth, &state, axis) - rest
@@ -258,7 +258,7 @@ fn viscosity_at_any_size_is_stable_or_refused_by_name() {
             *v = Vec3::new((7.1 * k).sin(), (3.3 * k).cos(), (5.7 * k).sin());
         }
         let start = state.kinetic_energy(&system);
-        let mut method = MethodSettings::from(MethodKind::Xpbd).build();
+        let mut method = toile_reference::build(&MethodKind::Xpbd.into()).unwrap();
         match (0..10).try_for_each(|_| method.advance(&system, &mut state, 1.0 / 60.0).map(drop)) {
             Ok(()) => {
                 taken += 1;
