@@ -39,7 +39,8 @@ pub struct Elastic {
 
 impl ElasticEnd {
     /// Its position (m).
-    pub(crate) fn position(self, x: &[Vec3]) -> Vec3 {
+    #[inline]
+    pub fn position(self, x: &[Vec3]) -> Vec3 {
         match self {
             Self::Vertex(v) => x[v as usize],
             Self::Point(point) => point,
@@ -88,7 +89,7 @@ impl ElasticCouplings {
     }
 
     /// The two vertices of each elastic.
-    pub(crate) fn ends(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+    pub fn ends(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         self.all.iter().map(|(ends, _)| *ends)
     }
 

@@ -24,7 +24,7 @@ use toile_sparse::ScalarMatrix;
 
 /// A membrane law during a step: measured from the internal strain, with viscosity.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct IncrementalLaw<'a> {
+pub struct IncrementalLaw<'a> {
     law: &'a MembraneLaw,
     term: Option<&'a StretchTerm>,
 }
@@ -98,7 +98,7 @@ struct AirTerm {
 
 /// The incremental terms of a step; empty for an elastic cloth without viscosity in still air.
 #[derive(Default)]
-pub(crate) struct IncrementalPotential {
+pub struct IncrementalPotential {
     stretch: Vec<StretchTerm>,
     fold: Vec<FoldTerm>,
     air: Vec<AirTerm>,

@@ -81,7 +81,7 @@ pub fn residual(system: &System, state: &State, workspace: &mut Workspace) -> f6
 }
 
 /// Norm of the weights of the free vertices (N); without gravity that of their weights on earth.
-pub(crate) fn weight_norm(system: &System) -> f64 {
+pub fn weight_norm(system: &System) -> f64 {
     let free = system
         .rest
         .mass

@@ -72,14 +72,16 @@ pub struct RestMemory {
 #[serde(deny_unknown_fields)]
 pub struct RelaxationMemory {
     /// Displacements per iteration, half an iteration earlier (m).
-    pub(crate) moves: Vec<Vec3>,
+    pub moves: Vec<Vec3>,
     /// Fictitious masses, with the iteration as unit of time (N/m).
-    pub(crate) masses: Vec<f64>,
+    pub masses: Vec<f64>,
     /// Fictitious kinetic energy half an iteration earlier (J).
-    pub(crate) kinetic: f64,
+    pub kinetic: f64,
     /// Whether the next iteration starts without velocity.
-    pub(crate) still: bool,
-    pub(crate) iterations: usize,
+    pub still: bool,
+    /// Iterations so far.
+    pub iterations: usize,
+    /// Net force over weight at the last iteration.
     #[serde(with = "toile_fabric::exact")]
-    pub(crate) residual: f64,
+    pub residual: f64,
 }

@@ -162,7 +162,7 @@ impl System {
 
     /// Elastics at a vertex, as indices into [`Self::elastics`], with their other ends.
     #[inline]
-    pub(crate) fn elastics_at(&self, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
+    pub fn elastics_at(&self, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
         let between = self.couplings.at(v).iter().map(move |&e| {
             let (ends, _) = self.couplings.all[e as usize];
             let other = ends[usize::from(ends[0] as usize == v)];
@@ -175,7 +175,8 @@ impl System {
     }
 
     /// The law of one of [`Self::elastics`].
-    pub(crate) fn elastic_law(&self, index: usize) -> ElasticLaw {
+    #[inline]
+    pub fn elastic_law(&self, index: usize) -> ElasticLaw {
         match self.couplings.all.get(index) {
             Some((_, law)) => *law,
             None => self.control.attachments.all()[index - self.couplings.all.len()].law,

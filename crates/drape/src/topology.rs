@@ -18,7 +18,7 @@ pub struct Topology {
     /// Positions of the vertices at compilation (m), by which nested dissection orders the unknowns.
     pub layout: Vec<Vec3>,
     /// Sparsity pattern of a matrix that couples the corners of each triangle.
-    pub(crate) pattern: BlockPattern,
+    pub pattern: BlockPattern,
     /// First index into `corners` of each vertex, and the end.
     pub(crate) corner_start: Vec<u32>,
     /// Corners (3 t + k) of each vertex, ascending.

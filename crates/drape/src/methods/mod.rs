@@ -31,10 +31,6 @@ pub use velocity_verlet::VelocityVerlet;
 
 use crate::DrapeError;
 use crate::method::{Method, MethodKind, MethodSettings};
-use crate::reference::block_descent::BlockDescent;
-use crate::reference::lbfgs::Lbfgs;
-use crate::reference::projective::Projective;
-use crate::reference::{forward_euler, relaxation, runge_kutta, symplectic_euler};
 use explicit::Explicit;
 use implicit::Implicit;
 use newton_solver::{Newton, OneSolve};
@@ -66,16 +62,7 @@ impl MethodSettings {
     /// The method; none where it is one for comparison.
     fn own(&self) -> Option<Box<dyn Method>> {
         Some(match self.kind {
-            MethodKind::ForwardEuler => {
-                Guarded::boxed(Explicit::<forward_euler::ForwardEuler>::new(self))
-            }
-            MethodKind::SymplecticEuler => {
-                Guarded::boxed(Explicit::<symplectic_euler::SymplecticEuler>::new(self))
-            }
             MethodKind::VelocityVerlet => Guarded::boxed(Explicit::<VelocityVerlet>::new(self)),
-            MethodKind::RungeKutta4 => {
-                Guarded::boxed(Explicit::<runge_kutta::RungeKutta4>::new(self))
-            }
             MethodKind::SemiImplicitEuler => {
                 Guarded::boxed(Implicit::<rules::Euler, OneSolve>::new(self))
             }
@@ -83,23 +70,20 @@ impl MethodSettings {
             MethodKind::ImplicitMidpoint => {
                 Guarded::boxed(Implicit::<rules::Midpoint, Newton<true>>::new(self))
             }
-            MethodKind::ProjectiveDynamics => {
-                Guarded::boxed(Implicit::<rules::Euler, Projective>::new(self))
-            }
-            MethodKind::Lbfgs => Guarded::boxed(Implicit::<rules::Euler, Lbfgs>::new(self)),
-            MethodKind::VertexBlockDescent => {
-                Guarded::boxed(Implicit::<rules::Euler, BlockDescent<false>>::new(self))
-            }
-            MethodKind::ChebyshevBlockDescent => {
-                Guarded::boxed(Implicit::<rules::Euler, BlockDescent<true>>::new(self))
-            }
-            MethodKind::DynamicRelaxation => Guarded::boxed(relaxation::Relaxation::new(self)),
             MethodKind::ImplicitEuler => {
                 Guarded::boxed(Implicit::<rules::Euler, Newton<false>>::new(self))
             }
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
             MethodKind::Xpbd => Guarded::boxed(crate::xpbd::XpbdMethod::new(self)),
-            MethodKind::PatchVerlet => return None,
+            MethodKind::ForwardEuler
+            | MethodKind::SymplecticEuler
+            | MethodKind::RungeKutta4
+            | MethodKind::PatchVerlet
+            | MethodKind::ProjectiveDynamics
+            | MethodKind::Lbfgs
+            | MethodKind::VertexBlockDescent
+            | MethodKind::ChebyshevBlockDescent
+            | MethodKind::DynamicRelaxation => return None,
         })
     }
 }

@@ -3,7 +3,7 @@
 //! entries of the Hessian at a time.
 
 use super::{Inertia, Workspace};
-use crate::pairs::Pairs;
+use crate::correction_pairs::CorrectionPairs;
 use crate::{State, System};
 use toile_sparse::dot;
 
@@ -39,7 +39,7 @@ impl Workspace {
             return 0;
         }
         let start = state.clone();
-        let mut pairs = Pairs::default();
+        let mut pairs = CorrectionPairs::default();
         let mut steps = 0;
         while steps < limits.steps {
             if steps > 0 {
@@ -65,7 +65,7 @@ impl Workspace {
         system: &System,
         state: &mut State,
         inertia: &Inertia,
-        pairs: &mut Pairs,
+        pairs: &mut CorrectionPairs,
         limits: ChordLimits,
     ) -> f64 {
         self.fill_gradient(system, &state.positions, Some(inertia));

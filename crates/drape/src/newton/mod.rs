@@ -121,11 +121,15 @@ impl NewtonReport {
 /// Private memory of a solve, sized once for a model.
 #[derive(Default)]
 pub struct Workspace {
-    pub(crate) contacts: Contacts,
-    pub(crate) increment: IncrementalPotential,
-    pub(crate) gradient: Vec<Vec3>,
+    /// Contacts detected last.
+    pub contacts: Contacts,
+    /// Terms of the step that was begun last.
+    pub increment: IncrementalPotential,
+    /// Gradient of the potential on each vertex where it was computed last (N).
+    pub gradient: Vec<Vec3>,
     pub(crate) direction: Vec<Vec3>,
-    pub(crate) trial: Vec<Vec3>,
+    /// Positions that a line search tries (m).
+    pub trial: Vec<Vec3>,
     force: Vec<Vec3>,
     corner_gradients: Vec<[Vec3; 3]>,
     elements: Vec<[Matrix3<f64>; 6]>,
@@ -181,7 +185,7 @@ impl Workspace {
     }
 
     /// Sizes the buffers for a model.
-    pub(crate) fn fit(&mut self, system: &System) {
+    pub fn fit(&mut self, system: &System) {
         let n = system.vertex_count();
         self.gradient.resize(n, Vec3::zeros());
         self.direction.resize(n, Vec3::zeros());
@@ -283,7 +287,7 @@ impl Workspace {
     }
 
     /// Potential at positions `x`, with the contact planes detected last (J).
-    pub(crate) fn potential(&self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
+    pub fn potential(&self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
         let elements: Vec<f64> = system
             .topology
             .triangles
@@ -327,7 +331,7 @@ impl Workspace {
     }
 
     /// Computes the gradient of the potential at `x` (N), zero at pins; without `inertia` the static one.
-    pub(crate) fn fill_gradient(&mut self, system: &System, x: &[Vec3], inertia: Option<&Inertia>) {
+    pub fn fill_gradient(&mut self, system: &System, x: &[Vec3], inertia: Option<&Inertia>) {
         let terms = &self.increment;
         let each = self.corner_gradients.par_iter_mut().enumerate();
         each.with_min_len(CHUNK).for_each(|(t, out)| {
@@ -381,7 +385,7 @@ impl Workspace {
     /// Computes the Hessian of the potential at `x` with a fraction of its destabilising curvature: positive
     /// semidefinite with [`Curvature::CONVEX`], otherwise possibly indefinite. Bending is not included: it is
     /// constant and part of the model.
-    pub(crate) fn fill_hessian(
+    pub fn fill_hessian(
         &mut self,
         system: &System,
         x: &[Vec3],
@@ -464,7 +468,7 @@ impl Workspace {
 
     /// One row of the Hessian computed last as columns and blocks, without bending and without the off-diagonal
     /// blocks of elastics and cloth contacts, which are stored separately.
-    pub(crate) fn hessian_blocks<'a>(
+    pub fn hessian_blocks<'a>(
         &'a self,
         system: &'a System,
         row: usize,

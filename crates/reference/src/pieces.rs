@@ -1,8 +1,8 @@
 //! Connected pieces of cloth, and the translation of each as a whole that lowers the potential.
 
-use crate::methods::implicit::Problem;
-use crate::{State, System, Workspace, merge_map};
 use nalgebra::Matrix3;
+use toile_drape::methods::implicit::Problem;
+use toile_drape::{State, System, Workspace, merge_map};
 use toile_geometry::Vec3;
 
 /// The connected pieces of a model, and the reduced system of each.

@@ -2,9 +2,8 @@
 
 use super::descent::{Line, descend, line_search, truncate_length};
 use super::metric::Metric;
-use crate::methods::implicit::{Limits, Problem, Solver};
-use crate::pairs::Pairs;
-use crate::{NewtonReport, State, Workspace};
+use toile_drape::methods::implicit::{Limits, Problem, Solver};
+use toile_drape::{CorrectionPairs, NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 
 /// L-BFGS (Nocedal 1980) whose initial inverse Hessian is the inverse of the prefactored [`Metric`]
@@ -13,7 +12,7 @@ use toile_geometry::Vec3;
 #[derive(Default)]
 pub struct Lbfgs {
     metric: Metric,
-    pairs: Pairs,
+    pairs: CorrectionPairs,
     direction: Vec<Vec3>,
 }
 
@@ -60,7 +59,7 @@ impl Solver for Lbfgs {
         workspace.fit(problem.system);
         self.direction
             .resize(problem.system.vertex_count(), Vec3::zeros());
-        self.pairs = Pairs::default();
+        self.pairs = CorrectionPairs::default();
         if !self.metric.fit(problem.system, problem.weight) {
             return NewtonReport::default();
         }

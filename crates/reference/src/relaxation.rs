@@ -1,10 +1,11 @@
 //! Dynamic relaxation: equilibrium by undamped motion that is stopped at every peak of the kinetic energy.
 
-use crate::laws::membrane::Curvature;
-use crate::measure::weight_norm;
-use crate::method::{Method, MethodSettings, StepReport};
-use crate::methods::explicit::forces_and_update_friction;
-use crate::{DrapeError, Inertia, Memory, RelaxationMemory, State, System, Workspace};
+use toile_drape::laws::membrane::Curvature;
+use toile_drape::methods::explicit::forces_and_update_friction;
+use toile_drape::{
+    DrapeError, Inertia, Memory, Method, MethodSettings, RelaxationMemory, State, StepReport,
+    System, Workspace, weight_norm,
+};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
 

@@ -1,15 +1,15 @@
 //! The constant metric of projective dynamics: one scalar matrix for x, y and z, factorised once.
 
-use crate::methods::implicit::Problem;
-use crate::{Attachments, ElasticEnd, Model, State, System, Workspace};
 use std::sync::Arc;
+use toile_drape::methods::implicit::Problem;
+use toile_drape::{Attachments, ElasticEnd, Model, State, System, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 use toile_sparse::factor::{Factor, Graph};
 
 /// A = b M + sum_t A_t (k_u a a^T + k_v b b^T) + bending + elastics, with fixed pins.
 ///
-/// a and b are the weights of a triangle's tangents ([`crate::laws::membrane`]),
+/// a and b are the weights of a triangle's tangents ([`toile_drape::laws::membrane`]),
 /// k_u = max(C11 + C12 sqrt(C11/C22), 2 G) and k_v with C22 in place of C11: A is then an upper bound of the Hessian
 /// of the membrane at rest, as a quadratic form, since 2 C12 p q <= C12 (s p^2 + q^2 / s) and
 /// (p + q)^2 <= 2 p^2 + 2 q^2.

@@ -2,11 +2,10 @@
 
 use super::colours::Colours;
 use super::pieces::Pieces;
-use crate::contacts::Contacts;
-use crate::methods::implicit::{Limits, Problem, Solver};
-use crate::{Contact, NewtonReport, State, System, Workspace};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use toile_drape::methods::implicit::{Limits, Problem, Solver};
+use toile_drape::{Contact, Contacts, NewtonReport, State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// Vertex block descent (Chen, Liu, Yang and Yuksel 2024).
@@ -113,9 +112,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         if let Some(lagged) = self.lagged.get(v) {
             gradient += lagged;
         }
-        let uses =
-            system.topology.corner_start[v] as usize..system.topology.corner_start[v + 1] as usize;
-        for &corner in &system.topology.corners[uses] {
+        for &corner in system.topology.corners_of(v) {
             let (t, i) = (corner as usize / 3, corner as usize % 3);
             let positions = system.topology.triangles[t].map(|u| x[u as usize]);
             let (g, h) = system.rest.elements[t].corner(&terms.law(system, t), positions, i);

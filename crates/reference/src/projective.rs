@@ -2,10 +2,10 @@
 
 use super::descent::{Line, descend, line_search, truncate_length};
 use super::metric::Metric;
-use crate::methods::implicit::{Limits, Problem, Solver};
-use crate::{NewtonReport, State, Workspace};
 use nalgebra::{DMatrix, DVector};
 use std::collections::VecDeque;
+use toile_drape::methods::implicit::{Limits, Problem, Solver};
+use toile_drape::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
 

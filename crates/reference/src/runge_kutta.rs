@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method: order 4.
 
-use crate::methods::explicit::{Scheme, forces, forces_and_update_friction};
-use crate::{State, System, Workspace};
+use toile_drape::methods::explicit::{Scheme, forces, forces_and_update_friction};
+use toile_drape::{State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// With y = (x, v) and y' = F(y) = (v, f(x, v) / m - c v):

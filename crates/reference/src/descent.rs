@@ -1,7 +1,7 @@
 //! Quasi-Newton methods: gradient, iteration and line search, common to all of them.
 
-use crate::methods::implicit::{MAX_MOVE, Problem};
-use crate::{NewtonReport, State, Workspace};
+use toile_drape::methods::implicit::{MAX_MOVE, Problem};
+use toile_drape::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
 

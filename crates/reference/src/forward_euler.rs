@@ -1,7 +1,7 @@
 //! Forward Euler (Euler 1768): order 1, and unstable for every undamped vibration.
 
-use crate::methods::explicit::{Scheme, forces_and_update_friction};
-use crate::{State, System, Workspace};
+use toile_drape::methods::explicit::{Scheme, forces_and_update_friction};
+use toile_drape::{State, System, Workspace};
 
 /// x' = x + h v,  v' = v + h (f(x, v) / m - c v).
 ///

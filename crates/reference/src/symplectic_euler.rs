@@ -1,7 +1,7 @@
 //! Symplectic (semi-explicit) Euler: order 1, bounded energy error for all time below the stability limit.
 
-use crate::methods::explicit::{Scheme, forces_and_update_friction};
-use crate::{State, System, Workspace};
+use toile_drape::methods::explicit::{Scheme, forces_and_update_friction};
+use toile_drape::{State, System, Workspace};
 
 /// v' = (v + h f(x) / m) / (1 + c h),  x' = x + h v'
 /// (de Vogelaere 1956; Hairer, Lubich and Wanner 2006, I.1.9).

@@ -1,6 +1,6 @@
 //! Colours of vertices: two of one colour share no triangle, bending stencil or elastic.
 
-use crate::{Model, System};
+use toile_drape::{Model, System};
 
 /// Vertices by colour, computed once for a model.
 #[derive(Default)]
@@ -69,7 +69,7 @@ impl Colours {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cloth, Material};
+    use toile_drape::{Cloth, Material};
     use toile_geometry::{TriangleMesh, Vec3};
 
     #[test]

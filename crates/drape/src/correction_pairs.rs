@@ -14,7 +14,7 @@ struct Pair {
 
 /// The correction pairs of the last steps, and the last iterate.
 #[derive(Default)]
-pub struct Pairs {
+pub struct CorrectionPairs {
     pairs: VecDeque<Pair>,
     spare: Option<Pair>,
     /// The last iterate and its gradient.
@@ -29,7 +29,7 @@ pub struct Pairs {
 /// Least s.y as a share of |s| |y|: below it the product is rounding.
 const MIN_CURVATURE: f64 = 1e-10;
 
-impl Pairs {
+impl CorrectionPairs {
     /// Removes all pairs; the last iterate remains.
     pub fn clear(&mut self) {
         self.pairs.clear();
@@ -108,7 +108,7 @@ mod tests {
     fn as_many_pairs_as_unknowns_find_the_bottom_of_a_bowl() {
         let h = Matrix3::new(4.0, 1.0, 0.0, 1.0, 3.0, 0.5, 0.0, 0.5, 40.0);
         let mut x = vec![Vec3::new(1.0, -2.0, 0.5)];
-        let (mut pairs, mut direction) = (Pairs::default(), [Vec3::zeros()]);
+        let (mut pairs, mut direction) = (CorrectionPairs::default(), [Vec3::zeros()]);
         let mut norms = Vec::<f64>::new();
         for _ in 0..4 {
             let gradient = [h * x[0]];
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn steps_along_which_the_gradient_falls_and_old_ones_are_not_remembered() {
-        let mut pairs = Pairs::default();
+        let mut pairs = CorrectionPairs::default();
         let at = |x: f64| vec![Vec3::x() * x];
         pairs.push(&at(0.0), &at(0.0), 2);
         assert!(pairs.is_empty(), "one place is no step");
