@@ -9,7 +9,7 @@
 //! - [`crate::xpbd`] (`moving_solids.rs`, `carried_plane.rs`): moving solids: XPBD alone follows them;
 //! - [`crate::xpbd`] (`skin_contacts.rs`, `skin_edges.rs`): their vertices and edges against faces and edges
 //!   of the cloth;
-//! - [`crate::world::World::solids`] (`compile.rs`), [`crate::patches`] (`patch_contacts.rs`,
+//! - [`crate::world::World::solids`] (`compile.rs`), crate `reference` (`patches/`: `patch_contacts.rs`,
 //!   `query_surface`): solids made for the system; patches query the distance field directly;
 //! - [`crate::world::Object::check`], [`crate::scene::Scene::check_motions`],
 //!   [`crate::method::MethodKind::supports`] (`features.rs`): checks of meshes, motions and methods.

@@ -8,7 +8,7 @@
 //! - [`crate::laws::contact::HARDER`], [`crate::laws::contact::TANGENTIAL_RATIO`]: stiffness where cloth lies
 //!   deep; stiffness of friction;
 //! - [`crate::collision`] (`detector.rs`, `HARD_FROM`): depth beyond which two cloths push harder;
-//! - [`crate::xpbd`] (`contact.rs`, `of_sample`), [`crate::patches`] (`patch_contacts.rs`, `update_force`):
+//! - [`crate::xpbd`] (`contact.rs`, `of_sample`), crate `reference` (`patches/`: `patch_contacts.rs`, `update_force`):
 //!   stiffness in XPBD, in patches;
 //! - [`crate::garment::GarmentSetup::sewing_environment`]: no contact of cloth with cloth and no friction
 //!   while a garment is sewn.

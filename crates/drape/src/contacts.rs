@@ -8,7 +8,7 @@
 //! - [`crate::collider::PlacedSolid`], [`crate::rest_data`] (`lump`): distance to a solid and its direction;
 //!   friction of a vertex from its materials;
 //! - [`crate::solid_friction::SolidFriction`]: where cloth sticks;
-//! - [`crate::xpbd`] (`contact.rs`), [`crate::patches`] (`patch_contacts.rs`): contact with solids in XPBD
+//! - [`crate::xpbd`] (`contact.rs`), crate `reference` (`patches/`: `patch_contacts.rs`): contact with solids in XPBD
 //!   and in patches;
 //! - [`crate::collision`]: contact of cloth with cloth;
 //! - [`crate::measure`](mod@crate::measure) (`measure_solids`): crossings with solids, counted exactly.

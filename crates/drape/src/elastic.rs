@@ -8,7 +8,7 @@
 //!   grow;
 //! - [`crate::world::World::resolve_attachments`] (`attachment.rs`): attachments of a scene as elastics and
 //!   ties;
-//! - [`crate::xpbd`] (`attachment_constraint.rs`), [`crate::patches`] (`patch.rs`, `add_elastics`): elastics
+//! - [`crate::xpbd`] (`attachment_constraint.rs`), crate `reference` (`patches/`: `patch.rs`, `add_elastics`): elastics
 //!   in XPBD and in patches;
 //! - [`crate::tie::Tie`], [`crate::tied`]: ties to points within triangles and to moving frames, and where
 //!   these are;

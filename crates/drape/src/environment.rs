@@ -8,7 +8,7 @@
 //!   worn;
 //! - [`crate::sew`] (`DRAG`), [`crate::kinetic_damping`] (`DRAG`): drag of a garment while sewn and in the
 //!   swing;
-//! - [`crate::methods`] (`rules.rs`), [`crate::xpbd::Xpbd::advance`], [`crate::patches`] (`sheet.rs`,
+//! - [`crate::methods`] (`rules.rs`), [`crate::xpbd::Xpbd::advance`], crate `reference` (`patches/`: `sheet.rs`,
 //!   `advance`): drag by mass: each method takes it itself;
 //! - [`crate::incremental_potential::IncrementalPotential`], [`crate::xpbd`] (`viscosity.rs`): forces of
 //!   viscosity;

@@ -4,7 +4,7 @@
 //! # Decided with
 //! - [`crate::method::MethodKind`]: the methods;
 //! - [`crate::scene_run::SceneRun::apply_edit`]: checks features again after an edit;
-//! - [`crate::patches`] (`is_plain`): laws that patches leave to velocity Verlet;
+//! - crate `reference` (`patches/`: `is_plain`): laws that patches leave to velocity Verlet;
 //! - [`crate::methods`] (`guard.rs`, `Guarded`): refuses attachments to moving solids where a method does not
 //!   follow them.
 //!

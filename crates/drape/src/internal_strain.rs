@@ -6,7 +6,7 @@
 //!   its place in the law of a triangle; its relaxation in time;
 //! - [`crate::laws::fold::FoldTerm`]: folds that stay;
 //! - [`crate::world`] (`transfer.rs`, `internal_strain`): carried over an edit;
-//! - [`crate::method::MethodKind::supports`] (`features.rs`), [`crate::patches`] (`is_plain`): methods that
+//! - [`crate::method::MethodKind::supports`] (`features.rs`), crate `reference` (`patches/`: `is_plain`): methods that
 //!   do not know it.
 
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,5 @@
-//! The interface of methods, and their closed list.
+//! The interface of methods, and their closed list. Those that garments and scenes use are made in [`crate::methods`],
+//! those for comparison in crate `reference`.
 //!
 //! # Decided with
 //! - [`crate::methods`]: makes a method from its kind: a rule and a solver, a scheme, or one of its own;
@@ -6,7 +7,6 @@
 //!   undoes failed steps;
 //! - [`crate::methods`] (`rules.rs`), [`crate::methods::implicit::Solver`],
 //!   [`crate::methods::explicit::Scheme`]: what a method is composed of;
-//! - [`crate::reference`]: methods for comparison only;
 //! - [`crate::method::MethodKind::supports`] (`features.rs`): features that a method lacks; the remaining
 //!   ones it is taken to have;
 //! - [`crate::memory::Memory`]: what a method remembers from step to step; anything it keeps elsewhere is

@@ -3,8 +3,8 @@
 //! # Decided with
 //! - [`crate::contacts`] (`fits`), [`crate::collision::ContactDetector::surface`]: contacts and surface kept;
 //! - [`crate::hessian::Hessian`]: matrix and factor kept;
-//! - [`crate::xpbd`], [`crate::patches`] (`sheet.rs`, `fits`): XPBD and patches kept;
-//! - [`crate::reference`] (`metric.rs`, `colours.rs`): methods for comparison;
+//! - [`crate::xpbd`], crate `reference` (`patches/`: `sheet.rs`, `fits`): XPBD and patches kept;
+//! - crate `reference` (`metric.rs`, `colours.rs`): methods for comparison;
 //! - [`crate::topology`], [`crate::caps`], [`crate::rest_data`]: triangles that are simulated in place of
 //!   those drawn, and their rest shapes.
 //!

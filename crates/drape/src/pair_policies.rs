@@ -8,7 +8,7 @@
 //! - [`crate::world::World::policies`] (`compile.rs`): policies by vertex and solid, for the system;
 //! - [`crate::collision`] (`exemptions.rs`, `entanglement.rs`, `layers.rs`): contact, crossings and layers of
 //!   cloth;
-//! - [`crate::contacts`] (`find`), [`crate::xpbd`] (`contact.rs`, `of_sample`), [`crate::patches`]
+//! - [`crate::contacts`] (`find`), [`crate::xpbd`] (`contact.rs`, `of_sample`), crate `reference` (`patches/`)
 //!   (`patch_contacts.rs`, `start`): contact with solids;
 //! - [`crate::submodel::SubModel`], [`crate::scene_run::SceneRun::refine`]: regions of the cloth; finer
 //!   samples;

@@ -3,7 +3,7 @@
 //! # Decided with
 //! - [`crate::contacts::Contacts::remember_step`]: anchors after a step;
 //! - [`crate::xpbd`] (`friction.rs`, `contact.rs`, `recall`): XPBD: taken from the state and stored;
-//! - [`crate::patches`] (`patch_contacts.rs`, `start`, `finish`): patches: taken from the state and stored;
+//! - crate `reference` (`patches/`: `patch_contacts.rs`, `start`, `finish`): patches: taken from the state and stored;
 //! - [`crate::world`] (`transfer.rs`, `friction`): carried over an edit or a merge;
 //! - [`crate::contact_refinement`]: kept under other rest shapes;
 //! - [`crate::world::Simulation::reset_motion`]: wiped when motion is reset;

@@ -12,8 +12,8 @@
 //! - [`crate::incremental_potential::add_forces_of_motion`]: air in explicit methods;
 //! - [`crate::xpbd`] (`air.rs`, `AddAirImpulses`, `triangle_sums.rs`): air in XPBD; sums at vertices;
 //! - [`crate::xpbd::Losses`]: left out where only an equilibrium is sought;
-//! - [`crate::reference::block_descent`]: air vertex by vertex;
-//! - [`crate::patches`] (`is_plain`): patches leave air to velocity Verlet;
+//! - crate `reference` (`block_descent.rs`): air vertex by vertex;
+//! - crate `reference` (`patches/`: `is_plain`): patches leave air to velocity Verlet;
 //! - [`crate::garment::GarmentSetup::worn_environment`]: garments hang in still air.
 
 use nalgebra::Matrix3;

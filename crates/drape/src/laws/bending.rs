@@ -20,9 +20,9 @@
 //!   material made one matrix for the whole cloth; its structure under other rest shapes;
 //! - [`crate::newton`], [`crate::hessian::Hessian`]: energy and force; the Hessian;
 //! - [`crate::laws::fold::FoldTerm`], [`crate::incremental_potential::relax`]: folds that stay, viscosity;
-//! - [`crate::xpbd`] (`bending.rs`), [`crate::patches`] (`patch.rs`, `bending_rows`): bending in XPBD, in
+//! - [`crate::xpbd`] (`bending.rs`), crate `reference` (`patches/`: `patch.rs`, `bending_rows`): bending in XPBD, in
 //!   patches;
-//! - [`crate::reference::block_descent`]: bending vertex by vertex.
+//! - crate `reference` (`block_descent.rs`): bending vertex by vertex.
 //!
 //! A fold line of a pattern has no angle at rest: the mesh has edges on it, no more.
 

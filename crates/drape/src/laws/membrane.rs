@@ -11,7 +11,7 @@
 //! - [`crate::incremental_potential::IncrementalPotential::law`]: the law of a triangle with viscosity and
 //!   kept strain;
 //! - [`crate::newton`]: energy, force and Hessian summed over triangles;
-//! - [`crate::xpbd`] (`membrane.rs`), [`crate::patches`] (`tensions.rs`): stretch in XPBD, in patches;
+//! - [`crate::xpbd`] (`membrane.rs`), crate `reference` (`patches/`: `tensions.rs`): stretch in XPBD, in patches;
 //! - [`crate::measure::stretch_per_triangle`]: stretch of a picture: the larger of warp and weft.
 
 use crate::laws::stretch::StrainLaw;

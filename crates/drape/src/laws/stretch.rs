@@ -26,9 +26,9 @@
 //! - [`crate::xpbd`] (`membrane.rs`): the law in single precision, for XPBD;
 //! - [`crate::features::Feature`]: a kind of law as a feature;
 //! - [`crate::methods`] (`newton_solver.rs`, `is_stiff`), [`crate::sew::SewRun::new`],
-//!   [`crate::kinetic_damping`] (`substep`), [`crate::reference`] (`metric.rs`): know the linear stiffness
+//!   [`crate::kinetic_damping`] (`substep`), crate `reference` (`metric.rs`): know the linear stiffness
 //!   alone;
-//! - [`crate::patches`] (`is_plain`, `membrane.rs`, `EdgeMembrane`, `limits.rs`): patches know linear laws
+//! - crate `reference` (`patches/`: `is_plain`, `membrane.rs`, `EdgeMembrane`, `limits.rs`): patches know linear laws
 //!   alone.
 //!
 //! By hand: cases in `drape/tests/features.rs`, recorded states in `lab/tests/recorded/states.rs`, a strip in

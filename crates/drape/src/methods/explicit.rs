@@ -15,8 +15,8 @@
 //! - [`crate::methods::frequency::FrequencySearch::stable_step`]: largest frequency of a model;
 //! - [`crate::methods::explicit::STABILITY_FRACTION`], [`crate::methods::explicit::Explicit::substep_count`]:
 //!   share of the stability limit that is used; number of substeps;
-//! - [`crate::patches`] (`limits.rs`, `stretch.rs`): frequency of patches, raised by stretch;
-//! - [`crate::patches`] (`take_automatic`): patches: a stretch of time begun anew with more substeps;
+//! - crate `reference` (`patches/`: `limits.rs`, `stretch.rs`): frequency of patches, raised by stretch;
+//! - crate `reference` (`patches/`: `take_automatic`): patches: a stretch of time begun anew with more substeps;
 //! - [`crate::kinetic_damping::KineticDamping::substep`]: substeps of the swing;
 //! - [`crate::xpbd`] (`xpbd_method.rs`, `SUBSTEPS`): substeps of XPBD where none are given;
 //! - [`crate::methods::energy::EnergyMonitor::is_possible`]: a state that shows instability.
