@@ -14,20 +14,20 @@ use toile_pattern::Evaluation;
 
 /// Largest number of names that are proposed.
 const PROPOSED: usize = 8;
-/// Share of a field for its text if a value stands beside it.
+/// Share of a field's width that its text gets, if a value stands beside the text (1).
 const TEXT_SHARE: f32 = 0.5;
-/// Height that words under a field need above the lower edge of the window, and their least width
+/// Height that words under a field need above the lower edge of the window, and least width of these words
 /// (pixels).
 const UNDER: f32 = 64.0;
 const MIN_WIDTH_UNDER: f32 = 270.0;
 
-/// Grey words inside a field beside its text. They use the room of the field: nothing moves when they
-/// change.
+/// Grey words inside a field, beside its text. They use the room of the field, so that no widget moves when
+/// they change.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
     /// Default that applies while the field is empty.
     pub hint: String,
-    /// Value of the text; hidden while it is edited.
+    /// Value of the text, for instance of a formula; hidden while the text is edited.
     pub value: String,
 }
 
@@ -38,15 +38,15 @@ struct Room {
     text: f32,
 }
 
-/// A text field as wide as there is room. A longer text is shown whole while it is edited, in as many
-/// lines as it needs, and in a tooltip. The lines cover the widgets below.
+/// A text field as wide as there is room. While it is edited a longer text is shown whole, in as many lines
+/// as it needs, which cover the widgets below; otherwise it is shown whole in a tooltip.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
     text_field_beside(ui, id, text, &Beside::default())
 }
 
 fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Beside) -> Response {
     let had_focus = had_focus(ui, id);
-    // Text typed in the same frame in which the field got the focus replaces the old text, too.
+    // Text typed in the frame in which the field got the focus replaces the old text, too.
     let given_focus = !had_focus && ui.memory(|memory| memory.has_focus(id));
     if given_focus {
         choose_all(ui, id, text);
@@ -63,9 +63,9 @@ fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Besi
         note_focus(ui, id);
     }
     if response.has_focus() && !had_focus {
-        // A field that is reached by a key may be out of sight.
+        // A field that got the focus by a key may be out of sight.
         ui.scroll_to_rect(response.rect, None);
-        // A click has set the cursor and lost the selection.
+        // The click that gave the focus has set the cursor: the whole text is selected again.
         if before.is_some_and(|before| before == *text) {
             choose_all(ui, id, text);
         }
@@ -73,8 +73,8 @@ fn text_field_beside(ui: &mut Ui, id: egui::Id, text: &mut String, beside: &Besi
     response
 }
 
-/// The value of a text for the room beside it in the field, truncated if it is longer; the text has half
-/// of the field.
+/// A value as shown inside a field beside its text; truncated if it is longer than the room. The text gets
+/// up to half of the field.
 fn value_beside(ui: &Ui, value: &str, text: &str) -> String {
     let padding = 4.0 * ui.spacing().button_padding.x;
     let whole = ui.available_width() - padding;
@@ -144,8 +144,8 @@ fn over(id: egui::Id) -> Area {
         .fade_in(false)
 }
 
-/// Whether the area of a field of several lines was shown before: in its first frame it is measured, and
-/// takes no keys.
+/// Whether the area of a field of several lines was shown before. In the first frame the area is only
+/// measured, and takes no keys.
 fn is_measured(ui: &Ui, id: egui::Id, room: Room) -> bool {
     let over = over(id);
     let is_known = egui::AreaState::load(ui.ctx(), over.layer().id).is_some();
@@ -157,7 +157,7 @@ fn is_measured(ui: &Ui, id: egui::Id, room: Room) -> bool {
     is_known
 }
 
-/// A field edited in several lines, above the widgets below it.
+/// Shows a field that is edited in several lines, above the widgets below it.
 fn in_lines(ui: &mut Ui, id: egui::Id, text: &mut String, room: Room) -> Response {
     let (place, _) = ui.allocate_exact_size(room.size, Sense::hover());
     let mut lines = broken;
@@ -172,8 +172,8 @@ fn in_lines(ui: &mut Ui, id: egui::Id, text: &mut String, room: Room) -> Respons
     shown.inner
 }
 
-/// Words and names under a field that is edited, above the widgets below it, which do not move; returns
-/// the rectangle of the field and these words on the screen.
+/// Shows words and names under a field that is edited. They cover the widgets below, so that these do not
+/// move. Returns the rectangle of the field and these words on the screen.
 fn under(ui: &Ui, id: egui::Id, field: Rect, add: impl FnOnce(&mut Ui)) -> Rect {
     if !ui.is_rect_visible(field) {
         return field;
@@ -198,14 +198,14 @@ fn under(ui: &Ui, id: egui::Id, field: Rect, add: impl FnOnce(&mut Ui)) -> Rect 
     field.union(shown.response.rect)
 }
 
-/// A text laid out in one line.
+/// Lays out a text in one line.
 fn line_of(ui: &Ui, text: &str) -> Arc<Galley> {
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().text_color();
     ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, colour))
 }
 
-/// A text laid out in lines of at most a width.
+/// Lays out a text in lines of at most a width.
 fn broken(ui: &Ui, text: &dyn TextBuffer, width: f32) -> Arc<Galley> {
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().text_color();
@@ -222,7 +222,8 @@ pub fn choose_all(ui: &Ui, id: egui::Id, text: &str) {
     state.store(ui.ctx(), id);
 }
 
-/// Whether a field had the focus in the last frame; a dialog that was closed since loses it.
+/// Whether a field had the focus in the last frame. A field of a dialog that was closed and opened again
+/// since does not count.
 fn had_focus(ui: &Ui, id: egui::Id) -> bool {
     let frame: Option<u64> = ui.data(|data| data.get_temp(id.with("had focus")));
     frame.is_some_and(|frame| frame + 1 >= ui.ctx().cumulative_frame_nr())
@@ -237,8 +238,8 @@ fn note_focus(ui: &Ui, id: egui::Id) {
 /// Width of labels left of their fields (pixels).
 const LABEL: f32 = 92.0;
 
-/// A field with a grey label left of it; `add` is given the label's id. Fields below each other are
-/// aligned.
+/// Shows a field with a grey label left of it; `add` shows the field, given the id of the label. Fields
+/// below each other are aligned.
 pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) -> R) -> R {
     let soft = Palette::of(ui.ctx()).ink_soft;
     ui.horizontal_top(|ui| {
@@ -246,7 +247,7 @@ pub fn labelled<R>(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, egui::Id) 
         let place = ui.vertical(|ui| {
             ui.set_width(LABEL);
             ui.set_min_height(height);
-            // The first line of the label is level with the larger text of the field.
+            // The first line of the label is level with the larger text of its field.
             let line = ui.text_style_height(&TextStyle::Small);
             ui.add_space((0.5 * (height - line)).max(0.0).ceil());
             let words = RichText::new(capitalised(name)).small().color(soft);
@@ -270,7 +271,7 @@ fn capitalised(words: &str) -> String {
     first.chain(letters).collect()
 }
 
-/// A drop-down list beside its label; a value without an entry is shown empty.
+/// Shows a drop-down list beside its label. A value without an entry in `of` is shown empty.
 pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, of: &[(T, &str)], value: &mut T) {
     let words = of.iter().find(|known| known.0 == *value);
     labelled(ui, label, |ui, name| {
@@ -293,13 +294,14 @@ pub struct TypedTexts {
     typed: HashMap<egui::Id, Typed>,
     /// The number field that has the focus.
     number: Option<egui::Id>,
-    /// Text that a click would insert into that field.
+    /// Text that a click would insert into the focused number field: the length of the part under the
+    /// pointer.
     offered: Option<String>,
-    /// Whether a click inserted it.
+    /// Whether a click of this frame inserted text into the focused number field.
     given: bool,
-    /// Completion of that field by a click on the name under the pointer.
+    /// Completion that a click on the name under the pointer would give the focused number field.
     proposed: Option<String>,
-    /// Completion of the field by the arrow-down key.
+    /// Completion that the arrow-down key would give the focused number field.
     first: Option<String>,
 }
 
@@ -308,13 +310,13 @@ pub struct TypedTexts {
 struct Typed {
     text: String,
     fault: String,
-    /// Whether it is being edited, and differs from the old text.
+    /// Whether the text is being edited, and differs from the old text.
     is_begun: bool,
-    /// Rectangle of the field and the words under it on the screen.
+    /// Rectangle of the field and the words under the field, on the screen.
     place: Option<Rect>,
 }
 
-/// Outcome of a text field.
+/// Outcome of a text field in a frame.
 pub enum Entered {
     /// No outcome yet.
     Nothing,
@@ -410,7 +412,7 @@ impl TypedTexts {
                 return Entered::Nothing;
             }
             if let Some(words) = self.offered.take() {
-                // An old text is replaced; a typed one is continued.
+                // A text that is unchanged is replaced; a text that was typed is continued.
                 let begun = before.filter(|text| text != shown).unwrap_or_default();
                 self.complete(ui, id, begun + &words);
                 self.given = true;
@@ -428,8 +430,8 @@ impl TypedTexts {
         entered
     }
 
-    /// Shows names that complete the text in a number field, under it; arrow-down inserts the first, a
-    /// click any.
+    /// Shows names that complete the text in a number field, under the field. Arrow-down inserts the first
+    /// name, a click inserts the clicked one.
     pub fn show_proposals(&mut self, ui: &mut Ui, id: egui::Id, base: &Evaluation) {
         let Some(typed) = self.typed.get(&id).filter(|typed| typed.is_begun) else {
             return;
@@ -476,11 +478,11 @@ impl TypedTexts {
         let last = CCursorRange::one(CCursor::new(length));
         state.cursor.set_char_range(Some(last));
         state.store(ui.ctx(), id);
-        // The field had the focus all along: its text must not be selected as on entering it.
+        // The field counts as focused before: otherwise its whole text would be selected.
         note_focus(ui, id);
     }
 
-    /// Whether a number field has the focus, so that parts can be clicked for their length.
+    /// Whether a number field has the focus, so that a click on a part inserts its length.
     pub fn takes_parts(&self) -> bool {
         self.number.is_some()
     }
@@ -495,7 +497,7 @@ impl TypedTexts {
         std::mem::take(&mut self.given)
     }
 
-    /// Keeps a text in its field, with the error in it.
+    /// Keeps a text in its field, and shows the error in it.
     pub fn refuse(&mut self, id: egui::Id, text: String, fault: String) {
         let typed = Typed {
             text,

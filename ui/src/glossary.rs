@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 /// A word with its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Heading it stands under, as Panels.
+    /// Heading under which the word stands, for instance "Panels".
     pub subject: &'static str,
     /// The word.
     pub word: &'static str,
@@ -17,7 +17,7 @@ pub struct Word {
 pub static GLOSSARY: LazyLock<Vec<Word>> =
     LazyLock::new(|| words(include_str!("../../docs/GLOSSARY.md")));
 
-/// Meaning of the label of a field or title, if the glossary has it.
+/// Meaning of a label of a field or title; `None` if the glossary does not have it.
 pub fn meaning(label: &str) -> Option<&'static str> {
     let found = GLOSSARY.iter();
     let mut found = found.filter(|word| word.word.eq_ignore_ascii_case(label));

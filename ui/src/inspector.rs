@@ -71,8 +71,8 @@ impl ToileApp {
             let place = corners[usize::from(left)];
             self.view.selection_is_in(table, place)
         };
-        // A new selection is shown on the right if possible. From then on the inspector stays in its
-        // corner as long as it covers nothing there, so that no field moves under the user's hands.
+        // A new selection is shown on the right if possible. From then on the inspector stays in its corner
+        // while it covers no selected part there, so that no field moves under the user's hands.
         let is_told = self.inspector.told == self.view.selection;
         let here = is_told && self.inspector.is_left;
         self.inspector = InspectorPlace {
@@ -103,7 +103,8 @@ impl ToileApp {
         });
     }
 
-    /// The panel's number, which applies if an edge has none of its own, in words.
+    /// The number that applies if an edge has none of its own, in words: the panel's number of the same
+    /// label.
     fn of_panel(&self, panel: PanelId, left_out: &NumberEntry) -> String {
         let entries = plan::numbers_of(&self.base, panel.into());
         let same = entries.iter().find(|entry| entry.label == left_out.label);
@@ -147,7 +148,7 @@ impl ToileApp {
         self.name_field(ui, item);
         let entries = arcs::numbers_of(&self.base, item.part());
         for (k, entry) in entries.iter().enumerate() {
-            // Numbers with the same name, such as the cuts of pleats, are counted.
+            // Numbers that have the same name, such as the positions of several cuts, get a running number.
             let is_same = |other: &&NumberEntry| other.label == entry.label;
             let known = mark_words::label(&self.base, entry);
             let label = match entries.iter().filter(is_same).count() {
@@ -185,7 +186,7 @@ impl ToileApp {
         }
     }
 
-    /// Measured values of a part, in words.
+    /// Measurements of a part as drawn, in words.
     fn measured(&self, item: Item) -> Option<String> {
         let unit = self.base.pattern().unit;
         let length = |length: f64| number::show(length, Want::Length, unit);
@@ -215,12 +216,13 @@ impl ToileApp {
         }
     }
 
-    /// Field of a number, with its value while it is typed, and the error in it.
+    /// Shows the field of a number, with its value while a formula is typed, and the error in it.
     pub(crate) fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
         self.named_number_field(ui, entry, (entry.label, String::new()));
     }
 
-    /// Field of a number with another label, and the default that applies while it is empty.
+    /// Shows the field of a number under the label and with the hint of `told`; the hint is the default
+    /// that applies while the field is empty.
     fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, told: (&str, String)) {
         let (label, hint) = told;
         labelled(ui, label, |ui, label| {
@@ -231,7 +233,8 @@ impl ToileApp {
             .show_proposals(ui, number_field_id(entry), &self.base);
     }
 
-    /// Fields for the numbers of a curve's handles, so that all can be set without selecting each.
+    /// Shows fields for the numbers of all handles of a curve, so that the handles need not be selected one
+    /// by one.
     pub(crate) fn handle_numbers(&mut self, ui: &mut Ui, curve: CurveId) {
         let handles = match self.view.scene.curve(curve) {
             Some((_, curve)) => curve.handles.clone(),
@@ -254,7 +257,8 @@ impl ToileApp {
         }
     }
 
-    /// Value of a number that is a formula or a share of an edge; `None` if its text is the value.
+    /// Value to show beside a number that is a formula or a share of an edge; `None` if the text in the
+    /// field is the value itself.
     fn value_of(&self, entry: &NumberEntry) -> Option<String> {
         if let Some(words) = mark_words::distance(&self.base, entry) {
             return Some(format!("= {words}"));
@@ -282,7 +286,7 @@ impl ToileApp {
         let value = |text: &str| -> Result<String, String> {
             let found = number::parse(text, want, &base)?;
             let value = base.number_or_fault(&found, want)?;
-            // A number of any kind is shown as the kind that its formula has.
+            // A number of unspecified kind is shown in the kind that its formula gives.
             let told = match want {
                 Want::Any => base.kind(&found),
                 want => want,
@@ -309,7 +313,8 @@ impl ToileApp {
         }
     }
 
-    /// Makes the edits entered in a field, or keeps the text there with the error.
+    /// Makes the edits of an entered text; if they were refused, keeps the text in its field with the
+    /// error.
     pub(crate) fn enter(
         &mut self,
         planned: Result<Vec<Edit>, EditError>,
@@ -409,7 +414,7 @@ impl ToileApp {
 
     fn corner_choice(&mut self, ui: &mut Ui, panel: PanelId, id: toile_pattern::EdgeId) {
         let pattern = self.base.pattern().clone();
-        // Edges of a side belong to the panel that was split.
+        // Edges of a part of a split panel belong to the panel that was split.
         let owner = pattern.owner_of(panel, id.into());
         let Some((panel, edge)) = owner.and_then(|owner| Some((owner.id, owner.edge(id)?))) else {
             return;
@@ -500,7 +505,7 @@ fn name_of(pattern: &toile_pattern::Pattern, part: PartId) -> Option<String> {
     })
 }
 
-/// Limit of the mitre at a corner: a multiple of the width, or none.
+/// Shows the choice of the mitre limit at a corner: a multiple of the allowance's width, or no limit.
 fn mitre_limit(ui: &mut Ui, limit: &mut MitreLimit) {
     let mut is_limited = *limit != MitreLimit::None;
     let mut widths = match *limit {

@@ -8,15 +8,16 @@ mod history;
 mod line_field;
 mod properties;
 mod wearer;
+mod worn_where;
 mod worn_with;
 
 pub use fabric::FabricTable;
 pub use line_field::is_empty_field;
 pub use wearer::WearerTable;
-pub use worn_with::WornWhere;
+pub use worn_where::WornWhere;
 
 use crate::app::ToileApp;
-use crate::app::panes::Tab;
+use crate::app::tab::Tab;
 use crate::fields::{Beside, Entered};
 use crate::inspector::number_field_id;
 use crate::theme::Palette;
@@ -136,7 +137,7 @@ impl ToileApp {
                     chosen = Some(known.name.to_owned());
                 }
             }
-            // The name of an existing measurement leads to its row.
+            // The name of an existing measurement scrolls to the row of that measurement.
             let is_there = |name: &&String| {
                 let label = definition(name).map(|known| known.label.to_lowercase());
                 name.to_lowercase() == wanted || label.is_some_and(|label| label == wanted)
@@ -163,7 +164,7 @@ impl ToileApp {
         }
     }
 
-    /// The sizes as column heads, which do not scroll, and the rows.
+    /// Shows the sizes as column heads, which do not scroll, and the rows below them.
     fn measurement_rows(&mut self, ui: &mut Ui, pattern: &Pattern, names: &[String]) {
         let label = |name: &str| {
             let known = definition(name);
@@ -301,7 +302,7 @@ impl ToileApp {
         });
     }
 
-    /// The size that is drafted: the chosen one, else the base size, else the first.
+    /// The size in which the pattern is drafted: the chosen one, else the base size, else the first.
     fn shown_size(&self) -> Option<SizeId> {
         let project = self.session.project();
         let sizes = &project.pattern.sizes;
@@ -311,7 +312,7 @@ impl ToileApp {
         shown.or(base).or(sizes.first()).map(|size| size.id)
     }
 
-    /// Adds a size that copies the last; the first one gets the wearer's measurements.
+    /// Adds a size with the measurements of the last size; the first size gets the wearer's measurements.
     fn add_size(&mut self) {
         let pattern = self.base.pattern();
         let table = match pattern.sizes.last() {
@@ -321,7 +322,7 @@ impl ToileApp {
                 let mut table = Measurements::new();
                 for name in FIRST {
                     if let Some(found) = wearer.measured(name) {
-                        // One table accepts every name and value of another.
+                        // Cannot fail: a table accepts every name and value of another table.
                         let _ =
                             table.set(name, (found.value * 1000.0).round() / 1000.0, found.origin);
                     }
@@ -375,7 +376,7 @@ impl ToileApp {
             .show(ui, |ui| self.variable_rows(ui, &pattern));
     }
 
-    /// The column heads, which do not scroll, and the rows.
+    /// Shows the column heads, which do not scroll, and the rows below them.
     fn variable_rows(&mut self, ui: &mut Ui, pattern: &Pattern) {
         let heads = Grid::new("variable heads").num_columns(4).show(ui, |ui| {
             let heads = [
@@ -456,8 +457,8 @@ impl ToileApp {
             });
     }
 
-    /// Adds a variable from `name = formula`, or from a formula alone; if the name exists, its number is
-    /// changed.
+    /// Adds a variable from a typed text `name = formula`, or from a formula alone. If the name exists, the
+    /// formula of that variable is changed.
     fn add_variable(&mut self) {
         let text = self.tables.new_variable.clone();
         let (name, formula) = match text.split_once('=') {
@@ -501,9 +502,9 @@ impl ToileApp {
     }
 }
 
-/// Moves the focus to a requested field; returns whether the field has it. Waits in frames in which Enter
-/// is pressed, because the Enter of the request would end the typing at once, and in the frame in which a
-/// dialog closes, because widgets behind it get no focus then.
+/// Moves the focus to a requested field; returns whether the field has the focus. Waits in a frame in which
+/// Enter is pressed: the Enter that made the request would end the typing at once. Waits also in the frame
+/// in which a dialog closes: widgets behind it get no focus then.
 fn has_been_led_to(ui: &Ui, field: Id) -> bool {
     let is_entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
     let has_keys = !is_entered && ui.memory(|memory| memory.has_focus(field));
@@ -516,7 +517,7 @@ fn has_been_led_to(ui: &Ui, field: Id) -> bool {
     has_keys
 }
 
-/// A label in a column of a given least width.
+/// Shows a label in a column of a least width.
 fn named(ui: &mut Ui, width: f32, words: RichText) -> egui::Response {
     let label = ui.scope(|ui| {
         ui.set_min_width(width);

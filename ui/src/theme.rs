@@ -113,8 +113,8 @@ impl Palette {
     }
 }
 
-/// Colours of seams: both sides share one. Muted, of similar lightness, distinguished by hue; none is
-/// red, which means errors.
+/// Colours of seams; both sides of a seam have the same. They are muted and of similar lightness, and
+/// differ in hue; red is left out, because it means errors.
 const SEAMS: [Color32; 10] = [
     Color32::from_rgb(0x3B, 0x7E, 0xA8),
     Color32::from_rgb(0xC0, 0x86, 0x2E),
@@ -128,7 +128,7 @@ const SEAMS: [Color32; 10] = [
     Color32::from_rgb(0x7A, 0x6A, 0x5C),
 ];
 
-/// The second round of colours is darker by this factor, so that 20 seams differ.
+/// Factor on the lightness of the second round of colours, so that 20 seams differ (1).
 const SECOND_ROUND: f32 = 0.68;
 
 /// Colour of a seam by its number (from 1).
@@ -145,7 +145,7 @@ pub fn seam(number: usize) -> Color32 {
     }
 }
 
-/// Font of a size (logical pixels).
+/// Font of a height (logical pixels).
 pub fn font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }

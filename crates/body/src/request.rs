@@ -5,7 +5,9 @@
 //! - [`crate::request::CLOSER`]: narrower ranges;
 //! - [`crate::conflict`] (`RULES`, `LOOPS`): measurements that no body has together, and which one gives way;
 //! - [`crate::shape`]: a shape whose levels are out of order;
-//! - [`crate::error::BodyError`]: refusals in words.
+//! - [`crate::error::BodyError`]: refusals in words;
+//! - [`crate::solve`], [`crate::deviation::Deviation`], [`crate::mannequin::Mannequin::conflicts`]
+//!   (`deviation.rs`): the size solved; measurements asked for and not met.
 //!
 //! By hand: these lists name measurements.
 

@@ -7,11 +7,14 @@
 //! - [`crate::corner::Corner`]: corners as the cut line takes them;
 //! - [`crate::dart::caps`], [`crate::seams::Plane::grain`], [`crate::piece::CutPiece::grain_arrow`]
 //!   (`drawing.rs`): a dart's mouth; the grain as cut and drawn;
-//! - [`toile_pattern::press_arrows`]: which way a dart is pressed.
+//! - [`toile_pattern::press_arrows`]: which way a dart is pressed;
+//! - [`toile_pattern::Evaluation`] (`panels.rs`, `edge`), [`toile_pattern::check_draft`]: an edge's own width
+//!   or that of its panel; a negative one refused.
 //!
 //! The compiler asks for a new kind of corner here and in `corner`. Allowance and grain in the window:
 //! `inspector.rs`, `canvas/allowance.rs`, `tools/panel.rs`, `canvas/panel_shape.rs`. In markers: crate
 //! `marker`, `pieces.rs`; of worn cloth: crate `session`, `setup.rs`.
+//! Width of a new panel: crate `pattern`, `plan/trace.rs` (`ALLOWANCE`).
 
 use crate::{Corner, CutOptions, Dart, MITRE_LIMIT, SeamEdge, SeamLine};
 use std::f64::consts::FRAC_PI_8;

@@ -11,9 +11,14 @@
 //! - [`crate::xpbd`] (`contact.rs`, `of_sample`), crate `reference` (`patches/`: `patch_contacts.rs`, `update_force`):
 //!   stiffness in XPBD, in patches;
 //! - [`crate::garment::GarmentSetup::sewing_environment`]: no contact of cloth with cloth and no friction
-//!   while a garment is sewn.
+//!   while a garment is sewn;
+//! - [`crate::world::World::furnish`] (`compile.rs`), [`crate::garment`] (`tight.rs`, `largest_recess`): nearer
+//!   while a tight garment is put on;
+//! - [`crate::xpbd`] (`carried_plane.rs`, `kept_offset`; `skin_look.rs`, `kept_off`): nearer where walls of a
+//!   moving solid face each other.
 //!
 //! A cloth offset of 0 means that nothing keeps cloth from passing through cloth.
+//! Asked in crates `interchange` (`scene.rs`, `contact`) and `session` (`setup.rs`, `CLOTH_OFFSET`).
 
 use crate::laws::contact::{ContactLaw, TANGENTIAL_RATIO};
 use crate::{DrapeError, Material};

@@ -49,7 +49,9 @@ fn border(state: &State) -> f64 {
 
 /// The height of the border after 1/3 s and after as long again.
 fn before_and_after(kind: MethodKind, (system, mut state): (System, State)) -> [f64; 2] {
-    let mut method = MethodSettings::from(kind).build().unwrap();
+    let mut method = MethodSettings::from(kind)
+        .build()
+        .expect("a method that there is");
     [0, 1].map(|_| {
         for _ in 0..40 {
             method.advance(&system, &mut state, STEP).unwrap();
@@ -103,7 +105,9 @@ fn cloth_keeps_its_place_on_a_plate_that_creeps_and_turns() {
         let places = state.positions.iter().map(|&x| pose.undo(x));
         places.collect::<Vec<Vec3>>()
     };
-    let mut method = MethodSettings::from(MethodKind::Xpbd).build().unwrap();
+    let mut method = MethodSettings::from(MethodKind::Xpbd)
+        .build()
+        .expect("a method that there is");
     let mut state = state;
     let mut at = Vec::new();
     for step in 0..120 {
@@ -168,7 +172,9 @@ fn moves_on_cloth(kind: MethodKind, share: f64) -> f64 {
     });
     let angle = (share * friction).atan();
     system.control.gravity = Vec3::new(angle.sin(), -angle.cos(), 0.0) * 9.81;
-    let mut method = MethodSettings::from(kind).build().unwrap();
+    let mut method = MethodSettings::from(kind)
+        .build()
+        .expect("a method that there is");
     let place = |state: &State| {
         let above = &state.positions[held..];
         above.iter().map(|x| x.x).sum::<f64>() / above.len() as f64

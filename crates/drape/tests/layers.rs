@@ -223,7 +223,9 @@ fn what_a_saved_state_knows_of_layers_goes_on_to_the_same_bytes() {
     }
     for kind in [MethodKind::Xpbd, MethodKind::ImplicitEuler] {
         let go = |state: &mut State, steps: usize| {
-            let mut method = MethodSettings::from(kind).build().unwrap();
+            let mut method = MethodSettings::from(kind)
+                .build()
+                .expect("a method that there is");
             for _ in 0..steps {
                 method.advance(&system, state, 0.01).unwrap();
             }

@@ -454,7 +454,9 @@ fn it_is_a_method_by_name() {
         .find(|(name, _)| *name == "xpbd")
         .expect("listed");
     let (system, mut state) = busy_scene(10);
-    let mut method = toile_drape::MethodSettings::from(*kind).build().unwrap();
+    let mut method = toile_drape::MethodSettings::from(*kind)
+        .build()
+        .expect("a method that there is");
     let report = method
         .advance(&system, &mut state, 1.0 / 60.0)
         .expect("sound");

@@ -27,7 +27,9 @@ fn sheet(kind: Kind, density: f64, air: Air) -> (System, State) {
 }
 
 fn run(system: &System, state: &mut State, step: f64, time: f64) {
-    let mut method = MethodSettings::from(MethodKind::Xpbd).build().unwrap();
+    let mut method = MethodSettings::from(MethodKind::Xpbd)
+        .build()
+        .expect("a method that there is");
     for _ in 0..(time / step).round() as usize {
         method.advance(system, state, step).unwrap();
     }
@@ -143,7 +145,10 @@ fn what_the_cloth_loses_the_air_gains() {
         substeps: Some(1),
         ..MethodKind::Xpbd.into()
     };
-    let (mut method, step) = (settings.build().unwrap(), 1.0 / 1200.0);
+    let (mut method, step) = (
+        settings.build().expect("a method that there is"),
+        1.0 / 1200.0,
+    );
     let (mut given, mut passed) = (Vec3::zeros(), 0.0);
     for _ in 0..240 {
         let impulse = force(&system, &state) * step;
@@ -179,7 +184,9 @@ fn no_air_however_thick_and_fast_adds_energy_relative_to_it() {
                     .sum::<f64>()
             };
             let start = energy(&state);
-            let mut method = MethodSettings::from(MethodKind::Xpbd).build().unwrap();
+            let mut method = MethodSettings::from(MethodKind::Xpbd)
+                .build()
+                .expect("a method that there is");
             for frame in 0..30 {
                 method.advance(&system, &mut state, 1.0 / 60.0).unwrap();
                 let now = energy(&state);
@@ -217,7 +224,9 @@ fn a_sail_held_in_the_wind_bellies_as_by_an_implicit_method() {
         }
         let system = builder.build();
         let mut state = State::at_rest(&system, cloth.positions.clone());
-        let mut method = MethodSettings::from(kind).build().unwrap();
+        let mut method = MethodSettings::from(kind)
+            .build()
+            .expect("a method that there is");
         for _ in 0..(3.0 / step) as usize {
             method.advance(&system, &mut state, step).unwrap();
         }

@@ -1,4 +1,14 @@
 //! The material of a cloth: the table of its figures, in SI units.
+//!
+//! # Decided with
+//! - [`crate::domain::Domain`], [`crate::material::Material::in_domain`] (`figure.rs`),
+//!   [`crate::figure::Component::check`]: values that are refused, ranges in the window;
+//! - [`crate::figure_value::FigureValue`]: figures as JSON has them;
+//! - [`crate::library::LIBRARY`], [`crate::kes::KesValues`]: fabrics and textile tests that give them.
+//!
+//! Checked and written by crates `pattern` (`check.rs`, `check_fabric`; `fabric/visit.rs`, `fabric/record.rs`) and
+//! `interchange` (`scene_material.rs`); acted on by crate `drape` (`material.rs`; friction: `rest_data.rs`, `lump`,
+//! `contact_refinement.rs`, `refine`, `collision/detector.rs`, `contact`); shown by the window, `tables/fabric_figures.rs`.
 
 use crate::domain::{Domain, Unit};
 use crate::sources::FabricSources;

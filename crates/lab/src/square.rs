@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn squares_have_their_size_and_mass() {
         for (name, square) in Square::ALL {
-            let (system, state) = square.build(33).unwrap();
+            let (system, state) = square.build(33).expect("a method that there is");
             assert_eq!(system.vertex_count(), 1089, "{name}");
             assert!((system.rest.mass.iter().sum::<f64>() - 0.2).abs() < 1e-12);
             let mesh = system.mesh(&state.positions);

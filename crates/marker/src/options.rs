@@ -13,7 +13,9 @@
 //! - [`crate::matching`], [`crate::marks`], [`crate::flaws::check_given`]: prints that meet, and narrow the
 //!   turns; flaws;
 //! - [`crate::options::NestOptions::check_rolls`], [`crate::search`] (`check_fabric_names`),
-//!   [`crate::starting_marker::check_names`]: names and rolls refused before a search.
+//!   [`crate::starting_marker::check_names`]: names and rolls refused before a search;
+//! - [`toile_pattern::LayingRule`], [`crate::options::NestOptions::piece`], [`crate::items`] (`item_of`): rules
+//!   of single pieces: gap, turns, turned over, tilt.
 //!
 //! By hand: a new setting on the command line (crate `cli`, `nest_arguments.rs`, `nest_commands.rs`) and in
 //! the window (`app/marker_laying.rs`). The document and files of settings read it from its list of fields,

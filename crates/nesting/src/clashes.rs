@@ -15,10 +15,10 @@ pub struct Clashes {
     pub outside: Vec<Outside>,
     /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces divided by width times length between the end margins (0 to 1, more if pieces
-    /// overlap).
+    /// Area of the pieces divided by width times length between the end margins (1); over 1 where pieces
+    /// overlap.
     pub efficiency: f64,
-    /// Area of the pieces divided by width times length (0 to 1, more if pieces overlap).
+    /// Area of the pieces divided by width times length (1); over 1 where pieces overlap.
     pub utilisation: f64,
 }
 

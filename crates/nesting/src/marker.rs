@@ -399,9 +399,9 @@ pub struct Marker {
     pub placements: Vec<Placement>,
     /// Length of fabric used, end margins included (m).
     pub length: f64,
-    /// Area of the pieces divided by width times length between the end margins (0 to 1).
+    /// Area of the pieces divided by width times length between the end margins, 0 to 1 (1).
     pub efficiency: f64,
-    /// Area of the pieces divided by width times length (0 to 1).
+    /// Area of the pieces divided by width times length, 0 to 1 (1).
     pub utilisation: f64,
     /// Copies that could not be placed.
     pub unplaced: Vec<Unplaced>,

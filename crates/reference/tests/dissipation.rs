@@ -29,7 +29,7 @@ fn free_strip(material: Material) -> (Cloth, System, State) {
 }
 
 fn run(system: &System, state: &mut State, kind: MethodKind, step: f64, time: f64) {
-    let mut method = toile_reference::build(&kind.into()).unwrap();
+    let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
     for _ in 0..(time / step).round() as usize {
         method.advance(system, state, step).unwrap();
     }

@@ -68,7 +68,7 @@ fn fall_on_a_sheet(
     builder.policies = PairPolicies::new(objects(&starts), ignored.to_vec(), []);
     let system = builder.build();
     let mut state = State::at_rest(&system, mesh.positions);
-    let mut method = toile_reference::build(&method.into()).unwrap();
+    let mut method = toile_reference::build(&method.into()).expect("a method that there is");
     let mut contacts = Contacts::default();
     let (mut crossing, mut recovered) = (0, 0);
     for _ in 0..30 {
@@ -145,7 +145,7 @@ fn a_sheet_falls_through_the_floor_that_it_ignores_onto_the_next_one() {
             let ignored = ignoring.map(|sheet| (sheet, 0));
             let policies = PairPolicies::new(objects(&starts), [], ignored);
             let (system, mut state, starts) = over_floors(policies);
-            let mut method = toile_reference::build(&kind.into()).unwrap();
+            let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
             for _ in 0..60 {
                 method.advance(&system, &mut state, STEP).unwrap();
             }
@@ -168,7 +168,7 @@ fn a_policy_that_is_taken_back_above_the_floor_is_forgotten() {
         let both = [(0, 0), (1, 0)];
         let policies = PairPolicies::new(objects(&starts), [], both);
         let (mut system, mut state, starts) = over_floors(policies);
-        let mut method = toile_reference::build(&kind.into()).unwrap();
+        let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
         for step in 0..40 {
             if step == 3 {
                 system = system.with(|builder| builder.policies = PairPolicies::default());

@@ -21,7 +21,8 @@ fn near(what: &str, got: f64, expected: f64, share: f64) {
 }
 
 fn run(system: &System, state: &mut State, step: f64, time: f64) {
-    let mut method = toile_reference::build(&MethodKind::Xpbd.into()).unwrap();
+    let mut method =
+        toile_reference::build(&MethodKind::Xpbd.into()).expect("a method that there is");
     for _ in 0..(time / step).round() as usize {
         method.advance(system, state, step).unwrap();
     }
@@ -80,7 +81,7 @@ fn course(
         substeps: (kind == MethodKind::Xpbd).then_some(1),
         ..kind.into()
     };
-    let mut method = toile_reference::build(&settings).unwrap();
+    let mut method = toile_reference::build(&settings).expect("a method that there is");
     let mut after_step = |_| {
         method.advance(system, &mut state, step).unwrap();
         end(cloth, &state, axis) - rest
@@ -258,7 +259,8 @@ fn viscosity_at_any_size_is_stable_or_refused_by_name() {
             *v = Vec3::new((7.1 * k).sin(), (3.3 * k).cos(), (5.7 * k).sin());
         }
         let start = state.kinetic_energy(&system);
-        let mut method = toile_reference::build(&MethodKind::Xpbd.into()).unwrap();
+        let mut method =
+            toile_reference::build(&MethodKind::Xpbd.into()).expect("a method that there is");
         match (0..10).try_for_each(|_| method.advance(&system, &mut state, 1.0 / 60.0).map(drop)) {
             Ok(()) => {
                 taken += 1;

@@ -10,7 +10,10 @@
 //!   that they read;
 //! - [`crate::project::Project`]: what commands change;
 //! - [`crate::event::Event`], [`crate::error::SessionError`]: what a command tells; why it is refused;
-//! - [`crate::export_format::ExportFormat`], [`crate::output`]: files that are written.
+//! - [`crate::export_format::ExportFormat`], [`crate::output`]: files that are written;
+//! - [`crate::session::Session::replay`], [`crate::journal_files::open_journal`],
+//!   [`crate::journal::read_entries`]: a journal replayed, its files, a line that is refused;
+//! - [`crate::session::Session::commit`] (`gesture.rs`): a drag is one command and one step.
 //!
 //! The compiler asks who performs a new command and where it writes. By hand: `each_input`, `stage`,
 //! `weight`; a command that opens a pattern in `execute`; `follow`.

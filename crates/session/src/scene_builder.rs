@@ -592,7 +592,8 @@ mod tests {
         let worn = object.cloth.unwrap();
         assert_eq!(worn.materials, [material]);
         // A method in time refuses what it cannot take, as for any scene.
-        let error = SceneRun::new(&builder.scene(&mut Silent).unwrap()).err();
+        let error =
+            SceneRun::new(&builder.scene(&mut Silent).unwrap(), toile_reference::build).err();
         let error = error.expect("no method knows all of it").to_string();
         assert!(error.contains("no method knows all"), "{error}");
     }

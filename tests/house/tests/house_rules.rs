@@ -68,7 +68,10 @@ const LAYERS: [(&str, &[&str]); 23] = [
     ("toile-body", &["geometry", "measure", "realtime"]),
     ("toile-sparse", &["geometry"]),
     ("toile-drape", &["geometry", "sparse", "fabric"]),
-    ("toile-reference", &["geometry", "sparse", "drape"]),
+    (
+        "toile-reference",
+        &["geometry", "sparse", "fabric", "drape"],
+    ),
     ("toile-picture", &["geometry", "lettering"]),
     ("toile-interchange", lowest(13)),
     (

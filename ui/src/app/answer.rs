@@ -4,13 +4,13 @@ use super::ToileApp;
 use crate::theme::Palette;
 use egui::{Button, Key, Popup, RichText, Ui};
 
-/// Outcome of a dialog.
+/// Result of showing a dialog for one frame.
 pub enum Answer {
     /// The dialog stays open.
     Stay,
-    /// The dialog is closed.
+    /// The dialog closes.
     Leave,
-    /// The dialog is closed, and this action is performed.
+    /// The dialog closes, and this action is performed.
     Do(Box<dyn FnOnce(&mut ToileApp)>),
 }
 
@@ -21,8 +21,8 @@ pub fn filled_button(ui: &mut Ui, words: &str) -> bool {
     ui.add(Button::new(words).fill(palette.accent)).clicked()
 }
 
-/// Shows the filled button of a dialog, which Enter presses too: the choice that loses nothing. A button
-/// that has the keyboard focus, and an open list, take Enter first.
+/// Shows the filled button of a dialog, for the choice that loses nothing; returns whether it was clicked
+/// or Enter was pressed. A button with the keyboard focus, or an open list, takes Enter first.
 pub fn main_button(ui: &mut Ui, words: &str) -> bool {
     let pressed = filled_button(ui, words);
     let focused = ui.memory(|memory| memory.focused());

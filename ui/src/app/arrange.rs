@@ -50,8 +50,8 @@ impl ToileApp {
         }
     }
 
-    /// A copy whose sheets have the positions at which they are seen; the document may hold older
-    /// positions, from before they were laid side by side.
+    /// The fragment with the positions at which its sheets are displayed on the table. The document may
+    /// hold older positions, from before the sheets were laid side by side.
     fn as_laid(&self, mut fragment: Fragment) -> Fragment {
         for sheet in &mut fragment.sheets {
             let place = self.view.table_layout.sheet(sheet.id);
@@ -61,7 +61,7 @@ impl ToileApp {
     }
 
     /// Adds an empty sheet beside the existing drawing, level with the current sheet, and makes it the
-    /// current one. All sheets then keep the positions at which they are seen.
+    /// current one. The displayed positions of all sheets are then stored in the document.
     pub(crate) fn new_sheet(&mut self) {
         let bounds = self.view.table_layout.bounds(&self.whole_scene());
         let place = bounds.map_or_else(Vec2::zeros, |bounds| {
@@ -95,7 +95,7 @@ impl ToileApp {
         scene
     }
 
-    /// Ends the isolation of panels, because parts that are added would be hidden too.
+    /// Ends the isolation of panels: otherwise parts that are added would be hidden.
     fn show_all(&mut self) {
         if !self.view.isolated.is_empty() {
             self.view.isolated.clear();
@@ -190,8 +190,8 @@ impl ToileApp {
         self.take_pasted(pasted, "Paste");
     }
 
-    /// Pastes panels and sheets at their original places; where these are occupied, to the right in free
-    /// room.
+    /// Pastes panels and sheets at their original places; if these are occupied, in free room to the right
+    /// of them.
     fn pasted_free(&self, fragment: &Fragment) -> Result<Pasted, EditError> {
         let aside = |aside: f64| {
             let target = PasteTarget {
@@ -247,7 +247,7 @@ impl ToileApp {
             let is_beside = panel.min.y <= bounds.max.y && bounds.min.y <= panel.max.y;
             let is_under = panel.min.x < bounds.max.x + aside + BESIDE
                 && bounds.min.x + aside < panel.max.x + BESIDE;
-            // A panel that touches the candidate place is passed too.
+            // A panel that only touches the candidate place makes it move to the right, too.
             if is_beside && is_under && panel.max.x > bounds.max.x {
                 aside = panel.max.x + BESIDE - bounds.min.x;
             }
@@ -255,7 +255,7 @@ impl ToileApp {
         aside
     }
 
-    /// Makes the pasted parts, selects them, and reports which numbers lost their formulas.
+    /// Adds the pasted parts to the pattern, selects them, and reports which numbers lost their formulas.
     fn take_pasted(&mut self, pasted: Result<Pasted, EditError>, label: &str) {
         let pasted = match pasted {
             Ok(pasted) => pasted,
@@ -264,7 +264,7 @@ impl ToileApp {
                 return;
             }
         };
-        // A pasted sheet stores its position: then all other sheets have to store theirs too.
+        // A pasted sheet stores its position in the document; then all other sheets must store theirs, too.
         let brings_sheets = pasted
             .edits
             .iter()
@@ -359,8 +359,8 @@ impl ToileApp {
     }
 }
 
-/// Bounding rectangles on the table (m) of panels that are wanted by themselves or by their sheet, and of
-/// wanted sheets without panels.
+/// Bounding rectangles on the table (m): of panels for which, or for whose sheet, `wanted` holds; and of
+/// sheets without panels for which it holds.
 fn on_table(
     (scene, table_layout): (&Scene, &TableLayout),
     wanted: impl Fn(PartId) -> bool,
@@ -387,7 +387,8 @@ fn touch(a: &Bounds2, b: &Bounds2) -> bool {
     (0..2).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
 }
 
-/// The new panels; if there are none, the new sheets; else the new curves and points.
+/// Selection after a paste: the new panels; if there are none, the new sheets; else the new curves and
+/// points.
 fn select_pasted(pattern: &Pattern, parts: &[PartId]) -> Selection {
     let panels: Selection = parts
         .iter()

@@ -1,7 +1,7 @@
 //! Work on other threads: the mannequin and the meshed garment are made from a snapshot, then the drape
 //! runs live. A draped garment follows the edits of its pattern; the change to its simulation is computed
-//! on another thread too. If it cannot follow, because its wearer, cloth or fellow garments changed, it
-//! is draped anew by itself; of several changes meanwhile only the newest counts.
+//! on another thread too. If the garment cannot follow, because its wearer, its cloth or a garment worn
+//! with it changed, it is draped anew by itself; of several changes meanwhile only the newest counts.
 //!
 //! # Decided with
 //! - [`toile_session::LiveRun`]: the run;
@@ -28,15 +28,15 @@ pub struct BackgroundWork {
     /// Project and revision of the mannequin that is shown or being made.
     body_of: Option<(Project, u64)>,
     garment: Option<Receiver<Made<Result<GarmentJob, SessionError>>>>,
-    /// Whether the garment that is being meshed is outdated: that of the newest project is meshed after
-    /// it.
+    /// Whether the garment that is being meshed is outdated; the garment of the newest project is meshed
+    /// next.
     is_overtaken: bool,
-    /// Reason why the garment is draped.
+    /// Reason why the garment is being draped from the start.
     reason: Reason,
     edit: Option<Receiver<Made<Result<GarmentEdit, CannotFollow>>>>,
     run: Option<LiveRun>,
     last: Option<Moment>,
-    /// The garment to simulate, after the last edit that was applied to it.
+    /// Garment that is simulated, with the last edit that was applied to it.
     given: Option<Arc<GarmentJob>>,
     /// Project and revision that the garment was last made for or compared with.
     compared: Option<(Project, u64)>,
@@ -51,16 +51,16 @@ pub struct BackgroundWork {
 /// Reason why a garment is draped from the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Reason {
-    /// The user asked for it.
+    /// The user asked for the drape.
     #[default]
     Asked,
-    /// The draped garment could not follow a change, on the same body.
+    /// The draped garment could not follow a change of the pattern; the body is the same.
     Change,
     /// The wearer changed.
     Wearer,
 }
 
-/// A thread's result, with its session.
+/// Result of a thread, with the session that the thread worked on.
 struct Made<T> {
     session: Session,
     result: T,
@@ -81,9 +81,10 @@ pub enum GarmentStatus {
     Stopped,
     /// The garment of the present pattern is at rest.
     AtRest,
-    /// The garment belongs to an earlier pattern; the text says why.
+    /// The garment belongs to an earlier state of the pattern; the text says why.
     OutOfDate(String),
-    /// No garment: the one that hung cannot be made any more; the text says why.
+    /// No garment: the one that was draped before cannot be made from the present pattern; the text says
+    /// why.
     NotMade(String),
 }
 
@@ -98,9 +99,9 @@ pub struct Moment {
     pub gap: f64,
     /// Net force divided by weight (1).
     pub residual: f64,
-    /// Progress, 0..=1.
+    /// Progress of the drape, 0..=1.
     pub share: f64,
-    /// Revision of the project that the picture shows.
+    /// Revision of the project that the last frame shows.
     revision: u64,
     /// Whether the drape can take an edit now.
     takes_edits: bool,
@@ -124,7 +125,7 @@ impl From<&LiveFrame> for Moment {
 pub enum WorkEvent {
     /// The session has its mannequin now.
     Body,
-    /// The displayed cloth fits no body any more.
+    /// The cloth on show must be removed: it may not fit the present body any more.
     Undressed,
     /// The garment is meshed and placed round its mannequin; the drape begins.
     Begun(Arc<GarmentJob>),
@@ -132,14 +133,14 @@ pub enum WorkEvent {
     Frame(LiveFrame),
     /// The drape has come to rest and was handed to the session; these are the session's events.
     Finished(Vec<Event>),
-    /// The garment that followed an edit has come to rest with shortcomings.
+    /// The garment has come to rest after an edit, with shortcomings; the texts describe these.
     Warned(Vec<String>),
     /// The work failed; the text says why.
     Failed(String),
 }
 
 impl BackgroundWork {
-    /// Brings the work up to the present project of a session: if the wearer changed, the garment is
+    /// Compares the garment with the present project of a session: if the wearer changed, the garment is
     /// draped anew. Does nothing during the preview of a gesture.
     pub fn follow(&mut self, session: &Session) {
         if session.is_previewing() {
@@ -157,8 +158,8 @@ impl BackgroundWork {
         }
     }
 
-    /// Makes the mannequin of a session's wearer on another thread, if the one on show is another's and
-    /// no garment brings its own.
+    /// Makes the mannequin of a session's wearer on another thread, unless that mannequin is on show
+    /// already, or a garment is being made, which brings its own mannequin.
     pub fn follow_body(&mut self, session: &Session) {
         let is_known = |of: &(Project, u64)| of.1 == session.revision();
         let waits = self.body.is_some() || self.garment.is_some() || session.is_previewing();
@@ -176,15 +177,15 @@ impl BackgroundWork {
         }
     }
 
-    /// Begins to make and drape the garment of a session. A running drape is ended.
+    /// Begins to make and drape the garment of a session, in place of a running drape.
     pub fn start_garment(&mut self, session: &Session) {
         self.hang(session, Reason::Asked);
     }
 
-    /// Drapes a garment from the start. While another is meshed it waits, and only the newest that waits
-    /// counts.
+    /// Drapes the garment of a session from the start. If another garment is being meshed, that is finished
+    /// first; of several requests meanwhile only the newest is kept.
     fn hang(&mut self, session: &Session, reason: Reason) {
-        // Cloth on the body of an earlier wearer keeps this reason until it is replaced.
+        // Cloth of an earlier wearer is still on show: this stays the reason until the cloth is replaced.
         let stays = self.garment.is_some() && self.reason == Reason::Wearer;
         self.reason = if stays { Reason::Wearer } else { reason };
         self.leave_run();
@@ -195,7 +196,8 @@ impl BackgroundWork {
         }
     }
 
-    /// Ends the drape and keeps its present shape. A garment that is only being meshed is dropped.
+    /// Ends the drape and keeps the present shape of the cloth. A garment that is still being meshed is
+    /// discarded.
     pub fn stop(&mut self) {
         if self.garment.take().is_some() {
             self.is_undressed = true;
@@ -205,14 +207,14 @@ impl BackgroundWork {
         self.end_run();
     }
 
-    /// Drops the garment, also one that is being meshed.
+    /// Removes the draped garment, and discards one that is being meshed.
     pub fn clear(&mut self) {
         self.stop();
         self.leave_run();
         self.compared = None;
     }
 
-    /// Drops the draped garment.
+    /// Ends the drape and forgets its garment.
     fn leave_run(&mut self) {
         self.end_run();
         self.edit = None;
@@ -265,7 +267,7 @@ impl BackgroundWork {
         self.garment.is_some() && self.reason == Reason::Wearer
     }
 
-    /// Whether a garment that hung cannot be made any more.
+    /// Whether the garment that was draped before cannot be made from the present pattern.
     fn is_not_made(&self) -> bool {
         let works = self.garment.is_some() || self.given.is_some();
         !works && self.standstill.is_some()
@@ -325,13 +327,13 @@ impl BackgroundWork {
         }
     }
 
-    /// The events since the last call. Results that threads derived are given to the session.
+    /// Events since the last call. Values that threads computed are stored in the session.
     pub fn news(&mut self, session: &mut Session) -> Vec<WorkEvent> {
         let mut news = Vec::new();
         self.follow(session);
         match take(&mut self.body, session) {
             Some(Ok(made)) => match made {
-                // Another mannequin is wanted by now.
+                // The wearer has changed meanwhile: this mannequin is discarded.
                 _ if !self.is_of_wearer(session) => {}
                 Ok(()) => news.push(WorkEvent::Body),
                 Err(error) => news.push(WorkEvent::Failed(error.to_string())),
@@ -355,7 +357,7 @@ impl BackgroundWork {
         known.is_some_and(|(project, _)| project.has_same_body(session.project()))
     }
 
-    /// Begins to drape a garment that has been meshed, or meshes a newer one.
+    /// Begins to drape a garment that has been meshed; or, if it is outdated, meshes the newest one.
     fn follow_setup(&mut self, session: &mut Session, news: &mut Vec<WorkEvent>) {
         let Some(made) = take(&mut self.garment, session) else {
             return;
@@ -385,7 +387,7 @@ impl BackgroundWork {
         }
     }
 
-    /// Makes the draped garment follow the pattern, one edit after the other.
+    /// Applies edits of the pattern to the draped garment, one after the other.
     fn follow_edits(&mut self, session: &mut Session) {
         match take(&mut self.edit, session) {
             Some(Ok(Ok(edit))) => self.give(edit),
@@ -410,7 +412,8 @@ impl BackgroundWork {
                 session.garment_edit(&given)
             }));
         } else if self.standstill.is_none() {
-            // A gesture was cancelled: the garment is valid for this revision, too.
+            // The project is the same as before, as after a cancelled gesture: the garment is valid for
+            // this revision, too.
             let mut job = (*given).clone();
             job.revision = session.revision();
             let change = RestChange::Nothing;
@@ -439,7 +442,7 @@ impl BackgroundWork {
 
     fn follow_run(&mut self, session: &mut Session, news: &mut Vec<WorkEvent>) {
         let Some(run) = &self.run else { return };
-        // Read before the last frame is taken, or that frame could be missed.
+        // Must be read before the latest frame is taken: otherwise the last frame could be missed.
         let finished = run.is_finished();
         if let Some(frame) = run.latest() {
             self.last = Some(Moment::from(&frame));
@@ -477,14 +480,14 @@ fn on_thread<T: Send + 'static>(
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
         let result = work(&mut session);
-        // The receiver is gone if something else was asked for meanwhile.
+        // The receiver is gone if other work was requested meanwhile.
         let _ = sender.send(Made { session, result });
     });
     receiver
 }
 
-/// The result a thread has sent, if any; its derived values go to the session. A thread that ended
-/// without a result counts as failed.
+/// Takes the result that a thread has sent, if any, and stores its derived values in the session. A thread
+/// that ended without a result counts as failed.
 fn take<T>(
     receiver: &mut Option<Receiver<Made<T>>>,
     session: &mut Session,

@@ -92,7 +92,7 @@ impl ToileApp {
         self.command_widget(ui, command, button, None);
     }
 
-    /// A button of the menu bar; the buttons of the history show the step they would undo or redo.
+    /// A button of the menu bar; those for undo and redo name the step that they undo or redo.
     fn quick_button(&mut self, ui: &mut Ui, command: &'static UiCommand) {
         let step = match () {
             () if command.name == UNDO.name => self.session.can_undo(),
@@ -182,7 +182,7 @@ impl ToileApp {
         });
     }
 
-    /// Button that says how many panels are isolated, and shows all again.
+    /// Button that says how many panels are isolated; a click shows all panels again.
     fn isolated_button(&mut self, ui: &mut Ui) {
         let words = match self.view.isolated.len() {
             0 => return,
@@ -211,7 +211,7 @@ impl ToileApp {
         if let Some(words) = self.view.hover.and_then(|hit| self.item_words(hit.item)) {
             return (words, palette.ink);
         }
-        // The first of the most severe.
+        // The first finding of the highest severity.
         let worst = self.findings.iter().rev().max_by_key(|f| f.severity);
         match worst {
             Some(found) if found.severity > Severity::Note => {
@@ -276,7 +276,7 @@ impl ToileApp {
         self.command_widget(ui, command, button, None);
     }
 
-    /// A command's widget with a given button and tooltip.
+    /// Adds `button` for a command; `words` is the tooltip in place of the command's own.
     pub(crate) fn command_widget(
         &mut self,
         ui: &mut egui::Ui,

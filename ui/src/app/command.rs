@@ -25,15 +25,16 @@ pub struct UiCommand {
     pub tip: &'static str,
     /// Keyboard shortcut.
     pub key: Option<KeyboardShortcut>,
-    /// Menu that contains it.
+    /// Menu that contains the command.
     pub menu: Menu,
-    /// Whether a separator stands before it in the menu.
+    /// Whether a separator stands before the command in its menu.
     pub begins_group: bool,
-    /// Whether it is available now.
+    /// Whether the command is available now.
     pub when: fn(&ToileApp) -> bool,
-    /// Whether the part of the view that it toggles is visible; none for a command that toggles none.
+    /// Whether the part of the view that the command toggles is visible; `None` for a command that toggles
+    /// no part.
     pub on: Option<fn(&ToileApp) -> bool>,
-    /// Performs it.
+    /// Performs the command.
     pub does: fn(&mut ToileApp),
 }
 
@@ -112,7 +113,7 @@ impl UiCommand {
         }
     }
 
-    /// This command, marked in its menu while a part of the view is visible.
+    /// This command, with a check mark in its menu while a part of the view is visible, which `on` tells.
     pub(super) const fn on_while(self, on: fn(&ToileApp) -> bool) -> Self {
         Self {
             on: Some(on),

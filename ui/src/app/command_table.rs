@@ -13,7 +13,7 @@ pub fn commands() -> impl Iterator<Item = &'static UiCommand> {
     DOCUMENT_COMMANDS.iter().chain(TOOL_COMMANDS).copied()
 }
 
-/// The command with a name, as tests and plans of steps give it.
+/// The command with a name; tests and scripts of steps name commands so.
 pub fn named(name: &str) -> Option<&'static UiCommand> {
     commands().find(|command| command.name == name)
 }
@@ -21,19 +21,20 @@ pub fn named(name: &str) -> Option<&'static UiCommand> {
 /// Keys that have another use in this frame, and so start no command.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct KeysTaken {
-    /// Text is typed: all keys without the command modifier.
+    /// Text is typed: takes all keys without the command modifier (Ctrl, Cmd).
     pub typing: bool,
-    /// A text field has the focus: also the keys with the command modifier that edit text.
+    /// A text field has the focus: takes also the keys with the command modifier that edit text.
     pub text: bool,
-    /// The focused text field is empty: it leaves Undo and Redo to the window.
+    /// The focused text field is empty: Undo and Redo still go to the window.
     pub empty: bool,
-    /// A tool is in hand: keys that begin a number; letters and digits of view commands are held back.
+    /// A tool is in hand: takes the keys that begin a number; letters and digits of view commands are held
+    /// back.
     pub tool: bool,
-    /// A seam is walked: Home and End move along it.
+    /// A seam is walked: takes Home and End, which move along the seam.
     pub walks: bool,
-    /// Escape: it undoes a step of the tool that is under way, or closes a menu.
+    /// Takes Escape: it undoes a step of the tool in progress, or closes a menu.
     pub escape: bool,
-    /// A dialog is open: all keys.
+    /// A dialog is open: takes all keys.
     pub modal: bool,
 }
 
@@ -91,8 +92,8 @@ pub struct Pressed {
     pub held: Option<&'static UiCommand>,
 }
 
-/// Whether a command changes a view by a letter or digit key; such keys type text while a tool is in
-/// hand.
+/// Whether a command changes a view and has a letter or digit as its key; such keys type text while a tool
+/// is in hand.
 fn is_view_letter(command: &UiCommand, key: Key) -> bool {
     matches!(command.menu, Menu::View | Menu::Garment) && !is_function(key) && key != Key::Home
 }

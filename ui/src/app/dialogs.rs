@@ -53,7 +53,7 @@ pub enum Dialog {
     Wear(WornWhere, FileChoice),
     /// Asks whether to replace an existing file.
     Replace(PathBuf),
-    /// Asks about unsaved changes; holds the dialog that comes next.
+    /// Asks about unsaved changes; holds the dialog that opens afterwards.
     Leave(Box<Dialog>),
     /// Asks about unsaved changes before the window closes.
     Close,
@@ -108,7 +108,8 @@ impl ToileApp {
                 Dialog::Words(text) => Self::show_words(ui, text),
             };
         });
-        // Escape only takes the focus from a text field at first: here one press closes the dialog.
+        // In a text field egui uses a first Escape to take the focus away; here that press closes the
+        // dialog, too.
         let escaped = context.input(|input| input.key_pressed(Key::Escape));
         let closes = (escaped || modal.should_close()) && !self.menu_is_open;
         if matches!(answer, Answer::Stay) && closes {
@@ -127,7 +128,7 @@ impl ToileApp {
                     }
                     _ => None,
                 };
-                // Messages of the action itself come after this.
+                // The action may set a message of its own: so the old one is cleared before.
                 self.notice = Notice::default();
                 then(self);
                 self.leave(next);
@@ -141,14 +142,14 @@ impl ToileApp {
         if self.dialog.is_none() && !self.notice.is_fault() {
             self.dialog = next;
         }
-        // Saving failed, or asks for a file first: the window stays.
+        // Saving failed, or asks for a file first: the window stays open.
         if self.closes && (self.dialog.is_some() || self.notice.is_fault()) {
             self.closes = false;
         }
     }
 
-    /// Asks before unsaved changes are lost, and lets the window close only once files are written; a
-    /// second request to close stops that.
+    /// Asks before unsaved changes are lost, and closes the window only when files have been written; a
+    /// second request to close stops the writing.
     pub(crate) fn guard_closing(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         if closing && !self.closes && self.is_unsaved() {

@@ -430,7 +430,7 @@ commands! {
         always,
         |app| app.change_scale(Some(-SCALE_STEP)),
     );
-    USUAL_INTERFACE = command(
+    INTERFACE_AT_USUAL_SIZE = command(
         Menu::View,
         "Usual interface",
         key(COMMAND, Key::Num0),

@@ -25,7 +25,7 @@ pub fn place(folder: &Path, file: &Path) -> PathBuf {
     folder.join(FOLDER).join(format!("{digest:016x}.png"))
 }
 
-/// Reads a picture; `None` if there is none or it cannot be read.
+/// Reads a picture; `None` if there is no picture or it cannot be read.
 pub fn read(place: &Path) -> Option<ColorImage> {
     let file = std::io::BufReader::new(fs::File::open(place).ok()?);
     let mut reader = png::Decoder::new(file).read_info().ok()?;
@@ -43,8 +43,8 @@ pub fn read(place: &Path) -> Option<ColorImage> {
 }
 
 impl ToileApp {
-    /// Saves a picture of the garment that has just come to rest, if its pattern is saved in a file. If
-    /// writing fails, only the card on the first page lacks it.
+    /// Saves a picture of the garment that has just come to rest, if its pattern is saved in a file. A
+    /// failure is not reported: only the card on the first page lacks the picture then.
     pub(super) fn keep_drape_view(&mut self) {
         if self.is_unsaved()
             || self

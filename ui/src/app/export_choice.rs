@@ -63,7 +63,7 @@ const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
     ),
 ];
 
-/// Purpose of a format's file.
+/// Description of the file of a format, in words.
 fn meaning(format: ExportFormat) -> &'static str {
     match format {
         ExportFormat::Glb => "the garment as it hangs, for 3D programs; UVs in metres",
@@ -122,7 +122,8 @@ impl ExportChoice {
     }
 }
 
-/// Whether a format may write a file of this name: its own, or a further one for a fabric or a layer.
+/// Whether an export in a format may write a file of this name: the format's usual name, or a variant of it
+/// for a fabric or a layer.
 fn is_written(format: ExportFormat, path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         return false;

@@ -13,7 +13,7 @@ use toile_session::{Command, Event, ExportFormat, Session};
 /// An export in progress.
 pub struct Exporting {
     job: Job<Exported>,
-    /// The settings, to ask again if it fails.
+    /// The settings, with which the dialog opens again if the export fails.
     choice: ExportChoice,
     is_stopped: bool,
 }
@@ -54,8 +54,8 @@ impl ToileApp {
         self.dialog = Some(Dialog::Export(Box::new(choice)));
     }
 
-    /// The settings of the last export; for another pattern file, with the folder beside that file and
-    /// the marker that is laid.
+    /// Settings to begin the dialog with: those of the last export, with the marker that is laid now. For
+    /// another pattern file than last time the folder is set anew, beside that file.
     fn export_choice(&self) -> ExportChoice {
         let project = self.session.project();
         let last = self.exports.last.as_ref();
@@ -77,7 +77,7 @@ impl ToileApp {
         choice
     }
 
-    /// Name of the marker on show, or of the first, if any piece is laid on it.
+    /// Name of the marker on show, or else of the first marker; `None` if no piece is laid on it.
     fn laid_marker(&self) -> Option<String> {
         let marker = self
             .marker_id()
@@ -138,7 +138,8 @@ impl ToileApp {
             Err(fault) => {
                 // The user sees the failure before the window closes.
                 (self.closes, self.waits_to_close) = (false, false);
-                // The settings are not for another pattern that was opened meanwhile.
+                // If another pattern was opened meanwhile, the settings do not apply to it, and the dialog
+                // stays closed.
                 let source = &self.session.project().source;
                 let last = self.exports.last.as_ref();
                 let is_of_pattern = last.is_some_and(|(_, of)| of == source);

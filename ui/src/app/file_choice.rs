@@ -7,7 +7,7 @@ pub const PATTERNS: &[&str] = &["json", "yaml", "yml"];
 /// File name extensions of measurement tables and mannequins.
 pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
 
-/// The choice of a file.
+/// State of a dialog in which a file is chosen.
 #[derive(Clone, Debug, Default)]
 pub struct FileChoice {
     /// The path as typed.
@@ -25,19 +25,20 @@ pub struct FileChoice {
 /// Entry of a folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Entry {
-    /// Whether it is a file; files come after folders.
+    /// Whether the entry is a file; files come after folders.
     pub is_file: bool,
     /// Name of the file or folder.
     pub name: String,
 }
 
 impl FileChoice {
-    /// A choice of a pattern file that starts with a path.
+    /// Choice of a pattern file, with `path` as the typed text and its folder listed.
     pub fn new(path: &Path) -> Self {
         Self::showing(path, PATTERNS)
     }
 
-    /// A choice of a file with certain extensions that starts with a path.
+    /// Choice of a file with one of the extensions `endings`, with `path` as the typed text and its folder
+    /// listed.
     pub fn showing(path: &Path, endings: &'static [&'static str]) -> Self {
         let folder = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),

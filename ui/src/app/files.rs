@@ -32,7 +32,8 @@ impl ToileApp {
         self.dialog = Some(Dialog::Wear(place, self.file_beside(PATTERNS)));
     }
 
-    /// A choice of a file with certain extensions in the folder of the pattern.
+    /// Choice of a file with one of the extensions `endings`, in the folder of the pattern; no path is
+    /// typed yet.
     fn file_beside(&self, endings: &'static [&'static str]) -> FileChoice {
         let path = self.session.project().source.clone().unwrap_or_default();
         let mut choice = FileChoice::showing(&path, endings);
@@ -44,7 +45,7 @@ impl ToileApp {
         self.dialog = Some(Dialog::Fabric(self.file_beside(PATTERNS)));
     }
 
-    /// Cuts the garment from the fabric of a file.
+    /// Has the garment cut from the fabric of a file.
     pub(super) fn cut_from_file(&mut self, path: &Path) {
         let fabric = Some(path.display().to_string());
         self.execute(Command::SetFabric { fabric });
@@ -91,7 +92,8 @@ impl ToileApp {
         self.keep_drape_view();
     }
 
-    /// The file the pattern came from, if that is in the native format; else one beside it.
+    /// Path to save to: the file the pattern came from, if that is in the native format; else one beside
+    /// it.
     fn save_path(&self) -> PathBuf {
         let project = self.session.project();
         match &project.source {

@@ -74,8 +74,8 @@ impl ToileApp {
         self.view.finding_marks = marks;
     }
 
-    /// Warns of an error in the pattern that the last step caused, unless a failure is shown already. The
-    /// step was made all the same: so it is a warning.
+    /// Warns of an error in the pattern that the last edit caused, unless the status line shows a failure
+    /// already. It is only a warning, because the edit itself succeeded.
     pub(super) fn tell_new_fault(&mut self, before: &[Diagnostic]) {
         let is_new =
             |found: &&Diagnostic| found.severity == Severity::Error && !before.contains(found);

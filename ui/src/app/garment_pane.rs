@@ -14,7 +14,8 @@ const STRIP: f32 = 38.0;
 
 impl ToileApp {
     pub(crate) fn garment_side(&mut self, ui: &mut Ui) {
-        // Changes of this frame take effect in it: cloth is never shown on a body it was not made for.
+        // Changes of this frame are followed before the view is drawn: cloth is never shown on a body for
+        // which it was not made.
         self.background_work.follow(&self.session);
         self.background_work.follow_body(&self.session);
         Panel::top("drape")
@@ -96,7 +97,7 @@ impl ToileApp {
         let layout = Layout::bottom_up(Align::Min);
         ui.scope_builder(UiBuilder::new().max_rect(line).layout(layout), |ui| {
             let label = Label::new(RichText::new(words).color(colour));
-            // The reason why it is out of date may take several lines.
+            // The reason why the garment is out of date may take several lines.
             ui.add(match is_old {
                 true => label.wrap(),
                 false => label.truncate(),
@@ -104,7 +105,7 @@ impl ToileApp {
         });
     }
 
-    /// Whether the garment at rest has no findings.
+    /// Whether there are no findings on the garment at rest.
     fn is_flawless(&self) -> bool {
         let verdict = self.background_work.verdict();
         verdict.is_none_or(|verdict| verdict.findings().is_empty())
@@ -141,8 +142,8 @@ fn quality_words(quality: Quality) -> &'static str {
     }
 }
 
-/// The message at the end of a drape: the main shortcoming comes first if the garment is not as asked
-/// for.
+/// Message at the end of a drape: `state`, then the headline of the verdict if there is one; the headline
+/// alone if the garment is not as ordered.
 pub(super) fn ended_words(verdict: &Verdict, state: String) -> String {
     let headline = verdict.headline();
     match (headline.is_empty(), verdict.is_sound()) {

@@ -77,7 +77,7 @@ impl<T: Send + 'static> Job<T> {
         self.follower.stop.store(true, Ordering::Relaxed);
     }
 
-    /// The result, once the work has ended, or a text that says why there is none.
+    /// Result of the work once it has ended: the value, or a text that says why there is none.
     pub fn result(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {
             Ok(result) => Some(result.map_err(|error| error.to_string())),

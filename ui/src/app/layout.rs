@@ -15,8 +15,8 @@ const WIDE: f32 = 1600.0;
 /// Initial height of the tables below the pattern (pixels), and under the garment (share of the height).
 const TABLES: f32 = 210.0;
 const TABLES_SHARE: f32 = 0.45;
-/// Width of the row of buttons of the 3D view (pixels): the view starts no narrower if the window has
-/// room for it.
+/// Width of the row of buttons above the 3D view (pixels): least initial width of the view, if the window
+/// has room for it.
 const GARMENT_ROW: f32 = 320.0;
 /// Largest share of the window's width for the 3D view.
 const GARMENT_MOST: f32 = 0.6;
@@ -97,7 +97,8 @@ impl ToileApp {
         self.panes.tables_beside.unwrap_or(is_wide)
     }
 
-    /// The pane beside the pattern: the garment, and under it the tables if they stand there.
+    /// Shows the pane beside the pattern: the garment, and the tables under it if they stand beside the
+    /// pattern.
     fn side(&mut self, ui: &mut Ui, tables: bool) {
         let frame = theme::bar(ui.ctx());
         if !self.panes.garment {

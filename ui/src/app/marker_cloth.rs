@@ -57,7 +57,8 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// Choice of the fabric of the marker: that of the garment, or always its own.
+    /// Shows the choice of the marker's fabric: the fabric of the garment, or always one of the marker's
+    /// own.
     fn fabric_choice(
         &self,
         ui: &mut Ui,
@@ -93,7 +94,7 @@ impl ToileApp {
             .labelled_by(label);
     }
 
-    /// Other fabrics that panels are cut from, the most used first.
+    /// Fabrics that panels are cut from, without the fabric `but`; the most used first.
     fn fabrics_cut(&self, but: FabricId) -> Vec<(FabricId, String)> {
         let pattern = self.base.pattern();
         let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
@@ -104,8 +105,8 @@ impl ToileApp {
         named.collect()
     }
 
-    /// Field for the width of the cloth. If it equals that of the roll or fabric it follows that; else
-    /// the marker has its own.
+    /// Shows the field for the width of the cloth. A width equal to that of the roll or fabric is not
+    /// stored, so that the marker follows it; any other width is the marker's own.
     fn width_field(&self, ui: &mut Ui, marker: &Marker, cloth: &mut ClothSettings) {
         let pattern = self.base.pattern();
         let garment = self.session.project().garment_cloth();
@@ -175,7 +176,8 @@ impl ToileApp {
         Some(words)
     }
 
-    /// Orders a garment in the size on show: in place of an order of one garment, else in addition.
+    /// Shows the button that orders a garment in the size on show. The order replaces an order of a single
+    /// garment; else it is added.
     fn order_button(&mut self, ui: &mut Ui, marker: &Marker) {
         let project = self.session.project();
         let of_size = project.size.as_deref();
@@ -200,7 +202,7 @@ impl ToileApp {
         }
     }
 
-    /// Whether any panel is cut from the fabric of a marker, or any piece by its rules.
+    /// Whether a marker gets any piece: from a panel cut from its fabric, or by its order and rules.
     fn has_pieces_to_lay(&self, marker: &Marker) -> bool {
         let pattern = self.base.pattern();
         let mut panels = pattern.panels.iter();
@@ -208,7 +210,7 @@ impl ToileApp {
             || pattern.ordered_pieces(marker).next().is_some()
     }
 
-    /// Reason why a marker has no pieces, and a remedy; `None` if it has some.
+    /// Reason why a marker has no pieces, and a remedy; `None` if it has pieces.
     pub(super) fn why_marker_is_empty(&self, id: MarkerId) -> Option<String> {
         let pattern = self.base.pattern();
         let marker = pattern.marker(id)?;
@@ -233,7 +235,8 @@ impl ToileApp {
     }
 }
 
-/// A label that begins a new line if its field has no room beside it.
+/// Adds a label, on a new line if the line has no room for the label and its field; returns the id of the
+/// label.
 pub(super) fn kept_label(ui: &mut Ui, words: &str) -> Id {
     let font = TextStyle::Body.resolve(ui.style());
     let galley = ui
@@ -242,7 +245,7 @@ pub(super) fn kept_label(ui: &mut Ui, words: &str) -> Id {
     if ui.available_size_before_wrap().x < galley.size().x + FIELD_ROOM {
         ui.end_row();
     }
-    // As high as the field, so that both are level where they begin a row.
+    // The label is as high as its field, so that both are level at the start of a line.
     let size = vec2(galley.size().x, ui.spacing().interact_size.y);
     ui.add_sized(size, Label::new(words)).id
 }

@@ -9,7 +9,8 @@ use toile_pattern::{Edit, EditError, MarkerId, OrderedPiece, PiecePlacement};
 use toile_session::{LetGo, Obstacle};
 
 impl ToileApp {
-    /// Ends a drag of pieces by a vector (m): one step of the history, or none.
+    /// Ends a drag of pieces by the vector `way` (m): makes it one step of the history, or none if the
+    /// pieces go back.
     pub(super) fn drop_pieces(
         &mut self,
         (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -43,7 +44,8 @@ impl ToileApp {
         self.let_go((id, &[piece]), ("Lay piece", how), laid);
     }
 
-    /// Drops pieces. `edits` gives the edits that lay them at an offset from the place of the drop (m).
+    /// Ends the move of pieces: lays them, or puts them back if they overlap something. `edits` gives the
+    /// edits that lay the pieces at an offset from the place of the drop (m).
     fn let_go(
         &mut self,
         (id, pieces): (MarkerId, &[OrderedPiece]),

@@ -15,7 +15,7 @@ const FIELD: f32 = 84.0;
 /// Length of a roll that is added (m).
 const NEW_ROLL: f64 = 5.0;
 
-/// Text in a number field that is empty.
+/// Hint in a number field that is empty.
 pub(super) enum Empty {
     /// The default number: a length (m) or an angle (rad).
     Means(f64),
@@ -24,7 +24,7 @@ pub(super) enum Empty {
 }
 
 impl ToileApp {
-    /// The list of rolls, and on request the fields for the laying of the fabric and the rules for
+    /// Shows the list of rolls; on request also the fields for how the fabric is laid, and the rules for
     /// pieces.
     pub(super) fn laying_rows(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
@@ -113,7 +113,7 @@ impl ToileApp {
         }
     }
 
-    /// Choice of the roll, and the fields of the chosen one.
+    /// Shows the choice of the roll, and the fields of the chosen one.
     fn roll_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let rolls = marker.cloth.rolls.clone().unwrap_or_default();
         ui.label("Rolls");

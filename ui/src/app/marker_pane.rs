@@ -39,13 +39,13 @@ use toile_session::{
 const NAME_WIDTH: f32 = 110.0;
 /// Choices for the time of a search (s).
 const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];
-/// A search that took at most this share of its time ended early.
+/// A search counts as ended early if it took at most this share of the time it was given (1).
 const EARLY: f64 = 0.8;
 
 /// A search in progress.
 pub struct Searching {
     job: Job<FoundMarker>,
-    /// The newest marker of the search, if not yet shown.
+    /// Newest marker that the search has found; `None` once it is shown.
     newest: Arc<Mutex<Option<DocumentMarker>>>,
     /// Start time, and the time the search may take (s).
     began: Instant,
@@ -55,7 +55,7 @@ pub struct Searching {
 }
 
 impl Searching {
-    /// Reason for an end clearly before the time was up; `None` if there was no such end.
+    /// Reason why the search ended clearly before its time was up; `None` if it did not.
     fn ended_early(&self) -> Option<String> {
         let took = self.began.elapsed().as_secs_f64();
         if took > EARLY * self.seconds {
@@ -203,8 +203,8 @@ impl ToileApp {
             .on_hover_text("How the fabric is laid, its rolls, and rules for single pieces");
     }
 
-    /// Fields for the number of garments: of the wearer, if that is not one of the sizes, and of each
-    /// size.
+    /// Fields for the number of garments to cut: for the wearer, if the wearer has none of the sizes, and
+    /// for each size.
     fn order_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let pattern = self.base.pattern().clone();
         let project = self.session.project();
@@ -366,7 +366,7 @@ impl ToileApp {
         let selected = self.marker_view.selection.clone();
         match action {
             MarkerAction::Drag(pieces, way) => {
-                // Measured from the positions before the drag.
+                // The vector is measured from the positions before the drag.
                 match plan::move_pieces(&self.base, (id, &pieces), way.into()) {
                     Ok(edits) => self.preview(&edits),
                     Err(error) => self.say_fault(error.to_string()),
@@ -417,7 +417,7 @@ impl ToileApp {
         }
     }
 
-    /// Applies a command to the selected pieces.
+    /// Performs an action of the marker view on the selected pieces, if there is one.
     pub(crate) fn on_pieces(&mut self, action: fn(&MarkerView) -> Option<MarkerAction>) {
         if let Some(action) = action(&self.marker_view) {
             self.do_marker(action);
@@ -440,7 +440,7 @@ impl ToileApp {
     /// Searches for a layout of short length, on a thread of its own.
     pub(crate) fn search_marker(&mut self) {
         let Some(id) = self.marker_id() else { return };
-        // A piece that is being dragged goes back: the search lays it.
+        // A piece that is being dragged returns to its place first; the search lays it.
         self.session.cancel();
         self.refresh();
         let search = match self.session.marker_search(id) {

@@ -22,7 +22,7 @@ const TURNS: [(f64, &str); 4] = [
 const SAME_TURN: f64 = 1e-9;
 
 impl ToileApp {
-    /// The rules for the selected pieces, and the matched marks.
+    /// Shows the rules for the selected pieces, and the matched marks.
     pub(super) fn rule_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         match self.marker_view.selection.first().copied() {
             None => {
@@ -86,7 +86,7 @@ impl ToileApp {
         }
     }
 
-    /// Whether a rule is for a selected piece in particular, not for all.
+    /// Whether a rule names a selected piece or its panel, rather than all pieces.
     fn is_for_selected(&self, rule: &PieceRule) -> bool {
         let mut selected = self.marker_view.selection.iter();
         selected.any(|piece| match rule.pieces {
@@ -97,7 +97,7 @@ impl ToileApp {
     }
 
     /// Applies the changes of a rule to the selected pieces: to the rule of the copy if it has one of its
-    /// own, else to that of its panel.
+    /// own, else to the rule of its panel.
     fn set_rule(&mut self, marker: &Marker, before: &LayingRule, now: &LayingRule) {
         let mut rules = marker.rules.clone();
         for piece in &self.marker_view.selection {
@@ -130,7 +130,8 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// Button that matches the notches selected in the pattern view, and the list of matched marks.
+    /// Shows the button that matches the notches selected in the pattern view, and the list of matched
+    /// marks.
     fn matched_marks(&mut self, ui: &mut Ui, marker: &Marker) {
         let selected = self.view.selection.items().iter();
         let marks = selected.filter_map(|item| match item {

@@ -48,6 +48,7 @@ mod preferences;
 mod print_choice;
 mod printing;
 mod sewing;
+pub(crate) mod tab;
 mod tool_bar;
 pub(crate) mod tool_commands;
 mod tool_icons;
@@ -106,24 +107,24 @@ pub struct ToileApp {
     pub(crate) dialog: Option<Dialog>,
     /// Whether a menu or drop-down list was open at the start of the frame.
     pub(crate) menu_is_open: bool,
-    /// Whether a field had the keyboard at the end of the last frame: then Escape belongs to it.
+    /// Whether a field had the keyboard focus at the end of the last frame: then Escape goes to that field.
     field_had_keys: bool,
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
     pub(crate) panes: Panes,
     /// Whether the tables stood beside the pattern in the last frame.
     pub(crate) tables_are_beside: bool,
-    /// The selection when the drawing tool was taken: the inspector does not describe it while that tool
-    /// is used.
+    /// The selection at the moment when the drawing tool was taken in hand: the inspector does not describe
+    /// this selection while the tool is used.
     pub(crate) selected_before: Option<Selection>,
     pub(crate) inspector: InspectorPlace,
-    /// Reason why the requested file is not open.
+    /// Reason why the requested file could not be opened.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
     /// Revision of the project for which the user agreed to close the window.
     closes_at: u64,
     pub(crate) wants_theme: bool,
-    /// A requested change of the scale of the interface.
+    /// A requested change of the scale of the interface; `Some(None)` asks for the usual scale.
     pub(crate) wants_scale: Option<Option<f32>>,
     pub(crate) preferences: Preferences,
     recovery: Option<Recovery>,
@@ -151,8 +152,8 @@ pub struct Beginning {
 }
 
 impl ToileApp {
-    /// A window with a pattern in it, if the file can be opened; else with a message why not. Without a
-    /// graphics card the 3D view says so, and all else works.
+    /// A window that shows the given pattern, or a message if the file cannot be opened. Without a graphics
+    /// card the 3D view shows a message, and all else works.
     pub fn new(context: &egui::Context, state: Option<&RenderState>, beginning: Beginning) -> Self {
         theme::apply(context);
         context.add_plugin(pacing::Pacing::default());
@@ -542,8 +543,8 @@ impl ToileApp {
         self.view.guides = self.panes.guides;
         self.view.is_covered = self.dialog.is_some() || self.menu_is_open;
         let canvas = ui.available_rect_before_wrap();
-        // Before the canvas: a click may insert the length of the clicked part into a number that is
-        // typed there.
+        // The inspector comes before the canvas: a click on a part may insert the part's length into a
+        // number that is being typed there.
         self.show_inspector(ui, canvas);
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
@@ -556,7 +557,7 @@ impl ToileApp {
         }
         self.canvas_menu();
         if seen(self) != before {
-            // The bars were drawn before this change.
+            // The bars were drawn before this change: another frame is needed.
             ui.ctx().request_repaint();
         }
     }

@@ -3,12 +3,12 @@
 /// Kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Tone {
-    /// Information.
+    /// Information, as on a success.
     #[default]
     WorkEvent,
-    /// Probably not intended.
+    /// Warning: the result is probably not intended.
     Warning,
-    /// Failure, with the reason.
+    /// Failure; the text gives the reason.
     Fault,
 }
 
@@ -22,17 +22,17 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Whether it reports a failure.
+    /// Whether the notice reports a failure.
     pub fn is_fault(&self) -> bool {
         self.tone == Tone::Fault && !self.text.is_empty()
     }
 
-    /// Whether it is mere information.
+    /// Whether the notice is mere information.
     pub fn is_news(&self) -> bool {
         self.tone == Tone::WorkEvent
     }
 
-    /// Information.
+    /// Makes a notice of information.
     pub fn news(text: impl Into<String>) -> Self {
         Self {
             tone: Tone::WorkEvent,
@@ -40,7 +40,7 @@ impl Notice {
         }
     }
 
-    /// A warning: probably not intended.
+    /// Makes a warning: the result is probably not intended.
     pub fn warning(text: impl Into<String>) -> Self {
         Self {
             tone: Tone::Warning,
@@ -48,7 +48,7 @@ impl Notice {
         }
     }
 
-    /// A failure, with the reason.
+    /// Makes a notice of a failure, with the reason.
     pub fn fault(text: impl Into<String>) -> Self {
         Self {
             tone: Tone::Fault,

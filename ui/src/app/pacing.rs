@@ -9,8 +9,8 @@ use std::collections::VecDeque;
 #[derive(Default)]
 pub struct Pacing {
     waiting: VecDeque<Event>,
-    /// Whether the last frame ended with an event that may move the focus: the views need a frame to show
-    /// where the focus went.
+    /// Whether the last frame ended with an event that may move the focus: then the views need a frame to
+    /// move it before the next event.
     rests: bool,
 }
 

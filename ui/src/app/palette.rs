@@ -5,7 +5,7 @@ use super::answer::Answer;
 use super::command::{UiCommand, shortcut_words};
 use super::command_table::commands;
 use super::dialogs::Dialog;
-use super::panes::Tab;
+use super::tab::Tab;
 use crate::canvas::selection::{Item, Selection};
 use crate::theme::Palette;
 use crate::tools::Tool;
@@ -22,7 +22,7 @@ enum Found {
     Command(&'static UiCommand),
     Part(Item, String),
     Variable(VariableId, String),
-    /// A measurement that a size has: its name in formulas, and its description.
+    /// A measurement of some size: the name used in formulas, and the description.
     Measurement(String, String),
 }
 
@@ -115,8 +115,8 @@ impl ToileApp {
         self.tables.tab = tab;
     }
 
-    /// Selects a part and brings it into view: for a seam its first panel, for a curve the panel that is
-    /// traced along it.
+    /// Selects a part and brings it into view: for a seam its first panel is shown, for a curve the panel
+    /// that is traced along it.
     fn show_part(&mut self, item: Item) {
         self.take(Tool::Select);
         self.view.select(Selection::one(item));
@@ -144,8 +144,8 @@ impl ToileApp {
     }
 }
 
-/// Commands whose name or tip contains all typed words, and parts, variables and measurements whose name
-/// does; matches at the beginning come first. An empty search finds commands only.
+/// Search results: commands whose name or tip contains all typed words, and parts, variables and
+/// measurements whose name does; matches at the beginning come first. An empty search finds commands only.
 fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let (typed, first) = (words.join(" "), words.first().map_or("", String::as_str));
@@ -167,7 +167,8 @@ fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     };
     let of_others = others.into_iter().filter_map(|(words, found)| {
         let low = words.to_lowercase();
-        // Other things match by their description or by their own name: "Panel front", "front".
+        // Parts and other named things match by their description ("Panel front") or by the name in it
+        // ("front").
         let own = low.split_once(' ').map_or("", |found| found.1);
         let name = own.split_once(" (").map_or(own, |found| found.0);
         let rank = match () {

@@ -1,5 +1,6 @@
 //! Which panes of the window and which overlays of the pattern are visible.
 
+use super::tab::Tab;
 use crate::canvas::selection::Selection;
 use crate::tables::FabricTable;
 use crate::tables::WearerTable;
@@ -16,14 +17,14 @@ pub struct Panes {
     pub marker: bool,
     /// Tables of measurements, variables, sizes, history.
     pub tables: bool,
-    /// Whether the tables stand under the garment, beside the pattern, rather than below the pattern.
-    /// `None` until the user moves them: then the width of the window decides.
+    /// Whether the tables stand beside the pattern, under the garment, rather than below the pattern.
+    /// `None` until the user moves the tables: then the width of the window decides.
     pub tables_beside: Option<bool>,
     /// Names of the tools beside their icons.
     pub tool_names: bool,
     /// The list of findings.
     pub findings: bool,
-    /// Cut lines.
+    /// Cut lines of panels.
     pub allowances: bool,
     /// Rulers.
     pub rulers: bool,
@@ -82,23 +83,11 @@ impl Tables {
     }
 }
 
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-pub enum Tab {
-    #[default]
-    Measurements,
-    Variables,
-    Fabric,
-    Wearer,
-    WornWith,
-    History,
-    Pattern,
-}
-
-/// Corner of the canvas that the inspector stands in, and the selection it describes.
+/// Corner of the canvas in which the inspector stands, and the selection for which it was chosen.
 #[derive(Default)]
 pub(crate) struct InspectorPlace {
     /// Selection that the corner was chosen for.
     pub told: Selection,
-    /// Whether it stands in the left corner.
+    /// Whether the inspector stands in the left corner.
     pub is_left: bool,
 }

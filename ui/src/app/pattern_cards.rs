@@ -27,7 +27,7 @@ const NAME: f32 = 26.0;
 const MARGIN: f32 = 10.0;
 /// Time until a picture that is being drawn is looked for again.
 const SOON: Duration = Duration::from_millis(50);
-/// Enlargement that lines are drawn for: two to the power of this (pixels per metre).
+/// Level of detail of the lines: exponent of the power of two that is the enlargement (pixels per metre).
 const OCTAVE: i32 = 8;
 
 /// Pictures of patterns, by the files of the patterns.
@@ -36,7 +36,7 @@ pub struct PatternCards {
     pictures: BTreeMap<PathBuf, Picture>,
 }
 
-/// A picture, or the job that draws it.
+/// State of the picture of a pattern: being drawn, drawn, or missing.
 enum Picture {
     Drawing(Job<(Pieces, Option<ColorImage>)>),
     Drawn(Pieces, Option<TextureHandle>),
@@ -54,7 +54,7 @@ struct Pieces {
 
 impl Pieces {
     fn of_file(path: &Path) -> Result<Self, SessionError> {
-        // Drafted as by opening the file: a pattern without sizes to the average body.
+        // The pattern is drafted as if the file were opened: without sizes, to the average body.
         let mut session = Session::new();
         let path = path.to_owned();
         session.execute(Command::OpenPattern { path }, &mut Silent)?;
@@ -188,7 +188,7 @@ impl PatternCards {
         response.on_hover_text(path.display().to_string()).clicked()
     }
 
-    /// Drops the pictures.
+    /// Discards all pictures, so that they are drawn anew.
     pub fn clear(&mut self) {
         self.pictures.clear();
     }

@@ -83,7 +83,7 @@ impl ToileApp {
         self.view.select(selection);
     }
 
-    /// Applies the outcome of an event that a tool handled.
+    /// Applies the outcome of an event in a tool.
     pub(crate) fn follow_outcome(&mut self, outcome: Outcome) {
         if outcome.gets_on {
             self.forget_fault();
@@ -98,7 +98,7 @@ impl ToileApp {
             PreviewChange::Edits(edits) => self.preview(&edits),
         }
         match outcome.commit {
-            // The tool has only a message.
+            // The tool only reports a message.
             Some((edits, words)) if edits.is_empty() => self.notice = Notice::news(words),
             Some((edits, label)) => {
                 self.edit(Ok(edits), &label);
@@ -273,7 +273,7 @@ impl ToileApp {
             Some(_) => None,
             None => Some(self.graded()),
         };
-        // The outlines of all sizes come into view.
+        // Zooms so that the outlines of all sizes are in view.
         if self.view.grading.is_some() {
             self.view.fit();
         }

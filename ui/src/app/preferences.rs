@@ -3,8 +3,8 @@
 //! # Decided with
 //! - [`crate::app::panes::Panes`]: what is on show;
 //! - [`crate::app::ToileApp::is_on`] (`bars.rs`): check marks, by hand;
-//! - [`crate::app::ToileApp::ask_print_choice`] (`print_choice.rs`): papers; one that is not in `paper`, too,
-//!   is forgotten.
+//! - [`crate::app::ToileApp::ask_print_choice`] (`print_choice.rs`): papers; a paper that the method
+//!   `paper` here does not know is forgotten.
 
 use super::Beginning;
 use super::panes::Panes;
@@ -39,7 +39,7 @@ pub struct Preferences {
     pub paper: Option<String>,
     /// Width and height of the window when it was last not maximized (logical pixels).
     pub window: Option<[f32; 2]>,
-    /// Whether it was maximized.
+    /// Whether the window was maximized.
     pub fills_screen: bool,
     /// Scale of text, icons and buttons.
     pub scale: Option<f32>,

@@ -16,7 +16,7 @@ pub struct PrintChoice {
     pub selected: Vec<String>,
     /// Whether only the selected panels are printed.
     pub only_selected: bool,
-    /// The scale as typed, as in 1:4.
+    /// The scale as typed, for example 1:4.
     pub scale: String,
     /// Path of the file to write.
     pub path: String,

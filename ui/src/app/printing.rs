@@ -11,7 +11,7 @@ use toile_session::{PrintOptions, Printed, SizeSelection, print_pattern};
 /// A print in progress.
 pub struct Printing {
     job: Job<Printed>,
-    /// The settings, to ask again if it fails.
+    /// The settings, with which the dialog opens again if the print fails.
     choice: PrintChoice,
     is_stopped: bool,
 }

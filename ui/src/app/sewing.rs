@@ -40,7 +40,7 @@ impl ToileApp {
         self.take(Tool::Walk);
     }
 
-    /// Reverses the second side of each selected seam, so that the opposite ends are sewn together.
+    /// Reverses the second side of each selected seam: then the opposite ends are sewn together.
     pub(crate) fn flip_seam(&mut self) {
         let mut edits = Vec::new();
         for seam in self.selected_seams() {
@@ -53,7 +53,7 @@ impl ToileApp {
         self.execute(Command::Edit { edits, label });
     }
 
-    /// Shows how the edges beside a seam continue across it.
+    /// Shows, for both ends of a seam, whether the lines that cross it there run on smoothly.
     pub(crate) fn seam_joints(&mut self, ui: &mut Ui, seam: SeamId) {
         let palette = Palette::of(ui.ctx());
         for (words, tone) in crossing_lines((&self.base, &self.view.scene), seam) {

@@ -2,8 +2,9 @@
 //!
 //! # Decided with
 //! - [`crate::app::tool_commands::TOOL_COMMANDS`]: name and key of each tool;
-//! - [`crate::tools::slots::SlotTool`]: names its command: by that its button is shown as chosen;
-//! - [`crate::app::tool_icons`] (`strokes`): its sign;
+//! - [`crate::tools::slots::SlotTool`]: names its command, by which the button of the tool in hand is
+//!   marked;
+//! - [`crate::app::tool_icons`] (`strokes`): icon of each tool;
 //! - [`crate::app::ToileApp::canvas_menu`] (`bars.rs`): the menu on the canvas.
 //!
 //! By hand: a new tool in `GROUPS` and in that menu; `docs/GUIDE.md`, `ui/tests/drafting.rs` or
@@ -33,7 +34,7 @@ const SIGN: f32 = 20.0;
 /// Font size of the name of a group (pixels).
 const GROUP_TEXT: f32 = 10.5;
 
-/// Groups of tools: the name of each, empty for the first, and the commands that take the tools in hand.
+/// Groups of tools: name of the group, empty for the first, and the commands that take its tools in hand.
 static GROUPS: &[(&str, &[&UiCommand])] = &[
     ("", &[&SELECT]),
     (
@@ -72,7 +73,7 @@ static GROUPS: &[(&str, &[&UiCommand])] = &[
     ("Sew", &[&SEAM, &MATCHED_NOTCHES, &WALK_SEAM]),
 ];
 
-/// The commands of all buttons.
+/// Names of the commands of all buttons.
 #[cfg(test)]
 pub(super) fn tools() -> impl Iterator<Item = &'static str> {
     GROUPS
@@ -87,7 +88,7 @@ impl ToileApp {
     }
 
     pub(crate) fn tool_bar(&mut self, ui: &mut Ui) {
-        // The height of the buttons is chosen so that all of them fit.
+        // The buttons get the largest height at which all of them fit.
         let named_groups = GROUPS.iter().filter(|(name, _)| !name.is_empty()).count();
         let count: usize = GROUPS.iter().map(|(_, tools)| tools.len()).sum();
         let room = ui.available_height() - named_groups as f32 * GROUP;

@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use super::command::{BOTH, Menu, PLAIN, SHIFT, UiCommand, always, command, commands, key};
-use super::panes::Tab;
+use super::tab::Tab;
 use crate::tables::WornWhere;
 use crate::tools::{Tool, alter, arc, draw, panel, parts, ring, seam};
 use crate::views::marker::{MarkerAction, MarkerView};

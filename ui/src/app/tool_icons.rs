@@ -318,7 +318,7 @@ pub fn paint(painter: &Painter, rect: Rect, command: &str, colour: Color32) {
                 let [dash, gap] = DASH.map(|length| length * scale);
                 painter.extend(Shape::dashed_line(&all(places), stroke, dash, gap));
             }
-            // Filled as if convex: the outline and the small size hide the errors at other polygons.
+            // Drawn as if convex: the outline and the small size hide the errors where a polygon is not.
             Filled(places) => {
                 painter.add(Shape::convex_polygon(
                     all(places),

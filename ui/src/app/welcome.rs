@@ -157,8 +157,8 @@ impl ToileApp {
         }
     }
 
-    /// Continues with a document left by a crash. Its recovery files are removed when the state is stored
-    /// anew.
+    /// Opens a document left by a crash. The recovery files of the document are removed once its state is
+    /// stored anew.
     fn recover(&mut self, k: usize) {
         let document = self.abandoned.remove(k);
         let restore = Command::RestorePattern {

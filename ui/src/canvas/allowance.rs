@@ -5,7 +5,7 @@ use toile_cut::{CutOptions, CutPiece};
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, PanelId, Pattern, Piece};
 
-/// Cut lines of panels. Each is kept until its piece changes.
+/// Cut lines of panels, cached: each is kept until its piece changes.
 #[derive(Clone, Debug, Default)]
 pub struct CutLines {
     known: Vec<CutLine>,
@@ -35,7 +35,7 @@ impl CutLines {
                     made += 1;
                     let cut =
                         CutPiece::new((pattern, draft), number, (None, &CutOptions::default()));
-                    // The findings report a piece that cannot be cut.
+                    // A piece that cannot be cut gets no cut line here; the findings report it.
                     let rings = cut.map_or_else(|_| Vec::new(), |cut| closed(&cut));
                     CutLine {
                         piece: piece.clone(),

@@ -14,7 +14,7 @@ pub struct ScreenPoint(pub Pos2);
 /// Smallest and largest enlargement (logical pixels per metre): from a whole marker on the screen
 /// to a millimetre as wide as a finger.
 const SCALES: [f64; 2] = [20.0, 40_000.0];
-/// Smaller parts are not enlarged to fill the view (m).
+/// Least size of a part that is enlarged to fill the view; smaller parts fill less (m).
 const MIN_FITTED_SIZE: f64 = 0.1;
 /// Empty border when everything is shown (share of the view).
 const BORDER: f64 = 0.06;
@@ -59,7 +59,7 @@ impl TableCamera {
         self.centre -= self.table_vector(on_screen);
     }
 
-    /// Zooms by a factor; the table point under `fixed` stays there.
+    /// Zooms by a factor; the table point under the screen point `fixed` stays there.
     pub fn zoom(&mut self, view: Rect, fixed: ScreenPoint, factor: f64) {
         let before = self.table(view, fixed);
         self.scale = (self.scale * factor).clamp(SCALES[0], SCALES[1]);

@@ -3,14 +3,14 @@
 use egui::Pos2;
 use toile_pattern::{GuideId, GuideRun};
 
-/// A guide as drawn.
+/// A guide as the canvas draws it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawnGuide {
     /// Guide in the document; `None` for one that is being added.
     pub id: Option<GuideId>,
     /// Direction of the guide.
     pub runs: GuideRun,
-    /// Coordinate across its direction, on the table (m).
+    /// Coordinate of the guide across its direction, on the table (m).
     pub at: f64,
 }
 

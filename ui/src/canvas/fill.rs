@@ -14,8 +14,8 @@ pub struct Fill {
     pub indices: Vec<u32>,
 }
 
-/// Fills rings by the even-odd rule: holes stay empty, and a ring that crosses itself is filled as far as
-/// that makes sense. Rings with coordinates that are not finite are skipped.
+/// Fills rings by the even-odd rule: holes stay empty; a ring that crosses itself is filled where it winds
+/// an odd number of times. Rings with coordinates that are not finite are skipped.
 pub fn fill(rings: &[Vec<Vec2>]) -> Fill {
     let mut path = Path::builder();
     for ring in rings {

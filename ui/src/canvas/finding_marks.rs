@@ -5,16 +5,17 @@ use crate::theme::{self, Palette};
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use toile_pattern::Severity;
 
-/// Findings on one part.
+/// Sign for all findings on one part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FindingMark {
     /// The part.
     pub item: Item,
-    /// End of the seam that the finding is about, if there is one: 0 its start, 1 its end.
+    /// End of the seam that the findings are about: 0 the start, 1 the end; `None` if they are about no
+    /// end.
     pub end: Option<usize>,
-    /// Highest severity of its findings.
+    /// Highest severity of the findings.
     pub severity: Severity,
-    /// All findings, one a line.
+    /// Texts of all findings, one per line.
     pub words: String,
 }
 
@@ -24,7 +25,7 @@ const AWAY: Vec2 = vec2(13.0, -15.0);
 const REACH: f32 = 8.0;
 
 impl FindingMark {
-    /// Rectangle of the sign for a part at a screen position.
+    /// Rectangle of the sign of a part that is drawn at a screen position.
     pub fn place(at: Pos2) -> Rect {
         Rect::from_center_size(at + AWAY, Vec2::splat(2.0 * REACH))
     }

@@ -24,8 +24,8 @@ pub struct GradedSize {
 }
 
 impl Grading {
-    /// Outlines of a pattern in each of its sizes. `evaluation` is that of any size; curves are flattened
-    /// to within a tolerance (m).
+    /// Outlines of a pattern in each of its sizes. `evaluation` is the pattern in any size, `in_size`
+    /// evaluates it in the size of a name; curves are flattened to within a tolerance (m).
     pub fn new(
         evaluation: &Evaluation,
         tolerance: f64,

@@ -8,7 +8,8 @@ use toile_pattern::{Guide, GuideRun, SheetId};
 /// Distance from a guide within which the pointer can drag it (pixels).
 const REACH: f64 = 6.0;
 
-/// The guide nearest to a place of the table (m), if one is in reach, and its distance (m).
+/// The guide nearest to a place of the table (m), and its distance (m); `None` if no guide is in reach.
+/// `scale` is in pixels per metre.
 pub fn guide_at<'g>(
     guides: impl IntoIterator<Item = &'g Guide>,
     at: Vec2,
@@ -21,7 +22,8 @@ pub fn guide_at<'g>(
     near.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Guides in the coordinates of a sheet whose origin is given in those of the table (m).
+/// Guides converted from coordinates of the table to those of a sheet, whose origin on the table is given
+/// (m).
 pub fn on_sheet<'g>(guides: impl IntoIterator<Item = &'g Guide>, origin: Vec2) -> Vec<Guide> {
     let moved = guides.into_iter().map(|guide| Guide {
         at: guide.at - origin[guide.runs.axis()],
@@ -30,14 +32,14 @@ pub fn on_sheet<'g>(guides: impl IntoIterator<Item = &'g Guide>, origin: Vec2) -
     moved.collect()
 }
 
-/// The point of a guide nearest to a point (m).
+/// Point of a guide nearest to the point `to` (m).
 pub fn nearest(guide: &Guide, to: Vec2) -> Vec2 {
     let mut at = to;
     at[guide.runs.axis()] = guide.at;
     at
 }
 
-/// Guides of a sheet within reach of a point of it (m), the nearest first.
+/// Guides of a sheet within `reach` (m) of a point of the sheet (m), the nearest first.
 fn near(guides: &[Guide], at: Vec2, reach: f64) -> impl Iterator<Item = &Guide> {
     let away = move |guide: &Guide| (guide.at - at[guide.runs.axis()]).abs();
     let within = guides.iter().filter(|guide| away(guide) <= reach);
@@ -46,7 +48,7 @@ fn near(guides: &[Guide], at: Vec2, reach: f64) -> impl Iterator<Item = &Guide> 
     within.into_iter()
 }
 
-/// Intersections of guides near a point of a sheet (m).
+/// Finds intersections of guides near a point of a sheet (m), as snapping places.
 pub(super) fn crossings(
     sheet: SheetId,
     guides: &[Guide],
@@ -64,8 +66,8 @@ pub(super) fn crossings(
     }
 }
 
-/// Intersections of guides with curves, or with edges of the panel that the sheet lies on, near a point
-/// of the sheet (m): the new point stays on the curve or edge.
+/// Finds intersections of guides with curves, or with edges of the panel that the sheet lies on, near a
+/// point of the sheet (m). A new point made there stays on the curve or edge.
 pub(super) fn on_lines(
     sheet: &SheetScene,
     guides: &[Guide],
@@ -98,7 +100,7 @@ pub(super) fn on_lines(
     }
 }
 
-/// Points on guides near a point of a sheet (m); along the guide they snap to the grid.
+/// Finds points on guides near a point of a sheet (m); along the guide they snap to the grid.
 pub(super) fn on_guides(
     sheet: SheetId,
     guides: &[Guide],

@@ -36,19 +36,19 @@ pub struct Hit {
     pub away: f64,
 }
 
-/// A point that is shown, and the place it is drawn at.
+/// A point that is shown, and the sheet or panel on which it is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct ShownPoint<'s> {
     /// The point.
     pub point: &'s super::scene::PointScene,
-    /// Sheet of the point.
+    /// Sheet that the point belongs to.
     pub sheet: SheetId,
-    /// Origin, on the table, of the sheet or panel it is drawn on (m).
+    /// Origin, on the table, of the sheet or panel on which the point is drawn (m).
     pub origin: Vec2,
 }
 
-/// Points that are shown: corners of outlines always; the others if nothing is traced on their sheet yet,
-/// or while a part of the sheet is selected.
+/// Points that are shown: corners of outlines always; other points if no panel is traced on their sheet
+/// yet, or while a part of the sheet is selected.
 pub fn shown_points<'s>(
     scene: &'s Scene,
     table_layout: &TableLayout,
@@ -87,7 +87,7 @@ pub fn shown_points<'s>(
     shown
 }
 
-/// Sheets with a selected part.
+/// Sheets with a selected part ("open" sheets).
 pub fn open_sheets(scene: &Scene, selection: &Selection) -> Vec<SheetId> {
     let mut sheets: Vec<SheetId> = selection
         .items()
@@ -99,7 +99,7 @@ pub fn open_sheets(scene: &Scene, selection: &Selection) -> Vec<SheetId> {
     sheets
 }
 
-/// The sheet of a part.
+/// Sheet on which a part is drawn.
 pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
     match item {
         Item::Point(id) => Some(scene.point(id)?.0.id),
@@ -109,7 +109,8 @@ pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
     }
 }
 
-/// Parts at a place of the table (m), the most likely first; `scale` is in pixels per metre.
+/// Parts at a place of the table (m), the most likely first; all points of the `open` sheets are found;
+/// `scale` is in pixels per metre.
 pub fn hits(
     (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],

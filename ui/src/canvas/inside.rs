@@ -2,7 +2,7 @@
 
 use toile_geometry::{Bounds2, Vec2, point_segment_distance};
 
-/// Number of grid steps in each direction. More would move the name by less than its own height.
+/// Number of grid steps in each direction. A finer grid would move the name by less than its own height.
 const TRIED: usize = 17;
 
 fn sides(rings: &[Vec<Vec2>]) -> impl Iterator<Item = [Vec2; 2]> {
@@ -22,12 +22,12 @@ pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     })
 }
 
-/// Weight of the room round a place against its distance from the middle: of two places with similar room
-/// the one nearer to the middle is taken.
+/// Weight of the room round a place (distance to the outline) against the distance from the middle: of two
+/// places with similar room the one nearer to the middle is taken.
 const ROOM_OVER_DISTANCE: f64 = 5.0;
 
-/// The point of a grid over the bounds with the most room round it, with a preference for the middle; the
-/// middle itself if no grid point is inside.
+/// Of the grid points inside the rings, the one with the most room round it, with a preference for the
+/// middle of `bounds`; the middle itself if no grid point is inside.
 pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     let size = bounds.max - bounds.min;
     let middle = (bounds.min + bounds.max) * 0.5;
@@ -51,8 +51,8 @@ pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     best.0
 }
 
-/// The middle part (a share of the length) of the chord through a point in a direction, if the point is
-/// inside.
+/// The middle part, a `share` of the length, of the chord through a point in a direction; `None` if the
+/// point is not inside the rings.
 pub fn chord(rings: &[Vec<Vec2>], through: Vec2, direction: Vec2, share: f64) -> Option<[Vec2; 2]> {
     let mut before = f64::NEG_INFINITY;
     let mut after = f64::INFINITY;

@@ -7,7 +7,7 @@ use super::selection::Item;
 use crate::theme;
 use egui::{Pos2, Rect, Vec2, vec2};
 
-/// Sides of a point for its name, the preferred first.
+/// Sides of a point on which its name may stand, the preferred first.
 const SIDES: [Vec2; 8] = [
     vec2(1.0, -1.0),
     vec2(1.0, 1.0),
@@ -53,15 +53,15 @@ fn crosses(rect: Rect, [from, to]: [Pos2; 2]) -> bool {
     stretch[0] <= stretch[1]
 }
 
-/// Obstacles for names: pieces of other sheets, and lines.
+/// Obstacles that names avoid: pieces of other sheets, and lines.
 #[derive(Clone, Copy, Default)]
 struct Around<'a> {
     others: &'a [Rect],
     lines: &'a [Vec<Pos2>],
 }
 
-/// Rectangle for a name that overlaps none of the taken ones; preferably one without other pieces and
-/// lines in it; `None` if all places are taken.
+/// Rectangle for a name at a point that overlaps no rectangle of `taken`; preferably one without other
+/// pieces and lines in it. `None` if all places are taken.
 fn place(at: Pos2, size: Vec2, taken: &[Rect], around: Around<'_>) -> Option<Rect> {
     let is_free = |rect: &Rect| !taken.iter().any(|other| other.intersects(*rect));
     let Around { others, lines } = around;
@@ -77,8 +77,8 @@ fn place(at: Pos2, size: Vec2, taken: &[Rect], around: Around<'_>) -> Option<Rec
 }
 
 impl Picture<'_> {
-    /// Paints the names of points: of selected or hovered points always, of the other points on open
-    /// sheets as far as there is room.
+    /// Paints the names of points: of selected or hovered points always; of the other points on open sheets
+    /// if there is room.
     pub(super) fn point_names(&self, points: &[ShownPoint<'_>], labels: &mut Vec<Rect>) {
         let view = self.view.expand(20.0);
         let seen = |shown: &ShownPoint<'_>| self.seen(shown.origin, shown.point.at);
@@ -130,7 +130,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Rectangles of panels that do not lie on a sheet.
+    /// Rectangles of all panels except those that lie on the given sheet.
     fn others_by(&self, sheet: &SheetScene) -> Vec<Rect> {
         let others = self.scene.panels.iter();
         let others =
@@ -143,7 +143,7 @@ impl Picture<'_> {
             .collect()
     }
 
-    /// Lines of a sheet and of the panels that lie on it.
+    /// Lines of a sheet, and of the panels that lie on the sheet.
     fn lines_by(&self, sheet: &SheetScene) -> Vec<Vec<Pos2>> {
         let origin = self.table_layout.sheet(sheet.id);
         let curves = sheet.curves.iter().map(|curve| &curve.line[..]);

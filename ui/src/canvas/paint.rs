@@ -26,7 +26,7 @@ pub(super) const NUMBER_INSET: f64 = 16.0;
 /// Length of a notch (pixels).
 const NOTCH: f32 = 9.0;
 
-/// Opacity of drawn curves that the steps of a panel have moved away from.
+/// Opacity of drawn curves that the outline no longer follows, because operations of the panel moved it.
 const FAINT: f32 = 0.55;
 
 /// Font sizes of a panel's name: the usual one, and one for little room (pixels).
@@ -63,7 +63,7 @@ pub struct Picture<'a> {
     pub guide_label: Option<&'a GuideLabel>,
     /// Whether cut lines are drawn.
     pub allowances: bool,
-    /// Seams that a tool is about to make.
+    /// Seams that a tool previews.
     pub fresh: &'a [SeamId],
     /// Open sheets: all of their points are shown.
     pub open: &'a [SheetId],
@@ -118,8 +118,8 @@ impl Picture<'_> {
         for shown in &points {
             self.point(shown);
         }
-        // Links between seam ends are hidden while the pieces of a seam lie against each other, so that
-        // the fit is visible.
+        // While a seam is walked its pieces lie against each other: links between seam ends are hidden, so
+        // that the fit is visible.
         let is_walked = overlay
             .iter()
             .any(|mark| matches!(mark, Overlay::Ghost(..)));
@@ -231,8 +231,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Curves that no panel follows at its place, as pencil lines; while a sheet is open, curves that
-    /// steps of its panel have moved away from are faint.
+    /// Paints curves without a visible edge on them: curves that no panel is traced along, as pencil lines;
+    /// on an open sheet also curves from which operations moved the edges of the panel away, faint.
     fn curves(&self, sheet: &SheetScene) {
         let origin = self.table_layout.sheet(sheet.id);
         let is_open = self.open.contains(&sheet.id);
@@ -359,9 +359,9 @@ impl Picture<'_> {
         }
     }
 
-    /// The panel's name, and below it the cutting instruction if both fit: inside, in a gap of the
-    /// grainline; else only the name, in a smaller font if need be, or under the panel if it does not fit
-    /// inside.
+    /// Paints the panel's name, and the cutting instruction below it if both fit: inside the panel, in a
+    /// gap of the grainline. If they do not fit, only the name: in a smaller font if necessary, or under
+    /// the panel if there is no room inside.
     fn caption(&self, panel: &PanelScene, labels: &mut Vec<Rect>) {
         let origin = self.table_layout.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
@@ -383,7 +383,7 @@ impl Picture<'_> {
         let inset = NUMBER_INSET as f32;
         let fits = |size: egui::Vec2, corners: [Vec2; 2]| {
             let [low, high] = corners.map(|p| self.seen(origin, p));
-            // A fold has no seam and so no seam number beside it.
+            // A fold has no seam, and so no seam number stands beside it.
             let beside = match panel.fold.is_some() && corners == rooms[0].0 {
                 true => inset,
                 false => 2.0 * inset,
@@ -402,7 +402,8 @@ impl Picture<'_> {
         }
         choices.push((name.size(), vec![name.clone()]));
         choices.push((small.size(), vec![small]));
-        // The name alone is better than text over the fold.
+        // Room in the drafted half comes first, even for the name alone, so that no text lies over the
+        // fold.
         let found = rooms.iter().find_map(|(corners, at)| {
             let mut choices = choices.iter();
             let (size, lines) = choices.find(|(size, _)| fits(*size, *corners))?;
@@ -544,12 +545,12 @@ impl Picture<'_> {
         }
     }
 
-    /// Paints a small label beside a place.
+    /// Paints a small label in the accent colour beside a place.
     pub(super) fn tag(&self, at: Pos2, text: &str) -> Rect {
         self.label(at, text, self.palette.accent)
     }
 
-    /// Paints a label; returns its rectangle.
+    /// Paints a label beside a place, on a background of a colour; returns its rectangle.
     pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) -> Rect {
         self.words_on(text, ground_colour, |size, first| {
             // The first line of text is level with the place.
@@ -564,8 +565,8 @@ impl Picture<'_> {
         })
     }
 
-    /// Paints text on a background; returns the rectangle of the background. `place` computes that from
-    /// its size and the height of the first line.
+    /// Paints text on a background; returns the rectangle of the background. `place` computes this
+    /// rectangle from the size of the background and the height of the first line.
     pub(super) fn words_on(
         &self,
         words: &str,
@@ -586,7 +587,7 @@ impl Picture<'_> {
     }
 }
 
-/// Whether the fold of the panel is selected, an operation that has no line of its own.
+/// Whether the fold of the panel is selected. The fold is an operation without a line of its own.
 fn panel_fold_is_lit(panel: &PanelScene, selection: &Selection) -> bool {
     selection.items().iter().any(|item| {
         matches!(item, Item::Operation(of, id) if *of == panel.id

@@ -5,7 +5,7 @@ use crate::tools::{Overlay, Tone};
 use egui::{Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
-/// Opacity of the cloth of a ghost.
+/// Opacity of the cloth of a ghost, the preview of a piece laid on the table.
 const GHOST: f32 = 0.55;
 /// Offset of a label from its place (pixels): far enough to keep the lines there visible.
 const ABOVE: egui::Vec2 = vec2(30.0, -36.0);
@@ -61,8 +61,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Paints labels beside places of the table. One that would cover another is moved below it, and all
-    /// stay within the view.
+    /// Paints labels beside places of the table. A label that would cover another is moved below or above
+    /// it; all stay within the view.
     pub(super) fn labels(&self, overlay: &[Overlay]) {
         let mut placed: Vec<Rect> = Vec::new();
         for mark in overlay {
@@ -90,8 +90,8 @@ impl Picture<'_> {
     }
 }
 
-/// A rectangle for text at a point, or above or below it, inside a view, that overlaps none of those
-/// placed.
+/// Rectangle for text at a point, or above or below the point, that lies inside a view and overlaps no
+/// rectangle of `placed`.
 fn clear(placed: &[Rect], view: Rect, (at, size): (Pos2, egui::Vec2)) -> Rect {
     let right = (view.right() - size.x).max(view.left());
     let bottom = (view.bottom() - size.y).max(view.top());

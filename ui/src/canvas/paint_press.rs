@@ -10,7 +10,7 @@ const HALF: f32 = 14.0;
 const HEAD: [f32; 2] = [8.0, 4.0];
 
 impl Picture<'_> {
-    /// Arrows across darts and pleats, towards the side on which the folded cloth lies.
+    /// Paints arrows across darts and pleats, towards the side to which the folded cloth is pressed.
     pub(super) fn press_arrows(&self, panel: &PanelScene) {
         let origin = self.table_layout.panel(panel.id);
         for arrow in &panel.pressed {

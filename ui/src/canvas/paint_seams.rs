@@ -10,9 +10,9 @@ use crate::theme;
 use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
-/// Distance of the line of a seam from the outline, inward (pixels).
+/// Inset of the coloured line of a seam from the outline (pixels).
 const SEAM_INSET: f64 = 5.0;
-/// Shorter stretches carry no number (pixels).
+/// Stretches of a seam shorter than this carry no number (pixels).
 const NUMBER_LEAST: f64 = 34.0;
 /// Places along a stretch that are tried for its number, the preferred first (share of its length).
 const NUMBER_PLACES: [f64; 7] = [0.5, 0.4, 0.6, 0.28, 0.72, 0.15, 0.85];
@@ -22,7 +22,7 @@ const NUMBER_RADIUS: f32 = 8.5;
 const UNEVEN: f64 = 0.001;
 
 impl Picture<'_> {
-    /// Whether a seam is drawn stronger: it, or an edge it is sewn at, is selected or hovered.
+    /// Whether a seam is drawn stronger: the seam, or an edge that it joins, is selected or hovered.
     pub(super) fn touched(&self, seam: &SeamDrawing) -> bool {
         self.is_lit(Item::Seam(seam.id))
             || seam.stretches.iter().any(|stretch| {
@@ -49,8 +49,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The number of a seam on both its sides, each in the middle of a stretch or where it is clear of
-    /// other labels.
+    /// Paints the number of a seam beside each of its stretches that is long enough, in the middle or where
+    /// the number is clear of other labels.
     pub(super) fn seam_numbers(&self, seam: &SeamDrawing, labels: &mut Vec<Rect>) {
         for stretch in &seam.stretches {
             let Some(panel) = self.scene.panel_scene(stretch.panel) else {
@@ -85,8 +85,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Lines between the ends that are sewn together, and the difference in length of the two sides: in
-    /// the warning colour if that is more than a millimetre.
+    /// Paints lines between the seam ends that are sewn together, and the difference in length of the two
+    /// sides: in the warning colour if the difference is more than a millimetre.
     pub(super) fn seam_links(&self, seam: &SeamDrawing) {
         let [Some(first), Some(second)] = seam.ends else {
             return;
@@ -123,7 +123,7 @@ impl Picture<'_> {
         self.label(middle, &words, colour);
     }
 
-    /// Outlines of a panel in all sizes.
+    /// Paints the outlines of a panel in all sizes.
     pub(super) fn graded(&self, panel: &PanelScene, grading: &Grading) {
         let origin = self.table_layout.panel(panel.id);
         for (k, size) in grading.sizes.iter().enumerate() {
@@ -135,7 +135,7 @@ impl Picture<'_> {
         }
     }
 
-    /// The legend: colours and names of the sizes.
+    /// Paints the legend: colours and names of the sizes.
     pub(super) fn legend(&self, grading: &Grading) {
         let mut at = self.view.min + vec2(30.0, 34.0);
         for (k, size) in grading.sizes.iter().enumerate() {
@@ -154,7 +154,7 @@ impl Picture<'_> {
     }
 }
 
-/// Offset of a polyline to its left by a distance, corner by corner; ends stay perpendicular.
+/// Offsets a polyline to its left by a distance, corner by corner; at the ends the offset is perpendicular.
 fn beside(line: &[Vec2], distance: f64) -> Vec<Vec2> {
     if line.len() < 2 {
         return Vec::new();

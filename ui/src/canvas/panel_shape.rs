@@ -27,12 +27,14 @@ pub struct PanelShape {
     pub edges: Vec<EdgeShape>,
     /// Edges of outline and holes of the mirrored half, without legs of darts.
     pub mirrored: Vec<Vec<Vec2>>,
-    /// Other edges made by operations, as where the panel was split, on the drafted half.
+    /// Other edges of the drafted half that operations made, as where the panel was split; each with its
+    /// operation.
     pub made: Vec<(OperationId, Vec<Vec2>)>,
-    /// Legs of darts, with the operation that made them and whether they are on the mirrored half.
+    /// Legs of darts: the operation that made them, whether they are on the mirrored half, and the
+    /// polyline.
     pub darts: Vec<(OperationId, bool, Vec<Vec2>)>,
-    /// Fold and placement lines of pleats, with the operation that made them and whether it is a
-    /// placement line.
+    /// Fold and placement lines of pleats: the operation that made them, whether it is a placement line,
+    /// and the polyline.
     pub creases: Vec<(OperationId, bool, Vec<Vec2>)>,
     /// Internal lines of the drafted half.
     pub internal_lines: Vec<(LineId, Vec<Vec2>)>,
@@ -51,14 +53,14 @@ pub struct PanelShape {
 pub struct EdgeShape {
     /// Identity of the edge.
     pub id: EdgeId,
-    /// Length without dart mouths (m).
+    /// Length without the mouths of darts (m).
     pub length: f64,
     /// Polylines along the edge: one, or more where darts interrupt it.
     pub lines: Vec<Vec<Vec2>>,
 }
 
 impl PanelShape {
-    /// The shape of a stage; curves are flattened to within a tolerance (m).
+    /// Shape of a stage, the panel after its operations; curves are flattened to within a tolerance (m).
     pub fn new(stage: &Stage, tolerance: f64) -> Self {
         let polyline = |curve: &Curve| curve.flatten(tolerance);
         let rings = || std::iter::once(stage.outline()).chain(stage.holes());
@@ -157,14 +159,14 @@ impl PanelShape {
         super::inside::contains(&self.rings, at)
     }
 
-    /// The shape of an edge.
+    /// The shape of the edge with an identity.
     pub fn edge_shape(&self, id: EdgeId) -> Option<&EdgeShape> {
         self.edges.iter().find(|edge| edge.id == id)
     }
 }
 
 impl EdgeShape {
-    /// The middle of its longest polyline.
+    /// Middle of the edge's longest polyline.
     pub fn middle(&self) -> Option<Vec2> {
         self.lines
             .iter()

@@ -18,18 +18,18 @@ pub enum Spec {
     Point(PointId),
     /// A new point by a rule.
     New(PointRule),
-    /// At a distance (m) and angle (rad) from the last place.
+    /// A new point at a distance and an angle from the place given before.
     FromLast {
         /// The distance (m).
         distance: Number,
         /// The angle (rad), from +x counter-clockwise.
         angle: Number,
     },
-    /// At an offset from the last place (m).
+    /// A new point at an offset from the place given before.
     BesideLast {
-        /// To the right (m).
+        /// Offset to the right (m).
         x: Number,
-        /// Upward (m).
+        /// Offset upward (m).
         y: Number,
     },
 }
@@ -58,7 +58,7 @@ impl Placed {
         }
     }
 
-    /// The existing point at this place, if it is one.
+    /// The existing point at this place; `None` if there is none.
     pub fn point(&self) -> Option<PointId> {
         match self.spec {
             Spec::Point(id) => Some(id),
@@ -73,8 +73,8 @@ pub fn grid_step(scale: f64) -> f64 {
     step.map_or(0.05, |(step, _)| *step)
 }
 
-/// Step that a drag rounds lengths to for a pixel of this width (m): the least of 1, 2 or 5 times a power
-/// of ten of a unit (m) that is not less than a pixel, and at most a millimetre.
+/// Rounding step of lengths in a drag (m), for a pixel of this width (m): the least of 1, 2 or 5 times a
+/// power of ten of a unit (m) that is not less than the pixel, and at most a millimetre.
 pub fn drag_step(pixel: f64, unit: f64) -> f64 {
     let wanted = pixel.clamp(1e-9, MAX_ROUNDING);
     let power = 10.0_f64.powf((wanted / unit).log10().floor());
@@ -95,8 +95,8 @@ pub fn rounded(value: f64, step: f64) -> f64 {
     ((value / step).round() * step * 1e6).round() / 1e6
 }
 
-/// Curves within reach of a point, the nearest first, with the share of the length and the nearest point
-/// on each.
+/// Curves within `reach` of a point (m), the nearest first; with each the share of its length at the point
+/// of it that is nearest, and that point.
 pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene, f64, Vec2)> {
     let mut near: Vec<(f64, &CurveScene, f64, Vec2)> = sheet
         .curves
@@ -114,7 +114,7 @@ pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene
         .collect()
 }
 
-/// A place on a curve, at a share of its length, with the coordinates (m).
+/// A place on a curve, at a share of the curve's length, with coordinates `at` (m).
 pub fn on_curve(
     sheet: SheetId,
     curve: &CurveScene,
@@ -132,8 +132,7 @@ pub fn on_curve(
     }
 }
 
-/// A place on an edge of the panel that a sheet lies on, at a share of the edge, with the coordinates
-/// (m).
+/// A place on an edge of the panel that a sheet lies on, at a share of the edge, with coordinates `at` (m).
 pub fn on_edge(sheet: SheetId, part: &EdgePart, (share, at): (f64, Vec2), words: &str) -> Placed {
     let mark = Mark::Between {
         ends: part.ends,

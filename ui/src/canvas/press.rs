@@ -3,8 +3,9 @@
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind, PleatKind, PressArrow, Pressed, Side};
 
-/// Place at which a step is pressed, and the possible directions in the order of its choices: for a dart
-/// to the leg before its point and to that after it, for a knife pleat left and right of its line.
+/// Place of the pressing arrow of a dart or pleat, and the directions in which it may be pressed, in the
+/// order of the choices: for a dart toward the leg before its point and toward the leg after it, for a
+/// knife pleat left and right of its line.
 pub fn press_ways(arrows: &[PressArrow], step: &Operation) -> Option<(Vec2, [Vec2; 2])> {
     let is_first = match step.kind {
         OperationKind::Dart { pressed, .. } | OperationKind::Pivot { pressed, .. } => {
@@ -24,8 +25,8 @@ pub fn press_ways(arrows: &[PressArrow], step: &Operation) -> Option<(Vec2, [Vec
     })
 }
 
-/// Cosine between a direction at a place and the way to a fold: 1 straight to it, -1 straight away from
-/// it. `None` on the fold.
+/// Cosine of the angle between the direction `way` at the place `at` and the shortest way from there to a
+/// fold line: 1 straight to the fold, -1 straight away from it. `None` for a place on the fold.
 pub fn toward_fold((at, way): (Vec2, Vec2), [from, to]: [Vec2; 2]) -> Option<f64> {
     let along = (to - from).try_normalize(1e-12)?;
     let across = (from - at) - along * (from - at).dot(&along);

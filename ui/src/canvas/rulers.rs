@@ -11,8 +11,8 @@ pub const RULER: f32 = 18.0;
 /// Least distance between numbers (pixels).
 const NUMBERS: f64 = 56.0;
 
-/// Possible steps between numbers in a unit, each with its number of subdivisions; the smallest that
-/// leaves enough distance is taken.
+/// Possible steps between numbers in a unit, each with its number of subdivisions. The smallest step with
+/// enough distance between the numbers is used.
 fn steps(unit: DisplayUnit) -> &'static [(f64, u32)] {
     match unit {
         DisplayUnit::Inch => &[
@@ -55,7 +55,7 @@ pub fn step(unit: DisplayUnit, scale: f64) -> (f64, u32) {
     wide.or(all.last()).copied().unwrap_or((1.0, 1))
 }
 
-/// Paints both rulers. Zero is at a point of the table (m).
+/// Paints both rulers; their zero is at the table point `origin` (m).
 pub fn paint(
     painter: &Painter,
     (view, camera): (Rect, &TableCamera),

@@ -26,10 +26,10 @@ const AT_CORNER: f64 = 1e-6;
 pub struct Scene {
     /// Sheets, in the pattern's order.
     pub sheets: Vec<SheetScene>,
-    /// Panels, in the pattern's order, without those that never could be drawn; a panel that is split is
-    /// left out too, and its sides are drawn instead.
+    /// Panels, in the pattern's order, without those that never could be drawn. In place of a panel that is
+    /// split, its parts are drawn.
     pub panels: Vec<PanelScene>,
-    /// Seams, numbered from 1 in this order.
+    /// Seams in the pattern's order, numbered from 1.
     pub seams: Vec<SeamDrawing>,
     /// Cut lines.
     pub cut_lines: CutLines,
@@ -37,8 +37,8 @@ pub struct Scene {
     pub guides: Vec<Arc<Guide>>,
     /// The pieces and seams that the scene was made from.
     pub draft: Arc<Draft>,
-    /// Level of detail: exponent of the finest enlargement it is drawn for, a power of two (pixels per
-    /// metre).
+    /// Level of detail of curves: exponent of the power of two that is the finest enlargement they are
+    /// drawn for (pixels per metre).
     octave: i32,
     lines: HashMap<*const Path, KeptLine>,
     shapes: HashMap<*const Stage, KeptShape>,
@@ -72,11 +72,11 @@ pub struct SheetScene {
     pub points: Vec<PointScene>,
     /// Curves that can be drawn.
     pub curves: Vec<CurveScene>,
-    /// Whether no panel is traced from the sheet.
+    /// Whether no panel is traced on the sheet.
     pub is_bare: bool,
-    /// The panel that the sheet lies on, if it does.
+    /// The panel that the sheet lies on, for drawing on the finished panel; `None` for a free sheet.
     pub on: Option<PanelId>,
-    /// Edges of the stage of that panel, for snapping.
+    /// Edges of that panel after its operations, for snapping.
     pub edges: Vec<EdgePart>,
 }
 
@@ -102,7 +102,8 @@ pub struct PointScene {
     pub at: Vec2,
     /// Role of the point.
     pub role: PointRole,
-    /// Whether no outline has a corner there any more, because steps of its panels moved it.
+    /// Whether the point is a corner that operations moved in all of its panels: no outline has a corner
+    /// there any more.
     pub is_left: bool,
 }
 
@@ -119,7 +120,7 @@ pub struct CurveScene {
     pub path: Arc<Path>,
     /// Whether edges of panels follow the curve.
     pub is_traced: bool,
-    /// Pairs of a point and a handle of it.
+    /// Pairs of a knot of the curve, or an end, and one of its handles.
     pub handles: Vec<[PointId; 2]>,
 }
 
@@ -128,25 +129,26 @@ pub struct CurveScene {
 pub struct PanelScene {
     /// Identity of the panel.
     pub id: PanelId,
-    /// The sheet it is traced from.
+    /// Sheet on which the panel is traced.
     pub sheet: SheetId,
     /// Name of the panel.
     pub name: String,
-    /// Number of times it is cut, in words; empty for once.
+    /// Cutting instruction: number of times the panel is cut, in words; empty for once.
     pub cut: String,
     /// The drawn shape.
     pub shape: Arc<PanelShape>,
     /// End points of its edges.
     pub corners: BTreeSet<PointId>,
-    /// Corners that its steps moved: the visible outline has no corner at their drafted places.
+    /// Corners that the panel's operations moved: the visible outline has no corner at their drafted
+    /// places.
     pub left: BTreeSet<PointId>,
-    /// The step that laid the panel on the fold.
+    /// The operation that lays the panel on the fold; `None` if the panel is not folded.
     pub fold_step: Option<OperationId>,
-    /// Both ends of the fold line.
+    /// Both ends of the fold line; `None` if the panel is not folded.
     pub fold: Option<[Vec2; 2]>,
-    /// Pressing directions of its darts and pleats.
+    /// Arrows for the pressing directions of the panel's darts and pleats.
     pub pressed: Vec<PressArrow>,
-    /// Whether it cannot be drawn now, so that its last valid shape is shown.
+    /// Whether the panel cannot be drawn now, so that the last valid shape is shown.
     pub is_stale: bool,
 }
 
@@ -179,7 +181,7 @@ impl Scene {
             .collect();
         self.guides.clone_from(&pattern.guides);
         self.leave_points();
-        // Cached lines and shapes that are no longer drawn are dropped.
+        // Cached lines and shapes that were not used for this scene are discarded.
         self.lines = lines;
         self.shapes = shapes;
         self.seams = draw_seams(draft, self.tolerance());
@@ -187,7 +189,7 @@ impl Scene {
         self.draft = draft.clone();
     }
 
-    /// Marks the points at whose drafted places no panel has a corner.
+    /// Sets `is_left` of points: all of their panels have moved the corner away from the drafted place.
     fn leave_points(&mut self) {
         for sheet in &mut self.sheets {
             for point in &mut sheet.points {
@@ -200,7 +202,7 @@ impl Scene {
         }
     }
 
-    /// Removes all but some panels and the sheets they are traced from.
+    /// Removes all panels except the given ones, and the sheets that these do not need.
     pub fn isolate(&mut self, panels: &[PanelId]) {
         self.panels.retain(|panel| panels.contains(&panel.id));
         let sheets: Vec<SheetId> = self.panels.iter().map(|panel| panel.sheet).collect();
@@ -410,7 +412,7 @@ impl PanelScene {
 }
 
 impl SheetScene {
-    /// Bounding box of the points and curves (m); `None` if there are none.
+    /// Bounding box of the points and curves (m); `None` if the sheet has neither.
     pub fn bounds(&self) -> Option<Bounds2> {
         let points = self.points.iter().map(|point| point.at);
         let lines = self.curves.iter().flat_map(|curve| curve.line.iter());
@@ -419,7 +421,7 @@ impl SheetScene {
     }
 }
 
-/// Pairs of a point and a handle of it, for a spline.
+/// Pairs of a knot or end and one of its handles, for a spline; empty for other curves.
 fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
     let CurveRule::Spline { handles, knots, .. } = &curve.rule else {
         return Vec::new();
@@ -431,7 +433,8 @@ fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
     ends.into_iter().chain(inner).collect()
 }
 
-/// End points of the panel's edges; for a side of a split panel, those that lie on it.
+/// Drafted corners of a panel: end points of its edges; for a part of a split panel the drafted corners on
+/// that part.
 fn corners(panel: &Panel, stage: &Stage) -> BTreeSet<PointId> {
     if panel.sheet().is_some() {
         return panel.edges().flat_map(|edge| edge.ends).collect();
@@ -444,7 +447,7 @@ fn corners(panel: &Panel, stage: &Stage) -> BTreeSet<PointId> {
     starts.collect()
 }
 
-/// The corners at whose drafted places no edge of the stage ends.
+/// Corners that operations moved: no edge of the stage ends at their drafted places.
 fn left(corners: &BTreeSet<PointId>, stage: &Stage, evaluation: &Evaluation) -> BTreeSet<PointId> {
     let edges = stage.lines.iter().flat_map(|line| &line.edges);
     let ends = edges.flat_map(|edge| [edge.curve.start(), edge.curve.end()]);
@@ -456,7 +459,8 @@ fn left(corners: &BTreeSet<PointId>, stage: &Stage, evaluation: &Evaluation) -> 
     corners.iter().filter(is_left).copied().collect()
 }
 
-/// Both ends of the fold line of an unfolded stage: the ends of the drafted half.
+/// Both ends of the fold line of a stage that was unfolded: the ends of the drafted half. `None` without a
+/// mirrored half.
 pub fn fold_line(stage: &Stage) -> Option<[Vec2; 2]> {
     let ring = stage.outline();
     let count = ring.len();

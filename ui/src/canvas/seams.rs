@@ -14,26 +14,27 @@ pub struct SeamDrawing {
     pub number: usize,
     /// Length of each side (m).
     pub lengths: [f64; 2],
-    /// Start and end of each side, on the panel as drawn; `None` if the side is on another copy.
+    /// Start and end of each side, on the first copies of panels, which are drawn; `None` for a side on
+    /// another copy.
     pub ends: [Option<[SeamEnd; 2]>; 2],
-    /// Stretches on the panels as drawn.
+    /// Stretches of outlines that the seam joins, on the panels as drawn.
     pub stretches: Vec<SeamStretch>,
 }
 
 /// A stretch of one panel's outline that a seam joins.
 #[derive(Clone, Debug)]
 pub struct SeamStretch {
-    /// The panel.
+    /// The panel that the stretch is on.
     pub panel: PanelId,
-    /// The edge; `None` on the mirrored half.
+    /// The edge that the stretch is on; `None` on the mirrored half.
     pub edge: Option<EdgeId>,
-    /// Side of the seam: 0 or 1.
+    /// Side of the seam: 0 the first, 1 the second.
     pub side: usize,
-    /// Polyline in the direction of the outline (m).
+    /// Polyline of the stretch, in the direction of the panel's outline (m).
     pub line: Vec<Vec2>,
 }
 
-/// End of a side: the panel, and the point in its plane (m).
+/// End of a side of a seam: the panel, and the point in the panel's plane (m).
 pub type SeamEnd = (PanelId, Vec2);
 
 /// The seams of a draft; curves are flattened to within a tolerance (m).
@@ -90,7 +91,7 @@ pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
 }
 
 impl SeamDrawing {
-    /// Length of the first side minus that of the second (m).
+    /// Length of the first side minus the length of the second (m).
     pub fn difference(&self) -> f64 {
         self.lengths[0] - self.lengths[1]
     }

@@ -18,7 +18,7 @@ pub enum Item {
     Line(PanelId, LineId),
     /// A notch of a panel.
     Notch(PanelId, NotchId),
-    /// A dart, a fold or another stored step of a panel.
+    /// A dart, a fold or another operation of a panel.
     Operation(PanelId, OperationId),
     /// A whole panel.
     Panel(PanelId),
@@ -77,7 +77,7 @@ impl Item {
         }
     }
 
-    /// The panel that it is or belongs to.
+    /// The panel that the part is or belongs to.
     pub fn panel(self) -> Option<PanelId> {
         match self {
             Self::Edge(panel, _)
@@ -166,7 +166,7 @@ impl Selection {
         self.items.contains(&item)
     }
 
-    /// The part, if exactly one is selected.
+    /// The selected part, if exactly one is selected.
     pub fn single(&self) -> Option<Item> {
         match self.items[..] {
             [item] => Some(item),
@@ -201,7 +201,7 @@ impl Selection {
         sheets.collect()
     }
 
-    /// Adds a part, or removes it if it is selected.
+    /// Adds a part to the selection, or removes it if it is selected.
     pub fn toggle(&mut self, item: Item) {
         match self.items.iter().position(|known| *known == item) {
             Some(k) => {
@@ -211,7 +211,7 @@ impl Selection {
         }
     }
 
-    /// Adds a part unless it is selected.
+    /// Adds a part to the selection, unless it is selected.
     pub fn add(&mut self, item: Item) {
         if !self.contains(item) {
             self.items.push(item);

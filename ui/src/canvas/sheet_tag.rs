@@ -16,8 +16,8 @@ const LETTER: f32 = 6.8;
 /// Half the length of the lines of the cross (pixels).
 pub(super) const CROSS: f32 = 8.0;
 
-/// The sheets whose tags are shown: if there are several free sheets, those that nothing is traced from,
-/// and the open ones.
+/// Sheets whose tags are shown, if several sheets are free (lie on no panel): those on which no panel is
+/// traced, and the open ones.
 pub fn tagged<'s>(
     scene: &'s Scene,
     open: &'s [SheetId],

@@ -115,7 +115,7 @@ fn on_curves(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) 
     }
 }
 
-/// The nearest point on edges of the panel that the sheet lies on.
+/// Finds the nearest point on the edges of the panel that the sheet lies on.
 fn on_edges(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
     let near = sheet.edges.iter().filter_map(|part| {
         let (point, share) = part.nearest(at)?;
@@ -132,7 +132,8 @@ fn on_edges(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
     }
 }
 
-/// Places level with or straight above a point, at a multiple of the grid step from it.
+/// Finds places level with a point, and straight above or below a point, at a multiple of the grid step
+/// from it.
 fn levels(sheet: &SheetScene, at: Vec2, (reach, step): (f64, f64), found: &mut Vec<Placed>) {
     let points = sheet
         .points

@@ -12,15 +12,15 @@ const GAP: f64 = 0.06;
 const PUSHED: f64 = 0.03;
 /// Half the side of the visible area of an empty sheet (m).
 const ROOM: f64 = 0.3;
-/// Aspect ratio, width over height, that rows are broken for: about that of the view.
+/// Aspect ratio, width over height, for which sheets are arranged in rows: about that of the view.
 const ASPECT: f64 = 1.15;
 
 /// Positions of the origins of sheets and panels on the table (m).
 #[derive(Clone, Debug, Default)]
 pub struct TableLayout {
-    /// Sheets that were shifted so that none covers another: the position in the document, and the shift
-    /// from it (m). The shift stays while a pattern is edited, so that nothing jumps, until the document
-    /// gives another position.
+    /// Sheets that were shifted so that no sheet covers another: the position in the document, and the
+    /// shift from that position (m). The shift stays while the pattern is edited, so that no sheet jumps,
+    /// until the document gives the sheet another position.
     shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
     /// Positions of the sheets when the document was opened (m); a sheet with another position was moved
     /// by the user.
@@ -37,7 +37,7 @@ impl TableLayout {
     /// Lays out the sheets of a pattern that was just opened.
     pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
         self.shifted.clear();
-        // Sheets that lie on panels have the positions of these.
+        // Sheets that lie on panels have the positions of their panels.
         let mut free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let first = free.clone().next().map(|sheet| sheet.on_table);
         let is_one = free.clone().count() < 2;
@@ -66,9 +66,10 @@ impl TableLayout {
         }
     }
 
-    /// Pushes sheets apart whose pieces have come to overlap, as after a change of size or a longer hem:
-    /// to the right or downward, whichever is shorter. Affects the display only, not the positions in the
-    /// document. Sheets that the user moved stay, and so do those that overlapped from the start.
+    /// Pushes sheets apart whose pieces have come to overlap, as after a change of size or when a piece
+    /// becomes longer: to the right or downward, whichever is shorter. Affects the display only, not the
+    /// positions in the document. Sheets that the user moved stay, and so do sheets that overlapped when
+    /// the pattern was opened.
     pub fn push_apart(&mut self, pattern: &Pattern, scene: &Scene) {
         self.pushed.clear();
         self.follow(pattern);
@@ -77,7 +78,7 @@ impl TableLayout {
             self.opened.get(&id).copied() != place
         };
         let mut rooms = self.rooms(pattern, scene);
-        // From the upper left on, but sheets moved by the user first: they stay.
+        // In the order from the upper left; but sheets that the user moved come first, because they stay.
         rooms.sort_by(|(one, a), (other, b)| {
             let rank = |id: SheetId, room: &Bounds2| (!by_hand(id), room.min.x - room.max.y);
             let (one, other) = (rank(*one, a), rank(*other, b));
@@ -90,7 +91,7 @@ impl TableLayout {
                 continue;
             }
             let mut by = Vec2::zeros();
-            // Each push clears at least one of the earlier ones.
+            // Each push moves the sheet clear of at least one earlier sheet.
             for _ in 0..rooms.len() {
                 let covers = rooms[..k].iter().find_map(|(other, taken)| {
                     let meant = self.together.contains(&[id, *other])
@@ -156,9 +157,9 @@ impl TableLayout {
         self.sheets.get(&id).copied().unwrap_or_default()
     }
 
-    /// Sheets whose position on the table differs from that in the document, with the position (m) on the
-    /// table, not counting pushes. Once the document stores the position of one of several sheets it has
-    /// to store all.
+    /// Sheets whose position on the table, without pushes, differs from the one in the document; with the
+    /// position on the table (m). Once the document stores the position of one of several sheets it has to
+    /// store all.
     pub fn laid_apart(&self, pattern: &Pattern) -> Vec<(SheetId, [f64; 2])> {
         let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let laid = |id: SheetId| self.sheet(id) - self.pushed.get(&id).copied().unwrap_or_default();
@@ -172,7 +173,7 @@ impl TableLayout {
         self.panels.get(&id).copied().unwrap_or_default()
     }
 
-    /// Whether a panel lies apart from its sheet.
+    /// Whether a panel is drawn away from the sheet on which it is traced.
     pub fn is_apart(&self, panel: &PanelScene) -> bool {
         self.panel(panel.id) != self.sheet(panel.sheet)
     }
@@ -184,7 +185,7 @@ impl TableLayout {
             .iter()
             .filter(|sheet| sheet.on.is_none())
             .filter_map(|sheet| {
-                // With several sheets an empty one is shown too, with room to draw on.
+                // If there are several sheets an empty one is shown, too, with room to draw on.
                 let room = Vec2::new(ROOM, ROOM);
                 let is_seen = scene.sheets.len() > 1;
                 let room = is_seen.then(|| Bounds2::of([-room, room]));
@@ -204,8 +205,8 @@ fn moved(bounds: &Bounds2, by: Vec2) -> Bounds2 {
     }
 }
 
-/// Shortest shift to the right or downward (m) by which one box must move to clear another that stays;
-/// `None` if they do not overlap.
+/// Shortest shift to the right or downward (m) that moves the box `goes` clear of the box `stays`; `None`
+/// if they do not overlap.
 fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
     let common = stays.max.inf(&goes.max) - stays.min.sup(&goes.min);
     if common.x <= 1e-9 || common.y <= 1e-9 {
@@ -226,11 +227,12 @@ fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
         .map(PanelScene::bounds)
         .copied()
         .reduce(|a, b| a.union(&b));
-    // Construction far outside the panel would push its neighbours away needlessly.
+    // Points and curves of a sheet with panels do not count: those far outside would push neighbours away
+    // needlessly.
     drawn.or_else(|| sheet.bounds())
 }
 
-/// Arranges boxes in rows, in order.
+/// Arranges boxes in rows, in the given order; returns the position of each origin (m).
 fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
     let sizes: Vec<Vec2> = boxes
         .iter()
@@ -251,8 +253,8 @@ fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
     }
     places
 }
-/// The row width whose rows come nearest to the wanted aspect ratio, of 25 widths from the widest box to
-/// all boxes in one row.
+/// Width of rows (m) whose overall box comes nearest to the wanted aspect ratio; tries 25 widths, from the
+/// widest box to all boxes in one row.
 fn best_width(sizes: &[Vec2]) -> f64 {
     let widest = sizes.iter().map(|s| s.x).fold(0.0, f64::max);
     let total: f64 = sizes.iter().map(|s| s.x).sum();

@@ -15,13 +15,13 @@ const FLATNESS: f64 = 1e-4;
 /// Geometry of a seam that is walked.
 #[derive(Debug)]
 pub struct WalkedSeam {
-    /// Both sides, measured.
+    /// Both sides of the seam, measured.
     sides: WalkSides,
     /// Index of the seam in the draft.
     at: usize,
     /// Pieces of the seam, by their index in the draft.
     pub pieces: BTreeMap<usize, WalkedPiece>,
-    /// Stretches of each side: index of the piece, and polyline in its plane (m).
+    /// Stretches of each side: index of the piece in the draft, and polyline in the piece's plane (m).
     pub lines: [Vec<(usize, Vec<Vec2>)>; 2],
     /// Notches of the seam.
     pub notches: Vec<WalkedNotch>,
@@ -57,7 +57,7 @@ impl WalkedSeam {
         })
     }
 
-    /// The seam and its walk; `draft` is the one it was measured on.
+    /// The seam in a draft, and its walk; `draft` must be the draft on which the seam was measured.
     pub fn walk<'d>(&self, draft: &'d Draft) -> Option<(&'d DraftSeam, Walk<'d>)> {
         let seam = draft.seams.get(self.at)?;
         Some((seam, Walk::again(draft, seam, &self.sides)))
@@ -80,7 +80,7 @@ impl WalkedPiece {
     }
 }
 
-/// The last seam that was walked, with its draft; the seam is `None` if it cannot be walked.
+/// Draft, seam and geometry of the last walk; the geometry is `None` if the seam cannot be walked.
 type Kept = (Arc<Draft>, SeamId, Option<Arc<WalkedSeam>>);
 
 /// Cache of the last seam that was walked.
@@ -91,7 +91,7 @@ pub(super) struct WalkedLast {
 }
 
 impl WalkedLast {
-    /// A seam of a draft; `None` if it cannot be walked.
+    /// Geometry of a seam of a draft; `None` if the seam cannot be walked.
     pub fn seam(&self, draft: &Arc<Draft>, id: SeamId) -> Option<Arc<WalkedSeam>> {
         let mut kept = self.kept.borrow_mut();
         if let Some((of, known, seam)) = &*kept

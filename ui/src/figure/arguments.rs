@@ -11,8 +11,8 @@ pub struct FigureTask {
     pub figure: Figure,
     /// The patterns it is dressed in, the innermost first.
     pub patterns: Vec<PathBuf>,
-    /// Keys, each with the number of frames after it, and the file of the picture that is written instead
-    /// of opening a window.
+    /// Keys to press, each with the number of frames computed after it, and the file of the picture of the
+    /// result. With pictures no window is opened.
     pub pictures: Option<(Vec<(RealtimeKey, usize)>, PathBuf)>,
 }
 

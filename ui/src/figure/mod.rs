@@ -21,8 +21,8 @@ const KEYS: [(Key, RealtimeKey); 4] = [
     (Key::G, RealtimeKey::Switch),
 ];
 
-/// Weight of the newest frame in the mean of the computing time: an average over about half a second is
-/// readable.
+/// Weight of the newest frame in the mean computing time (1): averages over about half a second, so that
+/// the number can be read.
 const NEWEST: f64 = 0.03;
 
 /// The window of a figure in motion.
@@ -34,7 +34,7 @@ pub struct FigureWindow {
     floor: CornerBuffer,
     lines: CornerBuffer,
     last: Option<Instant>,
-    /// Mean computing time of the clothes per frame (s).
+    /// Mean computing time per frame, of the clothes (s).
     spent: f64,
     refusal: Option<String>,
 }
@@ -110,7 +110,7 @@ impl FigureWindow {
         );
     }
 
-    /// Text in the corner.
+    /// Text in the corner of the window.
     fn words(&self) -> String {
         let adjustment = match self.run.adjustment() {
             Adjustment::Gravity => "clothes hang",

@@ -73,8 +73,8 @@ impl Orbit {
         self.distance = (self.distance / factor).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
-    /// Shows all of a box (m) from the present direction, in a view of an aspect ratio (width over
-    /// height).
+    /// Moves the eye so that a whole box (m) is visible from the present direction, in a view of an aspect
+    /// ratio (width over height).
     pub fn fit(&mut self, bounds: [Vec3; 2], aspect: f64) {
         self.target = (bounds[0] + bounds[1]) * 0.5;
         let size = bounds[1] - bounds[0];

@@ -9,9 +9,9 @@ use egui::Color32;
 
 /// Samples per pixel: every adapter of WebGPU's baseline supports 4.
 const SAMPLES: u32 = 4;
-/// Bytes per corner.
+/// Bytes per corner of a triangle or line.
 const CORNER_BYTES: u64 = 4 * CORNER_FLOATS as u64;
-/// egui expects images that are encoded as sRGB in a format that is not marked as sRGB.
+/// egui expects images that are encoded as sRGB, but in a format that is not marked as sRGB.
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Floats of the view uniforms: a matrix and two directions.
@@ -27,7 +27,7 @@ pub struct StageRenderer {
     target: Option<Target>,
 }
 
-/// Corners on the graphics card.
+/// Corners of triangles or lines, in a buffer of the graphics card.
 #[derive(Default)]
 pub struct CornerBuffer {
     buffer: Option<wgpu::Buffer>,
@@ -110,8 +110,8 @@ impl StageRenderer {
         into.buffer = Some(buffer);
     }
 
-    /// Draws triangles and lines on a background colour, as seen by the eye; returns the image, with a
-    /// size (pixels).
+    /// Draws triangles and lines on the background colour `ground`, as seen by the eye; returns the image,
+    /// of a size (pixels).
     pub fn draw(
         &mut self,
         orbit: &Orbit,

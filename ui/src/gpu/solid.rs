@@ -6,14 +6,14 @@ use std::sync::Arc;
 use toile_geometry::{Vec3, triangle_area};
 use toile_session::{Garment, GarmentJob, LiveFrame, RealtimeSurface, Stage};
 
-/// A corner in the vertex buffer: position (m), normal, colour (linear, 0..=1), and lighting.
+/// A corner in the vertex buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position (m).
     pub position: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Linear colour, and [`Finish`] as a number.
+    /// Linear colour, 0..=1, and the [`Finish`] as a number.
     pub colour: [f32; 4],
 }
 
@@ -147,16 +147,16 @@ pub fn floor(palette: &Palette) -> Vec<Corner> {
         .collect()
 }
 
-/// Appearance of the cloth, which is constant during a drape.
+/// Appearance of the cloth of a garment: colours, which are constant during a drape.
 pub struct ClothLook {
     garment: Arc<Garment>,
     /// Linear colour of each triangle.
     colours: Vec<[f32; 3]>,
-    /// Boundary edges of panels, by vertices of the job's garment, with their linear colours.
+    /// Boundary edges of panels, as pairs of vertices of the job's garment, with their linear colours.
     rims: Vec<([u32; 2], [f32; 3])>,
 }
 
-/// A garment ready to be drawn.
+/// Cloth of a garment as corners, ready to be uploaded and drawn.
 #[derive(Default)]
 pub struct ClothSolid {
     /// Three corners per triangle.
@@ -165,8 +165,8 @@ pub struct ClothSolid {
     pub lines: Vec<Corner>,
 }
 
-/// Linear greys of out-of-date cloth, for black and for white cloth: distinct from the mannequin and from
-/// every colour of the cloth.
+/// Linear greys of out-of-date cloth: for cloth that was black, and for cloth that was white. Both differ
+/// from the mannequin and from every colour of cloth.
 const OLD_GREYS: [f32; 2] = [0.18, 0.40];
 /// Linear grey of seam lines on out-of-date cloth.
 const OLD_INK: f32 = 0.04;
@@ -217,7 +217,7 @@ impl ClothLook {
         }
     }
 
-    /// The cloth at one moment.
+    /// The cloth at one moment of a drape.
     pub fn solid(&self, frame: &LiveFrame) -> ClothSolid {
         let positions = &frame.positions;
         let merged = |v: u32| frame.target.get(v as usize).copied().unwrap_or(0);

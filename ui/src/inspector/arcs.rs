@@ -11,7 +11,7 @@ use toile_pattern::{
     CurveId, CurveRule, EditError, Evaluation, Formula, Number, PartId, PartReference, Want,
 };
 
-/// The numbers of a part as displayed: for an arc the swept angle.
+/// The numbers of a part as displayed: an arc shows its swept angle, in place of the stored number.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     let entries = plan::numbers_of(evaluation, part).into_iter();
     let seen = entries.map(|entry| match is_bulge(&entry) {
@@ -26,7 +26,7 @@ pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     seen.collect()
 }
 
-/// Converts a displayed number to the one that the document stores.
+/// Converts a displayed number to the stored one.
 ///
 /// # Errors
 /// An arc cannot sweep this angle.
@@ -49,7 +49,7 @@ fn is_bulge(entry: &NumberEntry) -> bool {
 const BULGE: &str = "bulge";
 
 impl ToileApp {
-    /// Field for the radius of an arc; nothing for another curve.
+    /// Shows the field for the radius of an arc; shows no field for other curves.
     pub(super) fn radius_field(&mut self, ui: &mut Ui, id: CurveId) {
         let base = self.base.clone();
         let Some(arc) = Arc::new(&base, id) else {
@@ -120,7 +120,7 @@ impl<'e> Arc<'e> {
         (0.5 * self.chord.1 / (0.5 * self.swept).sin()).abs()
     }
 
-    /// Swept angle of an arc with a given radius between the same ends, turning in the same direction.
+    /// Swept angle that gives the arc this radius, between the same ends and turning in the same direction.
     fn angle(&self, radius: &Number) -> Result<Number, String> {
         let value = self.evaluation.number(radius, Want::Length);
         let value = value.ok_or("the radius has no value")?;

@@ -8,11 +8,12 @@ use egui::{Id, Ui};
 use toile_geometry::Vec2;
 use toile_pattern::{GuideId, GuideRun, Number, Want, plan};
 
-/// Positions of guides are shown to a nanometre: finer digits come from rounding in sums (1/m).
+/// Positions of guides are rounded to a nanometre for display: finer digits come from rounding in sums
+/// (1/m).
 const SHOWN: f64 = 1e9;
 
 impl ToileApp {
-    /// Field for the position of a guide.
+    /// Shows the field for the position of a guide.
     pub(crate) fn guide_place(&mut self, ui: &mut Ui, id: GuideId) {
         let Some(guide) = self.base.pattern().guide(id).cloned() else {
             return;

@@ -4,7 +4,8 @@ use crate::tools::{corner_words, is_on_fold, number, scaled};
 use toile_pattern::plan::NumberEntry;
 use toile_pattern::{EditError, Evaluation, Mark, Name, Number, Panel, PartId, Pattern, Want};
 
-/// Label of a number's field.
+/// Label of the field of a number: for a distance along an edge it names the corner from which the distance
+/// counts.
 pub fn label(evaluation: &Evaluation, entry: &NumberEntry) -> String {
     let pattern = evaluation.pattern();
     let usual = || entry.label.to_owned();
@@ -34,8 +35,8 @@ pub fn label(evaluation: &Evaluation, entry: &NumberEntry) -> String {
     }
 }
 
-/// A number as displayed: a distance from the end of an edge is shown without the minus sign that means
-/// against its direction.
+/// A number as displayed. A distance that is stored as negative, because it counts from the end of an edge
+/// backwards, is shown without the minus sign.
 pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
     let leads_back = leads_back(evaluation, &entry);
     let turned = |number: &Number| scaled(evaluation, number, -1.0).ok();
@@ -53,7 +54,7 @@ pub fn shown(evaluation: &Evaluation, entry: NumberEntry) -> NumberEntry {
     }
 }
 
-/// Converts a displayed number to the one that the document stores.
+/// Converts a displayed number to the stored one.
 ///
 /// # Errors
 /// The formula would be too long.
@@ -68,7 +69,8 @@ pub fn kept(
     }
 }
 
-/// Whether a number is a distance along an edge from its end, against its direction.
+/// Whether a number is a distance that counts from the end of an edge backwards; such a distance is stored
+/// as negative.
 fn leads_back(evaluation: &Evaluation, entry: &NumberEntry) -> bool {
     let is_back = |(_, mark): (&Panel, &Mark)| {
         let Mark::Along { distance, .. } = mark else {
@@ -95,7 +97,7 @@ fn edge_along(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<Str
     Some(edge.name.clone())
 }
 
-/// Distance along the edge, in words, of a place that is stored as a share of it.
+/// For a place that is stored as a share of an edge: its distance along the edge, in words.
 pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> {
     let pattern = evaluation.pattern();
     let (panel, mark) = mark_at(pattern, entry)?;
@@ -136,7 +138,7 @@ fn mark_at<'p>(pattern: &'p Pattern, entry: &'p NumberEntry) -> Option<(&'p Pane
     Some((panel, entry.mark.as_ref()?))
 }
 
-/// The corner that a distance counts from, in words.
+/// The corner that a stored distance counts from, in words.
 fn from(pattern: &Pattern, panel: &Panel, mark: &Mark) -> Option<String> {
     match mark {
         Mark::Along { from, .. } => Some(format!("from {}", corner_words(pattern, panel, *from)?)),

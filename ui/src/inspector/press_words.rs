@@ -5,9 +5,10 @@ use crate::canvas::scene::PanelScene;
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind};
 
-/// The directions that a step may be pressed in, in the order of its choices: to the centre, which lies
-/// on the fold, or to the side; if that is not known, or the direction runs along the fold, as seen from
-/// the right side of the cloth.
+/// Words for the two directions in which a dart or pleat may be pressed, in the order of the choices: to
+/// the centre, which lies on the fold line, or to the side. Without a fold, or along it: right, left, up or
+/// down on the drawing, which shows the right side of the cloth. If no arrow is known: by the name of the
+/// choice.
 pub fn press_words(panel: Option<&PanelScene>, step: &Operation) -> [&'static str; 2] {
     let found = panel.and_then(|panel| Some((panel, press_ways(&panel.pressed, step)?)));
     match found {

@@ -22,7 +22,8 @@ impl ToileApp {
         }
     }
 
-    /// Total length of edges and curves; distance and direction between two points.
+    /// Measurements of several parts in words: total length of edges and curves; distance and direction
+    /// between two points.
     fn measured_together(&self, items: &[Item]) -> Vec<String> {
         let unit = self.base.pattern().unit;
         let length = |length: f64| number::show(length, Want::Length, unit);
@@ -45,7 +46,7 @@ impl ToileApp {
         words
     }
 
-    /// Numbers that all parts have, each with its entry in every part.
+    /// Numbers that all parts have in common: for each number its entries, one per part.
     fn common_numbers(&self, items: &[Item]) -> Vec<Vec<NumberEntry>> {
         let mut of_parts = items.iter().map(|item| numbers_of(&self.base, item.part()));
         let Some(first) = of_parts.next() else {
@@ -119,7 +120,7 @@ impl ToileApp {
         }
     }
 
-    /// Fields for the numbers of the curve that an edge follows.
+    /// Shows fields for the numbers of the curve that an edge follows.
     pub(crate) fn curve_numbers(&mut self, ui: &mut Ui, (panel, edge): (PanelId, EdgeId)) {
         let pattern = self.base.pattern();
         let owner = pattern.owner_of(panel, edge.into());
@@ -139,7 +140,7 @@ impl ToileApp {
     }
 }
 
-/// Common name for several parts.
+/// Word for the common kind of several parts.
 fn kind_of(items: &[Item]) -> &'static str {
     let word = |item: &Item| match item {
         Item::Point(_) => "points",

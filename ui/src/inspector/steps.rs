@@ -13,7 +13,8 @@ use toile_pattern::{
 };
 
 impl ToileApp {
-    /// The steps of a panel in their order: a click selects one, and buttons move it earlier or later.
+    /// Shows the operations of a panel in their order: a click selects one, and buttons move it earlier or
+    /// later.
     pub(crate) fn panel_steps(&mut self, ui: &mut Ui, id: PanelId) {
         let pattern = self.base.pattern().clone();
         let steps = pattern.panel(id).map_or(&[][..], |panel| &panel.operations);
@@ -59,7 +60,7 @@ impl ToileApp {
         }
     }
 
-    /// Choices of a step, if it has any.
+    /// Shows the choices of an operation, if it has any.
     pub(crate) fn step_choices(&mut self, ui: &mut Ui, panel: PanelId, id: OperationId) {
         let pattern = self.base.pattern().clone();
         let Some(owner) = pattern.owner_of(panel, id.into()) else {
@@ -97,7 +98,7 @@ impl ToileApp {
     }
 }
 
-/// Choices for a kind of step; the pressing directions are given in words.
+/// Shows the choices for a kind of operation; `first` and `second` name the pressing directions.
 fn kind_choices(ui: &mut Ui, kind: &mut OperationKind, [first, second]: [&str; 2]) {
     let legs = [(Pressed::Before, first), (Pressed::After, second)];
     match kind {

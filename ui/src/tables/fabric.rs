@@ -15,39 +15,39 @@ use toile_session::{Command, FabricChoice, library_fabric, with_hardening};
 /// Width of the list, and of a field (pixels).
 const LIST: f32 = 190.0;
 const FIELD: f32 = 84.0;
-/// Height of a line, and between two of them (pixels).
+/// Height of a line, and gap between two lines (pixels).
 const LINE: f32 = 22.0;
 const LINE_GAP: f32 = 3.0;
 /// Width of the part for the marker (pixels).
 const MARKER_PART: f32 = 300.0;
-/// Most figures in a column.
+/// Largest number of figures in a column.
 const ROWS: usize = 6;
-/// Height of the list of what a garment can be cut from (pixels).
+/// Height of the drop-down list of the fabrics that the garment can be cut from (pixels).
 const CHOICES: f32 = 480.0;
 /// Side of a swatch (pixels).
 const SWATCH: f32 = 12.0;
-/// Widths of the roll that can be chosen (m).
+/// Least and largest width of a roll that can be typed (m).
 const WIDTHS: [f64; 2] = [0.05, 20.0];
 
-/// Which fabric the table shows.
+/// Fabric that the table shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Viewed {
-    /// One of the pattern.
+    /// A fabric of the pattern.
     Own(FabricId),
-    /// One of the library.
+    /// A fabric of the library, by its name.
     Library(&'static str),
-    /// The one of a file that the garment is cut from.
+    /// The fabric of a file that the garment is cut from.
     File,
 }
 
-/// What is seen and typed in the table of fabrics.
+/// State of the table of fabrics that is kept between frames.
 #[derive(Default)]
 pub struct FabricTable {
-    /// The fabric on show; nothing is the one that the garment, or its first panel, is cut from.
+    /// The fabric on show; with `None` the fabric that the garment, or else its first panel, is cut from.
     viewed: Option<Viewed>,
     /// The fabric that the list was last scrolled to.
     scrolled_to: Option<Viewed>,
-    /// A colour that is being picked.
+    /// A colour that is being picked, and the fabric it is for.
     colour: Option<(FabricId, [u8; 3])>,
 }
 
@@ -87,7 +87,7 @@ impl ToileApp {
         });
     }
 
-    /// What the garment is cut from.
+    /// Shows the choice of the fabric that the whole garment is cut from.
     fn cut_choice(&mut self, ui: &mut Ui) {
         let chosen = self.session.project().fabric.clone();
         let each = "each panel's own fabric";
@@ -141,7 +141,7 @@ impl ToileApp {
         }
     }
 
-    /// The width of the roll, where it is another than the fabric's own.
+    /// Shows the field for the width of the roll; empty if it is the fabric's own width.
     fn roll_width(&mut self, ui: &mut Ui) {
         let base = self.base.clone();
         let unit = base.pattern().unit;
@@ -179,7 +179,7 @@ impl ToileApp {
         }
     }
 
-    /// The fabrics of the pattern, of a file that was chosen, and of the library.
+    /// Shows the list of fabrics: those of the pattern, the one of a chosen file, and those of the library.
     fn fabric_list(&mut self, ui: &mut Ui, viewed: Option<Viewed>) {
         let pattern = self.base.pattern().clone();
         let mut clicked = None;
@@ -222,7 +222,8 @@ impl ToileApp {
         }
     }
 
-    /// The fabric that the whole garment is cut from, where one was chosen.
+    /// The fabric that the whole garment is cut from; `None` if none was chosen, so that each panel has its
+    /// own.
     fn fabric_of_garment(&self) -> Option<Viewed> {
         let pattern = self.base.pattern();
         match self.session.project().fabric.as_ref()? {
@@ -236,7 +237,8 @@ impl ToileApp {
         }
     }
 
-    /// The fabric on show, if it is still there.
+    /// The fabric on show; if it does not exist any more, the one the garment is cut from, or else the
+    /// first.
     fn viewed_fabric(&self) -> Option<Viewed> {
         let pattern = self.base.pattern();
         let is_there = |viewed: &Viewed| self.fabric_on_show(*viewed).is_some();
@@ -260,7 +262,7 @@ impl ToileApp {
         }
     }
 
-    /// The name of a fabric, what can be done with it, and its figures.
+    /// Shows the name of a fabric, the commands for it, and its figures.
     fn fabric_page(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
         ui.horizontal(|ui| match viewed {
             Viewed::Own(_) => self.own_fabric_head(ui, fabric),
@@ -305,7 +307,7 @@ impl ToileApp {
         });
     }
 
-    /// Name, colour, copying and removing of one of the pattern's own.
+    /// Shows name, colour and buttons to copy and remove, for a fabric of the pattern.
     fn own_fabric_head(&mut self, ui: &mut Ui, fabric: &Fabric) {
         let label = ui.label("Fabric name").id;
         let id = Id::unique(("fabric name", fabric.id));
@@ -314,7 +316,8 @@ impl ToileApp {
                 .field(ui, (id, label), &fabric.name, |_| Ok(String::new()))
         });
         if let Entered::Text(text) = entered {
-            // The cloth stays what it is under another name.
+            // Only the name changes: the hardening that the library gives a fabric by its name is stored
+            // with it.
             let kept = with_hardening(fabric);
             let planned = plan::rename(&self.base, fabric.id.into(), &text).map(|mut edits| {
                 for edit in &mut edits {
@@ -344,7 +347,7 @@ impl ToileApp {
         }
     }
 
-    /// The colour, picked or typed.
+    /// Shows the choice of the colour, picked or typed.
     fn colour_choice(&mut self, ui: &mut Ui, fabric: &Fabric) {
         let picked = self.tables.fabric.colour.filter(|(id, _)| *id == fabric.id);
         let before = picked.map_or(bytes(fabric.colour), |(_, colour)| colour);
@@ -369,7 +372,7 @@ impl ToileApp {
         }
     }
 
-    /// Takes over a colour once it is picked: one step of the history.
+    /// Applies a picked colour once the picking has ended, as one step of the history.
     pub(crate) fn take_picked_colour(&mut self, context: &egui::Context) {
         let is_picking =
             Popup::is_any_open(context) || context.input(|input| input.pointer.any_down());
@@ -392,7 +395,7 @@ impl ToileApp {
         self.edit(plan::set_fabric(&self.base, changed), "Colour fabric");
     }
 
-    /// Whether all pieces point one way.
+    /// Shows the check box for a nap, with which all pieces must point one way.
     fn nap_choice(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
         let mut nap = fabric.nap;
         let is_own = matches!(viewed, Viewed::Own(_));
@@ -407,7 +410,7 @@ impl ToileApp {
         }
     }
 
-    /// The panels, ticked where they are cut from the fabric. A tick cuts a panel from it.
+    /// Shows the panels, each ticked if it is cut from the fabric. A tick cuts the panel from the fabric.
     fn cut_panels(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
         let pattern = self.base.pattern().clone();
         if pattern.panels.is_empty() || viewed == Viewed::File {
@@ -437,7 +440,8 @@ impl ToileApp {
         }
     }
 
-    /// The edits that cut a panel from a fabric; one of the library is copied into the pattern for it.
+    /// The edits that cut a panel from a fabric; a fabric that is not the pattern's own is copied into the
+    /// pattern.
     fn cut_from(
         &self,
         panel: PanelId,
@@ -455,7 +459,7 @@ impl ToileApp {
         Ok(edits)
     }
 
-    /// Adds a fabric to the pattern, and shows it.
+    /// Adds a fabric to the pattern, and shows the fabric in the table.
     fn add_fabric(&mut self, fabric: Fabric, label: &str) {
         let planned = plan::add_fabric(&self.base, fabric);
         let id = planned.as_ref().ok().map(|(_, id)| *id);
@@ -471,7 +475,7 @@ fn is_same_cloth(a: &Fabric, b: &Fabric) -> bool {
     a.material == b.material && a.width == b.width
 }
 
-/// A field of the usual width.
+/// Shows a text field of the usual width.
 pub(super) fn field(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Entered) -> Entered {
     let shown = ui.scope(|ui| {
         ui.set_width(FIELD);
@@ -480,7 +484,7 @@ pub(super) fn field(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Entered) -> Enter
     shown.inner
 }
 
-/// A small square of a colour.
+/// Paints a small square of a colour.
 fn swatch(ui: &mut Ui, colour: [f64; 3]) {
     let [red, green, blue] = bytes(colour);
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());

@@ -17,7 +17,7 @@ use toile_session::with_hardening;
 const SOURCE: f32 = 150.0;
 
 impl ToileApp {
-    /// Figures of a fabric, a row each: name, value, unit, source.
+    /// Shows the figures of a fabric, one per row: name, value, unit, source.
     pub(super) fn figure_rows(
         &mut self,
         ui: &mut Ui,
@@ -67,7 +67,7 @@ impl ToileApp {
             });
     }
 
-    /// The law of the cloth under compression.
+    /// Shows the choice of the law by which the cloth resists compression.
     pub(super) fn compression_choice(&mut self, ui: &mut Ui, viewed: Viewed, fabric: &Fabric) {
         let before = fabric.material.compression;
         let mut chosen = before;
@@ -101,7 +101,7 @@ impl ToileApp {
         }
     }
 
-    /// The field of a figure of one of the pattern's own fabrics.
+    /// Shows the field of a figure, for a fabric of the pattern.
     fn figure_field(
         &mut self,
         ui: &mut Ui,
@@ -144,7 +144,7 @@ impl ToileApp {
     }
 }
 
-/// A figure in four digits, of which those that say nothing are left out.
+/// A figure rounded to four significant digits, without trailing zeros.
 fn shown_figure(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     format!("{rounded}")

@@ -5,7 +5,7 @@ use toile_pattern::Fabric;
 use toile_pattern::plan::FabricFigure;
 use toile_session::{library_fabric, library_origin, with_hardening};
 
-/// Source of a figure of a fabric of the library.
+/// Source of a figure of a library fabric, in words.
 pub fn library_source(figure: FabricFigure, library: &LibraryFabric) -> &'static str {
     match figure {
         FabricFigure::Width => "a usual width, without a source",
@@ -16,7 +16,8 @@ pub fn library_source(figure: FabricFigure, library: &LibraryFabric) -> &'static
     }
 }
 
-/// Where a figure of a pattern's own fabric comes from: the library, while it is as there, else the pattern.
+/// Source of a figure of the pattern's own fabric: the library, while the figure is unchanged; else the
+/// pattern.
 pub fn own_source(figure: FabricFigure, fabric: &Fabric) -> String {
     let given = "given in the pattern".to_owned();
     let Some(library) = library_origin(fabric) else {
@@ -35,26 +36,26 @@ pub fn own_source(figure: FabricFigure, fabric: &Fabric) -> String {
     }
 }
 
-/// A colour as it is typed, as `#8099cc`.
+/// A colour as text, in the form in which it is typed: `#8099cc`.
 pub fn colour_text(colour: [f64; 3]) -> String {
     let [red, green, blue] = bytes(colour);
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A colour in steps of 1/255.
+/// The parts of a colour in steps of 1/255.
 pub fn bytes(colour: [f64; 3]) -> [u8; 3] {
     colour.map(|share| (share * 255.0).round() as u8)
 }
 
-/// The colour of steps of 1/255.
+/// The parts of a colour (0..=1), from steps of 1/255.
 pub fn shares(bytes: [u8; 3]) -> [f64; 3] {
     bytes.map(|byte| f64::from(byte) / 255.0)
 }
 
-/// A colour from what was typed.
+/// Reads a typed colour.
 ///
 /// # Errors
-/// How it is written.
+/// A description of the form in which colours are written.
 pub fn read_colour(text: &str) -> Result<[f64; 3], String> {
     let digits = text.trim().trim_start_matches('#');
     let read = |k: usize| u8::from_str_radix(digits.get(2 * k..2 * k + 2)?, 16).ok();

@@ -7,7 +7,8 @@ use egui::{
 };
 
 impl ToileApp {
-    /// The rest of the strip, which the user drags to move the tables beside or below the pattern.
+    /// Shows the rest of the row of tabs as a strip that the user drags, to move the tables beside or below
+    /// the pattern.
     pub(super) fn tables_handle(&mut self, ui: &mut Ui) {
         let size = vec2(
             ui.available_size_before_wrap().x.max(0.0),

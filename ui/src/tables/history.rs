@@ -6,7 +6,7 @@ use egui::{RichText, ScrollArea, Ui};
 use toile_session::Command;
 
 impl ToileApp {
-    /// Steps of the history; a click goes to that state.
+    /// Shows the steps of the history; a click goes to the state after a step.
     pub(super) fn history_table(&mut self, ui: &mut Ui) {
         let past: Vec<String> = self.session.past().into_iter().map(str::to_owned).collect();
         let future: Vec<String> = self

@@ -3,8 +3,8 @@
 use crate::fields::choose_all;
 use egui::{Id, Key, Response, TextEdit, Ui};
 
-/// A field of one line with a hint while it is empty, named by a label. Text typed into a field that was
-/// just entered replaces the old text.
+/// Shows a field of one line, named by a label; the hint is shown while the field is empty. Text typed into
+/// a field that was just entered replaces the old text.
 pub fn line_field(
     ui: &mut Ui,
     label: Id,
@@ -25,12 +25,12 @@ pub fn line_field(
     response
 }
 
-/// Whether Enter was pressed in a field.
+/// Whether Enter was pressed in a field, which ends its typing.
 pub fn is_entered(ui: &Ui, response: &Response) -> bool {
     response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }
 
-/// Whether the focus is on such a field that is empty: it has no text to undo.
+/// Whether the focus is on an empty field shown by [`line_field`]: it has no text that Undo could change.
 pub fn is_empty_field(context: &egui::Context) -> bool {
     let frame: Option<u64> = context.data(|data| data.get_temp(emptied()));
     frame.is_some_and(|frame| frame + 1 >= context.cumulative_frame_nr())

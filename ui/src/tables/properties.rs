@@ -1,20 +1,20 @@
 //! Name and unit of the pattern, and the current sheet.
 
 use crate::app::ToileApp;
-use crate::app::panes::Tab;
+use crate::app::tab::Tab;
 use crate::fields::{Entered, choice, labelled};
 use crate::theme::Palette;
 use egui::{RichText, Ui};
 use toile_pattern::plan;
 
 impl ToileApp {
-    /// Opens the table of properties.
+    /// Shows the table with the properties of the pattern.
     pub(crate) fn show_properties(&mut self) {
         self.panes.tables = true;
         self.tables.tab = Tab::Pattern;
     }
 
-    /// Name and unit of the pattern, and the current sheet.
+    /// Shows name and unit of the pattern, and the current sheet.
     pub(super) fn properties_table(&mut self, ui: &mut Ui) {
         use toile_pattern::DisplayUnit::{Centimetre, Inch, Metre, Millimetre};
         let pattern = self.base.pattern().clone();
@@ -50,7 +50,7 @@ impl ToileApp {
         ui.label(RichText::new(words).color(soft));
     }
 
-    /// Name of the current sheet: formulas use it to name its points.
+    /// Shows the field for the name of the current sheet; formulas use the name for points of the sheet.
     fn sheet_name(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
         let drawn_on = self.view.sheet.and_then(|id| pattern.sheet(id));

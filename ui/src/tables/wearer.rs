@@ -17,7 +17,7 @@ use toile_session::{BodyChoice, Command, Figure};
 const CHOICE: f32 = 420.0;
 /// Least width of the measurements beside the list (pixels).
 const MEASUREMENTS: f32 = 400.0;
-/// The measurement that is kept when another one is typed.
+/// The measurement that is stored as given, too, when another one is typed.
 const HEIGHT: &str = "height";
 /// Width of the value of a measurement (pixels).
 const VALUE: f32 = 96.0;
@@ -27,7 +27,7 @@ const VALUE: f32 = 96.0;
 pub struct WearerTable {
     /// Search text.
     search: String,
-    /// Every figure with its height and its bust or chest girth (m).
+    /// Every figure, with height, and bust or chest girth (m).
     figures: Vec<(Figure, [f64; 2])>,
     known: Option<Known>,
     /// The last chosen wearer from measurements or a file, to be chosen again after a figure was tried.
@@ -48,7 +48,7 @@ struct Known {
 }
 
 impl WearerTable {
-    /// Drops the wearer of another document.
+    /// Forgets the wearer, because another document is opened.
     pub fn forget(&mut self) {
         self.own = None;
     }
@@ -250,7 +250,7 @@ impl ToileApp {
         }
     }
 
-    /// The search field; returns all measurements.
+    /// Shows the search field; returns all measurements of the wearer.
     fn wearer_search(&mut self, ui: &mut Ui) -> Known {
         ui.horizontal_wrapped(|ui| {
             let label = ui.label("Find measurement").id;
@@ -262,7 +262,7 @@ impl ToileApp {
         self.known_wearer()
     }
 
-    /// Rows of the measurements that match the search.
+    /// Shows a row for each measurement that matches the search.
     fn wearer_rows(&mut self, ui: &mut Ui, known: &Known) {
         let rows = found_rows(known, &self.tables.wearer.search);
         if rows.is_empty() {
@@ -410,7 +410,8 @@ fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Mea
         }
         None => {
             table.remove(name);
-            // The height that was kept beside the last other measurement is removed with that.
+            // The height was stored only beside another measurement: if it is the last one left, it is
+            // removed, too.
             let height = known.figure_height.filter(|_| table.len() == 1);
             if let (Some(usual), Some(given)) = (height, table.get(HEIGHT))
                 && (usual - given).abs() < 1e-3
@@ -422,7 +423,7 @@ fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Mea
     Ok(table)
 }
 
-/// Measurements whose name or meaning contains every word of the search, from head to foot.
+/// Rows of the measurements whose name or meaning contains every word of the search, from head to foot.
 fn found_rows(known: &Known, search: &str) -> Vec<Row> {
     let catalogue = CATALOGUE.iter().chain(FURTHER).map(|known| known.name);
     let mut names: Vec<&str> = catalogue.filter(|name| known.all.contains(name)).collect();

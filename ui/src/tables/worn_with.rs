@@ -1,5 +1,6 @@
 //! Garments worn over and under this one: layers in visible order, the outermost first.
 
+use super::worn_where::WornWhere;
 use crate::app::ToileApp;
 use crate::app::tool_commands::{WEAR_OVER, WEAR_UNDER};
 use crate::fields::Entered;
@@ -15,22 +16,13 @@ const MOST: u16 = 999;
 
 /// A garment that is worn.
 struct Worn {
-    /// Index among the other garments; `None` for the garment of this document.
+    /// Index of the garment among the other garments; `None` for the garment of this document.
     other: Option<usize>,
     name: String,
     layer: u16,
     /// File name.
     file: String,
     is_missing: bool,
-}
-
-/// Place of an added garment in the order of layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WornWhere {
-    /// Outermost.
-    Over,
-    /// Next to the skin.
-    Under,
 }
 
 impl ToileApp {
@@ -171,7 +163,7 @@ impl ToileApp {
             WornWhere::Over => (all().max().unwrap_or_default() + 1).min(MOST),
             WornWhere::Under => match all().min().unwrap_or_default() {
                 0 => {
-                    // Layer 0 is taken: all other garments move one layer out.
+                    // Layer 0 is taken: so all garments move one layer outward.
                     others
                         .iter_mut()
                         .for_each(|o| o.layer = (o.layer + 1).min(MOST));

@@ -9,8 +9,8 @@ use toile_pattern::{
     PanelId, Pattern, Want,
 };
 
-/// The mark at a distance along a finished edge of a panel, from the corner nearer to a point of the
-/// sheet (m); and its place (m).
+/// The mark at a distance along a finished edge of a panel, counted from the corner nearer to a point
+/// `near` of the sheet (m); and the place of the mark (m).
 ///
 /// # Errors
 /// The edge does not exist, cannot be drawn, or is shorter than the distance.
@@ -38,8 +38,8 @@ pub(super) fn mark_along(
     Ok((mark, edge.place(along).unwrap_or(near)))
 }
 
-/// Distance from the first corner of an edge for a mark placed near a point (m): half the length if the
-/// middle is near, else a whole millimetre from the nearer corner.
+/// Rounded distance of a mark from the first corner of an edge, for a mark placed near a point (m): half
+/// the length of the edge near the middle, else a whole millimetre from the nearer corner.
 pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     let (along, length) = (edge.nearest(near), edge.length);
     if (along - 0.5 * length).abs() < middle(edge) {
@@ -52,8 +52,8 @@ pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     }
 }
 
-/// Distance from the nearer end of an edge for a mark placed near a point (m), and the place of the mark
-/// (m).
+/// For a mark placed near a point (m): rounded distance of the mark from the nearer end of the edge, and
+/// place of the mark (m).
 pub(super) fn told(
     reading: &Reading<'_>,
     (panel, edge, near): (PanelId, EdgeId, Vec2),
@@ -68,8 +68,8 @@ fn middle(edge: &FinishedEdge) -> f64 {
     0.004_f64.min(0.1 * edge.length)
 }
 
-/// The corner of an edge that is nearer to a point, along the edge: 0 the first, 1 the second; the first
-/// for a point in the middle.
+/// The end of an edge that is nearer to a point, measured along the edge: 0 the first, 1 the second; also 0
+/// if the point is near the middle.
 pub(super) fn end_near(edge: &FinishedEdge, near: Vec2) -> usize {
     match edge.nearest(near) > 0.5 * edge.length + middle(edge) {
         true => 1,
@@ -82,7 +82,7 @@ pub(super) fn negated(number: &Number, reading: &Reading<'_>) -> Result<Number, 
     scaled(reading.evaluation, number, -1.0)
 }
 
-/// A number times a factor; a formula stays a formula, and a manual adjustment of it stays an adjustment.
+/// A number times a factor; a formula stays a formula, and an adjustment added to it stays an adjustment.
 ///
 /// # Errors
 /// The formula would be too long or too deep.
@@ -111,7 +111,7 @@ fn scaled_formula(
     let read = |text: &str| Formula::parse(text, names);
     let parsed = match factor {
         1.0 => Ok(formula.clone()),
-        // A minus sign that an earlier change put in front is removed again.
+        // A minus sign that an earlier change of sign put in front is removed again.
         -1.0 => match text.strip_prefix("-(").and_then(|t| t.strip_suffix(')')) {
             Some(inner) => read(inner).or_else(|_| read(&format!("-({text})"))),
             None => read(&format!("-({text})")),
@@ -121,7 +121,8 @@ fn scaled_formula(
     parsed.map_err(|error| refuse(&error.message, &error.hint))
 }
 
-/// The mark at a distance inward from an end of a finished edge of a panel: 0 the first, 1 the second.
+/// The mark at a distance from one end of a finished edge, toward the other end; `end` is 0 for the first
+/// end, 1 for the second.
 pub(super) fn mark_from(
     evaluation: &Evaluation,
     edge: &FinishedEdge,
@@ -132,8 +133,8 @@ pub(super) fn mark_from(
     plan::mark_along(evaluation, edge, (end, &distance))
 }
 
-/// Name of a corner of a panel, or "the centre" for an end of its fold; `None` for a corner made by a
-/// step.
+/// Name of a corner of a panel, or "the centre" for an end of its fold; `None` for a corner made by an
+/// operation.
 pub fn corner_words(pattern: &Pattern, panel: &Panel, name: CornerName) -> Option<String> {
     if is_on_fold(panel, name) {
         return Some("the centre".to_owned());
@@ -152,7 +153,8 @@ pub fn is_on_fold(panel: &Panel, name: CornerName) -> bool {
     })
 }
 
-/// Description of an end of an edge: the corner, and the edge that it meets there.
+/// Description of an end of an edge: the corner there, and the edge that meets the given one at that
+/// corner.
 pub(super) fn end_words(
     evaluation: &Evaluation,
     edge: (&FinishedEdge, EdgeId),

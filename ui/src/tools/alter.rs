@@ -14,8 +14,8 @@ use toile_pattern::{
     PleatKind, Side, Want,
 };
 
-/// Distance by which the points of both darts are set back if only a share of a dart is moved (m): about
-/// the distance between a dart's point and the bust point.
+/// Distance by which the points of both darts are moved back, if only a share of a dart is moved (m): about
+/// the usual distance between a dart's point and the bust point.
 const SET_BACK: f64 = 0.02;
 
 /// Moves a dart, or a share of it, to another place of the outline.
@@ -56,8 +56,8 @@ pub static PIVOT: SlotTool = SlotTool {
             ));
         }
         let near = super::panel::marked(reading, *panel, (*at, mark))?;
-        // The points of two darts must not meet; the distance by which they are set back is a number of
-        // the step.
+        // The points of the two darts must not meet; the user can change the distance by which they are set
+        // back, a number of the operation.
         let moved = reading.evaluation.number(share, Want::Plain);
         let back = match moved.is_some_and(|moved| moved < 1.0) {
             true => SET_BACK,
@@ -279,7 +279,7 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     Ok(plan)
 }
 
-/// Tells the end of an edge that places are measured from: the one nearer to the click.
+/// Note that says from which end of an edge the places are measured: from the end nearer to the click.
 fn counted_words(
     evaluation: &Evaluation,
     (panel, edge): (PanelId, EdgeId),
@@ -292,7 +292,7 @@ fn counted_words(
     Some(format!("Places along {name} count from {words}"))
 }
 
-/// Number of pleats.
+/// Checks and rounds the number of pleats.
 fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
     let count = evaluation.number(count, Want::Plain);
     let count = count.filter(|count| (1.0..=60.0).contains(count) && count.fract() == 0.0);
@@ -305,8 +305,8 @@ fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
     })
 }
 
-/// Places along a finished edge of a panel: the first given, the others at a spacing, or evenly up to the
-/// end of the edge if the spacing is zero.
+/// Places along a finished edge of a panel: `count` places, the first at `first`, the others at a spacing;
+/// if the spacing is zero, evenly spaced up to the end of the edge.
 fn spaced(
     evaluation: &Evaluation,
     near: &FinishedEdge,
@@ -346,15 +346,16 @@ fn length_of(evaluation: &Evaluation, number: &Number) -> Result<f64, EditError>
     value.ok_or_else(|| refuse("the distance has no value", "type a length"))
 }
 
-/// Cut lines from places along one finished edge of a panel, measured from one of its ends, each to the
-/// same share of another edge.
+/// Cut lines that begin at places along one finished edge of a panel, measured from one of the edge's ends.
+/// Each ends on another edge, at the same share of that edge's length.
 fn cuts_at(
     evaluation: &Evaluation,
     ((panel, [_, to]), near, end): ((PanelId, [EdgeId; 2]), &FinishedEdge, usize),
     places: &[Number],
 ) -> Result<Vec<[Mark; 2]>, EditError> {
     let far = plan::finished_edge(evaluation, panel, to)?;
-    // Rounded to few enough digits for a readable formula: edges of equal length differ by rounding.
+    // The ratio is rounded, so that the formula stays readable: edges of equal length differ by rounding
+    // errors.
     let ratio = (far.length / near.length * 1e10).round() / 1e10;
     let cut = |place: &Number| {
         let across = along::scaled(evaluation, place, ratio)?;

@@ -11,7 +11,10 @@ use crate::canvas::selection::Item;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveId, EdgeId, Number, PanelId, PointRule, SheetId, Want};
 
-/// The present answer to the slot, if there is a valid one.
+/// The present answer to the slot in hand.
+///
+/// # Errors
+/// There is no valid answer yet: the reason, and the field it is about.
 pub(super) fn answer(
     tool: &SlotTool,
     state: &SlotState,
@@ -21,7 +24,7 @@ pub(super) fn answer(
     let typable = Typable::new(tool, state, reading);
     typable.refuse_untaken(state)?;
     let numbers = match kind {
-        // Several numbers are typed into one field.
+        // Several numbers are typed into one field, and read further below.
         SlotKind::Numbers { .. } => Vec::new(),
         _ => typed_numbers(&typable, state, reading)?,
     };
@@ -116,7 +119,7 @@ fn listed(
     }
 }
 
-/// The edge under the pointer, and the nearest point on it (m).
+/// The edge of a panel under the pointer, and the point of the edge nearest to the pointer (m).
 fn edge_here(
     sews: bool,
     state: &SlotState,
@@ -132,7 +135,8 @@ fn edge_here(
     found.ok_or_else(|| no_edge(sews, pointer, reading).into())
 }
 
-/// The curve under the pointer, or that of the edge there, with its sheet and the point on it (m).
+/// The curve under the pointer, or the curve that the edge there follows, with its sheet and the nearest
+/// point on it (m).
 fn curve_here(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -148,7 +152,7 @@ fn curve_here(
     found.ok_or_else(|| "there is no curve here: click on one".into())
 }
 
-/// A point on a line of a panel under the pointer, at a typed distance if there is one.
+/// A point on the line of a panel under the pointer; at a typed distance along an edge, if one was typed.
 fn on_line(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -175,7 +179,7 @@ fn on_line(
     Ok(Answer::OnLine(panel, hit.item, at, Some(mark)))
 }
 
-/// The typed numbers, one per field.
+/// Reads the typed numbers, one per field; `None` for an empty field.
 fn typed_numbers(
     typable: &Typable,
     state: &SlotState,
@@ -195,7 +199,7 @@ fn typed_numbers(
     read.collect()
 }
 
-/// The present place: from typed numbers, else from the pointer.
+/// The present place: from the typed numbers if there are any, else from the pointer.
 fn placed(
     way: Option<Way>,
     numbers: &[Option<Number>],
@@ -222,7 +226,8 @@ fn placed(
     };
     let sheet = last.map(|last| last.sheet);
     let sheet = sheet.or(pointer.map(|pointer| pointer.sheet));
-    // Typed numbers suffice for a place, even if the pointer is elsewhere, as in the field of a name.
+    // Typed numbers suffice for a place, even if the pointer is not on the canvas, as when a name is typed
+    // elsewhere.
     let sheet = sheet.or(reading.sheet).ok_or("point at a sheet first")?;
     let (at, spec) = match way {
         Some(Way::FromLast | Way::Radius) => typed.after_last(),
@@ -239,7 +244,7 @@ fn placed(
     })
 }
 
-/// Numbers typed for a place; the pointer provides those that are not typed.
+/// Numbers typed for a place; the pointer gives the numbers that are not typed.
 struct TypedPlace<'a> {
     numbers: [Option<Number>; 2],
     origin: Vec2,
@@ -284,8 +289,8 @@ impl TypedPlace<'_> {
         Ok((at, Spec::FromLast { distance, angle }))
     }
 
-    /// A place at an offset from the last one. A rectangle grows toward the pointer; from a corner that
-    /// was typed, to the right and upward.
+    /// A place at an offset from the last place. With `to_pointer`, for a rectangle, typed numbers without
+    /// a sign are taken toward the side of the pointer.
     fn beside(&self, to_pointer: bool) -> Result<(Vec2, Spec), Unanswered> {
         let way = self.way();
         let pixel = self.pointer.map_or(0.0, |pointer| pointer.pixel);

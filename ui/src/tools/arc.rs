@@ -66,7 +66,7 @@ pub(super) fn through(
     let place = |id| evaluation.point(id);
     let apart = |id| Some((place(id)? - place(by)?).norm() > 1e-9);
     if ends.iter().any(|end| apart(*end) != Some(true)) {
-        // The check of the arc reports the error.
+        // The place lies on an end, so that there is no arc: the check of the arc reports the error.
         return Ok(CurveShape::ArcThrough(placed.at));
     }
     let [start, end, by] = [ends[0], ends[1], by].map(|id| point(evaluation, id));
@@ -79,8 +79,8 @@ pub(super) fn through(
     }))
 }
 
-/// The bulge of an arc whose swept angle is known up to multiples of two full turns, which do not change
-/// it.
+/// The number stored for an arc (bulge: tangent of a quarter of the swept angle). The angle need be known
+/// only up to multiples of two full turns, which do not change the bulge.
 fn swept(planning: &Planning, angle: &Number) -> Result<Number, EditError> {
     let text = plan::number_text(planning.evaluation(), angle, Want::Angle);
     formula(planning.evaluation(), &format!("tan(({text}) / 4)"))
@@ -142,7 +142,8 @@ pub static CENTRE_ARC: SlotTool = SlotTool {
     },
 };
 
-/// A point at the distance of another from a centre, rotated about the centre by an angle.
+/// Makes a point at the distance of `start` from `centre`, rotated from `start` about the centre by an
+/// angle.
 ///
 /// # Errors
 /// The point cannot be made.
@@ -167,7 +168,7 @@ pub(super) fn about(
     planning.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
 }
 
-/// Angle about the centre from the start of an arc to the pointer, in whole degrees (rad).
+/// Angle about the centre from the start of an arc to the pointer, rounded to whole degrees (rad).
 fn round(answers: &[Answer], pointer: &Pointer) -> f64 {
     let given = places(answers);
     let [centre, start, ..] = given[..] else {
@@ -182,7 +183,7 @@ fn round(answers: &[Answer], pointer: &Pointer) -> f64 {
     let step = step.to_radians();
     let angle = ((turned(pointer.at) - turned(start.at)) / step).round() * step;
     let angle = angle - TAU * (angle / TAU).round();
-    // At the start of the arc the pointer gives no angle yet.
+    // While the pointer is at the start of the arc it gives no angle: a quarter turn is used.
     match angle.abs() < 0.5 * step {
         true => PI / 2.0,
         false => angle,

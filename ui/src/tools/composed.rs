@@ -4,12 +4,12 @@
 use super::refusal::refuse;
 use toile_pattern::{EditError, Evaluation, Formula, Number, PartReference, PointId, Want, plan};
 
-/// A number as part of another formula, in parentheses.
+/// Text of a number as part of a longer formula, in parentheses.
 pub(super) fn written(evaluation: &Evaluation, number: &Number, want: Want) -> String {
     format!("({})", plan::number_text(evaluation, number, want))
 }
 
-/// A point as written in a formula.
+/// Text of a point in a formula.
 pub(super) fn point(evaluation: &Evaluation, id: PointId) -> String {
     evaluation.names().print_part(&PartReference::Point(id))
 }
@@ -17,7 +17,7 @@ pub(super) fn point(evaluation: &Evaluation, id: PointId) -> String {
 /// Parses the text of a formula.
 ///
 /// # Errors
-/// The text is no formula, as where names are too long.
+/// The text is not a valid formula, as when names make it too long.
 pub(super) fn formula(evaluation: &Evaluation, text: &str) -> Result<Number, EditError> {
     let read = Formula::parse(text, evaluation.names());
     read.map(Number::Formula)

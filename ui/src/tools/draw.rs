@@ -13,7 +13,7 @@ use toile_pattern::{
     plan::{self, Chain, CurveShape, Holes, NewPanel},
 };
 
-/// A point by coordinates, on a curve, at a crossing or beside another.
+/// Draws a point: at coordinates, on a curve, at an intersection or beside another point.
 pub static POINT: SlotTool = SlotTool {
     command: "Point",
     slots: &[Slot {
@@ -27,7 +27,7 @@ pub static POINT: SlotTool = SlotTool {
     },
 };
 
-/// A point at a distance and an angle from another, which it follows.
+/// Draws a point at a distance and an angle from another point; the new point follows the other one.
 pub static POINT_FROM: SlotTool = SlotTool {
     command: "Point from",
     slots: &[
@@ -43,7 +43,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
     plan: |answers, reading| {
         let given = places(answers);
         let (from, to) = (given[0], given[1]);
-        // A free place is also stored relative to the other point.
+        // A free place is stored as an offset from the other point, too.
         let way = to.at - from.at;
         let beside = Placed {
             spec: Spec::BesideLast {
@@ -62,7 +62,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
     },
 };
 
-/// The plan for the last of some points, with the name that was typed for it.
+/// The plan that selects the last of some points, with the typed name for that point.
 fn drawn(
     mut planning: Planning,
     points: Vec<PointId>,
@@ -85,7 +85,7 @@ pub(super) fn name(answers: &[Answer]) -> Option<&str> {
     }
 }
 
-/// A straight line; the next one begins at its end.
+/// Draws a straight line; the next line begins at its end.
 pub static LINE: SlotTool = SlotTool {
     command: "Line",
     slots: &[
@@ -118,7 +118,7 @@ pub static LINE: SlotTool = SlotTool {
     },
 };
 
-/// Lines through several places, closed by a click on the first.
+/// Draws lines through several places; a click on the first place closes them.
 pub static POLYGON: SlotTool = SlotTool {
     command: "Polygon",
     slots: &[Slot {
@@ -138,7 +138,8 @@ pub static POLYGON: SlotTool = SlotTool {
         let lines = if *closes { count } else { count - 1 };
         for k in 0..lines {
             let ends = [points[k], points[(k + 1) % count]];
-            // The name goes to the panel or to a single line; several lines get it with a number each.
+            // The name goes to the panel, or to a single line; several lines get the name with a running
+            // number.
             let name = match name(answers) {
                 Some(name) if !closes && lines == 1 => Some(name.to_owned()),
                 Some(name) if !closes => Some(format!("{name} {}", k + 1)),
@@ -168,7 +169,7 @@ pub static POLYGON: SlotTool = SlotTool {
     },
 };
 
-/// A smooth curve through several places; its handles can be moved afterwards.
+/// Draws a smooth curve through several places; its handles can be moved afterwards.
 pub static SPLINE: SlotTool = SlotTool {
     command: "Curve",
     slots: &[Slot {
@@ -179,7 +180,7 @@ pub static SPLINE: SlotTool = SlotTool {
         let mut planning = Planning::new(reading);
         let given = places(answers);
         let (first, last) = (given[0], given[given.len() - 1]);
-        // The place before the last may be a point of the curve, which does not exist yet.
+        // If the last place is relative, its base may be a knot of this curve, which does not exist yet.
         let free = Placed::free(last.sheet, last.at);
         let is_relative = matches!(last.spec, Spec::FromLast { .. } | Spec::BesideLast { .. });
         let end = match is_relative {
@@ -200,8 +201,8 @@ pub static SPLINE: SlotTool = SlotTool {
     },
 };
 
-/// Gives the knots of a spline the constructions of their places, the first relative to another point;
-/// returns the last knot, or that point if there are no knots.
+/// Gives the knots of a spline the constructions of the places `given`, each relative to the knot before,
+/// and the first relative to the point `first`; returns the last knot, or `first` if there are no knots.
 fn keep_places(
     planning: &mut Planning,
     curve: CurveId,
@@ -220,8 +221,9 @@ fn keep_places(
     Ok(before)
 }
 
-/// A spline through places: each inner handle is parallel to the chord between the neighbouring places, a
-/// third of the way to its neighbour (Catmull and Rom 1974); at both ends toward the neighbour's handle.
+/// A spline through places. Inner handles are parallel to the chord between the neighbouring places, and a
+/// third of the distance to the neighbour long (Catmull and Rom 1974); both end handles point to the
+/// neighbour's handle.
 fn smooth(places: &[Vec2]) -> CurveShape {
     let count = places.len();
     let tangent = |k: usize| (places[k + 1] - places[k - 1]) * 0.5;
@@ -248,7 +250,7 @@ fn smooth(places: &[Vec2]) -> CurveShape {
     }
 }
 
-/// A rectangle, with its panel.
+/// Draws a rectangle, and traces a panel on it.
 pub static RECTANGLE: SlotTool = SlotTool {
     command: "Rectangle",
     slots: &[
@@ -292,7 +294,7 @@ pub static RECTANGLE: SlotTool = SlotTool {
     },
 };
 
-/// A panel from the closed lines round a place.
+/// Makes a panel of the closed lines round a place.
 pub static TRACE: SlotTool = SlotTool {
     command: "Trace",
     slots: &[Slot {
@@ -315,7 +317,7 @@ pub static TRACE: SlotTool = SlotTool {
     },
 };
 
-/// A point along a curve, at a distance from its nearer end.
+/// Draws a point along a curve, at a distance from the nearer end of the curve.
 pub static ALONG: SlotTool = SlotTool {
     command: "Point along",
     slots: &[
@@ -342,7 +344,7 @@ pub static ALONG: SlotTool = SlotTool {
             .curve(*curve)
             .ok_or_else(|| refuse("the curve cannot be drawn", "mend its formulas first"))?;
         let place = path.nearest(*at).map_or(0.0, |place| place.along);
-        // A negative distance is measured from the far end.
+        // A negative distance counts from the far end of the curve.
         let distance = match place > 0.5 * path.length() {
             false => distance.clone(),
             true => along::negated(distance, reading)?,
@@ -357,7 +359,7 @@ pub static ALONG: SlotTool = SlotTool {
     },
 };
 
-/// The foot of the perpendicular from a point to the line through two.
+/// Draws the foot of the perpendicular from a point to the line through two other points.
 pub static FOOT: SlotTool = SlotTool {
     command: "Perpendicular",
     slots: &[
@@ -383,7 +385,7 @@ pub static FOOT: SlotTool = SlotTool {
     },
 };
 
-/// The mirror image of a point in the line through two.
+/// Draws the mirror image of a point in the line through two other points.
 pub static MIRROR: SlotTool = SlotTool {
     command: "Mirror point",
     slots: &[
@@ -409,7 +411,7 @@ pub static MIRROR: SlotTool = SlotTool {
     },
 };
 
-/// A point constructed from three others.
+/// The plan that draws a point constructed from three other points.
 fn constructed(
     answers: &[Answer],
     reading: &Reading<'_>,

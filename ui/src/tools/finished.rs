@@ -4,10 +4,11 @@ use super::number;
 use toile_pattern::plan;
 use toile_pattern::{Evaluation, OperationId, OperationKind, PanelId, Want};
 
-/// Lengths that differ by less are shown as one (m).
+/// Lengths that differ by less are shown as one length (m).
 const SAME: f64 = 5e-5;
 
-/// Length of the edge of a dart with all its darts closed, before and after truing, in words.
+/// Finished length of the edge that a dart is on, with all darts of the edge closed, before and after
+/// truing; in words.
 pub fn finished_words(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -29,8 +30,7 @@ pub fn finished_words(
                 }
             )
         });
-    // The mouth was narrowed to keep the length; the length before truing with this mouth is of no
-    // interest.
+    // With a kept length the mouth was narrowed: then the length before truing is of no interest.
     if keeps {
         let [length, mouth] = [found.length, found.mouth].map(length);
         return Some(format!(

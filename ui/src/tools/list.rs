@@ -3,7 +3,7 @@
 use super::number;
 use toile_pattern::{Evaluation, Number, Want, is_unit};
 
-/// Operators: a space beside one does not separate two numbers.
+/// Operators: a space beside an operator does not separate two numbers.
 const GOES_ON: [char; 5] = ['+', '-', '*', '/', '^'];
 
 /// Content of a field for one plain number or several lengths.
@@ -15,7 +15,7 @@ pub(super) enum Listed {
     Lengths(Vec<Number>),
 }
 
-/// Reads one plain number, or lengths; a single length needs a unit.
+/// Reads one plain number, or several lengths; a single length must have a unit.
 ///
 /// # Errors
 /// Which number is wrong, the reason, and the remedy.
@@ -47,8 +47,8 @@ fn ordinal(number: usize) -> String {
     format!("{number}{end}")
 }
 
-/// The numbers of a list. Separators are spaces, semicolons, and commas before a space or if there are no
-/// spaces at all; other commas are decimal.
+/// Splits a text into numbers. Separators are spaces and semicolons; also commas before a space, or if the
+/// text has no spaces at all. Other commas are decimal commas.
 fn parts(text: &str) -> Vec<String> {
     let text = text.trim().trim_start_matches('=').trim();
     let is_close = !text.contains(char::is_whitespace) && !text.contains(';');

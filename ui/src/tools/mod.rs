@@ -60,18 +60,18 @@ use slots::{SlotState, SlotTool};
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeId, Edit, Evaluation, PanelId, SheetId};
 
-/// Position of the pointer, and the parts there.
+/// Position of the pointer, and the parts and places found there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pointer {
     /// Position on the table (m).
     pub table: Vec2,
-    /// The sheet that a tool draws on there.
+    /// The sheet on which a tool draws at this position.
     pub sheet: SheetId,
     /// Position on that sheet (m).
     pub at: Vec2,
-    /// Parts there, the likeliest first.
+    /// Parts at the position, the likeliest first.
     pub hits: Vec<Hit>,
-    /// Candidate places for a point there, the best first; never empty.
+    /// Candidate places for a point at the position, the best first; never empty.
     pub snaps: Vec<Placed>,
     /// Width of a pixel (m).
     pub pixel: f64,
@@ -89,7 +89,7 @@ pub struct ToolModifiers {
 }
 
 impl Pointer {
-    /// The snapping place with a number, counted from the best; the exact position while snapping is off.
+    /// The snapping place with an index, counted from the best; while snapping is off, the exact position.
     pub fn placed(&self, number: usize) -> Placed {
         match self.modifiers.command {
             true => Placed::free(self.sheet, self.at),
@@ -97,7 +97,7 @@ impl Pointer {
         }
     }
 
-    /// The likeliest part there.
+    /// The likeliest part at the position.
     pub fn hit(&self) -> Option<Hit> {
         self.hits.first().copied()
     }
@@ -108,9 +108,9 @@ impl Pointer {
 pub enum Event {
     /// The pointer has moved, with no button held.
     Hover(Pointer),
-    /// The pointer has left.
+    /// The pointer has left the canvas.
     Leave,
-    /// The pointer moves with the button held: where it was pressed, and where it is now.
+    /// The pointer moves with the button held: pointer when the button was pressed, and pointer now.
     Drag(Pointer, Pointer),
     /// The button is released after a drag.
     Drop,
@@ -126,22 +126,22 @@ pub enum Event {
     Enter,
     /// Escape: one step back.
     Escape,
-    /// Tab: the next field, the next snapping place, or the other side.
+    /// Tab: goes to the next field, the next snapping place, or the other side of a seam.
     Tab,
-    /// Moves along the seam that is walked.
+    /// A key that moves along the walked seam.
     Go(LineStep),
 }
 
-/// A key press that moves along a line.
+/// Movement along a line by a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineStep {
-    /// A step back.
+    /// One step toward the start.
     Back,
-    /// A step forward.
+    /// One step toward the end.
     On,
-    /// To the start.
+    /// To the start of the line.
     ToStart,
-    /// To the end.
+    /// To the end of the line.
     ToEnd,
 }
 
@@ -150,7 +150,7 @@ pub enum LineStep {
 pub struct Reading<'a> {
     /// The evaluated pattern without the gesture that is being previewed.
     pub evaluation: &'a Evaluation,
-    /// The scene.
+    /// The scene of the pattern, as the canvas draws it.
     pub scene: &'a Scene,
     /// Positions of sheets and panels on the table.
     pub table_layout: &'a TableLayout,
@@ -165,7 +165,7 @@ pub struct Reading<'a> {
 /// A mark drawn over the pattern by a tool.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Overlay {
-    /// A line on a sheet.
+    /// A polyline on a sheet.
     Line(SheetId, Vec<Vec2>),
     /// A place on a sheet.
     Dot(SheetId, Vec2),
@@ -177,7 +177,8 @@ pub enum Overlay {
     Fault(SheetId, Vec2, String),
     /// A rectangle of the table.
     Box([Vec2; 2]),
-    /// A piece that is laid on the table while a tool is in hand: its rings (m), and its fill.
+    /// Preview of a piece laid on the table, such as the piece moved along a walked seam: its rings (m),
+    /// and its fill.
     Ghost(Vec<Vec<Vec2>>, Fill),
     /// A line on the table.
     Stroke(Vec<Vec2>, Tone),
@@ -192,25 +193,25 @@ pub enum Overlay {
 /// Kind of a message or mark; it is expressed in words too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
-    /// Neither good nor bad.
+    /// Neutral.
     Plain,
-    /// As it should be.
+    /// The state is as it should be.
     Good,
-    /// Needs attention.
+    /// The state needs attention.
     Warning,
-    /// Wrong.
+    /// The state is an error.
     Fault,
 }
 
 /// A change of the preview: edits that are shown but not made yet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum PreviewChange {
-    /// The preview stays as it is.
+    /// The preview stays unchanged.
     #[default]
     Same,
-    /// No preview: the document as it is.
+    /// No preview: the document is shown without edits.
     Nothing,
-    /// The document with these edits.
+    /// The document is shown with these edits.
     Edits(Vec<Edit>),
 }
 
@@ -219,17 +220,17 @@ pub enum PreviewChange {
 pub struct Outcome {
     /// Change of the preview.
     pub shown: PreviewChange,
-    /// Edits to make as one step of the history, and its name.
+    /// Edits to make as one step of the history, and the name of the step.
     pub commit: Option<(Vec<Edit>, String)>,
-    /// Name under which the previewed edits are made as one step of the history.
+    /// Name of the step in the history that makes the previewed edits.
     pub commit_shown: Option<String>,
     /// New selection.
     pub select: Option<Selection>,
-    /// Reason why something was refused.
+    /// Reason why an input was refused.
     pub refusal: Option<String>,
-    /// Whether the tool made a step forward or back: an earlier refusal is obsolete then.
+    /// Whether the tool made a step forward or back; an earlier refusal is cleared then.
     pub gets_on: bool,
-    /// Whether the tool is put down.
+    /// Whether the tool is finished, and Select is taken in hand.
     pub done: bool,
 }
 
@@ -238,7 +239,7 @@ pub struct Outcome {
 pub enum Tool {
     /// Selects, moves, divides.
     Select,
-    /// Collects answers to slots in order, then makes its plan.
+    /// Collects answers to the slots of a tool in order, then makes the plan of the tool.
     Slots(&'static SlotTool),
     /// Walks the selected seam.
     Walk,
@@ -271,7 +272,7 @@ impl Tool {
         }
     }
 
-    /// The state after an event, and the outcome.
+    /// The state of the tool after an event, and the outcome of the event.
     pub fn step(self, state: &State, event: &Event, reading: &Reading<'_>) -> (State, Outcome) {
         match (self, state) {
             (Self::Select, State::Select(state)) => {
@@ -286,12 +287,12 @@ impl Tool {
                 let (state, outcome) = walk::step(state, event, reading);
                 (State::Walk(state), outcome)
             }
-            // The state belongs to another tool: starts anew.
+            // The state belongs to another tool: this tool starts anew.
             _ => self.step(&self.begin(), event, reading),
         }
     }
 
-    /// Marks that the tool draws over the pattern.
+    /// Marks that the tool draws over the pattern now.
     pub fn overlay(self, state: &State, reading: &Reading<'_>) -> Vec<Overlay> {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::overlay(state, reading),
@@ -311,7 +312,7 @@ impl Tool {
         }
     }
 
-    /// Whether it is in progress, so that Escape goes one step back instead of putting it down.
+    /// Whether the tool is in progress: then Escape goes one step back, instead of putting the tool down.
     pub fn is_under_way(self, state: &State) -> bool {
         match state {
             State::Select(state) => *state != SelectState::default(),
@@ -320,7 +321,7 @@ impl Tool {
         }
     }
 
-    /// Whether it handles digits, Tab and further keys.
+    /// Whether the tool handles digits, Tab and further keys.
     pub fn takes_keys(self) -> bool {
         !matches!(self, Self::Select)
     }

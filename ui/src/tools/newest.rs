@@ -15,7 +15,7 @@ pub(super) struct Handle {
     pub entry: NumberEntry,
 }
 
-/// The numbers of a spline's handles, those at its ends first; empty for any other part.
+/// Numbers of the handles of a spline, those at its ends first; empty for any other part.
 pub(super) fn handles(item: Item, reading: &Reading<'_>) -> Vec<Handle> {
     let Item::Curve(id) = item else {
         return Vec::new();
@@ -51,10 +51,10 @@ pub(super) fn name(item: Item, reading: &Reading<'_>) -> Option<String> {
     item.words(reading.evaluation.pattern())
 }
 
-/// The edits that set the handles whose text is not empty.
+/// The edits that set the handle numbers whose text is not empty.
 ///
 /// # Errors
-/// The index of the field with the error, and the error.
+/// Index of the field with the error, and the error.
 pub(super) fn set_handles(
     handles: &[Handle],
     text: impl Fn(usize) -> String,

@@ -2,15 +2,16 @@
 
 use toile_pattern::{DisplayUnit, Evaluation, Number, Want, plan};
 
-/// Parses a typed number: a bare number is in the document's unit or in degrees, a decimal comma equals a
-/// point, and a formula may begin with `=`.
+/// Reads a typed number. A bare number is in the document's unit, or in degrees; a decimal comma equals a
+/// point; a formula may begin with `=`.
 ///
 /// # Errors
 /// The error in the formula, and the remedy.
 pub fn parse(text: &str, want: Want, evaluation: &Evaluation) -> Result<Number, String> {
     let text = text.trim().trim_start_matches('=').trim();
     let plain = match text.matches(',').count() {
-        // Without parentheses there are no arguments that the comma could separate.
+        // Without parentheses the text has no arguments that the comma could separate: it is a decimal
+        // comma.
         1 if !text.contains('(') => text.replace(',', "."),
         _ => text.to_owned(),
     };
@@ -19,12 +20,12 @@ pub fn parse(text: &str, want: Want, evaluation: &Evaluation) -> Result<Number, 
     Ok(number)
 }
 
-/// Whether a number or formula can begin with a character.
+/// Whether a number or formula can begin with this character.
 pub fn begins_typing(c: char) -> bool {
     c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '+' | '(')
 }
 
-/// A value with its unit.
+/// Text of a value with its unit.
 pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
     match want {
         Want::Length => {
@@ -40,7 +41,7 @@ pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
     }
 }
 
-/// A number with at most `digits` digits after the point.
+/// Text of a number with at most `digits` digits after the point.
 fn trimmed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = match text.contains('.') {

@@ -18,7 +18,7 @@ use toile_pattern::{
     press_arrows,
 };
 
-/// A dart taken out of an outline.
+/// Takes a dart out of an outline.
 pub static DART: SlotTool = SlotTool {
     command: "Dart",
     slots: &[
@@ -81,7 +81,7 @@ pub static DART: SlotTool = SlotTool {
     },
 };
 
-/// Whether the dart of a plan is pressed away from the fold of its panel, which is the centre.
+/// Whether the dart that a plan adds is pressed away from the fold line of its panel, which is the centre.
 fn leads_from_fold(reading: &Reading<'_>, plan: &super::slots::Plan) -> bool {
     let toward = || {
         let Some(Item::Operation(id, dart)) = plan.select.single() else {
@@ -101,7 +101,7 @@ fn leads_from_fold(reading: &Reading<'_>, plan: &super::slots::Plan) -> bool {
     toward().is_some_and(|toward| toward < -0.5)
 }
 
-/// A dart inside a panel, pointed at both ends (fisheye dart).
+/// Takes out a dart inside a panel, pointed at both ends (fisheye dart).
 pub static FISHEYE: SlotTool = SlotTool {
     command: "Fisheye dart",
     slots: &[
@@ -150,7 +150,7 @@ fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
     crate::canvas::placed::rounded(away, 0.001).max(0.001)
 }
 
-/// Folds a panel: the drafted panel is half of the cut one, and a straight edge lies on the fold.
+/// Folds a panel: the drafted panel is half of the cut one; a straight edge of it lies on the fold.
 pub static FOLD: SlotTool = SlotTool {
     command: "Fold",
     slots: &[Slot {
@@ -171,7 +171,7 @@ pub static FOLD: SlotTool = SlotTool {
     },
 };
 
-/// A notch.
+/// Puts a notch on an edge.
 pub static NOTCH: SlotTool = SlotTool {
     command: "Notch",
     slots: &[Slot {
@@ -192,7 +192,7 @@ pub static NOTCH: SlotTool = SlotTool {
     },
 };
 
-/// Bends an edge to an arc; its ends stay.
+/// Bends an edge to an arc; the ends of the edge stay.
 pub static BEND: SlotTool = SlotTool {
     command: "Bend edge",
     slots: &[
@@ -223,7 +223,7 @@ pub static BEND: SlotTool = SlotTool {
     },
 };
 
-/// Bends a curve through a place.
+/// Bends a curve to an arc through a place.
 fn bend(planning: &mut Planning, id: CurveId, through: &Placed) -> Result<(), EditError> {
     let found = planning.evaluation().pattern().curve(id);
     if let Some((sheet, curve)) = found
@@ -238,7 +238,7 @@ fn bend(planning: &mut Planning, id: CurveId, through: &Placed) -> Result<(), Ed
     planning.run(|evaluation| Ok((plan::bend_curve(evaluation, id, through.at)?, ())))
 }
 
-/// A new corner on an edge.
+/// Puts a new corner on an edge.
 pub static DIVIDE: SlotTool = SlotTool {
     command: "Divide edge",
     slots: &[Slot {
@@ -271,8 +271,9 @@ pub static DIVIDE: SlotTool = SlotTool {
     },
 };
 
-/// Converts a distance along an edge to one along its curve, so that the typed distance is kept: possible
-/// if the edge covers the whole curve and no operation inserts anything; else `None`.
+/// Rule for a point at a typed distance along an edge, as a distance along the curve that the edge follows,
+/// so that the typed number is kept. `None` if the edge does not cover the whole curve, or operations
+/// change its length.
 fn along_curve(
     reading: &Reading<'_>,
     (panel, edge): (PanelId, EdgeId),
@@ -308,7 +309,7 @@ fn along_curve(
     }))
 }
 
-/// A line inside a panel.
+/// Draws a line inside a panel.
 pub static INNER_LINE: SlotTool = SlotTool {
     command: "Inner line",
     slots: &[
@@ -353,7 +354,7 @@ pub static INNER_LINE: SlotTool = SlotTool {
     },
 };
 
-/// A sheet on the finished panel, to draw on.
+/// Lays a sheet on the finished panel, to draw on.
 pub static DRAW_ON: SlotTool = SlotTool {
     command: "Draw on panel",
     slots: &[Slot {
@@ -437,7 +438,7 @@ pub static GRAIN: SlotTool = SlotTool {
     },
 };
 
-/// Notches at equal distances along an edge.
+/// Puts notches at equal distances along an edge.
 pub static NOTCH_ROW: SlotTool = SlotTool {
     command: "Row of notches",
     slots: &[
@@ -478,8 +479,9 @@ pub static NOTCH_ROW: SlotTool = SlotTool {
     },
 };
 
-/// Points inside a panel, and their sheet: that of the panel, or, for a side of a split panel or an
-/// altered panel, a sheet that lies on the finished panel.
+/// Makes points inside a panel; returns them with their sheet. For an ordinary panel this is the sheet on
+/// which the panel is traced; for a part of a split panel, or an altered panel, a sheet that lies on the
+/// finished panel.
 fn points_inside(
     planning: &mut Planning,
     reading: &Reading<'_>,
@@ -514,8 +516,8 @@ fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, Ed
     found.ok_or_else(|| refuse("the panel is not there", "click another"))
 }
 
-/// The mark of a panel's line nearest to a point: the typed mark, else one at a whole millimetre of the
-/// finished edge, or in the middle if that is near.
+/// The line of a panel nearest to a point, with a mark on it: the typed mark; else, on an edge, a mark
+/// rounded to a whole millimetre of the finished edge, or to its middle if that is near.
 pub(super) fn marked(
     reading: &Reading<'_>,
     panel: PanelId,
@@ -530,7 +532,7 @@ pub(super) fn marked(
         && let Ok(edge) = plan::finished_edge(reading.evaluation, panel, edge)
     {
         let along = super::along::tidy(&edge, at);
-        // Not on a part of the edge that an operation inserted.
+        // No rounding onto a part of the edge that an operation inserted.
         if let Some((_, tidy)) = edge.share(along).filter(|(name, _)| *name == near.edge) {
             *share = Number::Value(short(tidy));
             near.at = edge.place(along).unwrap_or(near.at);
@@ -539,7 +541,7 @@ pub(super) fn marked(
     Ok(near)
 }
 
-/// A share without the last digits, if they come from rounding only.
+/// A share rounded to nine digits, if the digits left out come from rounding only.
 fn short(share: f64) -> f64 {
     let short = (share * 1e9).round() / 1e9;
     match (short - share).abs() < 1e-12 {

@@ -114,7 +114,7 @@ pub static SCALE: SlotTool = SlotTool {
     },
 };
 
-/// Shows the distance and direction from one place to another. Changes nothing.
+/// Shows the distance and direction from one place to another. Does not change the document.
 pub static MEASURE: SlotTool = SlotTool {
     command: "Measure",
     slots: &[
@@ -148,8 +148,8 @@ pub static MEASURE: SlotTool = SlotTool {
     },
 };
 
-/// Direction from the given place to the pointer, in whole degrees, with Shift in steps of 15 degrees
-/// (rad).
+/// Direction from the given place to the pointer (rad), in whole degrees; with Shift in steps of 15
+/// degrees.
 fn direction(answers: &[Answer], pointer: &Pointer) -> f64 {
     let about = places(answers).first().map_or_else(Vec2::zeros, |p| p.at);
     let way = pointer.at - about;
@@ -171,7 +171,7 @@ fn value(
     value.ok_or_else(|| refuse("the formula has no value", "mend it, or type a number"))
 }
 
-/// The plan that transforms the selection by a map.
+/// The plan that transforms the selected parts by an affine map.
 fn transformed(reading: &Reading<'_>, map: &Affine, label: &str) -> Result<Plan, EditError> {
     let parts: Vec<PartId> = reading
         .selection

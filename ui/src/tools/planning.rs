@@ -12,7 +12,7 @@ use toile_pattern::{
     Edit, EditError, Entity, Evaluation, PanelId, Point, PointId, PointRule, SheetId, plan,
 };
 
-/// Edits that are being collected.
+/// Edits that are being collected, and the pattern with these edits.
 #[derive(Clone)]
 pub struct Planning {
     evaluation: Evaluation,
@@ -20,12 +20,12 @@ pub struct Planning {
 }
 
 impl Planning {
-    /// No edits yet.
+    /// Starts without edits, on the pattern that a tool reads.
     pub fn new(reading: &Reading<'_>) -> Self {
         Self::of(reading.evaluation)
     }
 
-    /// No edits yet, on an evaluated pattern.
+    /// Starts without edits, on an evaluated pattern.
     pub fn of(evaluation: &Evaluation) -> Self {
         Self {
             evaluation: evaluation.clone(),
@@ -33,17 +33,17 @@ impl Planning {
         }
     }
 
-    /// The evaluated pattern with the edits made so far.
+    /// The evaluated pattern with the edits collected so far.
     pub fn evaluation(&self) -> &Evaluation {
         &self.evaluation
     }
 
-    /// The edits made so far.
+    /// The edits collected so far.
     pub fn edits(self) -> Vec<Edit> {
         self.edits
     }
 
-    /// Runs a planner, and makes its edits.
+    /// Runs a planner on the pattern as it is now, applies its edits and collects them.
     ///
     /// # Errors
     /// The planner refuses, or its edits cannot be made.
@@ -69,7 +69,8 @@ impl Planning {
         Ok(())
     }
 
-    /// The point at a place: the existing one, else a new one. `before` is the point at the last place.
+    /// The point at a place: the existing point, else a new one. `before` is the point at the place given
+    /// before, for places relative to it.
     ///
     /// # Errors
     /// The point cannot be made.
@@ -85,7 +86,7 @@ impl Planning {
         self.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
     }
 
-    /// The points at places, each relative to the one before.
+    /// The points at places; places relative to the place before are constructed from the point there.
     ///
     /// # Errors
     /// A point cannot be made, or the places are on several sheets.
@@ -99,7 +100,7 @@ impl Planning {
         Ok(points)
     }
 
-    /// The plan of a tool, from these edits.
+    /// The plan of a tool, from the edits collected.
     pub fn done(self, label: &str, select: impl IntoIterator<Item = Item>) -> Plan {
         Plan {
             edits: self.edits,
@@ -111,8 +112,8 @@ impl Planning {
     }
 }
 
-/// Rule for a separate point at a place; at an existing point it has a zero offset from that. `before` is
-/// the point at the last place.
+/// Rule for a new point at a place. At an existing point, the new one has a zero offset from it. `before`
+/// is the point at the place given before.
 pub(super) fn rule_at(placed: &Placed, before: Option<PointId>) -> PointRule {
     match (&placed.spec, before) {
         (Spec::Point(base), _) => PointRule::Offset {
@@ -154,7 +155,7 @@ pub(super) fn put_rule(
     planning.make(vec![edit])
 }
 
-/// Refuses a drawing across two sheets.
+/// Refuses a shape drawn across two sheets.
 fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
     if one == other {
         return Ok(());
@@ -165,7 +166,7 @@ fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
     ))
 }
 
-/// The places among the answers, in order.
+/// All places among the answers, in order.
 pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     let mut found = Vec::new();
     for answer in answers {
@@ -180,7 +181,8 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     found
 }
 
-/// The panel under a point (m) of a sheet: the one that the sheet lies on, else one traced from it.
+/// The panel under a point (m) of a sheet: the panel that the sheet lies on, else one that is traced on the
+/// sheet.
 ///
 /// # Errors
 /// No panel lies there.

@@ -7,7 +7,7 @@ use toile_pattern::EditError;
 /// Reason why a slot of a tool has no valid answer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Unanswered {
-    /// The field with the error, if it was typed.
+    /// Index of the field with the error; `None` if the error is not in a typed text.
     pub field: Option<usize>,
     /// The error, and the remedy.
     pub words: String,
@@ -30,8 +30,8 @@ pub(super) fn refuse(message: &str, hint: &str) -> EditError {
     }
 }
 
-/// Message if an edge is asked for, for sewing or else, and there is none under the pointer; a line
-/// inside a panel is named in it.
+/// Message for a missing edge under the pointer; `sews` says whether the edge is to be sewn. If a line
+/// inside a panel is there instead, the message names it.
 pub(super) fn no_edge(sews: bool, at: Option<&Pointer>, reading: &Reading<'_>) -> String {
     let mut items = at.iter().flat_map(|at| &at.hits).map(|hit| hit.item);
     let line = items.find(|item| matches!(item, Item::Line(..)));

@@ -13,7 +13,7 @@ use toile_pattern::{
     plan::{self, Chain, CurveShape, NewPanel},
 };
 
-/// A circle, a ring or a sector of one, with its panel.
+/// Draws a circle, a ring or a sector of a ring, and traces a panel on it.
 pub static RING: SlotTool = SlotTool {
     command: "Circle",
     slots: &[
@@ -110,10 +110,10 @@ fn is_possible([inner, length, angle]: [f64; 3]) -> Result<(), EditError> {
     Ok(())
 }
 
-/// A sheet, and the centre on it.
+/// The sheet of a shape, and the centre point on it.
 type Centre = (SheetId, PointId);
 
-/// A point to the right of the centre, at the distance of a radius.
+/// Makes a point to the right of the centre, at the distance `radius`.
 fn beside(
     planning: &mut Planning,
     (sheet, middle): Centre,
@@ -127,7 +127,7 @@ fn beside(
     planning.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
 }
 
-/// A curve with a name if that is free, else named after its ends.
+/// Draws a curve with a name if the name is free, else named after the ends of the curve.
 fn curve(
     planning: &mut Planning,
     (sheet, name): (SheetId, &str),
@@ -142,8 +142,8 @@ fn curve(
     })
 }
 
-/// Sector of a ring, from straight ahead of the centre to the right; without an inner radius it starts at
-/// the centre.
+/// Draws a sector of a ring, counter-clockwise from the ray to the right of the centre, and traces a panel
+/// on it. Without an inner radius the sector reaches to the centre.
 fn sector(
     planning: &mut Planning,
     centre: Centre,
@@ -193,7 +193,8 @@ fn negated(planning: &Planning, number: &Number) -> Result<Number, EditError> {
     }
 }
 
-/// A circle, with a hole if there is an inner radius; each line consists of two half circles.
+/// Draws a circle of two half circles, with a hole of two half circles if there is an inner radius, and
+/// traces a panel.
 fn disc(
     planning: &mut Planning,
     centre: Centre,

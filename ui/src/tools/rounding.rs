@@ -6,8 +6,8 @@ use crate::tools::{Pointer, Reading};
 use toile_geometry::Vec2;
 use toile_pattern::{Evaluation, Number, PointId, PointRule, Want};
 
-/// The place nearest to a drag target (m) at which the point's numbers are round; the target itself while
-/// rounding is turned off, or if no numbers of its sheet define the point.
+/// For a dragged point: the place nearest to the drag target (m) at which the numbers of the point's rule
+/// are round. The target itself while rounding is turned off, or if the point's rule has no such numbers.
 pub(super) fn rounded_place(
     point: PointId,
     to: Vec2,
@@ -74,8 +74,8 @@ pub(super) fn rounded_place(
     }
 }
 
-/// Part of a number that a drag does not round: the value of its formula; only the adjustment added to it
-/// is rounded.
+/// Part of a number that a drag does not round: the value of its formula. The drag rounds only the
+/// adjustment that is added to the formula.
 fn kept(number: &Number, evaluation: &Evaluation) -> f64 {
     let formula = match number {
         Number::Formula(formula) | Number::Adjusted { formula, .. } => formula.clone(),
@@ -85,8 +85,8 @@ fn kept(number: &Number, evaluation: &Evaluation) -> f64 {
     value.unwrap_or(0.0)
 }
 
-/// Rounding step of an angle (rad) for a point at a distance from the centre: moves the point by at most
-/// a step (m), and is at most a degree.
+/// Rounding step of an angle (rad) for a point at the distance `far` from the centre: the least of 1, 2 or
+/// 5 times a power of ten of a degree that moves the point by at least `step` (m); at most a degree.
 fn angle_step(step: f64, far: f64) -> f64 {
     let degrees = (step / far).to_degrees().min(1.0);
     // The same steps as for lengths, with a degree in place of a millimetre.

@@ -40,7 +40,7 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
         });
         edges.collect::<Vec<_>>()
     });
-    // An edge that is sewn to itself is sewn to the other copy: a centre back seam.
+    // An edge that is clicked for both sides is sewn to the panel's other copy: a centre back seam.
     if first == second {
         second = twins(pattern, &second).ok_or_else(|| {
             refuse(
@@ -49,8 +49,8 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
             )
         })?;
     }
-    // Hems must meet hems, and right sides lie together: if both panels are drawn with the seam on the
-    // same side, the mirrored half or copy of the second lies against the first.
+    // Lower ends must meet lower ends, and the right sides of the cloth must lie together. If a seam as
+    // clicked would break that, its second side is moved to the mirrored half or copy.
     let mut trial = Planning::new(reading);
     let seam = trial.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?;
     let sewn = trial.evaluation();
@@ -64,7 +64,7 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
     let mut seams = Vec::new();
     seams.push(planning.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?);
     if let (Some(a), Some(b)) = (twins(pattern, &first), twins(pattern, &second)) {
-        // A seam across the middle is its own mirror image.
+        // A seam across the middle of the wearer is its own mirror image, and is not sewn twice.
         let is_same = a
             .iter()
             .all(|edge| second.contains(edge) || first.contains(edge));
@@ -85,7 +85,7 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
     })
 }
 
-/// First new finding on the sides of the cloth that the seams cause, in words.
+/// Message of the first finding on the right and wrong sides of the cloth that the new seams cause.
 fn told(reading: &Reading<'_>, planning: &Planning) -> Option<String> {
     let known = reading.evaluation.check_sides();
     let found = planning.evaluation().check_sides();
@@ -93,13 +93,13 @@ fn told(reading: &Reading<'_>, planning: &Planning) -> Option<String> {
     new.map(|found| found.message)
 }
 
-/// The chain mirrored to the other side of the wearer, if all of its edges have a twin.
+/// The chain of edges mirrored to the other side of the wearer; `None` if an edge has no twin there.
 fn twins(pattern: &Pattern, chain: &[SewnEdge]) -> Option<Vec<SewnEdge>> {
     let twins = chain.iter().map(|edge| plan::twin(pattern, *edge));
     twins.collect()
 }
 
-/// Puts a notch on an edge, and its match on every seam there.
+/// Puts a notch on an edge, and matching notches on the other sides of all seams of that edge.
 pub static MATCHED_NOTCH: SlotTool = SlotTool {
     command: "Matched notches",
     slots: &[Slot {
@@ -110,7 +110,8 @@ pub static MATCHED_NOTCH: SlotTool = SlotTool {
         let Some(Answer::OnLine(panel, _, at, typed)) = answers.first() else {
             return Err(refuse("nothing was given", "click a sewn edge"));
         };
-        // A typed distance gives one place, which every side stores as a share.
+        // A typed distance gives one place; every side of the seam stores this place as a share of its
+        // edge.
         let near = match typed {
             Some(_) => plan::nearest_mark(reading.evaluation, *panel, *at)?,
             None => super::panel::marked(reading, *panel, (*at, &None))?,

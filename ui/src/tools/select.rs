@@ -1,4 +1,13 @@
 //! Selects by click and by box; drags points and whole panels; divides an edge by a double click.
+//!
+//! # Decided with
+//! - [`crate::canvas::hit`], [`crate::views::pattern::PatternView::pointer`]: what is under the pointer;
+//! - [`crate::tools::rounding::rounded_place`]: round numbers;
+//! - [`toile_pattern::plan::move_point`], [`toile_pattern::plan::move_points`],
+//!   [`toile_pattern::plan::move_point_by`]: the edits;
+//! - [`toile_session::Session::preview`] (`gesture.rs`), [`toile_session::Session::commit`] (`gesture.rs`): shown, then one
+//!   step;
+//! - [`crate::app::ToileApp::follow_outcome`] (`perform.rs`), [`crate::tools::refusal::refuse`]: refusals shown.
 
 use super::rounding::rounded_place;
 use super::{Event, Outcome, Overlay, Planning, Pointer, PreviewChange, Reading, chosen};
@@ -13,7 +22,8 @@ use toile_pattern::{Edit, EditError, Entity, Evaluation, Panel, PanelId, PointId
 
 /// Sine of the largest angle at which two handles count as collinear.
 const SMOOTH: f64 = 1e-3;
-/// Largest distance of a point from its goal, after another point was moved, that counts as zero (m).
+/// Largest distance from its goal at which a point still counts as in place, after another point was moved
+/// (m).
 const IN_PLACE: f64 = 1e-9;
 
 /// State of the selection tool.
@@ -22,7 +32,7 @@ pub enum SelectState {
     /// No gesture.
     #[default]
     Idle,
-    /// Parts are dragged, with a rule for the formulas that define them.
+    /// Parts are dragged; the rule says how a drag changes the formulas of their numbers.
     Dragging(Dragged, FormulaChange),
     /// A box is drawn between two points of the table (m); the flag says whether it adds to the
     /// selection.
@@ -32,7 +42,7 @@ pub enum SelectState {
 /// The dragged parts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dragged {
-    /// Points, and the one under the pointer.
+    /// Points, and the one of them under the pointer.
     Points(Vec<PointId>, PointId),
     /// Panels on the table.
     Panels(Vec<PanelId>),
@@ -151,8 +161,8 @@ fn drag(
     (SelectState::Dragging(dragged, change), outcome)
 }
 
-/// The parts that a drag moves: the whole selection if it contains the part, else that part, which is
-/// then selected.
+/// The parts that a drag moves, and the new selection: a drag of a selected part moves the whole selection;
+/// a drag of another part moves that part alone, and selects it.
 fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
     let is_selected = reading.selection.contains(hit.item);
     let select = (!is_selected).then(|| Selection::one(hit.item));
@@ -218,8 +228,8 @@ fn moved(
                     false => goal - now,
                 };
             }
-            // Points that cannot move are skipped; but if the dragged one cannot, the drag fails with the
-            // reason.
+            // Selected points that cannot move are skipped; but if the point under the pointer cannot move,
+            // the drag fails with the reason.
             if let Some(now) = reading.evaluation.point(*held).filter(|_| points.len() > 1) {
                 plan::move_point(reading.evaluation, *held, now + way)?;
             }
@@ -261,16 +271,16 @@ fn moved(
     }
 }
 
-/// The edits that move the dragged point by a rule for its formulas, and then the opposite handle by the
-/// same rule. If that would move the first point away again, as with a variable that defines both, or
-/// fails, the numbers of the second are adjusted instead.
+/// The edits that move the dragged point, and then the opposite handle, with the same rule for their
+/// formulas. The opposite handle is moved by an adjustment instead if the rule fails for it, or would move
+/// the dragged point again, as when one variable defines both.
 fn moved_by(
     reading: &Reading<'_>,
     goals: &[(PointId, Vec2)],
     change: FormulaChange,
 ) -> Result<Vec<Edit>, EditError> {
     let mut planning = Planning::new(reading);
-    // Places that the points reached: a point on a line may miss its goal.
+    // Places that the points have reached: a point that is bound to a line may miss its goal.
     let mut reached: Vec<(PointId, Vec2)> = Vec::new();
     for &(point, to) in goals {
         let by = |change| {
@@ -290,7 +300,7 @@ fn moved_by(
             };
             if made.is_err() || !reached.iter().all(is_there) {
                 planning = before.clone();
-                // A handle that cannot follow stays, as in a drag without such a rule.
+                // An opposite handle that cannot follow stays in place, as in a drag that adjusts.
                 if planning.run(by(FormulaChange::Adjust)).is_err() {
                     planning = before;
                 }
@@ -319,8 +329,8 @@ pub fn move_sheets(
     plan::move_sheets(evaluation, &places)
 }
 
-/// The handle opposite to one that is moved to a place (m), if both are collinear with their point, with
-/// its new place: it rotates so that the curve stays smooth there, and keeps its length.
+/// The handle opposite to `handle`, with a new place, if both are collinear with their knot: while `handle`
+/// moves to a place (m), the opposite one rotates and keeps its length, so that the curve stays smooth.
 fn turned_along(handle: PointId, to: Vec2, reading: &Reading<'_>) -> Option<(PointId, Vec2)> {
     let (sheet, _) = reading.scene.point(handle)?;
     let pairs = || sheet.curves.iter().flat_map(|curve| &curve.handles);
@@ -373,7 +383,7 @@ fn dropped(state: &SelectState, reading: &Reading<'_>) -> (SelectState, Outcome)
     (SelectState::Idle, outcome)
 }
 
-/// A vector on the table in round numbers, unless rounding is turned off.
+/// A drag vector on the table rounded to round numbers, unless rounding is turned off.
 fn whole(way: Vec2, pointer: &Pointer, reading: &Reading<'_>) -> Vec2 {
     let step = drag_step(pointer.pixel, reading.evaluation.pattern().unit.metres());
     match pointer.modifiers.command {
@@ -382,7 +392,7 @@ fn whole(way: Vec2, pointer: &Pointer, reading: &Reading<'_>) -> Vec2 {
     }
 }
 
-/// The horizontal or vertical component of a vector, whichever is longer.
+/// The horizontal or vertical component of a vector, whichever is larger.
 fn straight(way: Vec2) -> Vec2 {
     match way.x.abs() >= way.y.abs() {
         true => Vec2::new(way.x, 0.0),
@@ -400,8 +410,8 @@ pub(super) fn overlay(state: &SelectState, reading: &Reading<'_>) -> Vec<Overlay
     }
 }
 
-/// Text beside a point on the rule for the formulas that define it; `None` if there is no formula and the
-/// rule is the default.
+/// Text beside a dragged point that tells how the drag changes its formulas; `None` if no formula defines
+/// the point and the rule is the default one.
 fn formula_words(point: PointId, change: FormulaChange, reading: &Reading<'_>) -> Option<Overlay> {
     let numbers = plan::numbers_of(reading.evaluation, point.into());
     let mut numbers = numbers.iter().filter_map(|entry| entry.number.as_ref());

@@ -9,7 +9,7 @@ use crate::canvas::selection::Item;
 use toile_geometry::Vec2;
 use toile_pattern::{Number, SheetId, Want};
 
-/// Longest line of text at the pointer (bytes).
+/// Longest line of notes at the pointer (bytes).
 const LINE: usize = 44;
 
 pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
@@ -36,7 +36,7 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     marks
 }
 
-/// Marks of the answers given so far.
+/// Marks for the answers given so far.
 fn given(state: &SlotState) -> Vec<Overlay> {
     let mut marks = Vec::new();
     for answer in &state.answers {
@@ -60,15 +60,15 @@ fn given(state: &SlotState) -> Vec<Overlay> {
     marks
 }
 
-/// Text at a place. While something is typed the text stays at the pointer, wherever the typed place is,
-/// and begins with the fields: so that fields do not move while they are edited.
+/// Text beside a place. While text is typed all of this text stays at the pointer, wherever the typed place
+/// is, and the fields come first: so fields do not move while they are edited.
 fn words_at(state: &SlotState, (sheet, at): (SheetId, Vec2), told: &str, typed: &str) -> Overlay {
     let pointer = state.pointer.as_ref().filter(|_| state.is_typing());
     let (sheet, at) = pointer.map_or((sheet, at), |pointer| (pointer.sheet, pointer.at));
     Overlay::Words(sheet, at, joined(&[typed, told]))
 }
 
-/// Marks of the present answer, and the text typed for it.
+/// Marks for the present answer, and the text typed for it.
 fn told(
     tool: &SlotTool,
     state: &SlotState,
@@ -139,13 +139,13 @@ fn told(
     marks
 }
 
-/// Notes on the effect of the present answer, in lines.
+/// Notes on the effect of the present answer, broken into lines.
 fn told_words(state: &SlotState) -> String {
     let told = state.told.as_ref();
     told.map_or_else(String::new, |told| in_lines(told))
 }
 
-/// The value of a number; the label is omitted if the field of the typed number shows it.
+/// Text of a number; without the label if the field of the typed number shows that.
 fn number_words(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -158,7 +158,7 @@ fn number_words(
     format!("{sign} {value}")
 }
 
-/// The place of the present answer, and the text typed for it.
+/// Text for the place of the present answer, with the text typed for it.
 fn placed_words(
     kind: SlotKind,
     state: &SlotState,
@@ -216,8 +216,8 @@ fn in_lines(words: &str) -> String {
     lines.join("\n")
 }
 
-/// The typed fields, one per line, with a cursor in the present one and a sign at one with an error; and
-/// the signs for other ways to type the answer.
+/// The typed fields, one per line, with a cursor in the present field and a sign at a field with an error;
+/// then the signs that choose other ways to type the answer.
 fn typed_words(typable: &Typable, state: &SlotState) -> String {
     if !state.is_typing() {
         return String::new();
@@ -249,7 +249,8 @@ fn typed_words(typable: &Typable, state: &SlotState) -> String {
     lines.join("\n")
 }
 
-/// The signs for other ways to type a place, with the numbers each takes.
+/// The signs that choose other ways to type a place, each with the numbers typed in that way; `None` if
+/// there are no other ways.
 fn other_ways(typable: &Typable, way: usize) -> Option<String> {
     let others = typable.ways.iter().enumerate().filter(|(k, _)| *k != way);
     let words = others.filter_map(|(_, way)| Some(format!("{} {}", way.sign()?, way.words())));
@@ -272,7 +273,8 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) ->
 fn asked(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
     let typable = Typable::new(tool, state, reading);
     if state.is_typing() {
-        // The pointer and the fields beside it may be elsewhere.
+        // The pointer may be elsewhere, and the fields beside it out of sight: so the status line shows
+        // them, too.
         let typed = typed_words(&typable, state).replace('\n', ", ");
         return format!("{typed}; Tab goes on, Enter takes it, Esc takes it back");
     }

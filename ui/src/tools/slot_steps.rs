@@ -65,7 +65,8 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// Goes one step back; returns whether there was one.
+/// Goes one step back: clears the typed text, or takes back the last answer. Returns whether there was a
+/// step to take back.
 fn back(state: &mut SlotState) -> bool {
     let goes = if state.is_typing() {
         state.clear_typed();
@@ -90,7 +91,7 @@ fn refused(state: &mut SlotState, unanswered: Unanswered) -> Outcome {
     }
 }
 
-/// Handles a click, which begins the next part unless the typed text is meant for the part made last.
+/// Handles a click: begins the next part. Refuses while text is typed that belongs to the part made last.
 fn clicked(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>) -> Outcome {
     let typable = Typable::new(tool, state, reading);
     let is_named = is_named(slot(tool, state).kind);
@@ -116,7 +117,7 @@ fn clicked(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>
     accept(tool, state, reading, false)
 }
 
-/// Handles Enter: accepts the typed text, for the part made last if it is meant for that.
+/// Handles Enter: accepts the typed text, which may belong to the part made last.
 fn entered(tool: &'static SlotTool, state: &mut SlotState, reading: &Reading<'_>) -> Outcome {
     let typable = Typable::new(tool, state, reading);
     let Some(newest) = state.newest() else {
@@ -178,7 +179,7 @@ fn committed(edits: Vec<toile_pattern::Edit>, label: &str) -> Outcome {
     }
 }
 
-/// Accepts the present answer, and makes the plan if it was the last.
+/// Accepts the present answer; after the last answer makes the plan.
 fn accept(
     tool: &'static SlotTool,
     state: &mut SlotState,
@@ -222,7 +223,7 @@ fn accept(
     }
 }
 
-/// The error, with the name of the field if it was typed.
+/// Adds the name of the field to an error in typed text.
 fn named(
     tool: &SlotTool,
     state: &SlotState,
@@ -245,7 +246,8 @@ fn named(
     }
 }
 
-/// Accepts the answer to a slot for one thing; returns whether nothing is left to add to it.
+/// Accepts the answer to a slot; returns whether the slot is complete. Only a chain of edges can be added
+/// to.
 fn accept_answer(
     tool: &SlotTool,
     state: &mut SlotState,
@@ -267,7 +269,7 @@ fn accept_answer(
     }
 }
 
-/// Accepts one of several places, or the end of them; returns whether they have ended.
+/// Accepts one of several places, or the end of the places; returns whether they have ended.
 fn accept_place(
     tool: &SlotTool,
     state: &mut SlotState,
@@ -275,7 +277,7 @@ fn accept_place(
     by_key: bool,
 ) -> Result<bool, Unanswered> {
     let typable = Typable::new(tool, state, reading);
-    // A name alone is no place: Enter after it ends the places.
+    // A name alone gives no place: Enter after a name ends the places.
     let ends = by_key && state.typed.is_blank(typable.numbers());
     let named = match typable.typed_name(state) {
         "" => state.named.clone(),
@@ -299,7 +301,7 @@ fn accept_place(
         return Ok(false);
     }
     if state.places.len() < 2 {
-        // A typed name is kept while further places are given.
+        // The typed name is stored while further places are given.
         if state.is_typing() && !named.is_empty() {
             state.clear_typed();
             state.named = named;
@@ -313,12 +315,12 @@ fn accept_place(
     Ok(true)
 }
 
-/// Whether a place closes the shape at the first of several places; `numbers` is the count of number
-/// fields.
+/// Whether a place closes the shape, because it lies on the first of the several places; `numbers` is the
+/// number of fields for numbers.
 fn closes(state: &SlotState, given: &Placed, numbers: usize) -> bool {
     let pointer = state.pointer.as_ref();
     let near = pointer.map_or(0.0, |pointer| CLOSES * pointer.pixel);
-    // Typed numbers are exact; a typed name is irrelevant here.
+    // A typed place must lie on the first exactly; a name that is being typed does not matter.
     let near = match state.typed.is_blank(numbers) {
         true => near,
         false => 1e-9,
@@ -327,7 +329,7 @@ fn closes(state: &SlotState, given: &Placed, numbers: usize) -> bool {
     first.is_some_and(|first| state.places.len() > 2 && (given.at - first.at).norm() <= near)
 }
 
-/// The plan with the present answer, for the preview.
+/// The plan to preview, made with the present answer.
 fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Plan> {
     let typable = Typable::new(tool, state, reading);
     if !typable.handles.is_empty() && !state.typed.is_blank(typable.numbers()) {
@@ -341,7 +343,7 @@ fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Pl
         });
     }
     let kind = slot(tool, state).kind;
-    // A number is previewed from the first one on, with defaults for the numbers after it.
+    // The preview of number slots begins with the first of them: the later ones have their defaults.
     let rest = tool.slots.iter().skip(state.answers.len() + 1);
     let rest = rest.map(usual).collect::<Option<Vec<Answer>>>()?;
     let is_number = matches!(kind, SlotKind::Number { .. } | SlotKind::Numbers { .. });

@@ -29,7 +29,7 @@ pub struct SlotTool {
     pub plan: fn(&[Answer], &Reading<'_>) -> Result<Plan, EditError>,
 }
 
-/// A slot: one input of a tool.
+/// A slot: one input that a tool asks for.
 #[derive(Debug)]
 pub struct Slot {
     /// Instruction to the user.
@@ -54,7 +54,7 @@ pub enum SlotKind {
     Edge,
     /// A chain of edges: Shift-clicks add, a click ends it.
     Chain,
-    /// A dart or another stored step of a panel.
+    /// A dart or another operation of a panel.
     Operation,
     /// A curve of a sheet.
     Curve,
@@ -79,13 +79,13 @@ pub enum SlotKind {
         want: Want,
         /// Default, if the pointer gives no number (m, rad or 1).
         usual: f64,
-        /// The number that the pointer gives, from the answers so far (m, rad or 1).
+        /// Function for the number that the pointer gives, from the answers so far (m, rad or 1).
         live: Option<fn(&[Answer], &Pointer) -> f64>,
     },
 }
 
-/// Number fields shown first for a place that follows another; the other kinds can be chosen by a sign.
-/// The first place of a tool takes coordinates.
+/// Number fields that are shown first for a place after the first place of a tool; a typed sign chooses
+/// other fields. For the first place coordinates are typed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fields {
     /// Distance and angle from the last place.
@@ -110,14 +110,14 @@ pub enum Answer {
     Named(Placed, Option<String>),
     /// Places, whether the shape is closed, and its name if one was typed.
     Places(Vec<Placed>, bool, Option<String>),
-    /// A place on a line of a panel, in coordinates of its sheet (m); and its mark if a distance was
-    /// typed.
+    /// A place on a line of a panel, in coordinates of the panel's sheet (m); and the mark there if a
+    /// distance was typed.
     OnLine(PanelId, Item, Vec2, Option<Mark>),
     /// An edge, and the point at which it was clicked (m).
     Edge(PanelId, EdgeId, Vec2),
     /// A chain of edges.
     Chain(Vec<ChainEdge>),
-    /// A stored step of a panel.
+    /// An operation of a panel.
     Operation(PanelId, OperationId),
     /// A curve, and the point at which it was clicked (m).
     Curve(SheetId, CurveId, Vec2),
@@ -142,7 +142,7 @@ pub struct Plan {
     pub label: String,
     /// New selection.
     pub select: Selection,
-    /// Answers that the tool starts with when it begins again.
+    /// Answers with which the tool begins anew, after this plan is made.
     pub again: Vec<Answer>,
     /// Note that the user should read before the plan is made.
     pub told: Option<String>,
@@ -152,17 +152,17 @@ pub struct Plan {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlotState {
     pub(super) answers: Vec<Answer>,
-    /// Places so far, of a slot that takes several.
+    /// Places so far, for a slot that takes several.
     pub(super) places: Vec<Placed>,
     /// Edges so far, of a chain.
     pub(super) chain: Vec<ChainEdge>,
     /// Typed texts, one per field.
     pub(super) typed: Typed,
-    /// Name that was typed before the last of several places.
+    /// Name that was typed before the last of several places, or for the next part.
     pub(super) named: String,
-    /// The part made last: text typed before the next is begun may belong to it.
+    /// The part that the tool made last: text typed before the next part is begun may belong to it.
     pub(super) made: Option<Item>,
-    /// Whether its handles are accepted: text typed next belongs to the next part.
+    /// Whether the handles of that part have been accepted: text typed now belongs to the next part.
     pub(super) settled: bool,
     /// Whether the last place was given by the pointer, not by numbers.
     pub(super) pointed: bool,
@@ -180,13 +180,13 @@ pub struct SlotState {
 pub(super) struct Typed {
     /// Texts by field; shorter than the list of fields if the last ones are untouched.
     texts: Vec<String>,
-    /// Index of the way in which the answer is typed.
+    /// Index of the way in which the answer is typed, among the ways of the slot.
     pub way: usize,
     /// Index of the present field.
     pub field: usize,
-    /// Whether a name was begun by its sign.
+    /// Whether a name was begun by the sign for names.
     pub naming: bool,
-    /// The field with an error.
+    /// Index of the field with an error.
     pub fault: Option<usize>,
 }
 
@@ -196,36 +196,36 @@ impl Typed {
         self.texts.get(field).map_or("", String::as_str)
     }
 
-    /// The text typed into a field, for changes.
+    /// The text typed into a field, to be changed.
     pub fn text_mut(&mut self, field: usize) -> &mut String {
         let count = self.texts.len().max(field + 1);
         self.texts.resize(count, String::new());
         &mut self.texts[field]
     }
 
-    /// Whether nothing is typed or begun.
+    /// Whether no text is typed or begun.
     pub fn is_empty(&self) -> bool {
         !self.naming && self.way == 0 && self.is_blank(self.texts.len())
     }
 
-    /// Whether the first fields, up to a count, are empty.
+    /// Whether the first `count` fields are empty.
     pub fn is_blank(&self, count: usize) -> bool {
         self.texts.iter().take(count).all(String::is_empty)
     }
 }
 
 impl SlotState {
-    /// Whether nothing was answered or typed yet.
+    /// Whether no answer was given and no text typed yet.
     pub fn is_empty(&self) -> bool {
         self.is_unbegun() && !self.is_typing()
     }
 
-    /// Whether nothing was answered yet.
+    /// Whether no answer, place or edge was given yet.
     pub(super) fn is_unbegun(&self) -> bool {
         self.answers.is_empty() && self.places.is_empty() && self.chain.is_empty()
     }
 
-    /// The part made last, until the next is begun.
+    /// The part made last; `None` once the next part is begun.
     pub(super) fn newest(&self) -> Option<Item> {
         self.made.filter(|_| self.is_unbegun())
     }
@@ -266,7 +266,7 @@ pub(super) fn slot<'t>(tool: &'t SlotTool, state: &SlotState) -> &'t Slot {
     &tool.slots[state.answers.len().min(last)]
 }
 
-/// Whether the answers are all that a tool needs.
+/// Whether a tool needs no further answers.
 pub(super) fn is_complete(tool: &SlotTool, answers: &[Answer]) -> bool {
     let ends = matches!(answers.last(), Some(Answer::Numbers(_)));
     ends || answers.len() >= tool.slots.len()

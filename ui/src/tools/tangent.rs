@@ -12,7 +12,8 @@ use toile_pattern::{
     plan,
 };
 
-/// The curve that an edge of a panel follows, with its sheet and the nearest point on it (m).
+/// The curve that an edge of a panel follows, with the curve's sheet and the point on it nearest to `at`
+/// (m).
 pub(super) fn curve_of(
     reading: &Reading<'_>,
     (panel, edge, at): (PanelId, EdgeId, Vec2),
@@ -48,7 +49,7 @@ pub(super) fn end_near(
     Ok(Answer::End(placed, curve, end))
 }
 
-/// Direction of the tangent that leaves a curve at one of its ends (rad).
+/// Direction in which a curve would run on beyond one of its ends: of the tangent there (rad).
 ///
 /// # Errors
 /// The curve does not exist or has no direction there.
@@ -71,7 +72,7 @@ pub(super) fn leaving(
         CurveRule::Arc { bulge } => {
             let swept = plan::angle_of(evaluation, bulge);
             let swept = written(evaluation, &swept, Want::Angle);
-            // Reversed, the arc turns in the opposite direction.
+            // Traversed backwards, beyond its start, the arc turns in the opposite direction.
             let sign = if end == 1 { '+' } else { '-' };
             Some(format!("{} {sign} {swept} / 2", chord()))
         }
@@ -99,8 +100,8 @@ pub(super) fn leaving(
     }
 }
 
-/// End point of an arc with typed radius and angle that continues the end of a curve smoothly, with its
-/// construction.
+/// End point, with its construction, of an arc that continues the end of a curve smoothly, from a typed
+/// radius and swept angle.
 ///
 /// # Errors
 /// A number is missing or has no value.
@@ -120,7 +121,7 @@ pub(super) fn turned_place(
     let angle = angle.ok_or_else(|| missing(1))?;
     let evaluation = reading.evaluation;
     let leaving = leaving(evaluation, *curve, *end).map_err(|error| error.to_string())?;
-    // The direction of the chord differs from the tangent by half the angle of the arc.
+    // The direction of the chord differs from the tangent by half the swept angle.
     let [leaving, turn] = [&leaving, &angle].map(|n| written(evaluation, n, Want::Angle));
     let direction = format!("{leaving} + {turn} / 2");
     let wide = written(evaluation, &radius, Want::Length);

@@ -7,10 +7,11 @@ use toile_pattern::{Number, Want};
 
 /// Angular step while Shift is held (degrees).
 const TURN: f64 = 15.0;
-/// Distance of the pointer beyond the last place from which on it means the other side (pixels).
+/// Distance of the pointer beyond the last place, left or below, from which on a typed size is negative
+/// (pixels).
 const BEYOND: f64 = 12.0;
 
-/// The place at the pointer's distance from the last place, with the direction rounded to whole steps.
+/// The place `free` moved to the nearest direction from the last place in steps of 15 degrees.
 pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     let way = free.at - last.at;
     let step = TURN.to_radians();
@@ -32,8 +33,8 @@ pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     }
 }
 
-/// Gives a typed width or height the sign of the pointer's side, by the offset of the pointer from the
-/// last place (m) and the size of a pixel (m). A number typed with a sign is kept.
+/// Makes a typed width or height negative if the pointer is left of or below the last place, at the offset
+/// `way` (m); `pixel` is the size of a pixel (m). A number typed with a minus sign is kept.
 pub(super) fn to_side(
     number: Number,
     way: f64,

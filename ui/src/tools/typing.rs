@@ -22,7 +22,7 @@ use toile_pattern::Want;
 
 /// Label of the name field.
 pub(super) const NAME: &str = "name";
-/// Label of the field for text typed where a click is expected.
+/// Label of the field that shows text typed where no number is accepted.
 const NUMBER: &str = "number";
 /// Sign that begins a name if no other text was typed; formulas quote names with it too.
 pub const NAME_SIGN: char = '\'';
@@ -78,14 +78,14 @@ impl Way {
         }
     }
 
-    /// Labels of its fields.
+    /// Labels of the fields of this way.
     pub fn words(self) -> String {
         let labels: Vec<&str> = self.fields().into_iter().map(|(label, _)| label).collect();
         labels.join(", ")
     }
 }
 
-/// Ways to type the answer to a slot; the first needs no sign.
+/// Ways to type the answer to a slot; the first way needs no sign.
 pub(super) fn ways(kind: SlotKind, state: &SlotState) -> Vec<Way> {
     let place = |fields: Fields| match (state.last_place(), fields) {
         (None, _) => vec![Way::Coordinates],
@@ -110,7 +110,7 @@ pub(super) fn ways(kind: SlotKind, state: &SlotState) -> Vec<Way> {
     }
 }
 
-/// The chosen way.
+/// The way to type the answer that was chosen; `None` if the slot takes no numbers.
 pub(super) fn way(kind: SlotKind, state: &SlotState) -> Option<Way> {
     ways(kind, state).get(state.typed.way).copied()
 }
@@ -133,14 +133,15 @@ pub(super) struct Field {
 /// Fields for typed text in the present state.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Typable {
-    /// Fields, the one for the name last. They exist even if no text is accepted, so that typed text goes
-    /// nowhere else.
+    /// Fields; the field for the name comes last. A field for numbers and one for the name exist even if
+    /// they are not accepted, to show text that is typed all the same.
     pub fields: Vec<Field>,
     /// Whether numbers are accepted.
     pub takes_numbers: bool,
     /// Whether a name is accepted.
     pub takes_name: bool,
-    /// Handle numbers of the part made last, if the first fields are for these.
+    /// Handle numbers of the part made last, for which the number fields are; empty if they are for the
+    /// slot.
     pub handles: Vec<Handle>,
     /// Ways to type the requested place.
     pub ways: Vec<Way>,
@@ -184,7 +185,7 @@ impl Typable {
         }
     }
 
-    /// Count of the number fields; the field for the name comes after them.
+    /// Number of the fields for numbers; the field for the name comes after them.
     pub fn numbers(&self) -> usize {
         self.fields.len() - 1
     }
@@ -215,11 +216,12 @@ impl Typable {
         Ok(())
     }
 
-    /// Adds typed text to its field. The sign of names begins a name, other signs choose another way to
-    /// type a place; inside a formula they are ordinary characters.
+    /// Adds typed text to the present field. The sign for names begins a name, other signs choose another
+    /// way to type a place; inside a formula signs are ordinary characters.
     ///
     /// # Errors
-    /// No text is accepted here, or another kind of text has been begun; the text is kept all the same.
+    /// No such text is accepted here, or a sign comes after numbers were typed. The text is kept in any
+    /// case.
     pub fn take(&self, state: &mut SlotState, text: &str) -> Result<(), Unanswered> {
         let name = self.numbers();
         for c in text.chars() {
@@ -251,13 +253,13 @@ impl Typable {
         self.refuse_untaken(state)
     }
 
-    /// Whether the sign of angles moves on to the angle field of the present way.
+    /// Whether the sign for angles goes on to the angle field of the present way.
     fn goes_to_angle(&self, way: usize) -> bool {
         let now = self.ways.get(way);
         now.is_some_and(|way| matches!(way, Way::FromLast | Way::Radius | Way::Turn))
     }
 
-    /// Chooses the way of a sign.
+    /// Chooses the way to type a place that a sign stands for.
     fn choose(&self, state: &mut SlotState, sign: char) -> Result<(), String> {
         let found = self.ways.iter().position(|way| way.sign() == Some(sign));
         let places = [Way::Coordinates, Way::FromLast, Way::Beside];
@@ -281,7 +283,7 @@ impl Typable {
         Ok(())
     }
 
-    /// Deletes the last typed character.
+    /// Deletes the last typed character; in an empty field, goes back a field or to the first way.
     pub fn take_back(&self, state: &mut SlotState) {
         let typed = &mut state.typed;
         typed.fault = None;
@@ -298,7 +300,7 @@ impl Typable {
         }
     }
 
-    /// Moves on to the next field.
+    /// Goes to the next field.
     pub fn next(&self, state: &mut SlotState) {
         let count = self.numbers() + usize::from(self.takes_name);
         state.typed.field = (state.typed.field + 1) % count.max(1);

@@ -18,19 +18,19 @@ use toile_pattern::{
 
 /// Distance of a step by an arrow key (m).
 const STEP: f64 = 0.01;
-/// Distance from the seam line within which the pointer moves the walk (pixels).
+/// Distance of the pointer from the seam line within which it moves the walk (pixels).
 const REACH: f64 = 60.0;
 /// Length of the tangents drawn where edges cross the seam (m).
 const LEAVING: f64 = 0.03;
 /// Length of a notch (m).
 const NOTCH: f64 = 0.006;
-/// Distance from an end of the seam within which the contact counts as at the end (m).
+/// Distance of the point of contact from an end of the seam within which it counts as at that end (m).
 const AT_END: f64 = 1e-3;
 
 /// State of a walk.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WalkState {
-    /// Arc length of the first side where the pieces touch (m).
+    /// Arc length along the first side of the seam at which the pieces touch (m).
     along: f64,
     fixed: FixedSide,
     typed: String,
@@ -51,7 +51,7 @@ struct Seen<'r> {
     walk: Walk<'r>,
     /// Cached geometry to draw.
     kept: Arc<WalkedSeam>,
-    /// Ease: intended difference in length between the sides (m).
+    /// Ease: intended difference in length between the sides of the seam (m).
     ease: f64,
     reading: &'r Reading<'r>,
 }
@@ -99,14 +99,15 @@ impl<'r> Seen<'r> {
         self.draft.pieces.get(contact.pieces[side])
     }
 
-    /// Maps to the table from the plane of the piece that stays, and from that of the piece that is laid
-    /// against it.
+    /// Two maps to the table: from the plane of the piece that stays, and from the plane of the piece that
+    /// is laid against it.
     fn maps(&self, contact: &Contact, fixed: FixedSide) -> Option<[Affine; 2]> {
         let base = self.on_table(self.piece(contact, fixed.sides()[0])?);
         Some([base, base.after(&contact.laid)])
     }
 
-    /// Arc length of the first side nearest to the pointer, and the distance between them (m).
+    /// Arc length along the first side at the point of the seam nearest to the pointer, and the distance of
+    /// the pointer from that point (m).
     fn led(&self, at: &Pointer, fixed: FixedSide) -> Option<(f64, f64)> {
         let side = fixed.sides()[0];
         let mut best: Option<(f64, f64)> = None;
@@ -130,8 +131,8 @@ impl<'r> Seen<'r> {
     }
 }
 
-/// Bounding box on the table of the piece that stays and of the other piece at both ends of the selected
-/// seam (m).
+/// Bounding box on the table that a walk of the selected seam needs (m): the piece that stays, and the
+/// other piece at both ends of the seam.
 pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     let seen = Seen::new(reading)?;
     let sides = state.fixed.sides();
@@ -148,7 +149,10 @@ pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     Some(Bounds2::of(places))
 }
 
-/// Distance walked so far, or the typed one if it is valid.
+/// Arc length along the seam: the typed one if there is one, else the walked one (m).
+///
+/// # Errors
+/// The typed text gives no length.
 fn along(state: &WalkState, reading: &Reading<'_>) -> Result<f64, String> {
     if !state.is_typing() {
         return Ok(state.along);
@@ -238,7 +242,7 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// Seams under the pointer, the nearest edge first: for each edge the seam with the nearest stretch.
+/// Seams of the edges under the pointer, the nearest edge first; for each edge one seam.
 fn seams_at(pointer: &Pointer, reading: &Reading<'_>) -> Vec<SeamId> {
     let edges = pointer.hits.iter().filter_map(|hit| match hit.item {
         Item::Edge(panel, edge) => seam_of((panel, edge), hit.at, reading),
@@ -247,7 +251,7 @@ fn seams_at(pointer: &Pointer, reading: &Reading<'_>) -> Vec<SeamId> {
     edges.collect()
 }
 
-/// The seam of an edge at a point of its panel (m).
+/// The seam of an edge that is nearest to a point of the panel (m).
 fn seam_of((panel, edge): (PanelId, EdgeId), at: Vec2, reading: &Reading<'_>) -> Option<SeamId> {
     let seams = reading.scene.seams.iter();
     let stretches = seams.flat_map(|seam| seam.stretches.iter().map(move |own| (seam.id, own)));
@@ -292,7 +296,7 @@ pub(super) fn overlay(state: &WalkState, reading: &Reading<'_>) -> Vec<Overlay> 
     marks
 }
 
-/// Distances of both pieces along the seam, and their difference, in words.
+/// Text at the point of contact: distance along each side of the seam, and their difference.
 fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
     let unit = seen.pattern.unit;
     let length = |length: f64| number::show(length, Want::Length, unit);
@@ -318,7 +322,7 @@ fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
     )
 }
 
-/// Marks of the piece that is laid against the one that stays.
+/// Adds the marks for the piece that is laid against the one that stays: ghost and outline.
 fn ghost(
     seen: &Seen<'_>,
     (contact, fixed): (&Contact, FixedSide),
@@ -356,13 +360,13 @@ fn ghost(
     }
 }
 
-/// A corner of a fill, mapped.
+/// Maps a corner of a fill.
 fn mapped(laid: &Affine, at: [f32; 2]) -> [f32; 2] {
     let at = laid.apply(Vec2::from(at.map(f64::from)));
     [at.x as f32, at.y as f32]
 }
 
-/// Tone for the smoothness of a line across a seam.
+/// Tone for the smoothness with which a line crosses a seam.
 fn joint_tone(joint: &Joint) -> Tone {
     match joint.smoothness() {
         Smoothness::Smooth => Tone::Good,
@@ -371,7 +375,7 @@ fn joint_tone(joint: &Joint) -> Tone {
     }
 }
 
-/// Description of the angle at which a line crosses a seam.
+/// Description of the angle that a line makes where it crosses a seam.
 fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
     let degrees = joint.kink.to_degrees();
     let turn = format!("{:.1}\u{b0}", degrees.abs());
@@ -388,7 +392,7 @@ fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
     format!("{line} across {seam}: {how}{step}")
 }
 
-/// Descriptions of the lines that cross a seam at its ends.
+/// Descriptions of the lines that cross a seam at its ends, as hems do, with their tones.
 pub fn crossing_lines(
     (evaluation, scene): (&Evaluation, &Scene),
     seam: SeamId,
@@ -406,7 +410,8 @@ pub fn crossing_lines(
     told.collect()
 }
 
-/// Text at the end of the seam; and if the pieces touch there, the tangents of the edges that leave it.
+/// Adds the text at an end of the seam; if the pieces touch there, also the tangents of the lines that
+/// cross the seam.
 fn mark_joint(
     seen: &Seen<'_>,
     joint: &Joint,
@@ -435,7 +440,7 @@ fn mark_joint(
     marks.push(Overlay::Label(corner, words, tone));
 }
 
-/// Marks of the notches of the piece that stays, with a note at those that do not meet their partner.
+/// Adds marks for the notches of both pieces, with a note at notches that do not meet their partner.
 fn mark_notches(
     seen: &Seen<'_>,
     (contact, fixed): (&Contact, FixedSide),
@@ -456,7 +461,7 @@ fn mark_notches(
         let name = notch_name(seen, notch);
         let (tone, words) = match notch.partner {
             Some(_) if notch.meets() => (Tone::Good, String::new()),
-            // The note on a pair of notches that do not meet stands at the one of the first side only.
+            // If a pair of notches does not meet, only the notch of the first side gets the note.
             Some(_) if notch.side == 1 && notch.partner_piece == Some(contact.pieces[0]) => {
                 (Tone::Warning, String::new())
             }

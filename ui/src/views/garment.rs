@@ -52,7 +52,7 @@ struct Stale {
     cloth: bool,
 }
 
-/// The last picture, and the state it shows.
+/// State that the last picture shows.
 #[derive(Clone, Copy, PartialEq)]
 struct Drawn {
     orbit: Orbit,
@@ -63,7 +63,7 @@ struct Drawn {
 }
 
 impl GarmentView {
-    /// A view drawn by the window's graphics card; without one it shows a message.
+    /// A view drawn by the window's graphics card; without a graphics card the view shows a message.
     pub fn new(state: Option<&RenderState>) -> Self {
         Self {
             renderer: state.map(StageRenderer::new),
@@ -142,7 +142,8 @@ impl GarmentView {
         self.body_bounds.filter(|_| !self.hides_body)
     }
 
-    /// Sets a level direction of view: 0 in front, positive toward the wearer's left (rad).
+    /// Looks at the garment from a horizontal direction: 0 from the front, positive toward the wearer's
+    /// left (rad).
     pub fn look_from(&mut self, yaw: f64) {
         self.orbit.yaw = yaw;
         self.orbit.pitch = 0.05;
@@ -152,7 +153,7 @@ impl GarmentView {
     /// Draws the view and handles its input.
     pub fn show(&mut self, ui: &mut Ui, empty: &str) {
         let view = ui.available_rect_before_wrap();
-        // The borders between the parts of the window can still be dragged.
+        // A rim of the view is left out: there the borders between the parts of the window are dragged.
         let inner = view.shrink(theme::GRAB);
         let response = ui.interact(
             inner,

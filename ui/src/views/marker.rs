@@ -21,13 +21,13 @@ const REACHES: [f64; 2] = [0.003, 0.02];
 /// Quarter of a turn (rad).
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Placement of pieces that are dropped.
+/// Treatment of pieces that are dropped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LetGoAs {
-    /// They stay where they are dropped.
+    /// The pieces stay where they are dropped.
     Left,
-    /// They are moved against a neighbour within this distance (m), and return to their old place if they
-    /// overlap another.
+    /// The pieces are moved against a neighbour within this distance (m), and return to their old place if
+    /// they overlap another piece.
     Butted(f64),
 }
 
@@ -36,7 +36,7 @@ pub enum LetGoAs {
 pub enum MarkerAction {
     /// Pieces are dragged by a vector from their old place (m).
     Drag(Vec<OrderedPiece>, Vec2),
-    /// The drag ends: its vector (m), and the placement of the pieces.
+    /// The drag ends: its vector (m), and the treatment of the pieces.
     Drop(Vec<OrderedPiece>, Vec2, LetGoAs),
     /// The drag is cancelled.
     Leave,
@@ -62,9 +62,9 @@ pub struct MarkerView {
     pub roll: usize,
     /// Names of all rolls; empty if there are none.
     pub rolls: Vec<String>,
-    /// Whether the fields for the laying and the rules are shown.
+    /// Whether the fields for laying the fabric and for the rules of pieces are shown.
     pub shows_laying: bool,
-    /// Result of the marker, with everything that prevents cutting.
+    /// Result of the marker: numbers, and everything that prevents cutting.
     pub state: MarkerState,
     /// Reason why the view is empty, and whether that is an error.
     pub nothing: Option<(String, bool)>,
@@ -123,7 +123,8 @@ impl MarkerView {
         self.wants_all_seen = true;
     }
 
-    /// Names on the screen that are written beside pieces, or in place of the pieces' own text.
+    /// Names that are written beside pieces, or in place of the pieces' own text, with their place on the
+    /// screen.
     pub fn names(&self) -> &[PieceName] {
         &self.names
     }
@@ -138,7 +139,7 @@ impl MarkerView {
         self.seen
     }
 
-    /// Empties the view, with a message or an error.
+    /// Empties the view, and shows a message or an error in it.
     pub fn clear(&mut self, why: Result<&str, String>) {
         self.pieces.clear();
         self.nothing = Some(match why {
@@ -175,7 +176,8 @@ impl MarkerView {
                     piece.cut.drawing(place, words)
                 })
             });
-            // A piece with the same id and pose may have another shape: compares the outline.
+            // With the same id and pose the piece may have another shape: then the first point of its
+            // outline differs.
             let outline = piece.cut.polygon();
             let first = outline.outer.first().map(|at| piece.pose.apply(*at));
             let drawn = scene
@@ -368,8 +370,8 @@ impl MarkerView {
         actions
     }
 
-    /// Pieces that are close on the screen are moved together, within 3 to 20 mm on the fabric; with Alt
-    /// pieces stay as they are dropped.
+    /// Treatment of pieces dropped now: pieces that are close on the screen, and within 3 to 20 mm on the
+    /// fabric, are moved together; with Alt they stay as they are dropped.
     fn let_go_as(&self, ui: &Ui) -> LetGoAs {
         match ui.input(|input| input.modifiers.alt) {
             true => LetGoAs::Left,
@@ -389,12 +391,12 @@ impl MarkerView {
         all.map(|bounds| bounds.centre())
     }
 
-    /// Rotates the selected pieces by quarter turns.
+    /// The action that rotates the selected pieces by quarter turns.
     pub fn turn(&self, quarters: f64) -> Option<MarkerAction> {
         Some(MarkerAction::Turn(self.middle()?, quarters * QUARTER))
     }
 
-    /// Turns the selected pieces over.
+    /// The action that turns the selected pieces over.
     pub fn flip(&self) -> Option<MarkerAction> {
         Some(MarkerAction::Flip(self.middle()?.y))
     }

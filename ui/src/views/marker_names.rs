@@ -12,20 +12,20 @@ use toile_geometry::Vec2;
 
 /// Least readable height of letters (pixels).
 const MIN_LETTER_HEIGHT: f32 = 7.0;
-/// Font sizes of replacement names, the first that fits the piece is taken (pixels).
+/// Font sizes of names in place of a piece's text; the first size that fits the piece is used (pixels).
 const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
 /// Least size of pieces with a name (pixels).
 const MIN_PIECE_SIZE: f64 = 12.0;
 /// Largest number of names with a leader line.
 const MAX_LEADERS: usize = 100;
-/// Distances of outside names from their piece (pixels), and number of directions that are tried.
+/// Distances between a name outside and its piece (pixels), and number of directions that are tried.
 const DISTANCES: [f32; 6] = [10.0, 20.0, 34.0, 50.0, 70.0, 95.0];
 const DIRECTIONS: usize = 16;
 /// White margin round an outside name (pixels).
 const MARGIN: f32 = 2.0;
 
 impl MarkerView {
-    /// Names that are written instead of a piece's own text; they do not overlap.
+    /// Names to write instead of a piece's own text; the names do not overlap.
     pub(super) fn placed_names(&self, ui: &Ui, view: Rect) -> Vec<PieceName> {
         let painter = ui.painter_at(view);
         let palette = Palette::of(ui.ctx());
@@ -107,7 +107,8 @@ impl MarkerView {
         corners.iter().all(is_in)
     }
 
-    /// Bounding box of a piece on the screen, if it is visible and large enough for a name.
+    /// Bounding box of a piece on the screen; `None` if the piece is not visible or is too small for a
+    /// name.
     fn seen_bounds(&self, scene: &PieceScene, view: Rect) -> Option<Rect> {
         let bounds = scene.bounds()?;
         let seen = [bounds.min, bounds.max].map(|at| self.screen(view, at));
@@ -116,7 +117,7 @@ impl MarkerView {
         (is_large && view.contains(seen.center())).then_some(seen)
     }
 
-    /// A point inside a piece for the end of a leader line.
+    /// A point inside a piece, at which a leader line ends.
     fn inner_place(&self, scene: &PieceScene, view: Rect) -> Pos2 {
         let middle = scene.middle();
         let polygon = scene.drawing.fill.as_ref();
@@ -132,7 +133,7 @@ impl MarkerView {
         self.screen(view, inside)
     }
 
-    /// The own text of a piece, if it is readable at this enlargement.
+    /// The piece's own text as a shape, if it is readable at this enlargement.
     pub(super) fn own_words(
         &self,
         painter: &Painter,
@@ -167,8 +168,8 @@ impl MarkerView {
     }
 }
 
-/// A rectangle beside a piece for a name, clear of other names and with as few pieces under it as
-/// possible.
+/// Rectangle for a name beside the piece with the bounds `around`: it overlaps no name of `taken`, and as
+/// few pieces of `boxes` as possible.
 fn place_outside(
     (around, size): (Rect, Way),
     view: Rect,

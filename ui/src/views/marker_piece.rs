@@ -14,7 +14,7 @@ pub struct PieceName {
     pub name: String,
     /// Rectangle on the screen.
     pub rect: Rect,
-    /// End of the leader line in the piece, if the name is outside.
+    /// End of the leader line inside the piece; `None` if the name is not outside.
     pub led_to: Option<Pos2>,
     /// Height of the letters (pixels).
     pub letters: f32,
@@ -31,16 +31,16 @@ pub struct PieceScene {
     pub drawing: Drawing,
     /// Fill of the area.
     pub fill: Fill,
-    /// Position, grain and turn on the fabric.
+    /// Pose on the fabric: direction of the grain, turn, side up and translation.
     pub pose: Pose,
     /// Whether it is locked in its place.
     pub locked: bool,
-    /// Whether it waits to be laid.
+    /// Whether the piece waits beside the fabric to be laid.
     pub waits: bool,
 }
 
 impl PieceScene {
-    /// A piece in a pose; `draw` draws it from its cut piece.
+    /// A piece in a pose; `draw` makes the drawing of its cut piece.
     pub fn new(
         piece: OrderedPiece,
         name: &str,
@@ -74,7 +74,7 @@ impl PieceScene {
         words.or(bounds).unwrap_or_else(Vec2::zeros)
     }
 
-    /// A number that is equal for pieces of one size, to colour them alike.
+    /// A number that is equal for pieces of one size: such pieces get the same colour.
     pub fn group(&self) -> u8 {
         self.piece.size.map_or(0, |id| (id.0 % 7) as u8)
     }

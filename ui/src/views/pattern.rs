@@ -34,8 +34,8 @@ use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
 
 /// Zoom factor of one press of a zoom key.
 pub const ZOOM_STEP: f64 = 1.25;
-/// Largest number of parts that are all named for assistive technology; of more only those on sheets with
-/// a selected part.
+/// Largest number of parts that are all named for assistive technology. If there are more, only parts on
+/// sheets with a selected part are named.
 const MAX_NAMED: usize = 600;
 /// Width of the canvas that the inspector covers (pixels).
 pub const INSPECTOR_ROOM: f32 = 300.0;
@@ -75,13 +75,13 @@ pub struct PatternView {
     pub guides: bool,
     /// The guide that is dragged.
     guide: Option<guides::GuideDrag>,
-    /// Whether the position field of the selected guide is to get the focus.
+    /// Whether the position field of the selected guide should get the focus.
     pub asks_guide_place: bool,
     /// Outlines of all sizes, while they are shown.
     pub grading: Option<Grading>,
-    /// Whether a number field elsewhere uses the present click.
+    /// Whether a number field of the inspector or the tables uses the present click.
     pub click_is_taken: bool,
-    /// Whether a dialog or menu covers the view and gets all keys.
+    /// Whether a dialog or menu covers the view, and gets all keys.
     pub is_covered: bool,
     /// The tool in hand.
     pub tool: Tool,
@@ -94,18 +94,18 @@ pub struct PatternView {
     /// Response of the canvas for a context menu; `None` while a tool is in progress.
     pub canvas: Option<Response>,
     pressed: Option<Pointer>,
-    /// Pointer position and modifier keys of the last hover event.
+    /// Position of the pointer, and modifier keys, in the last hover event.
     told: Option<(Pos2, ToolModifiers)>,
     /// Whether another widget had the focus in the last frame.
     was_typed_into: bool,
     wants_fit: bool,
     /// Part or area to scroll to.
     revealed: Option<revealed::Revealed>,
-    /// Size of the view for which everything was fitted, until the user pans or zooms.
+    /// Size of the view to which everything was fitted; `None` once the user has panned or zoomed.
     fitted: Option<egui::Vec2>,
-    /// The walked seam for which the table was moved.
+    /// The walked seam for whose pieces the table was moved.
     walked: Option<SeamId>,
-    /// Camera before a walk moved the table.
+    /// Camera before the table was moved for a walk.
     before_walk: Option<TableCamera>,
 }
 
@@ -185,7 +185,7 @@ impl PatternView {
         self.state = tool.begin();
         self.pressed = None;
         self.guide = None;
-        // The new tool gets a hover event for a pointer that rests on the canvas.
+        // A hover event is sent to the new tool, even if the pointer rests on the canvas.
         self.told = None;
     }
 
@@ -208,7 +208,7 @@ impl PatternView {
         self.camera.scale = scale;
     }
 
-    /// Updates the view after a change of the pattern or of the enlargement; `previews` during the
+    /// Updates the view after a change of the pattern or of the enlargement; `previews` is set during the
     /// preview of a gesture.
     pub fn follow(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, previews: bool) {
         let pattern = evaluation.pattern();
@@ -272,7 +272,7 @@ impl PatternView {
         outcome
     }
 
-    /// Read access for hints and overlays of the tool: selecting by a box finds nothing.
+    /// Read access of the tool for hints and overlays, in which the search of parts in a box finds no part.
     fn reading<'a>(&'a self, evaluation: &'a Evaluation) -> Reading<'a> {
         Reading {
             evaluation,
@@ -307,11 +307,11 @@ impl PatternView {
         drawn.into_iter().chain(graded).reduce(|a, b| a.union(&b))
     }
 
-    /// Draws the view, and returns the outcomes of its input. `evaluation` is the one without the gesture
-    /// that is being previewed.
+    /// Draws the view, and returns the outcomes of its input. `evaluation` is the pattern without the
+    /// gesture that is being previewed.
     pub fn show(&mut self, ui: &mut Ui, evaluation: &Evaluation) -> Vec<Outcome> {
         let view = ui.available_rect_before_wrap();
-        // The borders between the parts of the window can still be dragged.
+        // A rim of the view is left out: there the borders between the parts of the window are dragged.
         let inner = view.shrink(GRAB);
         let response = ui.interact(inner, Self::id(), Sense::click_and_drag());
         ui.advance_cursor_after_rect(view);
@@ -389,7 +389,7 @@ impl PatternView {
         self.pointer(self.camera.table(view, ScreenPoint(at)).0, modifiers)
     }
 
-    /// The pointer's findings at a place of the table (m): sheet, parts and snapping places.
+    /// The pointer at a place of the table (m), with the sheet, parts and snapping places found there.
     pub fn pointer(&self, table: Vec2, modifiers: ToolModifiers) -> Pointer {
         let open = self.open();
         let mut found = hits(
@@ -515,7 +515,8 @@ impl PatternView {
                 }
             }
             for (id, mirrored, line) in &panel.shape.darts {
-                // On the first leg, a quarter along it: at the mouth the edge would be as near.
+                // The place of a dart is on its first leg, a quarter along it: at the mouth the edge would
+                // be as near.
                 if let Some((at, _)) = crate::canvas::along(line, 0.25).filter(|_| !mirrored) {
                     part(Item::Operation(panel.id, *id), at);
                 }
@@ -551,8 +552,8 @@ impl PatternView {
         selected.any(|(.., at)| place.contains(self.screen(view, Vec2::zeros(), *at)))
     }
 
-    /// Names points, edges and panels for assistive technology; returns the part that was chosen there.
-    /// The nodes take no clicks: these go to the view below, like all others.
+    /// Names points, edges and panels for assistive technology; returns a part that was chosen by it. The
+    /// named nodes take no mouse clicks, which go to the view.
     fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
         let open = self.open();
         let mut parts = self.parts();

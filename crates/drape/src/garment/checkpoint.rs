@@ -10,9 +10,12 @@
 //! - [`crate::garment::digest::SetupDigest::of`]: another setup is refused;
 //! - [`crate::world::Simulation::laid_out`], [`crate::world::Simulation::restore`]: the layout and state
 //!   taken back;
-//! - [`crate::exact`], [`crate::digest`]: infinite numbers; digests.
+//! - [`crate::exact`], [`crate::digest`]: infinite numbers; digests;
+//! - [`crate::scene_checkpoint`]: the same for the run of a scene.
 //!
 //! By hand: `SetupDigest::of` lists the settings. No command writes a garment's checkpoint.
+//! Damage and other versions are refused by crate `interchange`, `checkpoint.rs`; those of a scene are due by crate
+//! `session`, `scene_checkpoint.rs`.
 
 use super::digest::SetupDigest;
 use super::setup::GarmentWorld;

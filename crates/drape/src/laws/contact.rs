@@ -8,7 +8,8 @@
 //! - [`crate::contacts::Contacts::damp`]: explicit methods damp the push;
 //! - [`crate::xpbd`] (`contact.rs`, `solve`, `several_solids.rs`, `solve_together`): the same in XPBD;
 //! - [`crate::xpbd`] (`contact_block.rs`): the same for several vertices at once;
-//! - crate `reference` (`patches/`: `patch_contacts.rs`, `update_force`): the same in patches.
+//! - crate `reference` (`patches/`: `patch_contacts.rs`, `update_force`): the same in patches;
+//! - [`toile_fabric::FIGURES`]: the coefficient of friction: default, domain, names in files.
 //!
 //! By hand: the copies in XPBD and in patches follow this law.
 

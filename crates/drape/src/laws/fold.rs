@@ -6,6 +6,13 @@
 //! with q = A D r the moment of the relaxed fraction of the internal curvature, r = p v (A/2 |kappa - r n|^2_D
 //! less the quadratic energy and a constant), V = A N / h of the viscous matrix N over a step h, and s_0 the
 //! curvature when the step began.
+//!
+//! # Decided with
+//! - [`toile_fabric::FIGURES`] (`relaxed_fraction`, `relaxation_time`): the figures;
+//! - [`crate::internal_strain::InternalStrain`], [`crate::materials::Materials::keep_strain`]: the strain remembered, and whether;
+//! - [`crate::incremental_potential::relax`]: relaxation in time;
+//! - [`crate::world`] (`transfer.rs`, `internal_strain`): carried over an edit or a merge;
+//! - [`crate::method::MethodKind::supports`] (`features.rs`): methods without it.
 
 use nalgebra::{Matrix3, Vector3};
 use toile_geometry::Vec3;

@@ -13,6 +13,8 @@
 //!
 //! The compiler asks a new paper here and in crate `cli`, `print_arguments.rs`. By hand: the window's list
 //! (`app/print_choice.rs`, `app/preferences.rs`); a new kind of line in `legend`.
+//! Laid out, and refused where there are too many sheets or a piece finds no room, by crate `session`, `printing.rs`
+//! (`arranged`, `laid`, `too_many`).
 
 mod draw;
 mod mark;

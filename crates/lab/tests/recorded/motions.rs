@@ -35,7 +35,8 @@ pub fn note_methods(record: &mut Record) {
     for (case, (system, start)) in &cases {
         for (method, kind) in MethodKind::ALL {
             let mut state = start.clone();
-            let mut advancing = toile_reference::build(&kind.into()).unwrap();
+            let mut advancing =
+                toile_reference::build(&kind.into()).expect("a method that there is");
             for step in 1..=10 {
                 let name = format!("{case}, {method}, step {step}");
                 if let Err(error) = advancing.advance(system, &mut state, STEP) {

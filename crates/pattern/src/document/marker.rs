@@ -15,6 +15,8 @@
 //!
 //! Shown in the window (`app/marker_cloth.rs`, `app/marker_laying.rs`, `app/marker_rules.rs`); searched for
 //! by crate `marker`.
+//! Searched for by crate `marker` (`options.rs`, `items.rs`); turns tried and judged by crate `nesting` (`turns.rs`,
+//! `rules.rs`); by hand only overlaps are watched (`clashes.rs`).
 
 use super::cloth_record::ClothRecord;
 use super::{ClothSettings, MatchedMarks, Panel, Pattern, PieceRule, RuledPieces};

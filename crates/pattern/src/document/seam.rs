@@ -1,4 +1,14 @@
 //! Seams: which edges of panels are sewn to which.
+//!
+//! # Decided with
+//! - [`crate::plan::sew`], [`crate::plan::numbers_of`]: seams sewn; their numbers in the window;
+//! - [`crate::evaluate`] (`seams.rs`, `seam`, `locate`): spans, lengths of both sides, ease;
+//! - [`crate::drafting`] (`seams`): seams of the draft, gathers, eases;
+//! - [`crate::check`] (`check_seam`), [`crate::check::SEAM_TOLERANCE`]: sides that differ too much, negative ease;
+//! - [`crate::walk`], [`crate::plan::opposites`]: places opposite each other, in proportion.
+//!
+//! On the cloth: crate `assembly`, `sampling.rs` (`link_intervals`, `gathered_intervals`). From files: crate
+//! `interchange`, `garmentcode/reader.rs`. Seams in a heap: crate `session`, `crumple.rs`.
 
 use crate::fields::{ValueField, group, key, length};
 use crate::{LineName, Mark, Number, PanelId, SeamId, fields};

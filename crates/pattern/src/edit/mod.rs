@@ -6,7 +6,9 @@
 //! - [`crate::edit::references`]: which parts a part refers to, and which refer to it;
 //! - [`crate::plan::remove_parts`]: parts taken away with one;
 //! - [`crate::ids::Ids`], [`crate::document::Pattern`]: ids given once;
-//! - [`crate::plan`]: planners, which make the edits.
+//! - [`crate::plan`]: planners, which make the edits;
+//! - [`crate::diagnostic::Code::MissingReference`]: lost parts told;
+//! - [`crate::evaluate::Evaluation::take_changes`] (`graph.rs`): computed anew once the part is back.
 
 mod apply;
 mod references;

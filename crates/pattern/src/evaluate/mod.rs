@@ -13,7 +13,9 @@
 //! - [`crate::evaluate::wearer::Wearer`], [`crate::evaluate::numbers::Computation::quantity`]: the wearer;
 //!   values that a size has of its own;
 //! - [`crate::diagnostic::Code`]: faults found meanwhile;
-//! - [`crate::drafting::Drafting`]: the draft made of it.
+//! - [`crate::drafting::Drafting`]: the draft made of it;
+//! - [`crate::evaluate::Evaluation::cycle`] (`compute.rs`), [`crate::plan`] (`numbers.rs`, `refuse_valueless`): formulas
+//!   that need themselves are told; an edit that makes such a circle is refused.
 //!
 //! Beside the pattern: crate `session`, `derived.rs`. By hand: a new list of the document in `take_over`.
 

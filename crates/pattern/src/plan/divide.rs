@@ -1,5 +1,12 @@
 //! Divides an edge at a new corner on its curve, and joins two edges at an old one: exact inverses
 //! in every size, since the curve stays.
+//!
+//! # Decided with
+//! - [`crate::mark::Mark`], [`crate::name::Name`]: notches and spans name corners, so nothing is carried over;
+//! - [`crate::stage::Stage::placed`] (`place.rs`), [`crate::evaluate`] (`panels.rs`, `notches`; `seams.rs`, `locate`): where a
+//!   mark lies on the present edges;
+//! - [`crate::document::Pattern::users`] (`references.rs`): a corner that something names stays;
+//! - [`crate::document::Edge`], [`crate::document::EdgeCorner`]: the allowance taken over, the new corner.
 
 use super::names::free_name;
 use super::on_stage::nearest_edge;

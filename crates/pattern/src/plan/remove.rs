@@ -1,4 +1,11 @@
 //! Removes parts.
+//!
+//! # Decided with
+//! - [`crate::document::Pattern::users`] (`references.rs`), [`crate::fields::references()`]: which parts name a part;
+//! - [`crate::document::Pattern::apply`] (`apply.rs`): names of removed parts are kept, unknown ids refused;
+//! - [`crate::plan::join_edges`]: edges at a corner that goes;
+//! - [`crate::diagnostic::Code::MissingReference`]: lost parts told;
+//! - [`crate::evaluate::Evaluation::take_changes`] (`graph.rs`): computed anew once the part is back.
 
 use super::divide::join_edges;
 use super::impossible;

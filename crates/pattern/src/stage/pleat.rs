@@ -1,5 +1,13 @@
 //! Pleats: cloth inserted between the parts of a panel, with ends shaped by the outline that they are
 //! folded under.
+//!
+//! # Decided with
+//! - [`crate::document::OperationKind`], [`crate::plan::pleat_panel`] (`reshape.rs`): fields of a pleat, and their defaults;
+//! - [`crate::evaluate`] (`reshape.rs`, `pleat`, `no_spread`): numbers evaluated, refusals in words;
+//! - [`mod@crate::stage::spread`] (`CutOpen::of`): cuts that cross or open too wide;
+//! - [`crate::press::press_arrows`], [`crate::check`] (`note_pleats`): arrows; a depth of 0 told.
+//!
+//! Asked in the window: `tools/alter.rs` (`PLEAT_SLOTS`), `inspector/steps.rs`.
 
 use super::motion::Motion;
 use super::spread::{Chord, Crossed, CutOpen, Gap};

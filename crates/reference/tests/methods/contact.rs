@@ -13,7 +13,7 @@ fn sound() -> impl Iterator<Item = (&'static str, MethodKind)> {
 }
 
 fn run(name: &str, kind: MethodKind, system: &System, state: &mut State, steps: usize) {
-    let mut method = toile_reference::build(&kind.into()).unwrap();
+    let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
     let steps = if kind.is_equilibrium() { 500 } else { steps };
     for _ in 0..steps {
         method

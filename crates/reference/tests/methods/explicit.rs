@@ -99,7 +99,7 @@ fn automatic_substeps_hold_a_stiff_cloth() {
         MethodKind::RungeKutta4,
     ] {
         let (system, mut state) = hanging_square();
-        let mut method = toile_reference::build(&kind.into()).unwrap();
+        let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
         let expected = largest_frequency(&system, &state)
             / 60.0
             / (0.9 * kind.stability_limit().expect("explicit"));

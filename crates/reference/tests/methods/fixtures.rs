@@ -41,7 +41,7 @@ pub fn method(kind: MethodKind, substeps: u32) -> Box<dyn Method> {
         substeps: Some(substeps),
         ..kind.into()
     };
-    toile_reference::build(&settings).unwrap()
+    toile_reference::build(&settings).expect("a method that there is")
 }
 
 /// A solid ball at the origin.

@@ -14,7 +14,7 @@ fn check(case: &str, make: impl Fn() -> (System, State), reach: f64) {
     for (name, kind) in MethodKind::ALL {
         let (system, start) = make();
         let mut state = start.clone();
-        let mut method = toile_reference::build(&kind.into()).unwrap();
+        let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
         for _ in 0..5 {
             let before = state.clone();
             if let Err(error) = method.advance(&system, &mut state, 1.0 / 60.0) {
@@ -156,7 +156,7 @@ fn no_method_returns_a_step_with_ten_times_the_energy_that_a_body_that_jumped_ga
         system = system.with(|builder| {
             builder.colliders = vec![ball(0.05)];
         });
-        let mut method = toile_reference::build(&kind.into()).unwrap();
+        let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
         for _ in 0..5 {
             method
                 .advance(&system, &mut state, 1.0 / 60.0)
@@ -192,7 +192,8 @@ fn what_is_too_stiff_to_wait_for_is_refused_by_vertex() {
     };
     let (system, mut state) = stretched(1.0, material);
     assert!(largest_frequency(&system, &state) > 1e8);
-    let mut method = toile_reference::build(&MethodKind::VelocityVerlet.into()).unwrap();
+    let mut method =
+        toile_reference::build(&MethodKind::VelocityVerlet.into()).expect("a method that there is");
     let error = method.advance(&system, &mut state, 1.0);
     assert!(
         matches!(error, Err(DrapeError::TooStiff { substeps, .. }) if substeps > 1e6),
@@ -215,7 +216,7 @@ fn settings_out_of_the_ordinary_do_no_harm() {
                 iterations,
                 tolerance,
             };
-            let mut method = toile_reference::build(&settings).unwrap();
+            let mut method = toile_reference::build(&settings).expect("a method that there is");
             for _ in 0..3 {
                 let before = state.clone();
                 if method.advance(&system, &mut state, 1e-3).is_err() {

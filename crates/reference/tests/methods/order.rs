@@ -39,7 +39,7 @@ fn run(kind: MethodKind, steps: u32, system: &System, mut state: State) -> Vec<V
         iterations: Some(1000),
         ..kind.into()
     };
-    let mut method = toile_reference::build(&settings).unwrap();
+    let mut method = toile_reference::build(&settings).expect("a method that there is");
     for _ in 0..steps {
         let name = kind.name();
         let taken = method.advance(system, &mut state, 0.1 / f64::from(steps));
@@ -128,7 +128,7 @@ fn automatic_substeps_allow_for_viscosity() {
         MethodKind::RungeKutta4,
     ] {
         let (system, mut state) = dissipative();
-        let mut method = toile_reference::build(&kind.into()).unwrap();
+        let mut method = toile_reference::build(&kind.into()).expect("a method that there is");
         let mut viscous = 0;
         for _ in 0..20 {
             let step = method.advance(&system, &mut state, 0.01);
@@ -138,7 +138,7 @@ fn automatic_substeps_allow_for_viscosity() {
         }
         let (system, mut state) = smooth();
         let plain = toile_reference::build(&kind.into())
-            .unwrap()
+            .expect("a method that there is")
             .advance(&system, &mut state, 0.01);
         assert!(plain.is_ok_and(|plain| plain.iterations < viscous));
     }

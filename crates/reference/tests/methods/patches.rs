@@ -71,7 +71,8 @@ fn a_cut_cloth_gives_the_same_bytes_on_any_number_of_threads() {
             .expect("threads can be made");
         pool.install(|| {
             let (system, mut state) = onto_a_ball(60);
-            let mut method = toile_reference::build(&MethodKind::PatchVerlet.into()).unwrap();
+            let mut method = toile_reference::build(&MethodKind::PatchVerlet.into())
+                .expect("a method that there is");
             for _ in 0..3 {
                 method
                     .advance(&system, &mut state, 1.0 / 60.0)
@@ -111,7 +112,8 @@ fn what_it_does_not_treat_is_left_to_velocity_verlet() {
 fn cloth_comes_to_rest_on_a_ball() {
     let (mut system, mut state) = onto_a_ball(24);
     system.control.air_drag = 12.0;
-    let mut method = toile_reference::build(&MethodKind::PatchVerlet.into()).unwrap();
+    let mut method =
+        toile_reference::build(&MethodKind::PatchVerlet.into()).expect("a method that there is");
     for _ in 0..240 {
         method
             .advance(&system, &mut state, 1.0 / 60.0)
@@ -124,7 +126,8 @@ fn cloth_comes_to_rest_on_a_ball() {
 #[test]
 fn a_pull_that_stiffens_the_cloth_gets_more_substeps() {
     let (system, mut state) = hanging_square();
-    let mut method = toile_reference::build(&MethodKind::PatchVerlet.into()).unwrap();
+    let mut method =
+        toile_reference::build(&MethodKind::PatchVerlet.into()).expect("a method that there is");
     let mut still = state.clone();
     let few = method
         .advance(&system, &mut still, 1.0 / 60.0)

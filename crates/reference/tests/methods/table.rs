@@ -110,7 +110,7 @@ fn momentum_is_kept_in_free_flight() {
             tolerance: by_vertex(kind).then_some(1e-8),
             ..kind.into()
         };
-        let mut method = toile_reference::build(&settings).unwrap();
+        let mut method = toile_reference::build(&settings).expect("a method that there is");
         for _ in 0..20 {
             method
                 .advance(&system, &mut state, 0.004)

@@ -17,7 +17,7 @@ use toile_pattern::{
     Edit, EditError, Evaluation, Guide, GuideId, GuideRun, Number, PointRule, SheetId, Want, plan,
 };
 
-/// A guide that is dragged.
+/// State of a guide that is being dragged.
 #[derive(Clone, Debug)]
 pub(super) struct GuideDrag {
     /// Identity of the guide; `None` for a new one.
@@ -25,7 +25,8 @@ pub(super) struct GuideDrag {
     runs: GuideRun,
     /// Position of the pointer.
     pointer: Pos2,
-    /// Coordinate of the guide on the table (m), and the part it snaps to; `None` over the ruler.
+    /// Coordinate of the guide on the table (m), and a description of the part it snaps to; `None` over the
+    /// ruler.
     place: Option<(f64, String)>,
 }
 
@@ -41,8 +42,8 @@ impl PatternView {
         crate::canvas::guides::on_sheet(self.seen_guides(), self.table_layout.sheet(sheet))
     }
 
-    /// Inserts the guide at a place of the table (m) into the parts found there: after points and lines,
-    /// before panels. Drawing tools do not select guides.
+    /// Inserts the guide at a place of the table (m) into the parts found there, after points and lines and
+    /// before panels. Does nothing while a drawing tool is in hand.
     pub(super) fn add_guide_hit(&self, found: &mut Vec<Hit>, table: Vec2) {
         if !matches!(self.tool, Tool::Select) {
             return;
@@ -154,13 +155,13 @@ impl PatternView {
         Some(self.dropped(&drag, evaluation))
     }
 
-    /// The strip of a ruler; starts to drag a new guide if the drag begins there.
+    /// Handles the strip of a ruler: a drag that begins there drags a new guide.
     fn begin_at_ruler(&mut self, ui: &Ui, view: Rect, runs: GuideRun) {
         if !self.rulers {
             return;
         }
         let inner = view.shrink(GRAB);
-        // The corner is left out, because it belongs to both rulers.
+        // The corner where both rulers meet is left out.
         let (strip, name) = match runs {
             GuideRun::Horizontal => (
                 Rect::from_min_max(
@@ -195,7 +196,7 @@ impl PatternView {
         }
     }
 
-    /// Starts to drag a guide, if the drag begins on one with nothing else on it.
+    /// Starts to drag a guide if the drag begins on one, at a place where no other part comes first.
     fn begin_at_guide(&mut self, view: Rect, from: Pos2) {
         if let Some(guide) = self.guide_under(view, from) {
             self.guide = Some(GuideDrag {
@@ -219,8 +220,9 @@ impl PatternView {
         }
     }
 
-    /// Coordinate of a dragged guide on the table (m), and the part it snaps to: a point, an intersection
-    /// or the middle of a curve near it, else the grid; `None` over its ruler.
+    /// Coordinate of a dragged guide on the table (m), and a description of the part it snaps to: a point,
+    /// an intersection or the middle of a curve near the pointer, else the grid. `None` over the guide's
+    /// ruler.
     fn guide_place(
         &self,
         view: Rect,
@@ -261,7 +263,7 @@ impl PatternView {
         Some((origin + rounded(table[axis] - origin, step), String::new()))
     }
 
-    /// Outcome of dropping a guide.
+    /// Outcome of dropping a dragged guide.
     fn dropped(&mut self, drag: &GuideDrag, evaluation: &Evaluation) -> Outcome {
         let place = drag.place.as_ref().map(|(at, _)| *at);
         let old = drag.id.and_then(|id| evaluation.pattern().guide(id));
@@ -304,8 +306,8 @@ impl PatternView {
         }
     }
 
-    /// The edits that store the displayed positions of sheets in the document: guides relate to them, so
-    /// they must be the same when the document is opened again.
+    /// The edits that store the displayed positions of sheets in the document. Guides are placed in
+    /// relation to these, so that they must be the same when the document is opened again.
     fn kept_places(&self, evaluation: &Evaluation) -> Result<Vec<Edit>, EditError> {
         let apart = self.table_layout.laid_apart(evaluation.pattern());
         plan::move_sheets(evaluation, &apart)
@@ -351,7 +353,7 @@ impl PatternView {
     }
 }
 
-/// Whether a construction gives one definite point, rather than any point along a line.
+/// Whether a construction gives one definite point; other constructions give any point along a line.
 fn is_a_place(spec: &Spec) -> bool {
     match spec {
         Spec::Point(_) | Spec::New(PointRule::CurveCrossing { .. }) => true,

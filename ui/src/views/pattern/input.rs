@@ -145,7 +145,7 @@ impl PatternView {
         let mut events = Vec::new();
         let mut chosen = false;
         ui.input_mut(|input| {
-            // Keys without a command type text.
+            // Keys that are no shortcut of a command type text.
             let free: Vec<Key> = input.events.iter().filter_map(pressed).collect();
             input.events.retain(|event| {
                 let taken = match event {
@@ -183,14 +183,14 @@ impl PatternView {
         events
     }
 
-    /// Whether a text begins typed input while a tool is in hand.
+    /// Whether a text begins typed input of the tool in hand.
     fn begins(&self, text: &str, free: &[Key]) -> bool {
         let has_slots = matches!(self.tool, Tool::Slots(_));
         let is_sign = text.starts_with(NAME_SIGN) || text.starts_with(WAY_SIGNS);
         text.starts_with(begins_typing) || has_slots && (is_sign || is_words(text, free))
     }
 
-    /// Sets the mouse cursor by the effect of a press.
+    /// Sets the shape of the mouse cursor by the effect that a press would have.
     pub(super) fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
         if !inside || self.guide.is_some() {
             return;
@@ -207,7 +207,7 @@ impl PatternView {
     }
 }
 
-/// The key that an event presses, if any.
+/// The key that an event presses; `None` for another event.
 fn pressed(event: &egui::Event) -> Option<Key> {
     match event {
         egui::Event::Key {
@@ -217,15 +217,15 @@ fn pressed(event: &egui::Event) -> Option<Key> {
     }
 }
 
-/// Whether a text is not the key of a command: several characters at once, or the letter of a key without
-/// a command.
+/// Whether a text is typed input rather than the shortcut of a command: several characters at once, or the
+/// letter of a key that is no shortcut.
 fn is_words(text: &str, free: &[Key]) -> bool {
     let is_free =
         |text: &str| Key::from_name(&text.to_uppercase()).is_some_and(|key| free.contains(&key));
     !text.trim().is_empty() && (text.chars().count() > 1 || is_free(text))
 }
 
-/// Direction of a key along a walked seam.
+/// Movement that a key makes along a walked seam; `None` for other keys.
 fn going(key: Key) -> Option<LineStep> {
     Some(match key {
         Key::ArrowLeft | Key::ArrowDown => LineStep::Back,

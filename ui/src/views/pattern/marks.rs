@@ -9,8 +9,8 @@ use toile_geometry::Vec2 as Place;
 use toile_pattern::{PanelId, SeamId};
 
 impl PatternView {
-    /// Draws the signs; returns the part whose sign was clicked. While a tool is in progress they are not
-    /// clickable.
+    /// Draws the signs of findings; returns the part whose sign was clicked. While a tool is in progress
+    /// the signs are not clickable.
     pub(super) fn show_finding_marks(&mut self, ui: &Ui, view: Rect) -> Option<Item> {
         let palette = Palette::of(ui.ctx());
         let (painter, parts) = (ui.painter_at(view), self.parts());
@@ -26,7 +26,8 @@ impl PatternView {
                 continue;
             };
             let mut place = FindingMark::place(self.screen(view, Place::zeros(), at));
-            // Moved right to be clear of other labels and of other signs at the same place.
+            // The sign is moved right until it is clear of other labels, and of other signs at the same
+            // place.
             while let Some(other) = taken.iter().find(|other| other.intersects(place)) {
                 place = place.translate(Vec2::new(other.right() - place.left() + 1.0, 0.0));
             }
@@ -49,8 +50,8 @@ impl PatternView {
         chosen
     }
 
-    /// Place on the table of an end of a seam, or of its first stretch (m): on the first of its panels
-    /// that is visible.
+    /// Place on the table of an end of a seam (m), or of the seam's first stretch if no end is given; on
+    /// the first panel of the seam that is visible.
     fn seam_place(&self, id: SeamId, end: Option<usize>) -> Option<Place> {
         let seam = self.scene.seams.iter().find(|seam| seam.id == id)?;
         let is_seen = |panel: PanelId| self.scene.panel_scene(panel).is_some();

@@ -25,7 +25,7 @@ impl PatternView {
         self.revealed = Some(Revealed::Room(bounds));
     }
 
-    /// Moves the table so that the requested part is visible.
+    /// Moves the table so that the requested part or area is visible.
     pub(super) fn follow_revealed(&mut self, view: Rect) {
         let camera = self.camera;
         match self.revealed.take() {

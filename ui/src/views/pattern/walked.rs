@@ -7,8 +7,8 @@ use toile_geometry::Vec2;
 use toile_pattern::Evaluation;
 
 impl PatternView {
-    /// At the start of a walk moves the table so that both pieces are visible at every position of the
-    /// walk. The table then stays.
+    /// At the start of a walk, moves the table so that both pieces will be visible at every position of the
+    /// walk; the table does not move again during the walk.
     pub(super) fn make_room(&mut self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
         let State::Walk(state) = &self.state else {
             self.walked = None;
@@ -41,7 +41,7 @@ impl PatternView {
         ui.ctx().request_repaint();
     }
 
-    /// Centres the view on the contact of the pieces, if a key moved it out of view.
+    /// Centres the view on the point of contact of the pieces, if a key moved that point out of view.
     pub(super) fn follow_walk(&mut self, view: Rect, evaluation: &Evaluation) {
         let marks = self.overlay(evaluation);
         let touch = marks.iter().find_map(|mark| match mark {

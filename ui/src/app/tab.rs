@@ -1,0 +1,14 @@
+//! Tabs of the tables under the pattern.
+
+/// A tab of the tables.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub enum Tab {
+    #[default]
+    Measurements,
+    Variables,
+    Fabric,
+    Wearer,
+    WornWith,
+    History,
+    Pattern,
+}
